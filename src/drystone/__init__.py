@@ -1,0 +1,65 @@
+"""drystone: plans dry-stone walls from images of found stones.
+
+Examples
+--------
+>>> import drystone as ds
+>>> import numpy as np
+>>> bricks = ds.generate.BrickSettings(count=6, height_px=10, aspect=2)
+>>> stones = ds.generate.brick_stones(bricks, np.random.default_rng(1))
+>>> ds.plan_wall(stones, 60, 20, seed=1, scale=1.0).success
+True
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from drystone import generate as generate
+    from drystone.errors import DrystoneError as DrystoneError
+    from drystone.io.plan_json import read_plan as read_plan
+    from drystone.io.plan_json import write_plan as write_plan
+    from drystone.io.read_stones import ReadSettings as ReadSettings
+    from drystone.io.read_stones import read_stones as read_stones
+    from drystone.metrics.measure import measure_labels as measure_labels
+    from drystone.model.plan import Plan as Plan
+    from drystone.model.site import Site as Site
+    from drystone.model.stone import Stone as Stone
+    from drystone.model.stone import StoneSet as StoneSet
+    from drystone.planner.plan_wall import PlanResult as PlanResult
+    from drystone.planner.plan_wall import plan_wall as plan_wall
+    from drystone.planner.planner import Planner as Planner
+    from drystone.planner.settings import PlannerSettings as PlannerSettings
+    from drystone.planner.settings import method_settings as method_settings
+    from drystone.statics.blocks import model_from_labels as model_from_labels
+    from drystone.statics.limit import lateral_resistance as lateral_resistance
+
+# Names are loaded on first use: `drystone --help` must not wait for NumPy and SciPy.
+_HOMES = {
+    "DrystoneError": "drystone.errors",
+    "read_plan": "drystone.io.plan_json",
+    "write_plan": "drystone.io.plan_json",
+    "ReadSettings": "drystone.io.read_stones",
+    "read_stones": "drystone.io.read_stones",
+    "measure_labels": "drystone.metrics.measure",
+    "Plan": "drystone.model.plan",
+    "Site": "drystone.model.site",
+    "Stone": "drystone.model.stone",
+    "StoneSet": "drystone.model.stone",
+    "PlanResult": "drystone.planner.plan_wall",
+    "plan_wall": "drystone.planner.plan_wall",
+    "Planner": "drystone.planner.planner",
+    "PlannerSettings": "drystone.planner.settings",
+    "method_settings": "drystone.planner.settings",
+    "model_from_labels": "drystone.statics.blocks",
+    "lateral_resistance": "drystone.statics.limit",
+}
+
+__all__ = ["generate", *_HOMES]  # noqa: PLE0604 - the keys are strings
+
+
+def __getattr__(name: str) -> Any:
+    if name == "generate":
+        return import_module("drystone.generate")
+    if name in _HOMES:
+        return getattr(import_module(_HOMES[name]), name)
+    raise AttributeError(f"module 'drystone' has no attribute {name!r}")

@@ -1,0 +1,7 @@
+"""`python -m drystone`."""
+
+import sys
+
+from drystone.cli import main
+
+sys.exit(main())

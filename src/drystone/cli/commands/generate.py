@@ -1,0 +1,56 @@
+"""`drystone generate`: synthetic stone sets."""
+
+import argparse
+import tomllib
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from drystone import generate
+from drystone.errors import ExitCode, UsageError
+from drystone.io.wall_image import write_labels
+from drystone.model.settings import updated
+
+_KINDS: dict[str, tuple[type[Any], Any]] = {
+    "fourier": (generate.FourierSettings, generate.fourier_stones),
+    "polygon": (generate.PolygonSettings, generate.polygon_stones),
+    "brick": (generate.BrickSettings, generate.brick_stones),
+    "rubble": (generate.RubbleSettings, generate.rubble_stones),
+}
+
+
+def run(arguments: argparse.Namespace) -> ExitCode:
+    """Make stones and write them as one label image."""
+    path = Path(arguments.output)
+    if path.exists() and not arguments.overwrite:
+        raise UsageError("E129", "exists.", where=str(path), cure="Add --overwrite to replace it.")
+    settings_type, make = _KINDS[arguments.kind]
+    changes = _changes(arguments.changes, settings_type)
+    if arguments.count is not None:
+        changes["count"] = arguments.count
+    settings = updated(settings_type(), changes)
+    stones = make(settings, np.random.default_rng(arguments.seed))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_labels(generate.lay_out(stones), path)
+    size = stones.source
+    print(f"{len(stones)} stones, {size.width_px} x {size.height_px} px: {path}")
+    return ExitCode.DONE
+
+
+def _changes(items: list[str], settings_type: type[Any]) -> dict[str, Any]:
+    """Turn NAME=VALUE into values; VALUE is written as in TOML."""
+    changes: dict[str, Any] = {}
+    for item in items:
+        name, sign, text = item.partition("=")
+        try:
+            changes[name] = tomllib.loads(f"value = {text}")["value"]
+        except tomllib.TOMLDecodeError:
+            sign = ""
+        if not sign:
+            known = ", ".join(field.name for field in fields(settings_type))
+            raise UsageError(
+                "E135", f"{item!r} is no NAME=VALUE.", where="--set", cure=f"Known: {known}."
+            )
+    return changes

@@ -1,0 +1,74 @@
+"""`drystone measure`: the figures of merit of any wall."""
+
+import argparse
+from dataclasses import asdict
+from pathlib import Path
+
+from drystone.cli.lengths import parse_wall
+from drystone.cli.output import number, print_json, print_table
+from drystone.cli.walls import GivenWall, read_wall
+from drystone.errors import ExitCode, UsageError
+from drystone.metrics.measure import WallMetrics, measure_labels
+from drystone.metrics.reduce import reduce_labels
+from drystone.model.wall import Labels
+from drystone.statics.limit import lateral_resistance
+
+
+def run(arguments: argparse.Namespace) -> ExitCode:
+    """Print F_SF, F_AV, F_AH, F_LR, T_LEVEL and E_FLUSH."""
+    wall = read_wall(Path(arguments.wall_path))
+    if wall.labels is None:
+        raise UsageError("E134", "a block model has no pixels to measure.", where="measure")
+    labels = reduce_labels(wall.labels, arguments.scale) if arguments.scale != 1 else wall.labels
+    metrics = _measured(GivenWall(labels, wall.plan), labels, arguments)
+    if arguments.output is not None:
+        _draw(labels, Path(arguments.output))
+    if arguments.json:
+        print_json(asdict(metrics))
+        return ExitCode.DONE
+    height, width = labels.shape
+    print_table(
+        f"{arguments.wall_path}: {metrics.stones} stones, measured at {width} x {height} px",
+        [
+            ("F_SF", f"{number(metrics.F_SF)}  filling, higher is better"),
+            ("F_AV", f"{number(metrics.F_AV, 2)}  vertical arrangement, higher is better"),
+            ("F_AH", f"{number(metrics.F_AH, 2)}  horizontal arrangement, lower is better"),
+            ("F_LR", f"{number(metrics.F_LR)}  lateral resistance / mu, higher is better"),
+            ("T_LEVEL", f"{number(metrics.T_LEVEL)}  unevenness of the top, lower is better"),
+            ("E_FLUSH", f"{number(metrics.E_FLUSH)}  unevenness of the ends, lower is better"),
+            ("wall", f"{metrics.width:g} x {metrics.height:g} px; joints are two px wide"),
+        ],
+    )
+    return ExitCode.DONE
+
+
+def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) -> WallMetrics:
+    wall_px = None
+    if arguments.wall is not None:
+        width, height = parse_wall(arguments.wall, None)
+        wall_px = (width * arguments.scale, height * arguments.scale)
+    elif wall.plan is not None and arguments.scale == 1:
+        to_px = wall.plan.working_scale * (wall.plan.px_per_m or 1.0)
+        wall_px = (wall.plan.width * to_px, wall.plan.height * to_px)
+    model, _ = wall.model(arguments.mu)
+    return measure_labels(
+        labels,
+        wall_px=wall_px,
+        wedge_ids=wall.wedge_ids,
+        lateral_resistance=lateral_resistance(model).value,
+    )
+
+
+def _draw(labels: Labels, folder: Path) -> None:
+    from drystone.metrics.frame import frame_wall  # noqa: PLC0415
+    from drystone.metrics.joints import joint_mask  # noqa: PLC0415
+    from drystone.metrics.paths import horizontal_paths, vertical_paths  # noqa: PLC0415
+    from drystone.plotting import plot_joint_paths, save  # noqa: PLC0415 - slow import
+
+    folder.mkdir(parents=True, exist_ok=True)
+    framed = frame_wall(labels).labels
+    joint = joint_mask(framed)
+    for name, found in (("F_AV", vertical_paths(joint)), ("F_AH", horizontal_paths(joint))):
+        # The joint image has one more row and column of joint around the wall.
+        paths = [path.pixels - 1 for path in found[:5]]
+        save(plot_joint_paths(framed, paths).figure, folder / f"paths_{name}.png")

@@ -1,0 +1,150 @@
+"""Commands and options."""
+
+import argparse
+from collections.abc import Callable
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the parser of all commands."""
+    parser = argparse.ArgumentParser(
+        prog="drystone",
+        description="Plans dry-stone walls from images of found stones.",
+        epilog="drystone COMMAND --help explains a command. Start with: drystone demo",
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for name, (text, add) in _COMMANDS.items():
+        command = commands.add_parser(name, help=text, description=text)
+        command.add_argument("--debug", action="store_true", help="show the traceback of an error")
+        add(command)
+    return parser
+
+
+class _Version(argparse.Action):
+    """Looks the version up only when it is asked for."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        *_: object,
+    ) -> None:
+        from importlib.metadata import version  # noqa: PLC0415 - costs start-up time
+
+        print(f"drystone {version('drystone')}")
+        parser.exit()
+
+
+def _plan(command: argparse.ArgumentParser) -> None:
+    command.add_argument("stones", metavar="STONES", help="label image, mask, folder of masks, NPY")
+    command.add_argument(
+        "--wall", required=True, metavar="WxH",
+        help="size in px of the source image, or 1.4mx0.4m with --px-per-m",
+    )  # fmt: skip
+    command.add_argument("-o", "--output", required=True, metavar="DIR", help="folder to write to")
+    command.add_argument(
+        "--resume", action="store_true", help="go on from the partial plan in the output folder"
+    )
+    _planning(command)
+    _writing(command)
+
+
+def _demo(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "-o", "--output", default="drystone-demo", metavar="DIR", help="folder to write to"
+    )
+    _planning(command)
+    _writing(command)
+
+
+def _planning(command: argparse.ArgumentParser) -> None:
+    group = command.add_argument_group("method")
+    group.add_argument("--method", default="best", metavar="NAME", help="best (default) or paper")
+    group.add_argument(
+        "--settings", metavar="FILE.toml", help="parameters that replace the method's"
+    )
+    group.add_argument("--seed", type=int, default=0, help="of the random choices (default 0)")
+    group.add_argument(
+        "--scale", type=float, metavar="S", help="plan on images reduced by S, 0 to 1"
+    )
+    group.add_argument("--px-per-m", type=float, metavar="N", help="source px in a metre")
+    group.add_argument("--sampling", choices=["variant", "uniform", "twofold", "full"])
+    group.add_argument("--placement", choices=["snug", "eq12", "lowest"])
+    group.add_argument("--reach", choices=["any", "above"], help="where a stone may be inserted")
+    group.add_argument(
+        "--two-sided", action=argparse.BooleanOptionalAction, default=None, dest="two_sided",
+        help="build from both ends",
+    )  # fmt: skip
+    group.add_argument(
+        "--one-sided", action="store_false", dest="two_sided", help="same as --no-two-sided"
+    )
+    group.add_argument("--orientations", metavar="SET", help="sf, quarter, or a step such as 10deg")
+    group.add_argument("--stabilise", choices=["both", "rotation", "wedge", "none"])
+    group.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
+    group.add_argument(
+        "--geometry", choices=["raster"],
+        help="raster: stones are their pixels at the working resolution",
+    )  # fmt: skip
+    group.add_argument(
+        "--skip-too-large", action="store_true", default=None,
+        help="leave out stones that fit into the wall in no orientation",
+    )  # fmt: skip
+    group.add_argument("--jobs", type=int, default=1, metavar="N", help="threads; never the result")
+
+
+def _writing(command: argparse.ArgumentParser) -> None:
+    group = command.add_argument_group("output")
+    group.add_argument(
+        "--overwrite", action="store_true", help="write into a folder that has files"
+    )
+    group.add_argument("--json", action="store_true", help="print the summary as JSON")
+    group.add_argument("--quiet", action="store_true", help="no progress")
+
+
+def _stones(command: argparse.ArgumentParser) -> None:
+    command.add_argument("stones", metavar="STONES", help="label image, mask, folder of masks, NPY")
+    command.add_argument("-o", "--output", metavar="PICTURE.png", help="draw the stones")
+    command.add_argument("--json", action="store_true", help="print as JSON")
+
+
+def _wall_input(command: argparse.ArgumentParser) -> None:
+    command.add_argument("wall_path", metavar="WALL", help="label image or plan.json")
+    command.add_argument("--json", action="store_true", help="print as JSON")
+    command.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
+    command.add_argument("-o", "--output", metavar="DIR", help="draw pictures into a folder")
+
+
+def _measure(command: argparse.ArgumentParser) -> None:
+    _wall_input(command)
+    command.add_argument("--wall", metavar="WxH", help="wall that was to be built, px of the image")
+    command.add_argument(
+        "--scale", type=float, default=1.0, metavar="S", help="reduce the image by S first"
+    )
+
+
+def _check(command: argparse.ArgumentParser) -> None:
+    command.add_argument("plan", metavar="PLAN.json", help="plan to verify")
+    command.add_argument("--stones", metavar="STONES", help="what the plan was made from")
+    command.add_argument("--json", action="store_true", help="print as JSON")
+
+
+def _generate(command: argparse.ArgumentParser) -> None:
+    command.add_argument("kind", choices=["fourier", "polygon", "brick", "rubble"])
+    command.add_argument("-o", "--output", required=True, metavar="STONES.png")
+    command.add_argument("--count", type=int, default=None, help="number of stones")
+    command.add_argument("--seed", type=int, default=0)
+    command.add_argument("--overwrite", action="store_true", help="replace the file")
+    command.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
+        help="a parameter of the generator, such as noise=0.4 or D2=0.2 (see the docs)",
+    )  # fmt: skip
+
+
+_COMMANDS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
+    "plan": ("Plan a wall from an image of stones.", _plan),
+    "demo": ("Plan a generated stone set; no arguments needed, works offline.", _demo),
+    "stones": ("Say what is read from an image of stones.", _stones),
+    "analyse": ("Limit analysis of a wall: load multipliers and mechanism.", _wall_input),
+    "measure": ("Measure filling, arrangement and lateral resistance of a wall.", _measure),
+    "check": ("Re-derive a wall from stones and plan and verify every claim.", _check),
+    "generate": ("Make a synthetic stone set.", _generate),
+}

@@ -1,0 +1,152 @@
+"""What `plan` and `demo` share: plan, write everything, print the summary."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from drystone.cli.output import number, prepare_folder, print_json, print_table
+from drystone.cli.progress import step_bar
+from drystone.cli.settings import settings_from
+from drystone.errors import ExitCode, UsageError
+from drystone.io.plan_json import read_plan, write_plan
+from drystone.io.wall_image import write_wall_image
+from drystone.model.plan import Plan
+from drystone.model.stone import StoneSet
+from drystone.planner.plan_wall import PlanResult, plan_wall
+from drystone.planner.settings import PlannerSettings
+from drystone.verify import rebuild_wall
+
+_EXIT = {
+    "complete": ExitCode.DONE,
+    "incomplete": ExitCode.INCOMPLETE,
+    "interrupted": ExitCode.INTERRUPTED,
+}
+
+
+def plan_and_write(
+    stones: StoneSet, wall: tuple[float, float], arguments: argparse.Namespace
+) -> ExitCode:
+    """Plan a wall of given size in source px, write all files, print the summary."""
+    folder = Path(arguments.output)
+    settings = settings_from(arguments)
+    partial = _partial_plan(folder, arguments, settings)
+    prepare_folder(folder, overwrite=arguments.overwrite or partial is not None)
+    with step_bar(len(stones), quiet=arguments.quiet or arguments.json) as callbacks:
+        result = plan_wall(
+            stones,
+            *wall,
+            seed=arguments.seed,
+            method=arguments.method,
+            settings=settings,
+            scale=arguments.scale,
+            px_per_m=arguments.px_per_m,
+            n_jobs=arguments.jobs,
+            callbacks=callbacks,
+            built=None if partial is None else rebuild_wall(partial, stones),
+            course_heights_px=None if partial is None else _course_heights(partial),
+        )
+    write_result(result, stones, folder)
+    if arguments.json:
+        print_json(_summary(result, folder))
+    else:
+        _print_summary(result, folder)
+    return _EXIT[result.status]
+
+
+def write_result(result: PlanResult, stones: StoneSet, folder: Path) -> None:
+    """Write plan.json, settings.toml, wall.png, the pictures and the report."""
+    write_plan(result.plan, folder / "plan.json")
+    (folder / "settings.toml").write_bytes(tomli_w.dumps(dict(result.plan.settings)).encode())
+    write_wall_image(result.wall.labels, folder)
+    # Drawing loads matplotlib, which takes as long as a small plan.
+    from drystone.plotting import wall_outlines, write_pictures  # noqa: PLC0415
+    from drystone.report import write_report  # noqa: PLC0415
+
+    write_pictures(folder, result.wall, result.clusters, resistance=result.resistance)
+    write_report(
+        folder / "report.html",
+        plan=result.plan,
+        pictures=folder,
+        notices=stones.notices,
+        timings={"planning": result.seconds},
+        outlines=wall_outlines(result.wall),
+    )
+
+
+def _partial_plan(
+    folder: Path, arguments: argparse.Namespace, settings: PlannerSettings
+) -> Plan | None:
+    """Return the plan to go on from; refuse one made with other settings (E136)."""
+    path = folder / "plan.json"
+    if not getattr(arguments, "resume", False) or not path.exists():
+        return None
+    plan = read_plan(path)
+    if dict(plan.settings) != settings.as_dict() or plan.seed != arguments.seed:
+        raise UsageError(
+            "E136",
+            "the partial plan was made with other settings or another seed.",
+            where=str(path),
+            cure=f"Give --seed {plan.seed} and --settings with the settings.toml from there.",
+        )
+    print(f"drystone: going on after {len(plan.stone_steps)} stones", file=sys.stderr)
+    return plan
+
+
+def _course_heights(plan: Plan) -> dict[int, float]:
+    to_px = plan.working_scale * (plan.px_per_m or 1.0)
+    return {
+        step.stone: step.course_height * to_px
+        for step in plan.stone_steps
+        if step.course_height is not None
+    }
+
+
+def _summary(result: PlanResult, folder: Path) -> dict[str, Any]:
+    metrics = result.metrics
+    return {
+        "plan": str(folder / "plan.json"),
+        "status": result.status,
+        "stopped": result.message,
+        "placed": len(result.plan.stone_steps),
+        "stones": len(result.plan.stone_steps) + len(result.plan.unused),
+        "unused": list(result.plan.unused),
+        "wedges": len(result.plan.wedge_steps),
+        "F_SF": metrics.F_SF,
+        "F_AV": metrics.F_AV,
+        "F_AH": metrics.F_AH,
+        "F_LR": metrics.F_LR,
+        "T_LEVEL": metrics.T_LEVEL,
+        "E_FLUSH": metrics.E_FLUSH,
+        "alpha_left": metrics.alpha_left,
+        "alpha_right": metrics.alpha_right,
+        "wedge_area": metrics.wedge_area,
+        "working_scale": result.plan.working_scale,
+        "seconds": result.seconds,
+    }
+
+
+def _print_summary(result: PlanResult, folder: Path) -> None:
+    plan, metrics = result.plan, result.metrics
+    placed, left = len(plan.stone_steps), len(plan.unused)
+    unused = f", unused: {', '.join(map(str, plan.unused))}" if left else ""
+    print_table(
+        f"{result.status}: {result.message}",
+        [
+            ("stones", f"{placed} of {placed + left} placed{unused}"),
+            ("F_SF", f"{number(metrics.F_SF)}  filling, higher is better"),
+            ("F_AV", f"{number(metrics.F_AV, 2)}  vertical arrangement, higher is better"),
+            ("F_AH", f"{number(metrics.F_AH, 2)}  horizontal arrangement, lower is better"),
+            ("F_LR", f"{number(metrics.F_LR)}  lateral resistance / mu, higher is better"),
+            ("T_LEVEL", f"{number(metrics.T_LEVEL)}  unevenness of the top"),
+            ("E_FLUSH", f"{number(metrics.E_FLUSH)}  unevenness of the ends"),
+            ("alpha", f"left {number(metrics.alpha_left)}, right {number(metrics.alpha_right)}"),
+            ("wedges", f"{len(plan.wedge_steps)}, area {metrics.wedge_area:g} {plan.length_unit}²"),
+            ("working scale", f"{plan.working_scale:g}"),
+            ("planned in", f"{result.seconds:.2f} s"),
+            ("picture", str(folder / "picture.png")),
+            ("report", str(folder / "report.html")),
+        ],
+    )

@@ -1,0 +1,41 @@
+"""Planner settings from a method, a TOML file and options, in this order."""
+
+import argparse
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from drystone.errors import InputError
+from drystone.planner.settings import PlannerSettings, method_settings
+
+
+def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
+    """Return the settings that the command line asks for."""
+    settings = method_settings(arguments.method)
+    if arguments.settings is not None:
+        settings = settings.updated(read_toml(Path(arguments.settings)))
+    changes: dict[str, Any] = {}
+    for name in ("sampling", "two_sided", "orientations", "mu", "skip_too_large"):
+        value = getattr(arguments, name)
+        if value is not None:
+            changes[name] = value
+    placement = {"rule": arguments.placement, "reach": arguments.reach}
+    changes["placement"] = {k: v for k, v in placement.items() if v is not None}
+    if arguments.stabilise is not None:
+        changes["stabilise"] = {"method": arguments.stabilise}
+    return settings.updated(changes)
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Read a TOML file; a missing or broken one is an InputError (E128)."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError("E128", f"cannot be read: {error.strerror}.", where=str(path)) from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError(
+            "E128",
+            f"is no TOML: {error}.",
+            where=str(path),
+            cure="`drystone plan` writes the settings of a plan as settings.toml: start from that.",
+        ) from None

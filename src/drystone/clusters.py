@@ -1,0 +1,53 @@
+"""Clusters of similar stones (§3.4, Fig. 5)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.cluster.hierarchy import fcluster, ward
+
+from drystone.kernels.raster import turn
+from drystone.model.stone import StoneSet
+from drystone.poses import PoseBook
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClusterSettings:
+    """How stones are grouped.
+
+    Parameters
+    ----------
+    distance : float
+        Ward distance above which clusters stay apart; the paper uses 0.2.
+    """
+
+    distance: float = 0.2
+
+    def __post_init__(self) -> None:
+        if self.distance <= 0:
+            raise ValueError("distance must be positive")
+
+
+def cluster_stones(
+    stones: StoneSet, book: PoseBook, settings: ClusterSettings | None = None
+) -> dict[int, int]:
+    """Group stones of similar eccentricity and size by Ward linkage (§3.4).
+
+    The features are the eccentricity of the ellipse of equal second moments, and the area of the
+    bounding box of the initial pose over the largest in the set.
+
+    Returns
+    -------
+    clusters : dict of int to int
+        Cluster of each stone's id; clusters are numbered from 1 by falling mean size.
+    """
+    settings = settings or ClusterSettings()
+    ids = [stone.id for stone in stones]
+    if len(ids) < 2:
+        return dict.fromkeys(ids, 1)
+    extents = [np.ptp(turn(s.hull, book.initial_angle(s)), axis=0) for s in stones]
+    box = np.array([extent[0] * extent[1] for extent in extents])
+    features = np.column_stack([[s.eccentricity for s in stones], box / box.max()])
+    flat = fcluster(ward(features), settings.distance, criterion="distance")
+    size = {label: -float(box[flat == label].mean()) for label in np.unique(flat)}
+    order = {label: rank for rank, label in enumerate(sorted(size, key=lambda k: size[k]), 1)}
+    return {stone_id: order[label] for stone_id, label in zip(ids, flat, strict=True)}

@@ -1,0 +1,83 @@
+"""Lay stones out side by side in one image of labels."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from drystone.kernels.raster import Mask
+from drystone.model.stone import Source, Stone, StoneSet
+from drystone.model.wall import Labels
+
+GAP_PX = 4
+"""Empty pixels between two stones, and between stones and the edge of the image."""
+
+WIDTH_TO_HEIGHT = 1.6
+"""Shape of the image of stones, about."""
+
+
+def lay_out(stones: StoneSet) -> Labels:
+    """Draw stones in rows, in the order of their ids, without turning or touching any.
+
+    Reading the image gives the same stones; those of a generator lie in it where their
+    `left_px` and `bottom_px` say.
+
+    Parameters
+    ----------
+    stones : StoneSet
+        Any stones; where they lay in their own source does not matter.
+
+    Returns
+    -------
+    labels : (h, w) uint32 array
+        0 where nothing is, otherwise the stones' ids; row 0 at the top.
+
+    Examples
+    --------
+    >>> lay_out(StoneSet((Stone(1, np.ones((2, 4), bool)),))).shape
+    (10, 12)
+    """
+    corners, shape = _rows([stone.mask.shape for stone in stones])
+    labels = np.zeros(shape, np.uint32)
+    for stone, (row, col) in zip(stones, corners, strict=True):
+        height, width = stone.mask.shape
+        labels[row : row + height, col : col + width][stone.mask] = stone.id
+    return labels
+
+
+def stones_of(masks: Sequence[Mask]) -> StoneSet:
+    """Make stones 1 ... n of masks, lying where :func:`lay_out` draws them.
+
+    Parameters
+    ----------
+    masks : sequence of (h, w) bool array
+        Cropped, row 0 at the top, each in one piece.
+
+    Examples
+    --------
+    >>> stones = stones_of([np.ones((2, 4), bool)])
+    >>> stones.by_id(1).left_px, stones.source.width_px
+    (4, 12)
+    """
+    corners, (height, width) = _rows([mask.shape for mask in masks])
+    stones = (
+        Stone(number, mask, left_px=col, bottom_px=height - row - mask.shape[0])
+        for number, (mask, (row, col)) in enumerate(zip(masks, corners, strict=True), start=1)
+    )
+    return StoneSet(tuple(stones), Source(width_px=width, height_px=height))
+
+
+def _rows(shapes: Sequence[tuple[int, ...]]) -> tuple[list[tuple[int, int]], tuple[int, int]]:
+    """Return the top-left corner of every box and the shape of the image."""
+    area = sum((height + GAP_PX) * (width + GAP_PX) for height, width in shapes)
+    row_width = math.isqrt(int(WIDTH_TO_HEIGHT * area))
+    corners = []
+    row = col = GAP_PX
+    below, right = row, col
+    for height, width in shapes:
+        if col > GAP_PX and col + width > row_width:
+            row, col = below, GAP_PX
+        corners.append((row, col))
+        col += width + GAP_PX
+        below, right = max(below, row + height + GAP_PX), max(right, col)
+    return corners, (below, right)

@@ -1,0 +1,114 @@
+"""From an outline to the pixels of one stone."""
+
+from collections.abc import Iterable
+from itertools import islice
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from drystone.errors import UsageError
+from drystone.kernels.raster import Mask
+
+Outline = NDArray[np.float64]
+"""Corners (n, 2) of a closed polygon, x right, y up, px; the last joins the first."""
+
+ATTEMPTS = 1000
+"""Draws after which a generator gives up on its settings."""
+
+
+def polygon_area(outline: Outline) -> float:
+    """Return the area of a simple polygon, px.
+
+    Examples
+    --------
+    >>> polygon_area(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]]))
+    6.0
+    """
+    x, y = outline.T
+    return abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2
+
+
+def outline_mask(outline: Outline) -> Mask:
+    """Rasterise a polygon: the pixels whose centre is inside, by the even-odd rule.
+
+    Parameters
+    ----------
+    outline : (n, 2) float array
+        A simple polygon, turning either way.
+
+    Returns
+    -------
+    mask : (h, w) bool array
+        Cropped to its pixels, row 0 at the top; of shape (0, 0) when no centre is inside.  A
+        centre on the outline is inside when the polygon lies to its right or above it, so
+        polygons that share a side share no pixel.
+
+    Examples
+    --------
+    >>> outline_mask(np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 3.0]])).astype(int).tolist()
+    [[1, 0], [1, 1]]
+    """
+    left, bottom = np.floor(outline.min(axis=0)).astype(int)
+    right, top = np.ceil(outline.max(axis=0)).astype(int)
+    x = np.arange(left, right) + 0.5
+    y = np.arange(top, bottom, -1) - 0.5
+    inside = np.zeros((y.size, x.size), bool)
+    for (x0, y0), (x1, y1) in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        rows = np.flatnonzero((y >= min(y0, y1)) & (y < max(y0, y1)))
+        if rows.size:
+            crossing = x0 + (y[rows] - y0) * (x1 - x0) / (y1 - y0)
+            inside[rows] ^= x >= crossing[:, None]
+    rows, cols = np.flatnonzero(inside.any(axis=1)), np.flatnonzero(inside.any(axis=0))
+    if not rows.size:
+        return np.zeros((0, 0), bool)
+    return np.ascontiguousarray(inside[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1])
+
+
+def is_whole(mask: Mask) -> bool:
+    """Return True when a mask is one 8-connected piece without holes, so it reads as one stone.
+
+    Examples
+    --------
+    >>> is_whole(np.array([[1, 0, 1]], bool)), is_whole(np.array([[1, 0], [0, 1]], bool))
+    (False, True)
+    """
+    pieces = int(ndimage.label(mask, np.ones((3, 3)))[1])
+    return pieces == 1 and bool((ndimage.binary_fill_holes(mask) == mask).all())
+
+
+def draw_stone(draws: Iterable[Outline | None], what: str) -> Mask:
+    """Take outlines until one gives the mask of a whole stone.
+
+    Parameters
+    ----------
+    draws : iterable of outlines
+        One after the other; None for a draw that is to be rejected.
+    what : str
+        Name of the stones, for the message.
+
+    Raises
+    ------
+    UsageError
+        E130 when a thousand draws in a row are rejected.
+    """
+    for outline in islice(draws, ATTEMPTS):
+        if outline is not None and is_whole(mask := outline_mask(outline)):
+            return mask
+    raise no_stone(what)
+
+
+def no_stone(what: str) -> UsageError:
+    """Return the error (E130) of a generator whose draws are all rejected."""
+    return UsageError(
+        "E130",
+        f"no stone in {ATTEMPTS} draws is one piece: the settings allow none.",
+        where=f"generate {what}",
+        cure="Ask for larger stones or for less irregular ones.",
+    )
+
+
+def check_setting(ok: bool, what: str, where: str) -> None:
+    """Raise UsageError (E130) that says what a generator's setting must be, unless it is ok."""
+    if not ok:
+        raise UsageError("E130", f"{what}.", where=f"generate {where}", cure="Change this setting.")

@@ -1,0 +1,43 @@
+"""IWR: how far a stone's ends are from the joints below (Eq. 9)."""
+
+from drystone.model.landscape import Box, Landscape
+
+NO_JOINT = 0.5
+"""IWR of a stone on the ground, or with nothing below."""
+
+
+def interlocking_width_ratio(landscape: Landscape, box: Box, end_px: float) -> float:
+    """Return IWR in [0, 1]; high where head joints are far from those of the course below (Eq. 9).
+
+    below1 is the stone whose top right corner is closest to the box's bottom left corner, below2
+    the one whose top left corner is closest to its bottom right corner, both among the stones
+    whose top is not above the stone's vertical centre.  Each term is the horizontal distance
+    from the stone's end to that corner, over that stone's width; IWR is the mean of the terms that
+    exist, each clipped to [0, 1].
+
+    Parameters
+    ----------
+    landscape : Landscape
+        Before the stone is placed.
+    box : Box
+        Of the stone where it is placed.
+    end_px : float
+        A corner nearer to an end of the wall than this is the wall's end, no joint.
+    """
+    if box.bottom == 0:
+        return NO_JOINT
+    below = [b for b in landscape.boxes if 2 * b.top <= box.top + box.bottom]
+    rights = [b for b in below if b.right < landscape.width_px - end_px]
+    lefts = [b for b in below if b.left > end_px]
+    terms = []
+    if rights:
+        one = min(rights, key=lambda b: _distance2(b.right, b.top, box.left, box.bottom))
+        terms.append(min(1.0, abs(box.left - one.right) / one.width))
+    if lefts:
+        two = min(lefts, key=lambda b: _distance2(b.left, b.top, box.right, box.bottom))
+        terms.append(min(1.0, abs(box.right - two.left) / two.width))
+    return sum(terms) / len(terms) if terms else NO_JOINT
+
+
+def _distance2(x0: int, y0: int, x1: int, y1: int) -> int:
+    return (x0 - x1) ** 2 + (y0 - y1) ** 2

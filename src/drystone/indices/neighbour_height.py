@@ -1,0 +1,42 @@
+"""NHR: how far a stone's top is from level with its neighbour (Eq. 6-8)."""
+
+from collections.abc import Sequence
+
+from drystone.model.landscape import Box, Landscape
+
+
+def left_neighbour(landscape: Landscape, box: Box) -> Box | None:
+    """Return the nearest stone on the building side in the same course; None when there is none.
+
+    Its rows overlap the stone's by at least half the smaller of the two heights.
+    """
+
+    def level(other: Box) -> bool:
+        shared = min(box.top, other.top) - max(box.bottom, other.bottom)
+        return 2 * shared >= min(box.height, other.height)
+
+    # Left of it means that it ends left of the stone's middle: outlines may interlock.
+    beside = [b for b in landscape.boxes if 2 * b.right <= box.left + box.right and level(b)]
+    return max(beside, key=lambda b: (b.right, b.top), default=None)
+
+
+def neighbour_height_ratio(
+    box: Box, neighbour: Box | None, other_heights_px: Sequence[float]
+) -> float:
+    """Return NHR, 0 or larger; 0 is best (Eq. 6-8).
+
+    Parameters
+    ----------
+    box : Box
+        Of the stone where it is placed.
+    neighbour : Box or None
+        From :func:`left_neighbour`.
+    other_heights_px : sequence of float
+        Heights of the other candidates, which the first stone of a course is compared with.
+    """
+    if neighbour is not None:
+        return abs(box.top - neighbour.top) / box.height
+    if not other_heights_px:
+        return 0.0
+    mean = sum(other_heights_px) / len(other_heights_px)
+    return abs(box.height - mean) / box.height

@@ -1,0 +1,74 @@
+"""Which values a picture has, where and how often; counted once, used by every check."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Census:
+    """The different values of an image.
+
+    Parameters
+    ----------
+    index : (h, w) int32 array
+        Pixel by pixel 1 + the position of its value in `values`.
+    values : (n,) int64 array
+        Different values, ascending.
+    """
+
+    index: NDArray[np.int32]
+    values: NDArray[np.int64]
+
+    @cached_property
+    def counts(self) -> NDArray[np.int64]:
+        """Number of pixels of each value."""
+        counts = np.bincount(self.index.ravel(), minlength=len(self.values) + 1)[1:]
+        return np.asarray(counts, np.int64)
+
+    @property
+    def commonest(self) -> int:
+        """Position of the most frequent value."""
+        return int(np.argmax(self.counts))
+
+    @cached_property
+    def solid(self) -> NDArray[np.bool_]:
+        """True where the 3 x 3 px around a pixel all have its value; (h, w), the rim is False."""
+        solid = np.zeros(self.index.shape, bool)
+        a = self.index
+        if min(a.shape) >= 3:
+            same = (a[:, :-2] == a[:, 1:-1]) & (a[:, 1:-1] == a[:, 2:])
+            down = a[:-1, 1:-1] == a[1:, 1:-1]
+            solid[1:-1, 1:-1] = same[:-2] & same[1:-1] & same[2:] & down[:-1] & down[1:]
+        return solid
+
+    def pixels(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return the (h, w) mask of the pixels whose value is chosen; `chosen` is (n,) bool."""
+        return np.concatenate(([False], chosen))[self.index]
+
+
+def take_census(ids: NDArray[Any]) -> Census:
+    """Count the values of an image of integers, none of them negative.
+
+    Examples
+    --------
+    >>> take_census(np.array([[0, 7], [70000, 7]])).index
+    array([[1, 2],
+           [3, 2]], dtype=int32)
+    """
+    top = int(ids.max())
+    if top < max(1 << 16, 4 * ids.size):
+        present = np.zeros(top + 1, bool)
+        present[ids.ravel()] = True
+        table = np.cumsum(present, dtype=np.int32)
+        return Census(table[ids], np.flatnonzero(present).astype(np.int64))
+    # Labels come in runs: only the first pixel of each run is sorted.
+    flat = ids.ravel()
+    starts = np.concatenate(([0], np.flatnonzero(flat[1:] != flat[:-1]) + 1))
+    values, index = np.unique(flat[starts], return_inverse=True)
+    lengths = np.diff(starts, append=flat.size)
+    image = np.repeat(index.astype(np.int32) + np.int32(1), lengths).reshape(ids.shape)
+    return Census(image, values.astype(np.int64))

@@ -1,0 +1,176 @@
+"""Pictures that are no label images are told apart and refused (users' table of bad input)."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from drystone.errors import LabelImageError
+from drystone.io.census import Census
+
+RARE_PX = 10
+_MANY_VALUES = 64
+_PLAIN_SHARE = 0.5
+_PLAIN_SHARE_LOSSY = 0.3
+_BLENDED_SHARE = 0.5
+"""Measured on published labels scaled or blurred: .57 (bicubic, which overshoots) ... 1."""
+
+_CLEAN_EXPORT = "Export the ids as PNG or TIFF, without anti-aliasing or resampling."
+
+
+def check_not_uniform(census: Census, background: int, where: str) -> None:
+    """Refuse a picture of one value (E104)."""
+    if len(census.values) > 1:
+        return
+    value = int(census.values[0])
+    height, width = census.index.shape
+    what = f"no stones: all {width} x {height} px are {value}"
+    if value == background:
+        hint = "Draw every stone in an id of its own, from 1."
+        raise LabelImageError("E104", f"{what} (background).", where=where, cure=hint)
+    raise LabelImageError(
+        "E104",
+        f"{what}, and nothing tells stone from background.",
+        where=where,
+        cure=f"Is {value} the background? Then the stones are missing; else leave a rim of 0.",
+    )
+
+
+def check_background(index: NDArray[Any], census: Census, background: int, where: str) -> None:
+    """Refuse a picture whose background is plainly another value (E105).
+
+    Parameters
+    ----------
+    index : (h, w) integer array
+        Positions (from 1) of the pixels' values in the census.
+    census : Census
+        The values of the picture; of a mask its two ends.
+    background : int
+        What the settings say.
+    where : str
+        Name for messages.
+    """
+    common = int(np.bincount(index.ravel()).argmax())
+    value = int(census.values[common - 1])
+    if value == background:
+        return
+    sides = [line == common for line in (index[0], index[-1], index[:, 0], index[:, -1])]
+    corners = sum(int(index[r, c] == common) for r in (0, -1) for c in (0, -1))
+    # A stone cropped to its bounding box touches all four borders too, but has not the corners,
+    # or nothing inside it.
+    if corners >= 3 and all(side.mean() > 0.5 for side in sides) and _has_islands(index, common):
+        raise LabelImageError(
+            "E105",
+            f"the value {value} fills {(index == common).mean():.0%} of the picture and its "
+            f"borders: it looks like the background, which is {background} by the settings.",
+            where=where,
+            cure=f"Use background {value}; if it is a stone, give the picture a rim of "
+            f"{background}.",
+        )
+
+
+def _has_islands(index: NDArray[Any], common: int) -> bool:
+    """Tell whether anything as large as a stone lies inside a value and off the borders."""
+    found, _ = ndimage.label(index != common)
+    areas = np.bincount(found.ravel())
+    for line in (found[0], found[-1], found[:, 0], found[:, -1]):
+        areas[line] = 0
+    areas[0] = 0
+    return bool(areas.max() >= RARE_PX)
+
+
+def check_not_lossy(ids: Census, brightness: NDArray[Any], where: str) -> None:
+    """Refuse JPEG: it changes values, so ids are lost (E101), or it is a photo (E102)."""
+    # In JPEG labels .4 ... .95 of all neighbours are equal, in photos less than .2 (measured).
+    equal = brightness[:, :-1] == brightness[:, 1:]
+    if equal.size and len(ids.values) > _MANY_VALUES and equal.mean() < _PLAIN_SHARE_LOSSY:
+        raise _photo(ids, where)
+    rare = int((ids.counts < RARE_PX).sum())
+    plain = _plain_areas(brightness)
+    guess = f" Its plain areas look like {plain} stones." if plain else ""
+    raise LabelImageError(
+        "E101",
+        f"JPEG is lossy: {len(ids.values)} values, {rare} of them on less than {RARE_PX} px, "
+        f"so ids are lost.{guess}",
+        where=where,
+        cure=f"{_CLEAN_EXPORT} A black-and-white mask can be read with mask=True.",
+    )
+
+
+def _plain_areas(brightness: NDArray[Any]) -> int:
+    """Count areas that were of one value before compression blurred them: a guess."""
+    level = brightness.astype(np.int32)
+    spread = ndimage.maximum_filter(level, 3) - ndimage.minimum_filter(level, 3)
+    background = int(np.bincount(level.ravel()).argmax())
+    plain, found = ndimage.label((spread <= 16) & (np.abs(level - background) > 16))
+    return int((np.bincount(plain.ravel(), minlength=found + 1)[1:] >= RARE_PX).sum())
+
+
+def check_not_photo(census: Census, where: str) -> None:
+    """Refuse a picture whose neighbouring pixels mostly differ (E102).
+
+    Notes
+    -----
+    Measured on pairs of neighbours of which one is not the most frequent value: in stones wider
+    than 3 px most of them are equal, in photos few are.
+    """
+    if len(census.values) <= _MANY_VALUES:
+        return
+    left, right, common = census.index[:, :-1], census.index[:, 1:], census.commonest + 1
+    pairs = (left != common) | (right != common)
+    equal = int(((left == right) & pairs).sum())
+    if equal < _PLAIN_SHARE * int(pairs.sum()):
+        raise _photo(census, where)
+
+
+def _photo(census: Census, where: str) -> LabelImageError:
+    return LabelImageError(
+        "E102",
+        f"this looks like a photo ({len(census.values):,} colours, few of them in plain areas).",
+        where=where,
+        cure="Give a label image of it: one id a stone, 0 where there is none, as PNG or TIFF.",
+    )
+
+
+def blended(census: Census, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Tell which chosen pixels lie strictly between darker and brighter ones 2 px around.
+
+    That is what anti-aliasing, blur and interpolation leave at edges; a small stone on plain
+    background is the extreme of its surroundings.
+
+    Parameters
+    ----------
+    census : Census
+        Of the picture; positions keep the order of values.
+    chosen : (h, w) bool array
+        Pixels to judge.
+
+    Returns
+    -------
+    (n,) bool array
+        In the order of ``np.nonzero(chosen)``.
+    """
+    here = census.index[chosen]
+    low = ndimage.minimum_filter(census.index, 5)[chosen]
+    high = ndimage.maximum_filter(census.index, 5)[chosen]
+    return np.asarray((low < here) & (here < high))
+
+
+def check_not_resampled(census: Census, where: str) -> None:
+    """Refuse labels that were blurred, anti-aliased or scaled by interpolation (E101)."""
+    if len(census.values) <= 20:
+        return
+    plain = np.zeros(len(census.values) + 1, bool)
+    plain[census.index[census.solid]] = True
+    thin = ~plain[1:]
+    if 2 * thin.sum() <= plain.sum():
+        return
+    if blended(census, census.pixels(thin)).mean() >= _BLENDED_SHARE:
+        raise LabelImageError(
+            "E101",
+            f"the ids were blended at the edges of stones: {len(census.values)} values, "
+            f"{int(thin.sum())} of them in edges only; about {int(plain.sum()) - 1} are stones.",
+            where=where,
+            cure=f"{_CLEAN_EXPORT} Scale label images by nearest neighbour.",
+        )

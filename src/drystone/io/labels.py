@@ -1,0 +1,171 @@
+"""Values of a picture to ids: whole numbers from 0 to 2^32-1 (DESIGN 4.1)."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.errors import LabelImageError, Notice
+from drystone.io.census import take_census
+from drystone.io.images import several_pages
+
+MAX_ID = 2**32 - 1
+_GREY_TOLERANCE = 48
+"""Colour fringe that an anti-aliased black-and-white picture may have, of 255."""
+
+
+@dataclass(frozen=True, eq=False)
+class IdImage:
+    """An image of ids, and how bright it was.
+
+    Parameters
+    ----------
+    ids : (h, w) integer array
+        Values in 0 ... 2^32-1; the background still has its own.
+    background : int
+        The value that is not stone.
+    brightness : (h, w) integer array or None
+        Largest channel of a colour picture; None when `ids` are its values.
+    nearly_grey : bool
+        False when the picture shows colours.
+    notices : tuple of Notice
+        How colours became ids.
+    """
+
+    ids: NDArray[Any]
+    background: int
+    brightness: NDArray[Any] | None = None
+    nearly_grey: bool = True
+    notices: tuple[Notice, ...] = ()
+
+
+def to_ids(values: NDArray[Any], background: int, where: str) -> IdImage:
+    """Read ids from grey values, palette indices, numbers or colours.
+
+    Parameters
+    ----------
+    values : (h, w) or (h, w, c) array
+        Of bools, integers or whole floats; c = 1, 2 (grey, alpha), 3 (RGB) or 4 (RGBA).
+    background : int
+        The value that is not stone; -1 is allowed for arrays.
+    where : str
+        Name for messages.
+
+    Raises
+    ------
+    LabelImageError
+        E108 values that cannot be ids.
+    InputError
+        E109 not one picture.
+
+    Notes
+    -----
+    Where R = G = B the id is the grey value, else R + 256 G + 65536 B; alpha is ignored.  When
+    that would give two colours one id, R + 256 G + 65536 B is used for the greys as well.
+
+    Examples
+    --------
+    >>> to_ids(np.array([[[44, 1, 0], [7, 7, 7]]], np.uint8), 0, "two.png").ids
+    array([[300,   7]], dtype=uint32)
+    """
+    values = _as_picture(values, where)
+    values = _whole_numbers(values, where)
+    if values.ndim == 3 and values.shape[2] > 2:
+        return _ids_of_colours(values[:, :, :3], background, where)
+    if values.ndim == 3:
+        values = values[:, :, 0]
+    ids, background = _without_negative_background(values, background)
+    low, high = int(ids.min()), int(ids.max())
+    if low < 0 or high > MAX_ID:
+        bad = (ids < 0) | (ids > MAX_ID)
+        raise _not_ids(f"{int(bad.sum())} px are {low} ... {high} outside 0 ... 2^32-1", bad, where)
+    return IdImage(ids, background)
+
+
+def _as_picture(values: NDArray[Any], where: str) -> NDArray[Any]:
+    """Drop planes of one; refuse stacks."""
+    found = np.asarray(values)
+    if found.size == 0:
+        raise LabelImageError(
+            "E104", f"there are no pixels: the shape is {found.shape}.", where=where,
+            cure="Give an image of at least one pixel.",
+        )  # fmt: skip
+    while found.ndim > 3 and found.shape[0] == 1:
+        found = found[0]
+    if found.ndim == 3 and found.shape[0] == 1 and found.shape[2] > 4:
+        found = found[0]
+    if found.ndim == 3 and found.shape[2] == 1:
+        found = found[:, :, 0]
+    if found.ndim == 2 or (found.ndim == 3 and found.shape[2] in (2, 3, 4)):
+        return found
+    raise several_pages(f"{found.ndim} dimensions of shape {found.shape}", where)
+
+
+def _whole_numbers(values: NDArray[Any], where: str) -> NDArray[Any]:
+    kind = values.dtype.kind
+    if kind == "b":
+        return values.view(np.uint8)
+    if kind in "iu":
+        return values
+    if kind != "f":
+        raise LabelImageError(
+            "E108", f"values of type {values.dtype} are no ids.", where=where,
+            cure="Give whole numbers (or bools for a mask).",
+        )  # fmt: skip
+    for name, bad in (
+        ("not finite (NaN or infinite)", ~np.isfinite(values)),
+        ("no whole numbers", values != np.floor(values)),
+        ("not from 0 to 2^32-1", np.abs(values) > MAX_ID),
+    ):
+        if bad.any():
+            raise _not_ids(f"{int(bad.sum())} px are {name}", bad, where)
+    return values.astype(np.int64)
+
+
+def _not_ids(what: str, bad: NDArray[np.bool_], where: str) -> LabelImageError:
+    row, col = np.argwhere(bad)[0][:2]
+    return LabelImageError(
+        "E108",
+        f"{what} (first at column {col}, row {row}), so they cannot be ids.",
+        where=where,
+        cure="Ids are whole numbers from 1 to 4294967295, 0 is the background; name any other "
+        "background with the setting `background`.",
+    )
+
+
+def _without_negative_background(ids: NDArray[Any], background: int) -> tuple[NDArray[Any], int]:
+    """Let 0 stand for a negative background; where 0 is taken, it stays and is refused later."""
+    if background >= 0:
+        return ids, background
+    if (ids == background).any() and not (ids == 0).any():
+        return np.where(ids == background, 0, ids), 0
+    return ids, 0
+
+
+def _ids_of_colours(colours: NDArray[Any], background: int, where: str) -> IdImage:
+    red, green, blue = (colours[:, :, i] for i in range(3))
+    grey = (red == green) & (green == blue)
+    if grey.all():
+        return to_ids(red, background, where)
+    if int(colours.min()) < 0 or int(colours.max()) > 255:
+        raise LabelImageError(
+            "E108", "colours have values outside 0 ... 255.", where=where,
+            cure="Export ids as one channel of 16 or 32 bits, or colours of 8 bits.",
+        )  # fmt: skip
+    codes = red.astype(np.uint32)
+    codes |= green.astype(np.uint32) << 8
+    codes |= blue.astype(np.uint32) << 16
+    present = take_census(codes).values
+    is_grey = (present & 255) * 0x010101 == present
+    mixed = np.where(is_grey, present & 255, present)
+    rule = "R + 256 G + 65536 B"
+    ids = codes
+    if len(np.unique(mixed)) == len(mixed):
+        ids = np.where(grey, red, codes).astype(np.uint32)
+        rule += " (greys: their value)" if is_grey[present > 0].any() else ""
+    stones = len(present) - int((ids == background).any())
+    notice = Notice("W115", f"{len(present)} colours read as ids {rule}: {stones} stones.")
+    brightest = colours.max(axis=2)
+    spread = int((brightest - colours.min(axis=2)).max())
+    return IdImage(ids, background, brightest, spread <= _GREY_TOLERANCE, (notice,))

@@ -1,0 +1,116 @@
+"""Binary masks: which pictures are masks, and their stones (DESIGN 4.1)."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from drystone.io.census import Census, take_census
+from drystone.io.checks import blended
+from drystone.io.labels import IdImage
+from drystone.kernels.raster import Mask
+
+_USUAL_STONE_VALUES = (1, 255, 65535, 2**32 - 1)
+_WHOLE = np.ones((3, 3), bool)
+
+
+@dataclass(frozen=True, eq=False)
+class BinaryMask:
+    """A picture read as stone and background.
+
+    Parameters
+    ----------
+    mask : (h, w) bool array
+        True where there is stone.
+    background, stone : int
+        The two values of the picture.
+    between_px : int
+        Pixels with values between them (anti-aliasing), given to the nearer one.
+    """
+
+    mask: Mask
+    background: int
+    stone: int
+    between_px: int
+
+
+def find_mask(image: IdImage, ids: Census, wanted: bool | None) -> BinaryMask | None:
+    """Read a picture as a binary mask if it is one.
+
+    Parameters
+    ----------
+    image : IdImage
+        The picture.
+    ids : Census
+        Of ``image.ids``; at least two values.
+    wanted : bool or None
+        True forces a mask, False forbids it, None decides: two values, one of them the
+        background, are a mask, and so is a picture of two values and blended edges.
+
+    Returns
+    -------
+    BinaryMask or None
+        None when the picture holds ids.
+    """
+    if wanted is False:
+        return None
+    if len(ids.values) == 2 and (wanted or image.background in ids.values):
+        binary = _split(ids, image.background)
+        return binary if wanted or not _is_one_id(binary) else None
+    if image.brightness is None:
+        grey = ids
+    elif wanted or image.nearly_grey:
+        grey = take_census(image.brightness)
+    else:
+        return None
+    if len(grey.values) > 1 and (wanted or _is_antialiased(grey, image.background)):
+        return _split(grey, image.background)
+    return None
+
+
+def components(mask: Mask) -> tuple[NDArray[np.int32], int]:
+    """Label the 8-connected components of a mask, from 1 in row order.
+
+    Examples
+    --------
+    >>> components(np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]], bool))[0]
+    array([[0, 0, 1],
+           [2, 0, 0],
+           [0, 2, 0]], dtype=int32)
+    """
+    found, count = ndimage.label(mask, _WHOLE)
+    return np.asarray(found, np.int32), int(count)
+
+
+def _split(census: Census, background: int) -> BinaryMask:
+    """Give every value to the nearer end of the range, halves to the stones."""
+    low, high = int(census.values[0]), int(census.values[-1])
+    if abs(low - background) > abs(high - background):
+        low, high = high, low
+    stone = 2 * np.abs(census.values - low) >= abs(high - low)
+    ends = census.counts[0] + census.counts[-1]
+    return BinaryMask(census.pixels(stone), low, high, int(census.index.size - ends))
+
+
+def _is_one_id(binary: BinaryMask) -> bool:
+    """Tell a label image of a single stone (0 and 300, in one piece) from a mask."""
+    if binary.stone in _USUAL_STONE_VALUES or binary.stone == 0:
+        return False
+    found, count = components(binary.mask)
+    areas = np.sort(np.bincount(found.ravel())[1:])
+    return count == 1 or int(areas[:-1].sum()) < 0.02 * int(areas.sum())
+
+
+def _is_antialiased(census: Census, background: int) -> bool:
+    """Tell a mask with grey edges: all other values lie between two plain ones, at edges."""
+    ends = np.zeros(len(census.values), bool)
+    ends[[0, -1]] = True
+    most = set(np.argsort(census.counts)[-2:].tolist())
+    if most != {0, len(ends) - 1} or background not in census.values[ends]:
+        return False
+    between: NDArray[Any] = census.pixels(~ends)
+    at_edge = blended(census, between)
+    plain = census.solid[between]
+    return bool(at_edge.mean() >= 0.8 and at_edge[plain].all())

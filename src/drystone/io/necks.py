@@ -1,0 +1,74 @@
+"""Stones that look like two touching stones under one id (W110)."""
+
+import numpy as np
+from scipy import ndimage
+
+from drystone.errors import Notice
+from drystone.io.patches import Patch
+from drystone.kernels.raster import Mask
+
+LARGE = 1.5
+"""Times the median area: smaller stones are not suspected."""
+
+_WAIST = 1.6
+"""Both parts must be this many times as thick as the neck between them."""
+
+_PART_SHARE = 0.15
+"""Each part must have this share of the stone."""
+
+
+def neck_width_px(mask: Mask) -> int | None:
+    """Return the width of the neck between two thick parts of a mask; None without one.
+
+    A width of 0 means that the parts meet at a corner of pixels only.
+
+    Parameters
+    ----------
+    mask : (h, w) bool array
+        One 8-connected piece.
+
+    Notes
+    -----
+    The neck is the smallest erosion that leaves two parts, each thicker than the neck by a
+    factor 1.6 and with at least 15 % of what the erosion leaves.
+
+    Examples
+    --------
+    >>> mask = np.zeros((20, 44), bool)
+    >>> mask[:, :20] = mask[:, 24:] = mask[8:12] = True
+    >>> neck_width_px(mask)
+    4
+    """
+    depth = ndimage.distance_transform_edt(np.pad(mask, 1))
+    if depth.max() < 2 * _WAIST:
+        return None
+    for half in range(int(depth.max() / _WAIST) + 1):
+        parts, count = ndimage.label(depth > half)
+        if count < 2:
+            continue
+        areas = np.bincount(parts.ravel())[1:]
+        thickness = np.atleast_1d(ndimage.maximum(depth, parts, np.arange(1, count + 1)))
+        thick = (thickness >= _WAIST * max(half, 1)) & (areas >= _PART_SHARE * areas.sum())
+        if thick.sum() >= 2:
+            return 2 * half
+    return None
+
+
+def suspect_necks(patches: list[Patch]) -> list[Notice]:
+    """Report large stones with a neck; of one or two stones every one, as no size is usual."""
+    if not patches:
+        return []
+    median = float(np.median([patch.area_px for patch in patches]))
+    notices = []
+    for patch in patches:
+        ratio = patch.area_px / median
+        if len(patches) > 2 and ratio < LARGE:
+            continue
+        width = neck_width_px(patch.mask)
+        if width is not None:
+            size = f"has {ratio:.1f} times the median area and " if len(patches) > 2 else "has "
+            neck = f"a neck of about {width} px" if width else "parts that meet at a corner only"
+            message = f"stone {patch} {size}{neck}: maybe 2 stones."
+            cure = "If so, separate them by a line of background or give each its own id."
+            notices.append(Notice("W110", message, cure))
+    return notices

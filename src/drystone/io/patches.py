@@ -1,0 +1,257 @@
+"""Stones cut out of label images, with their holes and pieces put in order."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from drystone.errors import LabelImageError, Notice
+from drystone.io.labels import MAX_ID
+from drystone.io.read_settings import Pieces, ReadSettings
+from drystone.kernels.raster import Mask
+from drystone.model.stone import Stone
+
+SMALL_SHARE = 0.02
+"""Pieces that together are less than this share of their stone are left out by default."""
+
+MIN_AREA_PX = 10
+_WHOLE = np.ones((3, 3), bool)
+_SHOWN = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """The pixels of one id before they are a stone.
+
+    Parameters
+    ----------
+    id : int
+        Positive.
+    mask : (h, w) bool array
+        Its pixels within its bounding box.
+    row, col : int
+        Upper left pixel of the box in its picture.
+    picture_height : int
+        Of the picture, px.
+    others : (h, w) bool array or None
+        Pixels of the box that belong to other stones.
+    name : str
+        File name of a one-stone mask.
+    """
+
+    id: int
+    mask: Mask
+    row: int
+    col: int
+    picture_height: int
+    others: Mask | None = None
+    name: str = ""
+
+    @property
+    def area_px(self) -> int:
+        """Number of pixels."""
+        return int(self.mask.sum())
+
+    def __str__(self) -> str:
+        return f"{self.id} ({self.name})" if self.name else str(self.id)
+
+    def to_stone(self) -> Stone:
+        """Make the stone, in the frame of the picture (y up from its bottom edge)."""
+        bottom = self.picture_height - self.row - self.mask.shape[0]
+        return Stone(self.id, self.mask, self.col, bottom, self.name)
+
+
+def cut(index: NDArray[Any], ids: NDArray[np.int64], name: str = "") -> list[Patch]:
+    """Cut every id out of an image, each looked at within its bounding box only.
+
+    Parameters
+    ----------
+    index : (h, w) integer array
+        Positions from 1 in `ids`; 0 is background.
+    ids : (n,) int array
+        The ids; 0 marks a position that is background.
+    name : str
+        File name of a one-stone mask.
+    """
+    stone = np.concatenate(([False], ids != 0))
+    patches = []
+    for position, window in enumerate(ndimage.find_objects(index), start=1):
+        if window is None or not stone[position]:
+            continue
+        inside = index[window]
+        mask = inside == position
+        others = stone[inside] & ~mask
+        row, col = window[0].start, window[1].start
+        patches.append(Patch(int(ids[position - 1]), mask, row, col, index.shape[0], others, name))
+    return patches
+
+
+def smallest_stone_px(patches: list[Patch], settings: ReadSettings) -> float:
+    """Return the area from which a patch is a stone: max(10 px, 0.1 % of the median area)."""
+    if settings.min_area_px is not None:
+        return settings.min_area_px
+    areas = [patch.area_px for patch in patches if patch.area_px >= MIN_AREA_PX]
+    return max(MIN_AREA_PX, 0.001 * float(np.median(areas))) if areas else MIN_AREA_PX
+
+
+def without_specks(patches: list[Patch], limit_px: float) -> tuple[list[Patch], list[Notice]]:
+    """Leave out patches whose largest piece is smaller than a stone can be, and list them."""
+    kept: list[Patch] = []
+    specks: list[Patch] = []
+    for patch in patches:
+        (kept if _largest_piece(patch.mask) >= limit_px else specks).append(patch)
+    if not specks:
+        return patches, []
+    listed = ", ".join(
+        f"{speck} of {speck.area_px} px at column {speck.col}, row {speck.row}" for speck in specks
+    )
+    total = sum(speck.area_px for speck in specks)
+    message = f"{len(specks)} specks < {limit_px:g} px left out ({total} px in all): {listed}."
+    return kept, [Notice("W113", message, "Set min_area_px to keep smaller stones.")]
+
+
+def _largest_piece(mask: Mask) -> int:
+    found, count = ndimage.label(mask, _WHOLE)
+    if count < 2:
+        return int(mask.sum())
+    return int(np.bincount(found.ravel())[1:].max())
+
+
+def filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], list[Notice]]:
+    """Fill the holes of all patches (or only report them, ``holes="keep"``)."""
+    result, found = [], []
+    for patch in patches:
+        holes = enclosed(patch.mask)
+        count = int(holes.sum())
+        if not count:
+            result.append(patch)
+            continue
+        taken = 0 if patch.others is None else int((holes & patch.others).sum())
+        shared = f", {taken} px of them other stones'" if taken else ""
+        found.append(f"stone {patch}: {count} px{shared}")
+        keep = settings.holes == "keep"
+        result.append(patch if keep else replace(patch, mask=patch.mask | holes))
+    if not found:
+        return result, []
+    if settings.holes == "keep":
+        text = "holes kept open (areas and centroids without them; outlines do not show them)"
+        return result, [Notice("W112", f"{text}: {'; '.join(found)}.")]
+    cure = "Use holes='keep' to leave them open."
+    return result, [Notice("W112", f"holes filled: {'; '.join(found)}.", cure)]
+
+
+def enclosed(mask: Mask) -> Mask:
+    """Return the pixels that no 4-connected way around the mask reaches: its holes.
+
+    Examples
+    --------
+    >>> int(enclosed(np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], bool)).sum())
+    1
+    """
+    outside, _ = ndimage.label(~np.pad(mask, 1))
+    return np.asarray((outside != outside[0, 0])[1:-1, 1:-1] & ~mask)
+
+
+def in_one_piece(
+    patches: list[Patch], settings: ReadSettings, where: str
+) -> tuple[list[Patch], list[Notice]]:
+    """Leave every stone one 8-connected piece.
+
+    Parameters
+    ----------
+    patches : list of Patch
+        With filled holes.
+    settings : ReadSettings
+        ``pieces`` decides.
+    where : str
+        Name for messages.
+
+    Raises
+    ------
+    LabelImageError
+        E103 when a stone has several pieces and the settings do not allow for it.
+    """
+    result, refused, dropped = [], [], []
+    several: list[tuple[Patch, list[Patch]]] = []
+    for patch in patches:
+        pieces = _pieces(patch)
+        result.append(pieces[0])
+        if len(pieces) == 1:
+            continue
+        several.append((patch, pieces[1:]))
+        if _is_refused(pieces, settings.pieces):
+            refused.append(_describe(patch, pieces))
+        dropped.append(_describe(patch, pieces[1:]))
+    if refused:
+        raise _in_pieces(refused, where)
+    if not several:
+        return result, []
+    if settings.pieces == "split":
+        new, text = _as_stones(several, [patch.id for patch in patches])
+        return result + new, [Notice("W111", f"pieces became stones of their own: {text}.")]
+    cure = "Use pieces='split' to make them stones."
+    text = f"smaller pieces left out: {'; '.join(dropped)}."
+    return result, [Notice("W111", text, cure)]
+
+
+def _pieces(patch: Patch) -> list[Patch]:
+    """Return the 8-connected pieces, the largest first, equal ones in row order."""
+    found, count = ndimage.label(patch.mask, _WHOLE)
+    if count == 1:
+        return [patch]
+    pieces = [
+        replace(
+            patch,
+            mask=found[window] == label,
+            row=patch.row + window[0].start,
+            col=patch.col + window[1].start,
+            others=None,
+        )
+        for label, window in enumerate(ndimage.find_objects(found), start=1)
+    ]
+    return sorted(pieces, key=lambda piece: -piece.area_px)
+
+
+def _is_refused(pieces: list[Patch], rule: Pieces) -> bool:
+    if rule == "auto":
+        areas = [piece.area_px for piece in pieces]
+        return sum(areas[1:]) >= SMALL_SHARE * sum(areas)
+    return rule == "error"
+
+
+def _describe(patch: Patch, pieces: Iterable[Patch]) -> str:
+    places = [f"{p.area_px} px at column {p.col}, row {p.row}" for p in pieces]
+    return f"stone {patch}: {', '.join(places)}"
+
+
+def _in_pieces(refused: list[str], where: str) -> LabelImageError:
+    more = f"; and {len(refused) - _SHOWN} more" if len(refused) > _SHOWN else ""
+    return LabelImageError(
+        "E103",
+        f"{len(refused)} stones are in several pieces: {'; '.join(refused[:_SHOWN])}{more}.",
+        where=where,
+        cure="Correct the picture, or choose pieces='keep-largest' (leave the others out) or "
+        "pieces='split' (each piece a stone).",
+    )
+
+
+def _as_stones(
+    several: list[tuple[Patch, list[Patch]]], taken: list[int]
+) -> tuple[list[Patch], str]:
+    """Give pieces the ids after the largest (where ids end: the free ones from 1)."""
+    used, next_id = set(taken), max(taken)
+    stones, text = [], []
+    for patch, pieces in several:
+        new = []
+        for piece in pieces:
+            next_id = next_id + 1 if next_id < MAX_ID else 1
+            while next_id in used:
+                next_id = next_id + 1 if next_id < MAX_ID else 1
+            used.add(next_id)
+            new.append(replace(piece, id=next_id))
+        stones += new
+        text.append(f"stone {patch}: " + ", ".join(f"{p.id} ({p.area_px} px)" for p in new))
+    return stones, "; ".join(text)

@@ -1,0 +1,64 @@
+"""What the user may say about a picture of stones."""
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from drystone.errors import UsageError
+
+Pieces = Literal["auto", "keep-largest", "split", "error"]
+Holes = Literal["fill", "keep"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReadSettings:
+    """How to read stones from a picture (DESIGN 4.1).
+
+    Parameters
+    ----------
+    background : int
+        The value that is not stone.
+    pieces : {"auto", "keep-largest", "split", "error"}
+        What to do with a stone of several pieces: "auto" keeps the largest when the others are
+        less than 2 % of the stone and refuses the picture otherwise, "keep-largest" always keeps
+        the largest, "split" makes every piece a stone (new ids after the largest id), "error"
+        refuses any second piece.
+    holes : {"fill", "keep"}
+        Fill holes before areas and centroids are taken, or leave them open.
+    min_area_px : int or None
+        Smaller stones are left out and listed; None is max(10 px, 0.1 % of the median area).
+    mask : bool or None
+        True reads the picture as a binary mask, False as ids; None decides by its values.
+    skip : tuple of int
+        Ids of stones to leave out.
+    max_image_mpx : float
+        Largest picture that is decoded, in millions of pixels.
+
+    Examples
+    --------
+    >>> ReadSettings(background=255, pieces="split").holes
+    'fill'
+    """
+
+    background: int = 0
+    pieces: Pieces = "auto"
+    holes: Holes = "fill"
+    min_area_px: int | None = None
+    mask: bool | None = None
+    skip: tuple[int, ...] = ()
+    max_image_mpx: float = 200.0
+
+    def __post_init__(self) -> None:
+        for name, value, choices in (
+            ("pieces", self.pieces, get_args(Pieces)),
+            ("holes", self.holes, get_args(Holes)),
+        ):
+            if value not in choices:
+                raise _usage(f"{name} is {value!r}", f"Use one of: {', '.join(choices)}.")
+        if self.min_area_px is not None and self.min_area_px < 1:
+            raise _usage(f"min_area_px is {self.min_area_px}", "Use 1 or more.")
+        if not self.max_image_mpx > 0:
+            raise _usage(f"max_image_mpx is {self.max_image_mpx}", "Use a positive number.")
+
+
+def _usage(what: str, cure: str) -> UsageError:
+    return UsageError("E119", f"{what}, which means nothing.", where="ReadSettings", cure=cure)

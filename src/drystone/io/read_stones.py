@@ -1,0 +1,260 @@
+"""Read stones from label images, masks, folders of masks and arrays (paper §3.3; DESIGN 4.1)."""
+
+import hashlib
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.errors import InputError, LabelImageError, Notice
+from drystone.io.census import Census, take_census
+from drystone.io.checks import (
+    check_background,
+    check_not_lossy,
+    check_not_photo,
+    check_not_resampled,
+    check_not_uniform,
+)
+from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
+from drystone.io.labels import IdImage, to_ids
+from drystone.io.masks import BinaryMask, components, find_mask
+from drystone.io.necks import suspect_necks
+from drystone.io.patches import Patch, cut, filled, in_one_piece, smallest_stone_px, without_specks
+from drystone.io.read_settings import ReadSettings
+from drystone.model.stone import Source, StoneSet
+
+__all__ = ["ReadSettings", "read_stones"]
+
+
+def read_stones(
+    source: str | Path | NDArray[Any], *, settings: ReadSettings | None = None
+) -> StoneSet:
+    """Read stones.
+
+    Parameters
+    ----------
+    source : str, Path or array
+        A label image, a picture of ids in colours, a binary mask (PNG, TIFF, BMP, GIF, NPY), a
+        folder of one-stone masks, or an array like one of these.
+    settings : ReadSettings, optional
+        Background, holes, pieces and the like.
+
+    Returns
+    -------
+    StoneSet
+        The stones under the picture's own ids; components of a mask are numbered in row order,
+        masks of a folder in natural file order from 1.  Its notices list every pixel that was
+        left out or added.
+
+    Raises
+    ------
+    LabelImageError, InputError
+        E100 ... E111, see ``docs/errors.md``.
+
+    Examples
+    --------
+    >>> labels = np.zeros((40, 60), np.uint32)
+    >>> labels[5:20, 5:30], labels[20:35, 10:50] = 300, 70000
+    >>> [(stone.id, stone.area_px) for stone in read_stones(labels)]
+    [(300, 375), (70000, 600)]
+    """
+    settings = settings or ReadSettings()
+    if not isinstance(source, str | Path):
+        return _read_array(source, settings)
+    path = Path(source)
+    if path.is_dir():
+        return _read_folder(path, settings)
+    data = _bytes_of(path)
+    picture = decode(data, path.name, _max_px(settings))
+    digest = hashlib.sha256(data).hexdigest()
+    return _read_picture(picture, Source(path.name, digest), settings)
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """Patches of a source and what was noticed on the way."""
+
+    patches: list[Patch]
+    notices: list[Notice]
+    where: str
+
+
+def _max_px(settings: ReadSettings) -> int:
+    return int(settings.max_image_mpx * 1e6)
+
+
+def _bytes_of(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise InputError(
+            "E100", "there is no such file or folder.", where=str(path), cure="Check the path."
+        ) from None
+    except OSError as error:
+        raise InputError(
+            "E100",
+            f"it cannot be read ({error.strerror or error}).",
+            where=str(path),
+            cure="Check that it is a file and that you may read it.",
+        ) from error
+
+
+def _read_array(array: Any, settings: ReadSettings) -> StoneSet:
+    if isinstance(array, np.ma.MaskedArray):
+        array = array.filled(settings.background)
+    values = np.ascontiguousarray(array)
+    digest = hashlib.sha256(repr((values.shape, values.dtype.str)).encode())
+    if values.dtype.kind in "biuf":
+        digest.update(values.data.cast("B") if values.size else b"")
+    return _read_picture(Picture(values), Source("", digest.hexdigest()), settings)
+
+
+def _read_picture(picture: Picture, source: Source, settings: ReadSettings) -> StoneSet:
+    """Read a picture of several stones: a mask or ids."""
+    where = source.path or "array"
+    image = to_ids(picture.values, settings.background, where)
+    height, width = image.ids.shape
+    census = take_census(image.ids)
+    binary = _check(image, census, picture.lossy, settings, where)
+    if binary is None:
+        ids = _stone_ids(census.values, image.background, where)
+        found = _Found(cut(census.index, ids), list(image.notices), where)
+    else:
+        labels, count = components(binary.mask)
+        patches = cut(labels, np.arange(1, count + 1))
+        found = _Found(patches, [_mask_notice(binary, count)], where)
+    return _stone_set(found, Source(source.path, source.sha256, width, height), settings)
+
+
+def _check(
+    image: IdImage, census: Census, lossy: bool, settings: ReadSettings, where: str
+) -> BinaryMask | None:
+    """Refuse what is no picture of stones; return the mask if it is one."""
+    check_not_uniform(census, image.background, where)
+    if lossy and not settings.mask:
+        brightness = image.ids if image.brightness is None else image.brightness
+        check_not_lossy(census, brightness, where)
+    binary = find_mask(image, census, settings.mask)
+    if binary is None:
+        check_not_photo(census, where)
+        check_background(census.index, census, image.background, where)
+        check_not_resampled(census, where)
+    else:
+        ends = np.array([binary.background, binary.stone])
+        two = Census(binary.mask.astype(np.int32) + np.int32(1), ends)
+        check_background(two.index, two, binary.background, where)
+    return binary
+
+
+def _mask_notice(binary: BinaryMask, count: int) -> Notice:
+    between = ""
+    if binary.between_px:
+        between = f"; {binary.between_px} px of values between them went to the nearer one"
+    return Notice(
+        "W114",
+        f"read as a binary mask ({binary.background} background, {binary.stone} stone{between}): "
+        f"{count} components, numbered in row order.",
+    )
+
+
+def _stone_ids(values: NDArray[np.int64], background: int, where: str) -> NDArray[np.int64]:
+    """Return the ids with 0 for the background."""
+    if background != 0 and values[0] == 0:
+        raise LabelImageError(
+            "E108",
+            f"the value 0 is there beside the background {background}, and no stone can be 0.",
+            where=where,
+            cure=f"Set those pixels to {background} if they are background, else to a free id.",
+        )
+    return np.where(values == background, 0, values)
+
+
+def _stone_set(found: _Found, source: Source, settings: ReadSettings) -> StoneSet:
+    """Put patches in order and make stones of them; every decision becomes a notice."""
+    known = {patch.id for patch in found.patches}
+    unknown = sorted(set(settings.skip) - known)
+    notices = list(found.notices)
+    if unknown:
+        listed = ", ".join(str(stone_id) for stone_id in unknown)
+        notices.append(Notice("W116", f"no stone {listed} to skip.", "Check the ids."))
+    patches = [patch for patch in found.patches if patch.id not in settings.skip]
+    limit_px = smallest_stone_px(patches, settings)
+    patches, specks = without_specks(patches, limit_px)
+    patches, holes = filled(patches, settings)
+    patches, pieces = in_one_piece(patches, settings, found.where)
+    patches, bits = without_specks(patches, limit_px)
+    notices += [*specks, *holes, *pieces, *bits, *suspect_necks(patches)]
+    if not patches:
+        why = " ".join(notice.message for notice in specks) or "all were skipped."
+        raise LabelImageError(
+            "E104", f"no stones are left: {why}", where=found.where,
+            cure="Check the picture, min_area_px and skip.",
+        )  # fmt: skip
+    return StoneSet(tuple(patch.to_stone() for patch in patches), source, tuple(notices))
+
+
+def _read_folder(folder: Path, settings: ReadSettings) -> StoneSet:
+    """Read one-stone masks, numbered from 1 in natural file order."""
+    entries = [entry for entry in folder.iterdir() if not entry.name.startswith(".")]
+    files = [entry for entry in entries if entry.is_file() and entry.suffix.lower() in SUFFIXES]
+    if not files:
+        raise InputError(
+            "E111", "the folder has no pictures in it.", where=folder.name,
+            cure=f"Stones are read from {FORMATS}.",
+        )  # fmt: skip
+    files.sort(key=_natural_order)
+    ignored = sorted({entry.name for entry in entries} - {file.name for file in files})
+    notices = []
+    if ignored:
+        notices.append(Notice("W117", f"not pictures, left aside: {', '.join(ignored)}."))
+    digest, patches, sizes = hashlib.sha256(), [], []
+    for number, file in enumerate(files, start=1):
+        data = _bytes_of(file)
+        digest.update(hashlib.sha256(data).digest())
+        where = f"{folder.name}/{file.name}"
+        patch, size, notice = _read_one(decode(data, where, _max_px(settings)), where, settings)
+        sizes.append(size)
+        notices += [notice] if notice else []
+        patches += cut(patch.astype(np.int32), np.array([number]), file.name) or [
+            Patch(number, np.zeros((1, 1), bool), 0, 0, size[0], name=file.name)
+        ]
+    height, width = (max(size[axis] for size in sizes) for axis in (0, 1))
+    names = tuple(file.name for file in files)
+    source = Source(folder.name, digest.hexdigest(), width, height, names)
+    return _stone_set(_Found(patches, notices, folder.name), source, settings)
+
+
+def _natural_order(path: Path) -> tuple[list[str | int], str]:
+    parts = re.split(r"([0-9]+)", path.name.casefold())
+    return [int(part) if part.isdecimal() else part for part in parts], path.name
+
+
+def _read_one(
+    picture: Picture, where: str, settings: ReadSettings
+) -> tuple[NDArray[np.bool_], tuple[int, int], Notice | None]:
+    """Read the mask of one stone; an empty one has no pixel."""
+    image = to_ids(picture.values, settings.background, where)
+    height, width = image.ids.shape
+    value = int(image.ids.flat[0])
+    if (image.ids == value).all():
+        full = value != image.background
+        text = f"{where} is stone to all its edges ({width} x {height} px of {value})."
+        notice = Notice("W118", text, "Check that it is not an empty picture.") if full else None
+        return np.full((height, width), full), (height, width), notice
+    census = take_census(image.ids)
+    # mask=False is about pictures of many stones: here every picture is a mask.
+    forced = ReadSettings(mask=settings.mask or None)
+    binary = _check(image, census, picture.lossy, forced, where)
+    if binary is not None:
+        return binary.mask, (height, width), None
+    if len(census.values) == 2:
+        return image.ids != image.background, (height, width), None
+    raise LabelImageError(
+        "E111",
+        f"{len(census.values)} values in a mask of one stone.",
+        where=where,
+        cure="A folder holds one black-and-white mask a stone; give a label image by itself.",
+    )

@@ -1,0 +1,130 @@
+"""Walls as label images: wall.png out, any label image in (DESIGN 2, 4.1)."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+import tifffile
+from PIL import Image
+
+from drystone.errors import InputError, LabelImageError
+from drystone.io.atomic import write_atomically
+from drystone.io.census import take_census
+from drystone.io.checks import (
+    check_background,
+    check_not_lossy,
+    check_not_photo,
+    check_not_resampled,
+    check_not_uniform,
+)
+from drystone.io.images import decode
+from drystone.io.labels import IdImage, to_ids
+from drystone.model.wall import Labels
+
+_MAX_ID_16_BIT = 65535
+
+
+def write_wall_image(labels: Labels, folder: str | Path) -> Path:
+    """Write the label image of a wall into a folder.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        0 where nothing is, otherwise the id of a stone or wedge, at most 2^32-1; row 0 at the top.
+    folder : str or Path
+        Exists.
+
+    Returns
+    -------
+    path : Path
+        ``wall.png`` with 16 bits, or ``wall.tif`` with 32 bits when an id is above 65535.
+
+    Raises
+    ------
+    PlanError
+        E206: the file cannot be written.
+    """
+    buffer = io.BytesIO()
+    if int(labels.max(initial=0)) <= _MAX_ID_16_BIT:
+        path = Path(folder) / "wall.png"
+        Image.fromarray(labels.astype(np.uint16)).save(buffer, format="PNG")
+    else:
+        path = Path(folder) / "wall.tif"
+        wide = labels.astype(np.uint32)
+        tifffile.imwrite(buffer, wide, photometric="minisblack", compression="zlib", metadata=None)
+    write_atomically(path, buffer.getvalue())
+    return path
+
+
+def read_wall_image(
+    path: str | Path, *, background: int = 0, max_image_mpx: float = 200.0
+) -> Labels:
+    """Read any label image as a wall: every pixel keeps its id, nothing is dropped or split.
+
+    Parameters
+    ----------
+    path : str or Path
+        PNG, TIFF, BMP, GIF or NPY: ids of 8, 16 or 32 bits, palette indices, or colours, where
+        the id is the grey value for R = G = B, else R + 256 G + 65536 B (DESIGN 4.1).
+    background : int
+        The value that is no stone; it becomes 0.
+    max_image_mpx : float
+        Largest picture that is decoded, in millions of pixels.
+
+    Returns
+    -------
+    labels : (h, w) uint32 array
+        0 where nothing is, row 0 at the top.
+
+    Raises
+    ------
+    InputError
+        E100, E106, E107, E109, E110: the file cannot be read, is damaged, of an unknown format, a
+        stack, or too large.
+    LabelImageError
+        E101 values were blended (JPEG), E102 a photo, E104 no stone, E105 another background,
+        E108 values that cannot be ids (0 too, when the background is another value).
+    """
+    path = Path(path)
+    where = path.name
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(
+            "E100",
+            f"the file cannot be read ({error.strerror}).",
+            where=str(path),
+            cure="Give the label image of a wall: one id a stone, 0 where there is none.",
+        ) from error
+    picture = decode(data, where, int(max_image_mpx * 1e6))
+    image = to_ids(picture.values, background, where)
+    census = take_census(image.ids)
+    if picture.lossy:
+        brightness = image.ids if image.brightness is None else image.brightness
+        check_not_lossy(census, brightness, where)
+    if len(census.values) == 1:
+        # One stone may fill the whole image; no stone may not.
+        if int(census.values[0]) == image.background:
+            check_not_uniform(census, image.background, where)
+    else:
+        check_background(census.index, census, image.background, where)
+        check_not_photo(census, where)
+        check_not_resampled(census, where)
+    return _with_zero_background(image, where)
+
+
+def _with_zero_background(image: IdImage, where: str) -> Labels:
+    labels = image.ids.astype(np.uint32)
+    if image.background == 0:
+        return labels
+    if (labels == 0).any():
+        raise LabelImageError(
+            "E108",
+            f"the value 0 is there beside the background {image.background}, and no stone can "
+            "be 0.",
+            where=where,
+            cure=f"Set those pixels to {image.background} if they are background, else to a free "
+            "id.",
+        )
+    labels[labels == image.background] = 0
+    return labels

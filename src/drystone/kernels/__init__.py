@@ -1,0 +1,1 @@
+"""Arrays in, arrays out: the fast inner pieces, free of domain types."""

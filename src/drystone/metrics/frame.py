@@ -1,0 +1,89 @@
+"""Cut an image of labels down to the wall that is measured (DESIGN 5)."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from drystone.errors import LabelImageError
+from drystone.model.wall import Labels
+
+
+@dataclass(frozen=True, eq=False)
+class WallFrame:
+    """A wall cut out of its image, and where it should end.
+
+    Parameters
+    ----------
+    labels : (h, w) array
+        First row: the highest stone pixel; last row: the lowest, on which the wall stands.
+    left_px, right_px : float
+        The two end lines of the wall, as columns of `labels` measured from its left edge.
+    """
+
+    labels: Labels
+    left_px: float
+    right_px: float
+
+
+def frame_wall(labels: Labels, width_px: float | None = None) -> WallFrame:
+    """Cut the wall out of an image of labels.
+
+    Empty rows above and below the stones are always left out.  Without a width the empty columns
+    at both ends go as well, and the end lines are the ends of the stones.  With a width, an image
+    that is exactly as wide keeps its columns, as plans do; in any other image the stones are
+    taken to stand in the middle between the end lines.  No stone is ever cut off.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        0 where nothing is, row 0 at the top.
+    width_px : float, optional
+        Width of the wall that was to be built, in px of the image, positive.
+
+    Raises
+    ------
+    LabelImageError
+        E104 when there is no stone in the image.
+
+    Examples
+    --------
+    >>> image = np.pad(np.ones((2, 4), np.uint32), 3)
+    >>> frame_wall(image).labels.shape
+    (2, 4)
+    >>> frame = frame_wall(image, width_px=6.0)
+    >>> frame.labels.shape, frame.left_px, frame.right_px
+    ((2, 6), 0.0, 6.0)
+    """
+    if labels.ndim != 2:
+        raise ValueError(f"labels must have two dimensions, not {labels.ndim}")
+    filled = labels > 0
+    rows = np.flatnonzero(filled.any(axis=1))
+    if not rows.size:
+        raise LabelImageError(
+            "E104",
+            f"no stones: all {labels.shape[1]}x{labels.shape[0]} px are 0 (background).",
+            cure="Give an image of labels in which stones have positive ids.",
+        )
+    wall = labels[rows[0] : rows[-1] + 1]
+    if width_px is None:
+        stones = _crop_ends(wall)
+        return WallFrame(stones, 0.0, float(stones.shape[1]))
+    columns = math.floor(width_px + 0.5)
+    if columns == labels.shape[1]:
+        return WallFrame(wall, 0.0, float(columns))
+    return _centred(_crop_ends(wall), columns)
+
+
+def _crop_ends(wall: Labels) -> Labels:
+    cols = np.flatnonzero((wall > 0).any(axis=0))
+    return wall[:, cols[0] : cols[-1] + 1]
+
+
+def _centred(stones: Labels, columns: int) -> WallFrame:
+    """Put stones in the middle of the end lines; those that stick out stay."""
+    room = columns - stones.shape[1]
+    before = max(0, room) // 2
+    padded = np.pad(stones, ((0, 0), (before, max(0, room) - before)))
+    overhang = max(0, -room) / 2
+    return WallFrame(padded, overhang, padded.shape[1] - overhang)

@@ -1,0 +1,1 @@
+"""What the planner talks about: stones, poses, placements, wedges, walls and plans."""

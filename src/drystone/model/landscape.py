@@ -1,0 +1,112 @@
+"""The landscape L_i: the wall as the next stone sees it, from one end or the other (§3.2)."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.kernels.bits import BitLandscape
+from drystone.kernels.raster import Mask
+from drystone.kernels.rays import RaySums
+from drystone.model.placement import Side
+from drystone.model.pose import PosedStone
+from drystone.model.wall import Wall
+
+
+@dataclass(frozen=True)
+class Box:
+    """Bounding box of a placed stone in view columns, y up from the ground, working px."""
+
+    left: int
+    right: int
+    bottom: int
+    top: int
+
+    @property
+    def width(self) -> int:
+        """Horizontal extent."""
+        return self.right - self.left
+
+    @property
+    def height(self) -> int:
+        """Vertical extent."""
+        return self.top - self.bottom
+
+
+@dataclass(frozen=True, eq=False)
+class Landscape:
+    """What is built, seen so that the building side is on the left.
+
+    Placing from the right is placing from the left in a mirror: the view is mirrored, and so are
+    the masks that are tried in it; the positions that come out are mirrored back.  No stone is.
+
+    Parameters
+    ----------
+    occupied : (height_px, width_px) bool array
+        Stones and wedges, row 0 at the top, in view columns.
+    boxes : tuple of Box
+        Of the stones (not the wedges), in order of placement.
+    side : {"left", "right"}
+        Building side: which end of the wall is on the left of the view.
+    """
+
+    occupied: Mask
+    boxes: tuple[Box, ...]
+    side: Side = "left"
+
+    @classmethod
+    def of(cls, wall: Wall, side: Side = "left") -> "Landscape":
+        """Return the landscape of a wall."""
+        occupied = wall.occupied if side == "left" else wall.occupied[:, ::-1]
+        width, height = wall.site.width_px, wall.site.height_px
+        boxes = tuple(
+            view_box(p.posed, p.row, p.col if side == "left" else width - p.col - p.posed.width_px,
+                     height)
+            for p in wall.placements
+        )  # fmt: skip
+        return cls(np.ascontiguousarray(occupied), boxes, side)
+
+    @property
+    def height_px(self) -> int:
+        """Height of the site."""
+        return int(self.occupied.shape[0])
+
+    @property
+    def width_px(self) -> int:
+        """Width of the site."""
+        return int(self.occupied.shape[1])
+
+    @cached_property
+    def built_height_px(self) -> int:
+        """Height of what is placed over the ground; that of the box B of Eq. 5."""
+        return self.height_px - int(self.skyline.min())
+
+    @cached_property
+    def skyline(self) -> NDArray[np.intp]:
+        """Row of the highest occupied pixel of each column; height_px where there is none."""
+        return np.where(self.occupied.any(axis=0), np.argmax(self.occupied, axis=0), self.height_px)
+
+    @cached_property
+    def bits(self) -> BitLandscape:
+        """Packed form, for overlap at all positions."""
+        return BitLandscape(self.occupied)
+
+    @cached_property
+    def rays(self) -> RaySums:
+        """Prefix sums, for LFR at all positions."""
+        return RaySums(self.occupied)
+
+    def view(self, posed: PosedStone) -> PosedStone:
+        """Return a posed stone as it appears in this view."""
+        return posed if self.side == "left" else posed.mirrored
+
+    def view_col(self, posed: PosedStone, col: int) -> int:
+        """Turn a column of the wall image into one of this view, or back."""
+        return col if self.side == "left" else self.width_px - col - posed.width_px
+
+
+def view_box(posed: PosedStone, row: int, col: int, height_px: int) -> Box:
+    """Return the box of a mask at a position of an image of a given height."""
+    top = height_px - row
+    return Box(col, col + posed.width_px, top - posed.height_px, top)

@@ -1,0 +1,81 @@
+"""A stone turned by an angle and rasterised at the working resolution."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.kernels.raster import Mask
+from drystone.kernels.rays import RayPattern, ray_pattern
+from drystone.model.stone import Stone
+
+
+@dataclass(frozen=True, eq=False)
+class PosedStone:
+    """A rigid copy of a stone, turned and rasterised; where it goes is not decided yet.
+
+    Parameters
+    ----------
+    stone : Stone
+        The stone itself.
+    angle_deg : float
+        Counter-clockwise from the source image, in [-180, 180).
+    scale : float
+        Working resolution over source resolution.
+    mask : (h, w) bool array
+        At the working resolution, cropped, row 0 at the top.
+    anchor : (float, float)
+        The stone's centroid (x, y) from the mask's bottom-left corner, working px, y up;
+        multiples of 1/64.
+    """
+
+    stone: Stone
+    angle_deg: float
+    scale: float
+    mask: Mask
+    anchor: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        self.mask.flags.writeable = False
+
+    @property
+    def height_px(self) -> int:
+        """Height of the mask in working px."""
+        return int(self.mask.shape[0])
+
+    @property
+    def width_px(self) -> int:
+        """Width of the mask in working px."""
+        return int(self.mask.shape[1])
+
+    @cached_property
+    def area_px(self) -> int:
+        """Area of the mask in working px."""
+        return int(self.mask.sum())
+
+    @cached_property
+    def bottom(self) -> NDArray[np.intp]:
+        """Row of the lowest pixel of each column."""
+        return np.asarray(self.height_px - 1 - np.argmax(self.mask[::-1], axis=0))
+
+    @cached_property
+    def top(self) -> NDArray[np.intp]:
+        """Row of the highest pixel of each column."""
+        return np.asarray(np.argmax(self.mask, axis=0))
+
+    @cached_property
+    def ray_pattern(self) -> RayPattern:
+        """What the rays of LFR sweep inside the bounding box (Eq. 4)."""
+        return ray_pattern(self.mask)
+
+    @cached_property
+    def mirrored(self) -> "PosedStone":
+        """The mirror image; for views of a mirrored site only, never for placing."""
+        return PosedStone(
+            self.stone,
+            self.angle_deg,
+            self.scale,
+            np.ascontiguousarray(self.mask[:, ::-1]),
+            (self.width_px - self.anchor[0], self.anchor[1]),
+        )

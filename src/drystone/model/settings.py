@@ -1,0 +1,90 @@
+"""Frozen settings from nested mappings, as TOML files and options give them."""
+
+import dataclasses
+import types
+from collections.abc import Mapping
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+from drystone.errors import UsageError
+
+Settings = TypeVar("Settings")
+
+_KINDS: Mapping[Any, str] = types.MappingProxyType(
+    {
+        bool: "true or false",
+        int: "a whole number",
+        float: "a number",
+        str: "a text",
+        types.NoneType: "nothing",
+    }
+)
+
+
+def updated(settings: Settings, changes: Mapping[str, Any], prefix: str = "") -> Settings:
+    """Return settings with some values replaced, checked against the declared types.
+
+    Parameters
+    ----------
+    settings : dataclass instance
+        Frozen settings, which may contain settings.
+    changes : mapping
+        Nested in the same way; missing keys stay as they are.
+    prefix : str
+        Where the settings stand in larger ones, for messages.
+
+    Raises
+    ------
+    UsageError
+        E123: an unknown name, a wrong type, or a value out of range.
+    """
+    hints = get_type_hints(type(settings))
+    values = {}
+    for name, value in changes.items():
+        where = f"{prefix}{name}"
+        if name not in hints:
+            raise UsageError(
+                "E123",
+                f"there is no setting {where!r}.",
+                where="settings",
+                cure=f"Known here: {', '.join(hints)}.",
+            )
+        current = getattr(settings, name)
+        if dataclasses.is_dataclass(current):
+            if not isinstance(value, Mapping):
+                raise UsageError(
+                    "E123",
+                    f"{where!r} is a table of settings.",
+                    where="settings",
+                    cure=f"It holds {', '.join(get_type_hints(type(current)))}.",
+                )
+            values[name] = updated(current, value, f"{where}.")
+        else:
+            values[name] = _checked(value, hints[name], where)
+    try:
+        return dataclasses.replace(settings, **values)  # type: ignore[type-var]
+    except ValueError as error:
+        where = f"settings {prefix.removesuffix('.')}".rstrip()
+        raise UsageError("E123", f"{error}.", where=where) from None
+
+
+def _checked(value: Any, hint: Any, where: str) -> Any:
+    """Return a value of the declared type, or raise UsageError."""
+    if get_origin(hint) is Literal:
+        allowed = get_args(hint)
+        if value not in allowed:
+            raise UsageError(
+                "E123", f"{where} = {value!r}.", where="settings", cure=f"Choose from {allowed}."
+            )
+        return value
+    kinds = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
+    if float in kinds and isinstance(value, int) and not isinstance(value, bool):
+        return float(value)
+    if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
+        wanted = " or ".join(_KINDS[kind] for kind in kinds)
+        raise UsageError(
+            "E123",
+            f"{where} = {value!r} has the wrong type.",
+            where="settings",
+            cure=f"Give {wanted}.",
+        )
+    return value

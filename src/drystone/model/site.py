@@ -1,0 +1,60 @@
+"""The place where the wall goes up, and the lengths that turn it into pixels."""
+
+import math
+from dataclasses import dataclass
+
+from drystone.errors import UsageError
+
+
+@dataclass(frozen=True)
+class Site:
+    """A wall's outer dimensions at the working resolution, on flat ground.
+
+    The wall frame has x to the right from the wall's left end and y up from the ground.  The
+    ends limit the space; they carry nothing.
+
+    Parameters
+    ----------
+    width_px, height_px : int
+        Size at the working resolution.
+    scale : float
+        Working resolution over source resolution.
+    px_per_m : float or None
+        Source px in a metre, when a scale is known.
+
+    Examples
+    --------
+    >>> Site.from_source(560, 160, scale=0.5)
+    Site(width_px=280, height_px=80, scale=0.5, px_per_m=None)
+    """
+
+    width_px: int
+    height_px: int
+    scale: float = 1.0
+    px_per_m: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.width_px < 1 or self.height_px < 1:
+            raise UsageError(
+                "E121",
+                f"a wall of {self.width_px} x {self.height_px} working pixels has no room.",
+                where="--wall",
+                cure="Give a larger wall or a larger --scale.",
+            )
+
+    @classmethod
+    def from_source(
+        cls, width: float, height: float, scale: float = 1.0, px_per_m: float | None = None
+    ) -> "Site":
+        """Make the site of a wall given in source px: working size floor(size * scale + .5)."""
+        return cls(working_px(width, scale), working_px(height, scale), scale, px_per_m)
+
+    @property
+    def units_per_px(self) -> float:
+        """Length of a working px in the units of the plan: source px, or metres."""
+        return 1.0 / (self.scale * (self.px_per_m or 1.0))
+
+
+def working_px(length_px: float, scale: float) -> int:
+    """Turn a length in source px into whole working px: floor(length * scale + .5)."""
+    return math.floor(length_px * scale + 0.5)

@@ -1,0 +1,188 @@
+"""A found stone, as it lies in the source image."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+from skimage import measure
+
+from drystone.errors import Notice, PlanError
+from drystone.kernels.raster import Mask
+
+OUTLINE_TOLERANCE_PX = 0.35
+"""How far the outline may stay away from the contour of the pixels (DESIGN 4.9)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stone:
+    """One stone of the source image, immutable.
+
+    Parameters
+    ----------
+    id : int
+        Label in the source image, positive.
+    mask : (h, w) bool array
+        The stone's pixels, cropped to their bounding box, row 0 at the top, holes filled, one
+        connected piece.
+    left_px, bottom_px : int
+        Position of the mask's bottom-left corner in the source frame (x right, y up from the
+        image's bottom-left corner).
+    name : str
+        File name of a one-stone mask; empty for label images.
+
+    Examples
+    --------
+    >>> stone = Stone(7, np.ones((2, 4), bool), left_px=10, bottom_px=20)
+    >>> stone.area_px, stone.centroid
+    (8, (12.0, 21.0))
+    """
+
+    id: int
+    mask: Mask
+    left_px: int = 0
+    bottom_px: int = 0
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        mask = np.array(self.mask, dtype=bool)
+        if self.id <= 0:
+            raise ValueError(f"id must be positive, not {self.id}")
+        if mask.ndim != 2 or not mask.any():
+            raise ValueError("mask must be a two-dimensional array with at least one pixel")
+        mask.flags.writeable = False
+        object.__setattr__(self, "mask", mask)
+
+    @cached_property
+    def area_px(self) -> int:
+        """Number of pixels."""
+        return int(self.mask.sum())
+
+    @cached_property
+    def local_centroid(self) -> tuple[float, float]:
+        """Centroid of the pixel squares, (x, y) from the mask's bottom-left corner, y up."""
+        height, width = self.mask.shape
+        x = float(self.mask.sum(axis=0) @ (np.arange(width) + 0.5)) / self.area_px
+        y = float(self.mask.sum(axis=1) @ (height - np.arange(height) - 0.5)) / self.area_px
+        return x, y
+
+    @cached_property
+    def centroid(self) -> tuple[float, float]:
+        """Centroid (x, y) in the source frame, y up from the image's bottom edge, px."""
+        x, y = self.local_centroid
+        return self.left_px + x, self.bottom_px + y
+
+    @cached_property
+    def outline(self) -> NDArray[np.float64]:
+        """Simplified contour, (n, 2) points (x, y) relative to the centroid, counter-clockwise."""
+        contour = max(
+            measure.find_contours(np.pad(self.mask, 1).astype(float), 0.5, fully_connected="high"),
+            key=len,
+        )
+        contour = measure.approximate_polygon(contour, OUTLINE_TOLERANCE_PX)[:-1]
+        # find_contours works on pixel centres of the padded mask, row first.
+        x = contour[:, 1] - 0.5 - self.local_centroid[0]
+        y = self.mask.shape[0] - (contour[:, 0] - 0.5) - self.local_centroid[1]
+        points = np.column_stack([x, y])
+        twice_area = float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+        return points if twice_area > 0 else points[::-1].copy()
+
+    @cached_property
+    def hull(self) -> NDArray[np.float64]:
+        """Corners of the convex hull of the pixel squares, (n, 2), relative to the centroid."""
+        height = self.mask.shape[0]
+        corners = []
+        for row in range(height):
+            cols = np.flatnonzero(self.mask[row])
+            if cols.size:
+                for y in (height - row, height - row - 1):
+                    corners += [(cols[0], y), (cols[-1] + 1, y)]
+        points = np.array(corners, float)
+        return np.asarray(points[ConvexHull(points).vertices] - self.local_centroid)
+
+    @cached_property
+    def eccentricity(self) -> float:
+        """Eccentricity of the ellipse with the same second moments, 0 (circle) to 1 (§3.4)."""
+        rows, cols = np.nonzero(self.mask)
+        # A pixel is a unit square: 1/12 is its own second moment.
+        xx, yy = float(cols.var()) + 1 / 12, float(rows.var()) + 1 / 12
+        xy = float(((cols - cols.mean()) * (rows - rows.mean())).mean())
+        root = float(np.hypot(xx - yy, 2 * xy))
+        return float(np.sqrt(max(0.0, 2 * root / (xx + yy + root))))
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where stones came from.
+
+    Parameters
+    ----------
+    path : str
+        Base name of the file or folder; empty for arrays.
+    sha256 : str
+        Digest of the bytes that were read.
+    width_px, height_px : int
+        Size of the source image (of a folder of masks: of the largest).
+    files : tuple of str
+        File names in the order of their numbers when the source is a folder.
+    """
+
+    path: str = ""
+    sha256: str = ""
+    width_px: int = 0
+    height_px: int = 0
+    files: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class StoneSet:
+    """The stones to build with, in the order of their ids.
+
+    Parameters
+    ----------
+    stones : tuple of Stone
+        With different ids.
+    source : Source
+        Where they came from.
+    notices : tuple of Notice
+        What reading them had to decide: specks left out, holes filled, pieces dropped.
+    """
+
+    stones: tuple[Stone, ...]
+    source: Source = field(default_factory=Source)
+    notices: tuple[Notice, ...] = ()
+
+    def __post_init__(self) -> None:
+        ids = [stone.id for stone in self.stones]
+        if len(set(ids)) != len(ids):
+            raise ValueError("two stones have the same id")
+        object.__setattr__(self, "stones", tuple(sorted(self.stones, key=lambda s: s.id)))
+
+    def __len__(self) -> int:
+        return len(self.stones)
+
+    def __iter__(self) -> Iterator[Stone]:
+        return iter(self.stones)
+
+    @cached_property
+    def _by_id(self) -> dict[int, Stone]:
+        return {stone.id: stone for stone in self.stones}
+
+    def by_id(self, stone_id: int) -> Stone:
+        """Return the stone of an id; raise PlanError (E201) when there is none."""
+        try:
+            return self._by_id[stone_id]
+        except KeyError:
+            raise PlanError(
+                "E201",
+                f"there is no stone {stone_id} among the {len(self)} stones.",
+                where=self.source.path,
+                cure="Give the stones that the plan was made from.",
+            ) from None
+
+    @cached_property
+    def total_area_px(self) -> int:
+        """Area of all stones together in source px."""
+        return sum(stone.area_px for stone in self.stones)

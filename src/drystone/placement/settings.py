@@ -1,0 +1,52 @@
+"""Settings of placement."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from drystone.placement.feasible import Reach
+
+Rule = Literal["eq12", "lowest", "snug"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlacementSettings:
+    """How the best position of a stone is found (§3.6).
+
+    Parameters
+    ----------
+    rule : {"eq12", "lowest", "snug"}
+        ``"eq12"``: the paper's objective; ``"lowest"``: the lowest row, then the largest LFR, then
+        the building side; ``"snug"``: low, close to what is there, on the building side (see
+        :mod:`drystone.placement.snug`).
+    reach : {"any", "above"}
+        Every position of the image, or only those that can be reached from above.
+    clearance_px : int
+        For ``"above"``: free working px wanted at both sides on the way down.
+    beta : float
+        Threshold of H(GDS, beta) (Eq. 13).
+    tries : int
+        How many positions of a stone are tried until one can be made stable; 1 in the paper.
+    compare : bool
+        Stabilise all of these and keep the one of the least craft cost, instead of the first.
+    height_weight, void_weight, gap_weight, end_weight : float
+        Weights of ``"snug"``.
+    """
+
+    rule: Rule = "eq12"
+    reach: Reach = "any"
+    clearance_px: int = 0
+    beta: float = 0.7
+    tries: int = 1
+    compare: bool = False
+    height_weight: float = 2.0
+    void_weight: float = 1.0
+    gap_weight: float = 0.5
+    end_weight: float = 0.3
+
+    def __post_init__(self) -> None:
+        if self.rule not in ("eq12", "lowest", "snug"):
+            raise ValueError(f"unknown placement rule {self.rule!r}")
+        if self.reach not in ("any", "above"):
+            raise ValueError(f"unknown reach {self.reach!r}")
+        if self.tries < 1 or self.clearance_px < 0:
+            raise ValueError("tries must be positive, clearance_px not negative")

@@ -1,0 +1,139 @@
+"""One step: evaluate candidates on the landscape as it stands and choose (lines 6-17)."""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from drystone.model.landscape import Landscape
+from drystone.model.placement import Side
+from drystone.model.pose import PosedStone
+from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.choose import better_side, choose_by_algorithm2, choose_by_score
+from drystone.planner.evaluate import Evaluator, Trial
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.workshop import Workshop
+from drystone.selection.sampling import sample_stones, second_fold
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+Key = tuple[int, float, Side]
+
+
+class Attempt:
+    """Attempts at the next action on one state of construction.
+
+    Nothing is evaluated twice: the second fold, and attempts after a failure, meet stones that
+    were tried on this very landscape before.
+
+    Parameters
+    ----------
+    workshop : Workshop
+        Stones and site.
+    settings : PlannerSettings
+        All parameters.
+    build : Build
+        What is built.
+    executor : concurrent.futures.Executor or None
+        Evaluates candidates; the result does not depend on it.
+    """
+
+    def __init__(
+        self,
+        workshop: Workshop,
+        settings: PlannerSettings,
+        build: Build,
+        executor: Executor | None = None,
+    ) -> None:
+        self.build = build
+        self.candidates = 0
+        self._workshop = workshop
+        self._settings = settings
+        self._executor = executor
+        self._evaluator = Evaluator(settings, workshop.book, workshop.stock)
+        sides: tuple[Side, ...] = ("left", "right") if settings.two_sided else ("left",)
+        self._landscapes = tuple(Landscape.of(build.wall, side) for side in sides)
+        self._rest = workshop.rest(build)
+        self._proposed: dict[Key, Proposal | None] = {}
+        self._judged: dict[Key, Candidate] = {}
+
+    def choose(self, rng: np.random.Generator) -> Candidate | None:
+        """Sample a candidate set and return the best action; None when there is none."""
+        remaining = self._workshop.remaining(self.build)
+        clusters = self._workshop.clusters
+        sample = sample_stones(self._settings.sampling, remaining, clusters, rng)
+
+        def best(landscapes: Sequence[Landscape]) -> Candidate | None:
+            """Choose on some sides; with two-fold sampling in two rounds (§5.1)."""
+            chosen = self._select(landscapes, sample)
+            if chosen is not None and self._settings.sampling == "twofold":
+                fold = second_fold(chosen.stone_id, remaining, clusters)
+                chosen = self._select(landscapes, fold)
+            return chosen
+
+        if self._settings.selection_rule == "score":
+            return best(self._landscapes)
+        winners = [best([landscape]) for landscape in self._landscapes]
+        found = [winner for winner in winners if winner is not None]
+        return better_side(found, self.build, self._settings.selection)
+
+    def _select(self, landscapes: Sequence[Landscape], stones: Sequence[int]) -> Candidate | None:
+        proposals = [p for view in landscapes for p in self._proposals(view, stones)]
+        if self._settings.selection_rule == "score":
+            return choose_by_score(proposals, self._judge, self._settings.score)
+        return choose_by_algorithm2(proposals, self._judge, self._settings.selection)
+
+    def _proposals(self, landscape: Landscape, stones: Sequence[int]) -> list[Proposal]:
+        """Place and stabilise the candidates of one side (lines 7-16)."""
+        groups = self._groups(stones)
+        keys = [(poses[0].stone.id, poses[0].angle_deg, landscape.side) for poses in groups]
+        new = [k for k, key in enumerate(keys) if key not in self._proposed]
+        trials = [Trial(groups[k], landscape, self._rest) for k in new]
+        results = self._map(lambda trial: self._evaluator.propose(self.build, trial), trials)
+        self._proposed.update(zip([keys[k] for k in new], results, strict=True))
+        self.candidates += len(new)
+        found = []
+        for poses, key in zip(groups, keys, strict=True):
+            proposal = self._proposed[key]
+            if proposal is not None:
+                found.append(replace(proposal, other_heights_px=_other_heights(poses, groups)))
+        return found
+
+    def _groups(self, stones: Sequence[int]) -> list[tuple[PosedStone, ...]]:
+        """Return the poses of each candidate: one each, or all of a stone for the rule to pick."""
+        poses = self._workshop.poses
+        if self._settings.orientation_choice == "placement":
+            return [poses[stone_id] for stone_id in stones]
+        return [(posed,) for stone_id in stones for posed in poses[stone_id]]
+
+    def _judge(self, proposals: Sequence[Proposal]) -> list[Candidate]:
+        keys = [(p.stone_id, p.trial_angle_deg, p.side) for p in proposals]
+        new = [k for k, key in enumerate(keys) if key not in self._judged]
+        results = self._map(
+            lambda proposal: self._evaluator.judge(self.build, proposal),
+            [proposals[k] for k in new],
+        )
+        self._judged.update(zip([keys[k] for k in new], results, strict=True))
+        # NHR depends on the other candidates, which differ between the folds.
+        return [
+            self._evaluator.compared(self.build, proposal, self._judged[key])
+            for proposal, key in zip(proposals, keys, strict=True)
+        ]
+
+    def _map(self, work: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
+        """Apply a function to all items, in their order, by the executor if there is one."""
+        if self._executor is None:
+            return [work(item) for item in items]
+        return list(self._executor.map(work, items))
+
+
+def _other_heights(
+    poses: tuple[PosedStone, ...], groups: Sequence[tuple[PosedStone, ...]]
+) -> tuple[float, ...]:
+    """Return the heights of the candidates that are other stones (Eq. 8)."""
+    own = poses[0].stone.id
+    return tuple(
+        sum(p.height_px for p in group) / len(group) for group in groups if group[0].stone.id != own
+    )

@@ -1,0 +1,183 @@
+"""Trial placement, stabilisation and indices of one candidate (Algorithm 1, lines 7-16)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from drystone.indices.dice_score import geometrical_dice_score
+from drystone.indices.interlocking import interlocking_width_ratio
+from drystone.indices.inward_slope import inward_slope, is_boundary
+from drystone.indices.load_coefficient import limit_load_coefficient
+from drystone.indices.local_filling import local_filling_ratio
+from drystone.indices.neighbour_height import left_neighbour, neighbour_height_ratio
+from drystone.indices.shape_factor import shape_factor
+from drystone.indices.values import Indices
+from drystone.model.landscape import Landscape, view_box
+from drystone.model.placement import Placement
+from drystone.model.pose import PosedStone
+from drystone.placement.best import best_spots
+from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.craft import action_craft
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.stock import Rest, Stock
+from drystone.poses import PoseBook
+from drystone.selection.scored import craft_cost
+from drystone.stabilise.stabilise import Stabilised, WedgeStock, stabilise
+from drystone.statics.blocks import model_with
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import LateralResistance
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """What is to be tried: one stone, from one side.
+
+    Parameters
+    ----------
+    poses : tuple of PosedStone
+        The stone as it may be turned for the trial; the placement rule picks one.
+    landscape : Landscape
+        What is built, seen from the side.
+    rest : Rest
+        What the stones that are left could fill.
+    """
+
+    poses: tuple[PosedStone, ...]
+    landscape: Landscape
+    rest: Rest
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluator:
+    """Turns trials into proposals, and proposals into candidates.
+
+    Parameters
+    ----------
+    settings : PlannerSettings
+        Of the planner.
+    book : PoseBook
+        Turned stones.
+    stock : Stock
+        Sizes of the set.
+    """
+
+    settings: PlannerSettings
+    book: PoseBook
+    stock: Stock
+
+    def propose(self, build: Build, trial: Trial) -> Proposal | None:
+        """Return the best stable placement of a stone; None when there is none (lines 8-15).
+
+        Of the best positions by the placement rule, the first at which the stone can be made
+        stable is taken; with `tries` = 1 that is the paper's single trial.  With `compare` = True
+        all of them are stabilised, and the one of the least craft cost is taken.
+        """
+        landscape = trial.landscape
+        views = [landscape.view(posed) for posed in trial.poses]
+        best: Proposal | None = None
+        for spot in best_spots(landscape, views, self.settings.placement):
+            posed = trial.poses[spot.pose]
+            stabilised = stabilise(
+                build.wall.occupied,
+                (posed, spot.row, landscape.view_col(posed, spot.col)),
+                landscape.side,
+                self.book,
+                WedgeStock(self._next_wedge(build), self.stock.mean_height_px),
+                self.settings.stabilise,
+            )
+            if stabilised is None:
+                continue
+            proposal = self._proposal(trial, posed.angle_deg, stabilised)
+            if not self.settings.placement.compare:
+                return proposal
+            if best is None or proposal.cost < best.cost - 1e-12:
+                best = proposal
+        return best
+
+    def judge(self, build: Build, proposal: Proposal) -> Candidate:
+        """Return the candidate of a proposal: all indices, with the wall's resistance after it."""
+        stabilised = proposal.stabilised
+        model = model_with(build.model, build.wall.labels, stabilised.placement, stabilised.wedges)
+        resistance = lateral_resistance(model)
+        landscape = Landscape.of(build.wall, proposal.side)
+        indices, course_height = action_indices(
+            landscape, stabilised, resistance, proposal.other_heights_px, self.stock.narrowest_px
+        )
+        return Candidate(proposal, indices, course_height, model, resistance)
+
+    def compared(self, build: Build, proposal: Proposal, judged: Candidate) -> Candidate:
+        """Return a candidate that was judged before, compared with other candidates (Eq. 8)."""
+        if proposal.other_heights_px == judged.proposal.other_heights_px:
+            return judged
+        landscape = Landscape.of(build.wall, proposal.side)
+        nhr, course_height = first_or_next(
+            landscape, proposal.stabilised.placement, proposal.other_heights_px
+        )
+        indices = replace(judged.indices, NHR=nhr)
+        return replace(judged, proposal=proposal, indices=indices, course_height_px=course_height)
+
+    def _proposal(self, trial: Trial, trial_angle_deg: float, stabilised: Stabilised) -> Proposal:
+        cost = 0.0
+        if self.settings.selection_rule == "score" or self.settings.placement.compare:
+            craft = action_craft(trial.landscape, stabilised, self.stock, trial.rest)
+            cost = craft_cost(craft, self.settings.score)
+        return Proposal(stabilised, trial_angle_deg, cost=cost)
+
+    def _next_wedge(self, build: Build) -> int:
+        return self.stock.largest_id + len(build.wall.wedges) + 1
+
+
+def action_indices(
+    landscape: Landscape,
+    stabilised: Stabilised,
+    resistance: LateralResistance,
+    other_heights_px: Sequence[float],
+    narrowest_px: float,
+) -> tuple[Indices, float | None]:
+    """Return the indices of an action, and the mean height of Eq. 8 if it was used.
+
+    Parameters
+    ----------
+    landscape : Landscape
+        Before the action, seen from the side from which the stone is placed.
+    stabilised : Stabilised
+        The action.
+    resistance : LateralResistance
+        Of the wall after it.
+    other_heights_px : sequence of float
+        Heights of the other candidates.
+    narrowest_px : float
+        Width of the narrowest stone of the set.
+    """
+    placement = stabilised.placement
+    posed = landscape.view(placement.posed)
+    col = landscape.view_col(placement.posed, placement.col)
+    at = np.array([[placement.row, col]])
+    box = view_box(posed, placement.row, col, landscape.height_px)
+    nhr, course_height = first_or_next(landscape, placement, other_heights_px)
+    indices = Indices(
+        SF=shape_factor(placement.posed),
+        LFR=float(local_filling_ratio(landscape, posed, at)[0]),
+        GDS=float(geometrical_dice_score(landscape, posed, at[:, 0])[0]),
+        NHR=nhr,
+        IWR=interlocking_width_ratio(landscape, box, narrowest_px),
+        IS=inward_slope(landscape, posed, col),
+        LLC=limit_load_coefficient(resistance),
+        boundary=is_boundary(landscape, box, narrowest_px),
+    )
+    return indices, course_height
+
+
+def first_or_next(
+    landscape: Landscape, placement: Placement, other_heights_px: Sequence[float]
+) -> tuple[float, float | None]:
+    """Return NHR, and the mean height of Eq. 8 when the stone is the first of a course."""
+    posed = landscape.view(placement.posed)
+    col = landscape.view_col(placement.posed, placement.col)
+    box = view_box(posed, placement.row, col, landscape.height_px)
+    neighbour = left_neighbour(landscape, box)
+    nhr = neighbour_height_ratio(box, neighbour, other_heights_px)
+    if neighbour is not None or not other_heights_px:
+        return nhr, None
+    return nhr, sum(other_heights_px) / len(other_heights_px)

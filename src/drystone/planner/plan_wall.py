@@ -1,0 +1,204 @@
+"""From stones to a finished plan in one call."""
+
+import time
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import nullcontext
+from dataclasses import dataclass
+from importlib.metadata import version
+
+import numpy as np
+
+from drystone.errors import UsageError
+from drystone.model.plan import Plan, PlanMetrics
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.model.wall import Wall
+from drystone.planner.assemble import Frame, assemble_plan, plan_metrics
+from drystone.planner.events import StepCallback, Stopped
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import LateralResistance
+
+TYPICAL_STONE_PX = 40
+"""Longer side of the median stone at the resolution that is chosen when none is given."""
+
+FILLED_TOP = 0.9
+"""A plan is incomplete when its mean top stays below this share of the wall's height."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlanResult:
+    """What planning gave.
+
+    Parameters
+    ----------
+    success : bool
+        True unless the wall is incomplete or planning was interrupted.
+    status : {"complete", "incomplete", "interrupted"}
+        Incomplete: filling below .99 and a mean top below .9 of the height.
+    message : str
+        Why construction ended.
+    plan : Plan
+        The plan.
+    metrics : PlanMetrics
+        The plan's figures of merit.
+    wall : Wall
+        The wall at the working resolution.
+    resistance : LateralResistance
+        With both mechanisms.
+    clusters : dict of int to int
+        Cluster of each stone.
+    seconds : float
+        From the stones to the last step.
+    """
+
+    success: bool
+    status: str
+    message: str
+    plan: Plan
+    metrics: PlanMetrics
+    wall: Wall
+    resistance: LateralResistance
+    clusters: dict[int, int]
+    seconds: float
+
+
+def working_scale(stones: StoneSet) -> float:
+    """Return the working resolution at which the median stone's longer side is about 40 px.
+
+    Never finer than the source; in steps of 1 %.
+    """
+    longer = float(np.median([max(stone.mask.shape) for stone in stones])) if len(stones) else 1.0
+    return min(1.0, max(0.01, round(TYPICAL_STONE_PX / longer, 2)))
+
+
+def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
+    stones: StoneSet,
+    width: float,
+    height: float,
+    *,
+    seed: int = 0,
+    method: str = "best",
+    settings: PlannerSettings | None = None,
+    scale: float | None = None,
+    px_per_m: float | None = None,
+    n_jobs: int = 1,
+    executor: Executor | None = None,
+    callbacks: Sequence[StepCallback] = (),
+    built: Wall | None = None,
+    course_heights_px: Mapping[int, float] | None = None,
+) -> PlanResult:
+    """Plan a wall.
+
+    Parameters
+    ----------
+    stones : StoneSet
+        From :func:`drystone.read_stones`.
+    width, height : float
+        Of the wall, in px of the source image.
+    seed : int
+        Of the random choices; the same seed gives the same plan.
+    method : str
+        Named settings: ``"best"`` or ``"paper"``.
+    settings : PlannerSettings, optional
+        Used instead of the method's.
+    scale : float, optional
+        Working resolution over source resolution, in (0, 1]; chosen when missing.
+    px_per_m : float, optional
+        Source px in a metre; the plan is then in metres.
+    n_jobs : int
+        Threads that evaluate candidates; never changes the result.
+    executor : concurrent.futures.Executor, optional
+        Used instead of `n_jobs` threads; must share memory, such as a thread pool.
+    callbacks : sequence of callables
+        Called with every step.
+    built, course_heights_px : Wall and mapping, optional
+        What is built already, to go on from (:meth:`Planner.restore`).
+
+    Returns
+    -------
+    result : PlanResult
+        An interrupt (Ctrl-C) ends construction; the result then holds what is built.
+
+    Examples
+    --------
+    >>> import drystone as ds
+    >>> bricks = ds.generate.BrickSettings(count=6, height_px=10, aspect=2)
+    >>> stones = ds.generate.brick_stones(bricks, np.random.default_rng(1))
+    >>> result = ds.plan_wall(stones, 60, 20, scale=1.0)
+    >>> result.success, len(result.plan.steps)
+    (True, 6)
+    """
+    settings = settings or method_settings(method)
+    scale = working_scale(stones) if scale is None else scale
+    if not 0 < scale <= 1:
+        raise UsageError("E125", f"a scale of {scale} is not in (0, 1].", where="--scale")
+    frame = Frame(width, height, Site.from_source(width, height, scale, px_per_m))
+    started = time.perf_counter()
+    own = ThreadPoolExecutor(n_jobs) if executor is None and n_jobs > 1 else None
+    with own or nullcontext():
+        planner = Planner(
+            stones,
+            frame.site,
+            seed=seed,
+            settings=settings,
+            executor=executor or own,
+            callbacks=callbacks,
+        )
+        if built is not None:
+            planner.restore(built, course_heights_px or {})
+        stopped = run_to_end(planner)
+    seconds = time.perf_counter() - started
+    return finish(planner, frame, stopped, method, seconds)
+
+
+def run_to_end(planner: Planner) -> Stopped:
+    """Take all steps; an interrupt ends construction and keeps what is built."""
+    try:
+        for _ in planner.steps():
+            pass
+    except KeyboardInterrupt:
+        return Stopped("interrupted", "interrupted")
+    assert planner.stopped is not None  # noqa: S101 - steps() ended by itself
+    return planner.stopped
+
+
+def finish(
+    planner: Planner, frame: Frame, stopped: Stopped, method: str, seconds: float
+) -> PlanResult:
+    """Judge what a planner has built and write the plan."""
+    build = planner.build
+    resistance = lateral_resistance(build.model, mechanism=True)
+    metrics = plan_metrics(build, frame, resistance)
+    provenance = {
+        "version": version("drystone"),
+        "method": method,
+        "seed": planner.seed,
+        "settings": planner.settings.as_dict(),
+    }
+    plan = assemble_plan(planner.workshop, frame, build, stopped, metrics, provenance)
+    status = "complete"
+    if stopped.reason == "interrupted":
+        status = "interrupted"
+    elif metrics.F_SF < planner.settings.stop.filling and mean_top(build.wall) < FILLED_TOP:
+        status = "incomplete"
+    return PlanResult(
+        success=status == "complete",
+        status=status,
+        message=stopped.text,
+        plan=plan,
+        metrics=metrics,
+        wall=build.wall,
+        resistance=resistance,
+        clusters=planner.workshop.clusters,
+        seconds=seconds,
+    )
+
+
+def mean_top(wall: Wall) -> float:
+    """Return the mean height of the wall's top over its columns, as a share of its height."""
+    occupied = wall.occupied
+    top = np.where(occupied.any(axis=0), occupied.shape[0] - np.argmax(occupied, axis=0), 0)
+    return float(np.mean(top)) / float(occupied.shape[0])

@@ -1,0 +1,131 @@
+"""The stone stacking algorithm (Algorithm 1)."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+
+import numpy as np
+
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.model.wall import Wall
+from drystone.planner.attempt import Attempt
+from drystone.planner.build import Build, Proposal
+from drystone.planner.evaluate import Evaluator
+from drystone.planner.events import Step, StepCallback, Stopped
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.workshop import Workshop
+from drystone.stabilise.stabilise import Stabilised
+from drystone.statics.model import RigidBlockModel
+
+
+class Planner:
+    """Plans one wall; drive it with :meth:`steps`.
+
+    Parameters
+    ----------
+    stones : StoneSet
+        To build with.
+    site : Site
+        Where, and at which working resolution.
+    seed : int
+        Of the random samples; each step's are drawn from (seed, step, failures), so a plan can be
+        resumed from any step.
+    settings : PlannerSettings
+        All parameters.
+    executor : concurrent.futures.Executor, optional
+        Evaluates candidates; must share memory, such as a thread pool.  The result does not
+        depend on it.
+    callbacks : sequence of callables
+        Called with every :class:`Step`.
+    workshop : Workshop, optional
+        The same stones and site, prepared before.
+
+    Examples
+    --------
+    >>> import drystone as ds
+    >>> bricks = ds.generate.BrickSettings(count=3, height_px=10, aspect=2)
+    >>> stones = ds.generate.brick_stones(bricks, np.random.default_rng(1))
+    >>> planner = ds.Planner(stones, ds.Site(60, 10))
+    >>> len(list(planner.steps()))
+    3
+    """
+
+    def __init__(
+        self,
+        stones: StoneSet,
+        site: Site,
+        *,
+        seed: int = 0,
+        settings: PlannerSettings | None = None,
+        executor: Executor | None = None,
+        callbacks: Sequence[StepCallback] = (),
+        workshop: Workshop | None = None,
+    ) -> None:
+        self.seed = seed
+        self.settings = settings or PlannerSettings()
+        self.workshop = workshop or Workshop.prepare(stones, site, self.settings)
+        self.executor = executor
+        self.build = Build(Wall.empty(site), RigidBlockModel((), (), self.settings.mu))
+        self.stopped: Stopped | None = None
+        self._callbacks = tuple(callbacks)
+
+    def steps(self) -> Iterator[Step]:
+        """Place stone after stone (Algorithm 1), yielding each step as it is decided.
+
+        After the last step :attr:`stopped` says why construction ended.  Leaving the loop early
+        keeps what is built; calling `steps` again goes on from there.
+        """
+        self.stopped = None
+        attempt = self._attempt()
+        failures = 0  # zeta
+        while (stopped := self._why_stop(failures)) is None:  # lines 5 and 27
+            rng = np.random.default_rng([self.seed, len(self.build.actions), failures])
+            action = attempt.choose(rng)  # lines 6-17
+            if action is None:
+                failures += 1  # lines 23-26: resample
+                continue
+            self.build = self.build.add(action)  # lines 18-22
+            step = Step(len(self.build.actions), action, self.build, attempt.candidates)
+            attempt, failures = self._attempt(), 0
+            for callback in self._callbacks:
+                callback(step)
+            yield step
+        self.stopped = stopped
+
+    def _attempt(self) -> Attempt:
+        return Attempt(self.workshop, self.settings, self.build, self.executor)
+
+    def _why_stop(self, failures: int) -> Stopped | None:
+        """Say why construction ends here; None when it goes on."""
+        stop = self.settings.stop
+        if self.build.wall.filling > stop.filling:
+            return Stopped("filled", f"filling above {stop.filling}")
+        if not self.workshop.remaining(self.build):
+            return Stopped("stones", "all stones placed")
+        # There is nothing to resample when all stones were tried.
+        if failures >= stop.failures or (failures and self.settings.sampling == "full"):
+            return Stopped("failures", "no stone that is left can be placed")
+        return None
+
+    def restore(self, wall: Wall, course_heights_px: Mapping[int, float]) -> None:
+        """Go on from a wall that is built already, as from a partial plan.
+
+        Parameters
+        ----------
+        wall : Wall
+            On the planner's site, of its stones.
+        course_heights_px : mapping of int to float
+            For stones that began a course: the height that Eq. 8 compared with.
+        """
+        evaluator = Evaluator(self.settings, self.workshop.book, self.workshop.stock)
+        build = Build(Wall.empty(wall.site), RigidBlockModel((), (), self.settings.mu))
+        for group in wall.groups:
+            placement = group.placement
+            height = course_heights_px.get(placement.stone_id)
+            proposal = Proposal(
+                Stabilised(placement, group.wedges),
+                placement.posed.angle_deg,
+                other_heights_px=() if height is None else (height,),
+            )
+            build = build.add(evaluator.judge(build, proposal))
+        self.build = build

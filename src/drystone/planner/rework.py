@@ -1,0 +1,146 @@
+"""Take down the upper part of a wall and build it again, when that makes it better.
+
+A greedy pass chooses well below and badly in the last course, when few stones are left.  Every
+state of construction is kept, so the wall can go back to any of its steps; from there it is built
+again with other weights, and the better wall is kept.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from drystone.metrics.measure import measure_labels
+from drystone.planner.build import Build
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings
+from drystone.selection.scored import ScoreSettings
+from drystone.statics.model import RigidBlockModel
+
+
+@dataclass(frozen=True, eq=False)
+class Incumbent:
+    """The best wall so far.
+
+    Parameters
+    ----------
+    planner : Planner
+        Its :attr:`~Planner.build` is the wall.
+    states : tuple of Build
+        States of construction, from the empty wall to the finished one.
+    merit : float
+        Of the finished wall.
+    """
+
+    planner: Planner
+    states: tuple[Build, ...]
+    merit: float
+
+
+@dataclass(frozen=True)
+class Round:
+    """What a round of rework came to.
+
+    Parameters
+    ----------
+    number, rounds : int
+        Of how many.
+    stones : int
+        Placed in the best wall.
+    merit : float
+        Of the best wall.
+    """
+
+    number: int
+    rounds: int
+    stones: int
+    merit: float
+
+
+RoundCallback = Callable[[Round], None]
+
+
+def rework(planner: Planner) -> Iterator[Incumbent]:
+    """Improve the wall that a planner has built, round by round.
+
+    Each round goes back by a random number of steps, varies the weights of the craft terms by
+    random factors, builds to the end, and keeps the result when its merit is larger.
+
+    Parameters
+    ----------
+    planner : Planner
+        Whose :meth:`~Planner.steps` have come to an end.
+
+    Yields
+    ------
+    incumbent : Incumbent
+        The best wall after each round; the first is the wall as it was.
+    """
+    settings = planner.settings.rework
+    best = Incumbent(planner, _states(planner.build), wall_merit(planner))
+    yield best
+    for number in range(1, settings.rounds + 1):
+        rng = np.random.default_rng([planner.seed, 1_000_000 + number])
+        deepest = max(1, math.ceil(settings.deepest * (len(best.states) - 1)))
+        back = int(rng.integers(1, deepest + 1))
+        varied = Planner(
+            planner.workshop.stones,
+            planner.workshop.site,
+            seed=int(rng.integers(2**31)),
+            settings=_varied(planner.settings, rng),
+            executor=planner.executor,
+            workshop=planner.workshop,
+        )
+        start = max(0, len(best.states) - 1 - back)
+        varied.build = best.states[start]
+        states = (*best.states[: start + 1], *(step.build for step in varied.steps()))
+        merit = wall_merit(varied)
+        if merit > best.merit + 1e-12:
+            best = Incumbent(varied, states, merit)
+        yield best
+
+
+def wall_merit(planner: Planner) -> float:
+    """Return how good a finished wall is: a weighted sum of its figures of merit, or -inf."""
+    weights = planner.settings.rework
+    build = planner.build
+    if not build.actions:
+        return -math.inf
+    resistance = build.actions[-1].resistance.value
+    measured = measure_labels(
+        build.wall.labels, wedge_ids={wedge.id for wedge in build.wall.wedges},
+        wall_px=(build.wall.site.width_px, build.wall.site.height_px),
+    )  # fmt: skip
+    stones = planner.workshop.stones.total_area_px * build.wall.site.scale**2
+    possible = min(1.0, stones / (build.wall.site.width_px * build.wall.site.height_px))
+    return math.fsum(
+        [
+            weights.filling * build.wall.filling / possible,
+            weights.resistance * min(1.0, resistance or 0.0),
+            weights.vertical * (measured.F_AV or 0.0),
+            -weights.horizontal * (measured.F_AH or 0.0),
+            -weights.level * measured.T_LEVEL,
+            -weights.flush * measured.E_FLUSH,
+        ]
+    )
+
+
+def _states(build: Build) -> tuple[Build, ...]:
+    """Return all states of construction that led to one."""
+    site, mu = build.wall.site, build.model.mu
+    states = [Build(type(build.wall).empty(site), RigidBlockModel((), (), mu))]
+    for action in build.actions:
+        states.append(states[-1].add(action))
+    return tuple(states)
+
+
+def _varied(settings: PlannerSettings, rng: np.random.Generator) -> PlannerSettings:
+    """Multiply every craft weight by a random factor."""
+    score = settings.score
+    weights = {
+        field.name: getattr(score, field.name) * math.exp(settings.rework.spread * rng.normal())
+        for field in fields(ScoreSettings)
+        if field.name != "analysed"
+    }
+    return replace(settings, score=replace(score, **weights))

@@ -1,0 +1,169 @@
+"""All parameters that shape a plan, composed; and the named methods."""
+
+import dataclasses
+import types
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, get_args
+
+from drystone.clusters import ClusterSettings
+from drystone.errors import UsageError
+from drystone.model.settings import updated
+from drystone.placement.settings import PlacementSettings
+from drystone.poses import orientation_step_deg
+from drystone.selection.algorithm2 import SelectionSettings
+from drystone.selection.sampling import Sampling
+from drystone.selection.scored import ScoreSettings
+from drystone.stabilise.settings import StabiliseSettings
+
+
+@dataclass(frozen=True, kw_only=True)
+class StopSettings:
+    """When construction ends (Algorithm 1, line 27).
+
+    Parameters
+    ----------
+    filling : float
+        Filling ratio at which the design goal is reached.
+    failures : int
+        Consecutive failures that end construction.
+    """
+
+    filling: float = 0.99
+    failures: int = 5
+
+    def __post_init__(self) -> None:
+        if not 0 < self.filling <= 1 or self.failures < 1:
+            raise ValueError("filling must be in (0, 1], failures positive")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReworkSettings:
+    """How a finished wall is improved (:mod:`drystone.planner.rework`).
+
+    Parameters
+    ----------
+    rounds : int
+        How often its upper part is taken down and built again; 0 in the paper.
+    deepest : float
+        Largest share of the stones that is taken down.
+    spread : float
+        Standard deviation of the logarithm of the random factors on the craft weights.
+    filling, resistance, vertical, horizontal, level, flush : float
+        Weights of F_SF over what is possible, F_LR, F_AV, F_AH, T_LEVEL and E_FLUSH in the merit
+        of a wall.
+    """
+
+    rounds: int = 0
+    deepest: float = 0.5
+    spread: float = 0.4
+    filling: float = 6.0
+    resistance: float = 1.0
+    vertical: float = 0.025
+    horizontal: float = 0.1
+    level: float = 0.5
+    flush: float = 0.25
+
+    def __post_init__(self) -> None:
+        if self.rounds < 0 or not 0 < self.deepest <= 1 or self.spread < 0:
+            raise ValueError("rounds and spread must not be negative, deepest in (0, 1]")
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlannerSettings:
+    """Every parameter of the planner.
+
+    Parameters
+    ----------
+    orientations : str
+        ``"sf"``, ``"quarter"``, or a step such as ``"10deg"`` (DESIGN 4.2).
+    orientation_choice : {"candidates", "placement"}
+        With several orientations: each is a candidate of its own, or the placement rule picks one
+        per stone.
+    sampling : {"variant", "uniform", "twofold", "full"}
+        Candidate sets (§5.1).
+    selection_rule : {"algorithm2", "score"}
+        The paper's filters and sums, or the least craft cost
+        (:mod:`drystone.selection.scored`).
+    two_sided : bool
+        Build from both ends (Eq. 29).
+    mu : float
+        Coefficient of friction.
+    skip_too_large : bool
+        Leave out stones that fit into the wall in no orientation instead of refusing them.
+    clusters, placement, stabilise, selection, score, rework, stop
+        Settings of the stages.
+    """
+
+    orientations: str = "sf"
+    orientation_choice: Literal["candidates", "placement"] = "candidates"
+    sampling: Sampling = "variant"
+    selection_rule: Literal["algorithm2", "score"] = "algorithm2"
+    two_sided: bool = False
+    mu: float = 0.58
+    skip_too_large: bool = False
+    clusters: ClusterSettings = field(default_factory=ClusterSettings)
+    placement: PlacementSettings = field(default_factory=PlacementSettings)
+    stabilise: StabiliseSettings = field(default_factory=StabiliseSettings)
+    selection: SelectionSettings = field(default_factory=SelectionSettings)
+    score: ScoreSettings = field(default_factory=ScoreSettings)
+    rework: ReworkSettings = field(default_factory=ReworkSettings)
+    stop: StopSettings = field(default_factory=StopSettings)
+
+    def __post_init__(self) -> None:
+        orientation_step_deg(self.orientations)
+        if self.sampling not in get_args(Sampling):
+            raise ValueError(f"unknown sampling {self.sampling!r}")
+        if self.orientation_choice not in ("candidates", "placement"):
+            raise ValueError(f"unknown orientation choice {self.orientation_choice!r}")
+        if self.selection_rule not in ("algorithm2", "score"):
+            raise ValueError(f"unknown selection rule {self.selection_rule!r}")
+        if not self.mu > 0:
+            raise ValueError("mu must be positive")
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return nested dictionaries, as TOML and JSON write them."""
+        return dataclasses.asdict(self)
+
+    def updated(self, changes: Mapping[str, Any]) -> "PlannerSettings":
+        """Return settings with some values replaced.
+
+        Parameters
+        ----------
+        changes : mapping
+            Nested like :meth:`as_dict`; missing keys stay as they are.
+
+        Raises
+        ------
+        UsageError
+            E123: an unknown name, or a value out of range.
+        """
+        return updated(self, changes)
+
+
+METHODS: Mapping[str, PlannerSettings] = types.MappingProxyType(
+    {
+        "paper": PlannerSettings(),
+        "best": PlannerSettings(
+            orientations="quarter",
+            sampling="twofold",
+            two_sided=True,
+            selection_rule="score",
+            placement=PlacementSettings(rule="snug", reach="above", tries=4, compare=True),
+            stabilise=StabiliseSettings(margin=0.1),
+        ),
+    }
+)
+"""Named settings: ``"paper"`` is the paper's greedy with its defaults, ``"best"`` the default."""
+
+
+def method_settings(method: str) -> PlannerSettings:
+    """Return the settings of a named method; raise UsageError (E124) for an unknown one."""
+    if method not in METHODS:
+        raise UsageError(
+            "E124",
+            f"there is no method {method!r}.",
+            where="--method",
+            cure=f"Choose one of {', '.join(METHODS)}.",
+        )
+    return METHODS[method]

@@ -1,0 +1,155 @@
+"""Polygons to draw: along the pixel edges of label images, or the stones' own outlines."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from drystone.kernels.raster import Mask, turn
+from drystone.model.wall import Labels, Wall
+
+Loop = NDArray[np.float64]
+"""(n, 2) corners (x, y), y up, first corner not repeated: counter-clockwise around stone,
+clockwise around holes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """What a label covers.
+
+    Parameters
+    ----------
+    id : int
+        The label.
+    loops : tuple of (n, 2) float arrays
+        Its boundary on pixel edges, wall frame, px.
+    centroid : (float, float)
+        Of its pixel squares.
+    area_px : int
+        Number of its pixels.
+    """
+
+    id: int
+    loops: tuple[Loop, ...]
+    centroid: tuple[float, float]
+    area_px: int
+
+
+def label_regions(labels: Labels) -> tuple[Region, ...]:
+    """Return the regions of a label image in the order of their ids.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        0 is background; row 0 at the top.
+
+    Examples
+    --------
+    >>> [region.centroid for region in label_regions(np.array([[0, 0], [7, 7]], np.uint32))]
+    [(1.0, 0.5)]
+    """
+    ids, ranks = np.unique(labels, return_inverse=True)
+    # Ranks instead of ids: find_objects makes a list as long as the largest id.
+    ranks = ranks.reshape(labels.shape) + (0 if ids.size and ids[0] == 0 else 1)
+    windows = ndimage.find_objects(ranks)
+    present = [int(label) for label in ids if label]
+    return tuple(
+        _region(label, ranks[window] == rank, window, labels.shape[0])
+        for rank, (label, window) in enumerate(zip(present, windows, strict=True), 1)
+    )
+
+
+def _region(label: int, mask: Mask, window: tuple[slice, slice], height: int) -> Region:
+    left, bottom = window[1].start, height - window[0].stop
+    rows, cols = np.nonzero(mask)
+    centroid = (
+        left + float(cols.mean()) + 0.5,
+        bottom + mask.shape[0] - float(rows.mean()) - 0.5,
+    )
+    loops = tuple(loop + np.array([left, bottom], float) for loop in pixel_loops(mask))
+    return Region(label, loops, centroid, int(rows.size))
+
+
+def pixel_loops(mask: Mask) -> tuple[Loop, ...]:
+    """Return the boundary of a mask along pixel edges, without collinear corners.
+
+    Pixels that touch only at a corner get loops of their own.
+
+    Parameters
+    ----------
+    mask : (h, w) bool array
+        Row 0 at the top; its bottom-left corner is the origin.
+
+    Examples
+    --------
+    >>> pixel_loops(np.ones((1, 2), bool))[0].tolist()
+    [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]
+    """
+    outgoing: dict[tuple[int, int], list[tuple[int, int]]] = {}
+    for start, end in _edges(mask):
+        outgoing.setdefault(start, []).append(end)
+    # The first corner left is never one where two pixels touch: those have an edge to their left.
+    return tuple(_trace(first, outgoing) for first in sorted(outgoing) if first in outgoing)
+
+
+def _edges(mask: Mask) -> Iterator[tuple[tuple[int, int], tuple[int, int]]]:
+    """Yield the unit edges of the boundary with the stone on their left."""
+    flipped = np.pad(mask[::-1], 1)
+    inside = flipped[1:-1, 1:-1]
+    # Start and end of each edge from the pixel's lower left corner, and the neighbour beyond it.
+    sides = (
+        ((0, 0), (1, 0), flipped[:-2, 1:-1]),
+        ((1, 0), (1, 1), flipped[1:-1, 2:]),
+        ((1, 1), (0, 1), flipped[2:, 1:-1]),
+        ((0, 1), (0, 0), flipped[1:-1, :-2]),
+    )
+    for (x0, y0), (x1, y1), beyond in sides:
+        for y, x in np.argwhere(inside & ~beyond).tolist():
+            yield (x + x0, y + y0), (x + x1, y + y1)
+
+
+def _trace(first: tuple[int, int], outgoing: dict[tuple[int, int], list[tuple[int, int]]]) -> Loop:
+    """Take one closed loop out of the edges, turning left where two pixels touch at a corner."""
+    corners = [first]
+    here, step = first, (0, 0)
+    while True:
+        ends = outgoing[here]
+        ends.sort(key=lambda end: step[0] * (end[1] - here[1]) - step[1] * (end[0] - here[0]))
+        end = ends.pop()
+        if not ends:
+            del outgoing[here]
+        step = (end[0] - here[0], end[1] - here[1])
+        here = end
+        if here == first:
+            break
+        corners.append(here)
+    points = np.array(corners, float)
+    ahead, behind = np.roll(points, -1, axis=0) - points, points - np.roll(points, 1, axis=0)
+    return np.asarray(points[(ahead != behind).any(axis=1)])
+
+
+def wall_outlines(wall: Wall) -> dict[int, Loop]:
+    """Return the outline of each stone and wedge in the wall frame, in the plan's units.
+
+    A stone's is its own outline from the source image, turned and moved; a wedge's follows its
+    pixels.
+
+    Returns
+    -------
+    outlines : dict of int to (n, 2) float array
+        In the order of placement.
+    """
+    site = wall.site
+    outlines: dict[int, Loop] = {}
+    for group in wall.groups:
+        placement = group.placement
+        stone = turn(placement.posed.stone.outline, placement.posed.angle_deg) * site.scale
+        points = stone + placement.centroid(site.height_px)
+        outlines[placement.stone_id] = points * site.units_per_px
+        for wedge in group.wedges:
+            corner = (wedge.col, site.height_px - wedge.row - wedge.mask.shape[0])
+            loop = max(pixel_loops(wedge.mask), key=len) + corner
+            outlines[wedge.id] = loop * site.units_per_px
+    return outlines

@@ -1,0 +1,268 @@
+"""What the report says: numbers of a plan with the words that explain them."""
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
+from drystone.plotting.palette import WEDGE_COLOUR, cluster_colour
+
+UNDEFINED = "not defined"
+ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
+TIMES = "\N{MULTIPLICATION SIGN}"
+INDICES = {
+    "SF": "shape factor: area over area of the bounding box; 1 is a rectangle",
+    "LFR": "local filling ratio: how full the site is to the left and below; higher is better",
+    "GDS": "global density: how much of the stone stays inside the built height; higher is better",
+    "NHR": "height beside the left neighbour's; 0 is a level course, lower is better",
+    "IWR": "interlocking with the joints below; higher is better",
+    "IS": "slope of the upper edge; positive falls inwards, higher is better",
+    "LLC": "lateral load capacity after the step; higher is better",
+}
+ASSUMPTIONS = (
+    "The wall is a flat section of unit thickness; what happens across it is not modelled.",
+    "Stones are rigid and do not crush; their weight is in proportion to their area.",
+    "Joints are dry: they carry pressure and friction, no tension.",
+    "Friction follows Coulomb's law with an associative flow rule: joints that slide also open "
+    "(dilatancy), so the load multipliers are in general an upper bound.",
+    "The live load is horizontal, acts at the centroids and is the same share of every stone's "
+    "weight, as on a tilting table; the wall stands free on rigid ground.",
+    "Joints are two pixels wide at the working resolution when F_AV and F_AH are measured.",
+)
+
+Better = Literal["higher", "lower", ""]
+
+
+@dataclass(frozen=True)
+class Card:
+    """A result, its name and one sentence that explains it."""
+
+    symbol: str
+    name: str
+    value: str
+    better: Better
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of the table of steps; `cells` belong to stones only."""
+
+    step: int
+    kind: Literal["stone", "wedge"]
+    what: str
+    colour: str
+    cells: tuple[str, ...]
+    alpha_left: str
+    alpha_right: str
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """Write a number, or that it is not defined: never 0 for a missing one.
+
+    Examples
+    --------
+    >>> number(0.5), number(None), number(-0.0004)
+    ('0.500', 'not defined', '0.000')
+    """
+    if value is None or not math.isfinite(value):
+        return UNDEFINED
+    return f"{round(value, digits) + 0.0:.{digits}f}"
+
+
+def length_digits(plan: Plan) -> int:
+    """Return the digits after the point of lengths: millimetres, or tenths of px."""
+    return 3 if plan.length_unit == "m" else 1
+
+
+def inputs(plan: Plan) -> tuple[tuple[str, str], ...]:
+    """Return what the plan was made from, as pairs of name and value."""
+    source, unit, digits = plan.source, plan.length_unit, length_digits(plan)
+    scale = f"{plan.px_per_m:g} px a metre" if plan.px_per_m else "unknown (lengths in source px)"
+    return (
+        ("Stones from", str(source.get("path") or "an array in memory")),
+        ("SHA-256 of the input", str(source.get("sha256") or UNDEFINED)),
+        ("Stones in the input", str(source.get("stones", UNDEFINED))),
+        ("Size of the image", f"{source.get('width_px')} {TIMES} {source.get('height_px')} px"),
+        ("Wall", f"{plan.width:.{digits}f} {TIMES} {plan.height:.{digits}f} {unit}"),
+        ("Scale", scale),
+        ("Working resolution", f"{plan.working_scale:g} of the source's"),
+        ("Method", plan.method),
+        ("Seed", str(plan.seed)),
+        ("drystone", f"version {plan.version}"),
+    )
+
+
+def summary(plan: Plan) -> str:
+    """Return the result in one sentence."""
+    placed, of = len(plan.stone_steps), len(plan.stone_steps) + len(plan.unused)
+    wedges = len(plan.wedge_steps)
+    with_wedges = f" with {wedges} wedge{'s' if wedges != 1 else ''}" if wedges else ""
+    return f"{placed} of {of} stones placed{with_wedges}; stopped because: {plan.stopped}."
+
+
+def cards(plan: Plan) -> tuple[Card, ...]:
+    """Return the results, the ones to look at first at the front."""
+    return (*_strength(plan.metrics), *_layout(plan))
+
+
+def _strength(metrics: PlanMetrics) -> tuple[Card, ...]:
+    multiplier = "Load multiplier (adequacy factor) to the "
+    meaning = "A horizontal load of this share of the wall's weight, pushing to the {}, is the "
+    meaning += "most that it carries."
+    return (
+        Card(
+            "F_LR",
+            "Lateral resistance",
+            number(metrics.F_LR),
+            "higher",
+            "The smaller load multiplier over the coefficient of friction. At 1 the whole wall "
+            "would slide on the ground before it comes apart.",
+        ),
+        Card(
+            f"{ALPHA} left",
+            multiplier + "left",
+            number(metrics.alpha_left),
+            "higher",
+            meaning.format("left"),
+        ),
+        Card(
+            f"{ALPHA} right",
+            multiplier + "right",
+            number(metrics.alpha_right),
+            "higher",
+            meaning.format("right"),
+        ),
+        Card(
+            "",
+            "Weaker direction",
+            weaker_direction(metrics),
+            "",
+            "Where the wall fails first when it is pushed from the side.",
+        ),
+    )
+
+
+def weaker_direction(metrics: PlanMetrics) -> str:
+    """Return the direction of the smaller load multiplier."""
+    left, right = metrics.alpha_left, metrics.alpha_right
+    if left is None or right is None:
+        return UNDEFINED
+    if math.isclose(left, right, rel_tol=1e-9, abs_tol=1e-9):
+        return "both alike"
+    return "left" if left < right else "right"
+
+
+def _layout(plan: Plan) -> tuple[Card, ...]:
+    metrics, unit = plan.metrics, plan.length_unit
+    placed, of = len(plan.stone_steps), len(plan.stone_steps) + len(plan.unused)
+    area = number(metrics.wedge_area, 4 if unit == "m" else 1)
+    return (
+        Card(
+            "F_SF",
+            "Filling",
+            number(metrics.F_SF),
+            "higher",
+            "Area of the placed stones, without wedges, over the area of the wall. "
+            "1 leaves no gaps.",
+        ),
+        Card(
+            "F_AV",
+            "Interlocking",
+            _percent(metrics.F_AV),
+            "higher",
+            "How much longer than a straight line the shortest ways along joints from top to "
+            "ground are. The more, the less joints run through.",
+        ),
+        Card(
+            "F_AH",
+            "Waviness of courses",
+            _percent(metrics.F_AH),
+            "lower",
+            "How much longer than a straight line the shortest ways along joints from end to end "
+            "are. 0 means straight courses.",
+        ),
+        Card(
+            "",
+            "Stones placed",
+            f"{placed} of {of}",
+            "higher",
+            "Stones of the input that found a place. Some may be left over when the wall is full.",
+        ),
+        Card(
+            "T_LEVEL",
+            "Unevenness of the top",
+            number(metrics.T_LEVEL),
+            "lower",
+            "Mean deviation of the top from its mean height, in mean heights of a stone. "
+            "0 is a level top.",
+        ),
+        Card(
+            "E_FLUSH",
+            "Gaps at the ends",
+            number(metrics.E_FLUSH),
+            "lower",
+            "Mean gap between the wall and its two end lines, in mean widths of a stone. "
+            "0 means upright ends on the lines.",
+        ),
+        Card(
+            "",
+            "Wedges",
+            f"{len(plan.wedge_steps)} ({area} {unit}²)",
+            "lower",
+            "Small stones pushed in under others, and their area. Each has to be found or cut.",
+        ),
+    )
+
+
+def _percent(value: float | None) -> str:
+    return UNDEFINED if value is None else f"{number(value, 2)} %"
+
+
+def rows(plan: Plan) -> Iterator[Row]:
+    """Yield the lines of the table of steps."""
+    for step in plan.steps:
+        alphas = (number(step.alpha_left), number(step.alpha_right))
+        if isinstance(step, StoneStep):
+            colour = cluster_colour(step.cluster)
+            yield Row(step.step, "stone", str(step.stone), colour, _cells(plan, step), *alphas)
+        else:
+            what = f"wedge {step.id} under stone {step.under}, {_wedge_size(plan, step)}"
+            yield Row(step.step, "wedge", what, WEDGE_COLOUR, (), *alphas)
+
+
+def _cells(plan: Plan, step: StoneStep) -> tuple[str, ...]:
+    digits = length_digits(plan)
+    x, y = (number(value, digits) for value in step.centroid)
+    indices = (number(step.indices.get(name)) for name in INDICES)
+    return (number(step.angle_deg, 1), x, y, step.side, str(step.cluster), *indices)
+
+
+def _wedge_size(plan: Plan, step: WedgeStep) -> str:
+    digits = length_digits(plan)
+    xs, ys = zip(*step.polygon, strict=True)
+    wide, high = number(max(xs) - min(xs), digits), number(max(ys) - min(ys), digits)
+    x, y = number(sum(xs) / len(xs), digits), number(sum(ys) / len(ys), digits)
+    return f"{wide} wide, {high} high, around ({x}, {y})"
+
+
+def flat_settings(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
+    """Yield every parameter with the path of its name.
+
+    Examples
+    --------
+    >>> dict(flat_settings({"mu": 0.58, "placement": {"rule": "eq12"}}))
+    {'mu': '0.58', 'placement.rule': '"eq12"'}
+    """
+    for name, value in settings.items():
+        if isinstance(value, Mapping):
+            yield from flat_settings(value, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}", json.dumps(value, ensure_ascii=False)
+
+
+def unused_stones(unused: Sequence[int]) -> str:
+    """Return the ids of the stones left over, as text."""
+    return ", ".join(str(stone) for stone in unused) if unused else "none"

@@ -1,0 +1,137 @@
+"""Selecting the best action: hierarchical filters, then a weighted sum (§3.8, Algorithm 2)."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from drystone.indices.values import Indices
+
+MEAN_SLACK = 1e-12
+"""A mean may round above every one of equal values; without slack the filter would drop all."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SelectionSettings:
+    """Weights of the objective functions (Eq. 15-22).
+
+    Parameters
+    ----------
+    w_llc, w_nhr, w_third, w_gds, w_lfr : float
+        Weights of LLC, -NHR, IWR or IS, GDS and LFR; the paper uses 1 for each.
+    """
+
+    w_llc: float = 1.0
+    w_nhr: float = 1.0
+    w_third: float = 1.0
+    w_gds: float = 1.0
+    w_lfr: float = 1.0
+
+    @property
+    def weights(self) -> tuple[float, float, float, float, float]:
+        """omega_1 to omega_5."""
+        return self.w_llc, self.w_nhr, self.w_third, self.w_gds, self.w_lfr
+
+
+@dataclass(frozen=True)
+class Action:
+    """What selection sees of a candidate.
+
+    Parameters
+    ----------
+    stone_id : int
+        Id of the stone.
+    angle_deg : float
+        Angle of the trial pose.
+    indices : Indices
+        Of the action.
+    """
+
+    stone_id: int
+    angle_deg: float
+    indices: Indices
+
+    @property
+    def llc(self) -> float:
+        """LLC, with "does not stand" below every number."""
+        return -math.inf if self.indices.LLC is None else self.indices.LLC
+
+    @property
+    def terms(self) -> tuple[float, float, float, float, float]:
+        """LLC, -NHR, IWR or IS, GDS, LFR: the order of the filters."""
+        i = self.indices
+        return self.llc, -i.NHR, i.third, i.GDS, i.LFR
+
+
+@dataclass(frozen=True)
+class Selected:
+    """The best action.
+
+    Parameters
+    ----------
+    position : int
+        Its place among the actions given.
+    survivors : tuple of int
+        How many actions passed each filter: K_1, K_2, ...
+    """
+
+    position: int
+    survivors: tuple[int, ...]
+
+
+def select_action(
+    actions: Sequence[Action], settings: SelectionSettings | None = None
+) -> Selected | None:
+    """Return the best action (Algorithm 2); None when no action has LLC > 0.
+
+    Filters keep what is at least the mean of the survivors, in the order LLC, -NHR, IWR | IS, GDS,
+    LFR; boundary stones are compared with boundary stones at the third, inner ones with inner
+    ones.  When a filter would keep nothing, the choice is by the sum of the terms so far.  Ties go
+    to the lower id, then to the smaller angle.
+    """
+    settings = settings or SelectionSettings()
+    pool = [k for k, action in enumerate(actions) if action.llc > 0]  # Pi_1
+    if not pool:
+        return None
+    survivors = [len(pool)]
+    used = 0
+    for used in range(1, 6):
+        kept = _at_least_mean(actions, pool, used - 1)
+        survivors.append(len(kept))
+        if not kept:
+            break
+        pool = kept
+
+    best = min(
+        pool,
+        key=lambda k: (
+            -weighted_sum(actions[k], settings, used),
+            actions[k].stone_id,
+            actions[k].angle_deg,
+        ),
+    )
+    return Selected(best, tuple(survivors))
+
+
+def weighted_sum(action: Action, settings: SelectionSettings, terms: int = 5) -> float:
+    """Return the objective of Eq. 15-22 with the first so many terms."""
+    pairs = zip(settings.weights[:terms], action.terms[:terms], strict=True)
+    return math.fsum(weight * term for weight, term in pairs)
+
+
+def _at_least_mean(actions: Sequence[Action], pool: Sequence[int], term: int) -> list[int]:
+    """Keep the actions whose term reaches the mean of the pool (Eq. 14, 16, 18)."""
+
+    def keep(group: list[int], value: Callable[[int], float]) -> list[int]:
+        if not group:
+            return []
+        mean = math.fsum(value(k) for k in group) / len(group)
+        return [k for k in group if value(k) >= mean - MEAN_SLACK]
+
+    def value(k: int) -> float:
+        return actions[k].terms[term]
+
+    if term != 2:
+        return keep(list(pool), value)
+    inner = [k for k in pool if not actions[k].indices.boundary]
+    boundary = [k for k in pool if actions[k].indices.boundary]
+    return sorted(keep(inner, value) + keep(boundary, value))

@@ -1,0 +1,53 @@
+"""Candidate sets Pi_i: which of the remaining stones are tried in a step (§3.4, §5.1)."""
+
+from collections.abc import Mapping, Sequence
+from typing import Literal
+
+import numpy as np
+
+Sampling = Literal["variant", "uniform", "twofold", "full"]
+
+
+def sample_stones(
+    sampling: Sampling,
+    remaining: Sequence[int],
+    clusters: Mapping[int, int],
+    rng: np.random.Generator,
+) -> tuple[int, ...]:
+    """Return the ids of the stones to try first in a step, in ascending order.
+
+    Parameters
+    ----------
+    sampling : {"variant", "uniform", "twofold", "full"}
+        ``"variant"``: one at random from each cluster that is not empty; ``"uniform"``: as many as
+        there were clusters at the start, at random; ``"twofold"``: as variant, then
+        :func:`second_fold`; ``"full"``: all.
+    remaining : sequence of int
+        Ids of the stones that are left, ascending.
+    clusters : mapping of int to int
+        Cluster of every stone of the set.
+    rng : numpy.random.Generator
+        Used by all but ``"full"``.
+
+    Examples
+    --------
+    >>> sample_stones("full", [1, 2], {1: 1, 2: 1}, np.random.default_rng(0))
+    (1, 2)
+    """
+    if sampling == "full" or not remaining:
+        return tuple(remaining)
+    if sampling == "uniform":
+        count = min(len(set(clusters.values())), len(remaining))
+        return tuple(sorted(int(i) for i in rng.choice(remaining, size=count, replace=False)))
+    members: dict[int, list[int]] = {}
+    for stone_id in remaining:
+        members.setdefault(clusters[stone_id], []).append(stone_id)
+    drawn = [int(rng.choice(members[cluster])) for cluster in sorted(members)]
+    return tuple(sorted(drawn))
+
+
+def second_fold(
+    winner: int, remaining: Sequence[int], clusters: Mapping[int, int]
+) -> tuple[int, ...]:
+    """Return all remaining stones of the winner's cluster: the second fold of two-fold sampling."""
+    return tuple(i for i in remaining if clusters[i] == clusters[winner])

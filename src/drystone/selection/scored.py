@@ -1,0 +1,100 @@
+"""Selecting by cost: the geometry first, the limit analysis for the best few (our own rule).
+
+Algorithm 2 filters by the lateral resistance before it looks at the geometry: it drops a large
+stone that would close a course because a small one elsewhere carries a little more, and walls
+end with stones left over.  Here every action has a cost made of craft rules; only the cheapest
+are analysed, and the lateral resistance counts as one more term.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+
+@dataclass(frozen=True)
+class Craft:
+    """How well a stone sits, in costs of about 0 to 1, all but the last best at 0.
+
+    Parameters
+    ----------
+    height : float
+        Of the stone's centroid over the ground, in mean stone heights.
+    void : float
+        Empty area under the stone, in mean stone areas.
+    gap : float
+        Empty area between the stone and its neighbour on the building side, likewise.
+    slot : float
+        Area beside it, on the other side, that the remaining stones cannot fill, likewise.
+    headroom : float
+        Area above it that the remaining stones cannot fill below the wall's top, likewise.
+    step : float
+        Difference of its top and its neighbour's, in mean stone heights (as NHR).
+    roughness : float
+        Mean deviation of its top from level, in mean stone heights.
+    upright : float
+        How much higher than wide it stands: max(0, 1 - width / height).
+    joint : float
+        1 - IWR, or 1 - IS for a boundary stone.
+    area : float
+        Of the stone, in mean stone areas; its weight is a bonus for large stones.
+    """
+
+    height: float
+    void: float
+    gap: float
+    slot: float
+    headroom: float
+    step: float
+    roughness: float
+    upright: float
+    joint: float
+    area: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScoreSettings:
+    """Weights of the costs of :class:`Craft`, and how many actions are analysed.
+
+    Parameters
+    ----------
+    height, void, gap, slot, headroom, step, roughness, upright, joint : float
+        Weight of each cost.
+    area : float
+        Bonus for a stone of mean area.
+    llc : float
+        Bonus for LLC = 1.
+    analysed : int
+        How many of the cheapest actions that stand are compared by LLC.
+    """
+
+    height: float = 1.0
+    void: float = 1.0
+    gap: float = 1.0
+    slot: float = 1.0
+    headroom: float = 1.0
+    step: float = 0.5
+    roughness: float = 0.5
+    upright: float = 0.3
+    joint: float = 0.1
+    area: float = 0.5
+    llc: float = 0.5
+    analysed: int = 4
+
+    def __post_init__(self) -> None:
+        if self.analysed < 1:
+            raise ValueError("analysed must be positive")
+
+
+def craft_cost(craft: Craft, settings: ScoreSettings) -> float:
+    """Return the weighted cost of an action, lower is better; large stones earn a bonus."""
+    terms = [
+        getattr(settings, field.name) * getattr(craft, field.name)
+        for field in fields(Craft)
+        if field.name != "area"
+    ]
+    return math.fsum([*terms, -settings.area * craft.area])
+
+
+def cheapest_first(costs: Sequence[float], keys: Sequence[tuple[float, ...]]) -> list[int]:
+    """Return the order of actions by cost; equal costs by their keys."""
+    return sorted(range(len(costs)), key=lambda k: (round(costs[k], 12), keys[k]))

@@ -1,0 +1,1 @@
+"""Making a trial placement stable: support polyline, rotation, wedging (§3.7)."""

@@ -1,0 +1,1 @@
+"""Rigid blocks from pixels, and the lateral load that they carry (§4)."""

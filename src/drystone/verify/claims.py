@@ -1,0 +1,227 @@
+"""What a plan claims of its stones, actions and wall, computed again."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+from drystone.clusters import cluster_stones
+from drystone.model.landscape import Landscape
+from drystone.model.plan import Plan, PlanMetrics, StoneStep
+from drystone.model.stone import StoneSet
+from drystone.planner.assemble import Frame, plan_metrics
+from drystone.planner.build import Build
+from drystone.planner.evaluate import action_indices
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.stock import Stock
+from drystone.poses import PoseBook, orientation_step_deg
+from drystone.stabilise.stabilise import Stabilised
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import LateralResistance, RigidBlockModel
+from drystone.verify.replay import Replay, Stage
+from drystone.verify.report import Problem
+from drystone.verify.stability import ALPHA_TOLERANCE, differs
+
+TOLERANCE = 1e-9
+"""Of everything but load multipliers; the same sums in the same order, so rounding only."""
+
+ANGLE_TOLERANCE_DEG = 1e-6
+
+_OPTIONAL_METRICS = ("T_LEVEL", "E_FLUSH")
+"""Plans of other hands need not claim these."""
+
+_BY_STATICS = ("LLC", "F_LR", "alpha_left", "alpha_right")
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """What claims are compared with.
+
+    Parameters
+    ----------
+    stones : StoneSet
+        The input.
+    settings : PlannerSettings
+        Of the plan.
+    book : PoseBook
+        At the plan's working resolution.
+    clusters : dict of int to int
+        Cluster of each stone.
+    stock : Stock
+        Sizes of the stones in their initial poses.
+    """
+
+    stones: StoneSet
+    settings: PlannerSettings
+    book: PoseBook
+    clusters: dict[int, int]
+    stock: Stock
+
+    @classmethod
+    def of(cls, stones: StoneSet, settings: PlannerSettings, scale: float) -> "Reference":
+        """Compute it from the input stones."""
+        book = PoseBook(scale)
+        initial = [book.pose(stone, book.initial_angle(stone)) for stone in stones]
+        return cls(
+            stones,
+            settings,
+            book,
+            cluster_stones(stones, book, settings.clusters),
+            Stock.of(initial) if initial else Stock(0.0, 0.0, 0.0, 0),
+        )
+
+
+def check_source(plan: Plan, stones: StoneSet) -> list[Problem]:
+    """Compare the stones with those that the plan was made from (E210, E211)."""
+    problems = []
+    claimed, source = plan.source, stones.source
+    if claimed["sha256"] and source.sha256 and claimed["sha256"] != source.sha256:
+        problems.append(
+            Problem(
+                "E210",
+                None,
+                f"the stones were read from other bytes (sha256 {source.sha256[:12]}...) than the "
+                f"plan's ({claimed['sha256'][:12]}...).",
+            )
+        )
+    facts = {"stones": len(stones), "width_px": source.width_px, "height_px": source.height_px}
+    if source.files or "files" in claimed:
+        facts["files"] = list(source.files)  # type: ignore[assignment]
+    return problems + [
+        Problem("E211", None, f"source.{name} is {claimed.get(name)} by the plan, found {found}.")
+        for name, found in facts.items()
+        if claimed.get(name) != found
+    ]
+
+
+def check_unused(plan: Plan, stones: StoneSet) -> list[Problem]:
+    """Compare the list of stones that are left over with the steps (E216)."""
+    placed = {step.stone for step in plan.stone_steps}
+    left = [stone.id for stone in stones if stone.id not in placed]
+    if sorted(plan.unused) == left:
+        return []
+    return [Problem("E216", None, f"unused is {list(plan.unused)} by the plan, found {left}.")]
+
+
+def check_stone_claims(step: StoneStep, reference: Reference) -> list[Problem]:
+    """Verify what a step says of its stone: centroid (E225), cluster (E233), turning (E235)."""
+    stone = reference.stones.by_id(step.stone)
+    problems = []
+    pairs = zip(step.source_centroid, stone.centroid, strict=True)
+    if any(differs(claimed, found, TOLERANCE) for claimed, found in pairs):
+        message = (
+            f"source_centroid is {list(step.source_centroid)} by the plan, "
+            f"found {list(stone.centroid)}."
+        )
+        problems.append(Problem("E225", step.step, message))
+    cluster = reference.clusters[step.stone]
+    if step.cluster != cluster:
+        message = f"cluster is {step.cluster} by the plan, found {cluster}."
+        problems.append(Problem("E233", step.step, message))
+    wrong = _wrong_turning(step, reference)
+    if wrong is not None:
+        problems.append(Problem("E235", step.step, wrong))
+    return problems
+
+
+def check_indices(
+    stage: Stage, resistance: LateralResistance, reference: Reference, units_per_px: float
+) -> list[Problem]:
+    """Verify the indices of an action on the landscape before it (E232).
+
+    Parameters
+    ----------
+    stage : Stage
+        The action.
+    resistance : LateralResistance
+        Of the wall after it.
+    reference : Reference
+        Of the stones.
+    units_per_px : float
+        Plan's units in a working px.
+    """
+    step = stage.stone
+    group = stage.group
+    others = () if step.course_height is None else (step.course_height / units_per_px,)
+    indices, course_height = action_indices(
+        Landscape.of(stage.before, step.side),
+        Stabilised(group.placement, group.wedges),
+        resistance,
+        others,
+        reference.stock.narrowest_px,
+    )
+    problems = []
+    if step.course_height is not None and course_height is None:
+        message = (
+            f"course_height is {step.course_height} by the plan, but the stone has a neighbour."
+        )
+        problems.append(Problem("E232", step.step, message))
+    for name, found in indices.as_dict().items():
+        claimed = step.indices.get(name)
+        if differs(claimed, found, ALPHA_TOLERANCE if name in _BY_STATICS else TOLERANCE):
+            message = f"{name} is {claimed} by the plan, {found} was found."
+            problems.append(Problem("E232", step.step, message))
+    return problems
+
+
+def recompute_metrics(plan: Plan, replay: Replay, model: RigidBlockModel) -> PlanMetrics:
+    """Return the figures of merit of a rebuilt wall.
+
+    Parameters
+    ----------
+    plan : Plan
+        Gives the size of the wall.
+    replay : Replay
+        Not broken.
+    model : RigidBlockModel
+        Of the whole wall.
+    """
+    source_px = plan.px_per_m or 1.0
+    frame = Frame(plan.width * source_px, plan.height * source_px, replay.site)
+    return plan_metrics(Build(replay.wall, model), frame, lateral_resistance(model))
+
+
+def check_metrics(claimed: PlanMetrics, found: PlanMetrics) -> list[Problem]:
+    """Compare the figures of merit of the whole wall (E234)."""
+    problems = []
+    for field in fields(PlanMetrics):
+        plan_says, value = getattr(claimed, field.name), getattr(found, field.name)
+        tolerance = ALPHA_TOLERANCE if field.name in _BY_STATICS else TOLERANCE
+        if plan_says is None and field.name in _OPTIONAL_METRICS:
+            continue
+        if differs(plan_says, value, tolerance):
+            message = f"{field.name} is {plan_says} by the plan, {value} was found."
+            problems.append(Problem("E234", None, message))
+    return problems
+
+
+def _wrong_turning(step: StoneStep, reference: Reference) -> str | None:
+    """Say why angle, rotation moves and side cannot come from the settings; None when they can."""
+    settings, limits = reference.settings, reference.settings.stabilise
+    if step.side == "right" and not settings.two_sided:
+        return "side is right by the plan, but its settings build from the left only."
+    moves = step.rotation_moves
+    if moves > (limits.max_pivots if limits.method in ("both", "rotation") else 0):
+        return f"rotation_moves is {moves} by the plan, more than its settings allow."
+    low, high = 0.0, limits.max_turn_deg if moves else 0.0
+    if moves == 1:
+        low = limits.step_deg  # about one point it only turns one way
+    turns = [
+        abs((step.angle_deg - angle + 180.0) % 360.0 - 180.0)
+        for angle in _orientation_angles(step.stone, reference)
+    ]
+    if any(low - ANGLE_TOLERANCE_DEG <= t <= high + ANGLE_TOLERANCE_DEG for t in turns):
+        return None
+    return (
+        f"angle_deg {step.angle_deg} after {moves} rotation moves is {min(turns):.6g} degrees from "
+        f"the nearest orientation of the set {settings.orientations!r}."
+    )
+
+
+def _orientation_angles(stone_id: int, reference: Reference) -> Sequence[float]:
+    step_deg = orientation_step_deg(reference.settings.orientations)
+    if step_deg is not None:
+        count = int(-(-(360.0 - 1e-9) // step_deg))
+        return [-180.0 + i * step_deg for i in range(count)]
+    first = reference.book.initial_angle(reference.stones.by_id(stone_id))
+    if reference.settings.orientations == "sf":
+        return [first]
+    return [first + quarter for quarter in (0.0, 90.0, 180.0, 270.0)]

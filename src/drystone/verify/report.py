@@ -1,0 +1,94 @@
+"""What checking a plan found."""
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Any
+
+from drystone.model.plan import PlanMetrics
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One claim of a plan that does not hold.
+
+    Parameters
+    ----------
+    code : str
+        Stable code, ``"E210"`` to ``"E239"``; documented in ``docs/errors.md``.
+    step : int or None
+        Number of the step concerned; None when it is the plan as a whole.
+    message : str
+        What is claimed and what was found.
+    """
+
+    code: str
+    step: int | None
+    message: str
+
+    def __str__(self) -> str:
+        where = "" if self.step is None else f"step {self.step}: "
+        return f"{self.code} {where}{self.message}"
+
+
+@dataclass(frozen=True)
+class PrefixAlpha:
+    """What the wall carries after a stone and its wedges.
+
+    Parameters
+    ----------
+    step : int
+        Last step of the stone and its wedges.
+    alpha_left, alpha_right : float or None
+        Load multipliers found; None where the wall does not stand.
+    """
+
+    step: int
+    alpha_left: float | None
+    alpha_right: float | None
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    """Outcome of :func:`drystone.verify.check.check_plan`.
+
+    Parameters
+    ----------
+    problems : tuple of Problem
+        Every claim that does not hold; empty when the plan is what it says.
+    overlap_depth : float
+        How deep real outlines of two stones lie in each other at most, source px; see
+        :func:`drystone.verify.overlap.deepest_overlap`.
+    overlap_depth_at : (int, int) or None
+        Ids of the two stones; None when no two outlines overlap.
+    buried : tuple of int
+        Ids of stones that cannot be lowered in from above; no failure.
+    area_error : float
+        Largest deviation of a stone's pixels in the wall from its own area, as a share of it.
+    area_error_at : int or None
+        Id of that stone; None for an empty plan.
+    prefixes : tuple of PrefixAlpha
+        Load multipliers after every stone, as far as the wall could be built.
+    metrics : PlanMetrics or None
+        Recomputed; None when the wall could not be built to its end.
+    notes : tuple of str
+        What was not or could not be checked, and what is worth knowing.
+    """
+
+    problems: tuple[Problem, ...]
+    overlap_depth: float
+    overlap_depth_at: tuple[int, int] | None
+    buried: tuple[int, ...]
+    area_error: float
+    area_error_at: int | None
+    prefixes: tuple[PrefixAlpha, ...]
+    metrics: PlanMetrics | None
+    notes: tuple[str, ...]
+
+    @property
+    def ok(self) -> bool:
+        """True when nothing was found that does not hold."""
+        return not self.problems
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what ``drystone check --json`` prints."""
+        return {"ok": self.ok, **dataclasses.asdict(self)}

@@ -1,0 +1,91 @@
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from drystone.errors import UsageError
+from drystone.generate.outlines import draw_stone, is_whole, outline_mask, polygon_area
+from tests.strategies import repeatable
+
+FINE = st.floats(-20, 20).map(lambda value: round(value, 3))
+
+
+@st.composite
+def star_polygons(draw):
+    """Simple polygons: radii about a pole, in order."""
+    radii = draw(st.lists(st.floats(1.5, 15), min_size=3, max_size=12))
+    theta = np.arange(len(radii)) * 2 * math.pi / len(radii)
+    pole = np.array([draw(FINE), draw(FINE)])
+    return pole + np.array(radii)[:, None] * np.column_stack([np.cos(theta), np.sin(theta)])
+
+
+@repeatable()
+@given(star_polygons())
+def test_pixels_are_those_whose_centre_is_inside(outline):
+    polygon = shapely.Polygon(outline)
+    left, bottom = np.floor(outline.min(axis=0))
+    right, top = np.ceil(outline.max(axis=0))
+    x, y = np.meshgrid(np.arange(left, right) + 0.5, np.arange(top, bottom, -1) - 0.5)
+    expected = shapely.contains_xy(polygon, x, y)
+    near = shapely.distance(polygon.boundary, shapely.points(x, y)) < 1e-6
+    rows, cols = np.flatnonzero(expected.any(axis=1)), np.flatnonzero(expected.any(axis=0))
+    assume(not near.any())  # a centre on the outline may fall to either side
+    if not rows.size:
+        assert outline_mask(outline).shape == (0, 0)
+        return
+    cropped = expected[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
+    assert np.array_equal(outline_mask(outline), cropped)
+
+
+@repeatable()
+@given(star_polygons())
+def test_turning_direction_does_not_matter(outline):
+    assert np.array_equal(outline_mask(outline), outline_mask(outline[::-1]))
+    area = polygon_area(outline)
+    assert area == pytest.approx(polygon_area(outline[::-1]))
+    assert area == pytest.approx(shapely.Polygon(outline).area)
+
+
+def test_a_rectangle_on_the_grid_is_exact():
+    rectangle = np.array([[2.0, 3.0], [7.0, 3.0], [7.0, 5.0], [2.0, 5.0]])
+    assert outline_mask(rectangle).shape == (2, 5)
+    assert outline_mask(rectangle).all()
+
+
+def test_polygons_that_share_a_side_through_pixel_centres_share_no_pixel():
+    def rectangle(left, right, bottom, top):
+        return np.array([[left, bottom], [right, bottom], [right, top], [left, top]], float)
+
+    assert outline_mask(rectangle(0, 4, 0, 1.5)).shape == (1, 4)
+    assert outline_mask(rectangle(0, 4, 1.5, 4)).shape == (3, 4)
+    assert outline_mask(rectangle(0, 1.5, 0, 4)).shape == (4, 1)
+    assert outline_mask(rectangle(1.5, 4, 0, 4)).shape == (4, 3)
+
+
+def test_y_points_up():
+    corner_below_left = np.array([[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]])
+    mask = outline_mask(corner_below_left)
+    assert mask[-1, 0]
+    assert not mask[0, -1]
+
+
+@pytest.mark.parametrize(
+    ("picture", "whole"),
+    [("111/101/111", False), ("101/101", False), ("10/01", True), ("110/011", True), ("0", False)],
+)
+def test_whole_is_one_piece_without_holes(picture, whole):
+    mask = np.array([[pixel == "1" for pixel in row] for row in picture.split("/")])
+    assert is_whole(mask) is whole
+
+
+def test_rejected_draws_are_passed_over():
+    square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
+    assert draw_stone(iter([None, square * 0.1, square]), "test").shape == (2, 2)
+
+
+def test_settings_without_any_stone_say_so():
+    with pytest.raises(UsageError, match=r"E130 generate test: no stone in 1000 draws"):
+        draw_stone((None for _ in range(1001)), "test")

@@ -1,0 +1,36 @@
+"""GDS (Eq. 5)."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from drystone.indices.dice_score import geometrical_dice_score
+from drystone.model.landscape import Landscape
+from drystone.model.placement import Placement
+from drystone.model.pose import PosedStone
+from drystone.model.site import Site
+from drystone.model.stone import Stone
+from drystone.model.wall import Wall
+from drystone.poses import PoseBook
+from tests.naive import indices as naive
+from tests.strategies import posed_on_walls, repeatable
+
+
+@repeatable()
+@given(scene=posed_on_walls())
+def test_gds_is_that_of_the_painted_box(scene: tuple[Wall, PosedStone, int, int]) -> None:
+    wall, posed, row, col = scene
+    stone = naive.painted(wall.occupied.shape, posed.mask, row, col)
+    got = geometrical_dice_score(Landscape.of(wall), posed, np.array([row]))
+    assert got == pytest.approx([naive.dice_score(wall.occupied, stone)])
+
+
+def test_inside_outside_and_between() -> None:
+    book = PoseBook()
+    block = book.pose(Stone(1, np.ones((4, 4), bool)), 0.0)
+    small = book.pose(Stone(2, np.ones((2, 2), bool)), 0.0)
+    wall = Wall.empty(Site(20, 10))
+    assert geometrical_dice_score(Landscape.of(wall), small, np.array([8])).tolist() == [0.0]
+    landscape = Landscape.of(wall.add(Placement(block, 6, 0)))
+    got = geometrical_dice_score(landscape, small, np.array([8, 4, 5]))
+    assert got == pytest.approx([1.0, 0.0, 0.5 * 80 / 82])

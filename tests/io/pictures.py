@@ -1,0 +1,38 @@
+"""Small pictures that the tests of the readers share."""
+
+import numpy as np
+
+
+def two_stones(first=300, second=70000, dtype=np.uint32):
+    """A 40 x 60 label image of two stones of 375 and 600 px."""
+    labels = np.zeros((40, 60), dtype)
+    labels[5:20, 5:30] = first
+    labels[22:37, 10:50] = second
+    return labels
+
+
+def many_stones(rows=6, cols=8, *, size=24, gap=6, first=1, step=3):
+    """A label image of rows x cols squares with ids first, first + step ..."""
+    pitch = size + gap
+    labels = np.zeros((rows * pitch + gap, cols * pitch + gap), np.uint32)
+    for i in range(rows * cols):
+        top, left = gap + pitch * (i // cols), gap + pitch * (i % cols)
+        labels[top : top + size, left : left + size] = first + step * i
+    return labels
+
+
+def discs(shape, centres, radius):
+    """A mask of discs, four times as fine in both directions for anti-aliasing."""
+    rows, cols = np.mgrid[: shape[0] * 4, : shape[1] * 4] / 4 + 0.125
+    fine = np.zeros(rows.shape, bool)
+    for row, col in centres:
+        fine |= np.hypot(rows - row, cols - col) < radius
+    return fine.reshape(shape[0], 4, shape[1], 4).mean(axis=(1, 3))
+
+
+def codes(stones):
+    return [notice.code for notice in stones.notices]
+
+
+def areas(stones):
+    return {stone.id: stone.area_px for stone in stones}

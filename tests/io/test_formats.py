@@ -1,0 +1,310 @@
+"""Every format that stones are read from keeps ids and pixels."""
+
+import hashlib
+import io
+import struct
+import zlib
+
+import numpy as np
+import pytest
+import tifffile
+from PIL import Image
+
+from drystone.errors import InputError
+from drystone.io.images import decode
+from drystone.io.read_stones import ReadSettings, read_stones
+from tests.io.pictures import areas, codes, two_stones
+
+LIMIT = 10**6
+
+
+def png(values, depth, colour_type):
+    """An uncompressed-filter PNG of one row of packed bytes a line."""
+
+    def chunk(kind, data):
+        return (
+            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        )
+
+    height, width = values.shape[:2]
+    bits = np.unpackbits(values.astype(np.uint8)[..., None], axis=2)[..., 8 - depth :]
+    lines = np.packbits(bits.reshape(height, -1), axis=1)
+    header = struct.pack(">IIBBBBB", width, height, depth, colour_type, 0, 0, 0)
+    body = b"".join(b"\0" + line.tobytes() for line in lines)
+    palette = chunk(b"PLTE", bytes(range(3 * 2**depth))) if colour_type == 3 else b""
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", header)
+        + palette
+        + chunk(b"IDAT", zlib.compress(body))
+        + chunk(b"IEND", b"")
+    )
+
+
+def pillow(values, kind, mode=None, **options):
+    buffer = io.BytesIO()
+    Image.fromarray(values, mode).save(buffer, kind, **options)
+    return buffer.getvalue()
+
+
+def tiff(values, **options):
+    buffer = io.BytesIO()
+    tifffile.imwrite(buffer, values, **options)
+    return buffer.getvalue()
+
+
+@pytest.mark.parametrize("kind", ["PNG", "TIFF", "BMP", "GIF"])
+def test_8_bit_pictures(tmp_path, kind):
+    labels = two_stones(7, 255, np.uint8)
+    path = tmp_path / "stones.any"
+    path.write_bytes(pillow(labels, kind, optimize=False))  # GIF: keep unused colours
+    assert areas(read_stones(path)) == {7: 375, 255: 600}
+
+
+@pytest.mark.parametrize("write", [lambda a: pillow(a, "PNG"), tiff])
+def test_16_bit_ids_survive(tmp_path, write):
+    path = tmp_path / "stones.png"
+    path.write_bytes(write(two_stones(300, 65535, np.uint16)))
+    assert areas(read_stones(path)) == {300: 375, 65535: 600}
+
+
+@pytest.mark.parametrize(
+    "options", [{}, {"compression": "zlib"}, {"predictor": 2, "compression": 8}, {"byteorder": ">"}]
+)
+@pytest.mark.parametrize("top", [70000, 2**32 - 1])
+def test_32_bit_tiff_ids_survive(tmp_path, options, top):
+    path = tmp_path / "stones.tif"
+    path.write_bytes(tiff(two_stones(300, top), **options))
+    assert areas(read_stones(path)) == {300: 375, top: 600}
+
+
+@pytest.mark.parametrize(
+    ("dtype", "top"), [(np.uint8, 255), (np.uint16, 65535), (np.int32, 2**31 - 1)]
+)
+@pytest.mark.parametrize("compression", ["tiff_lzw", "packbits", "tiff_adobe_deflate"])
+def test_compressed_tiff(dtype, top, compression):
+    # tifffile has no LZW of its own; Pillow takes over, and the numbers stay.
+    labels = two_stones(3, top, dtype)
+    data = pillow(labels, "TIFF", compression=compression)
+    np.testing.assert_array_equal(decode(data, "a.tif", LIMIT).values, labels)
+
+
+def test_lzw_tiff_of_unsigned_32_bits():
+    labels = two_stones(3, 2**32 - 1)
+    data = pillow(labels.view(np.int32), "TIFF", compression="tiff_lzw")
+    signed, unsigned = (struct.pack("<HHIH", 339, 3, 1, kind) for kind in (2, 1))
+    assert data.count(signed) == 1  # the tag that Pillow cannot write otherwise
+    data = data.replace(signed, unsigned)
+    np.testing.assert_array_equal(decode(data, "a.tif", LIMIT).values, labels)
+
+
+def test_signed_and_float_tiff_with_whole_numbers():
+    for dtype in (np.int16, np.int32, np.float32):
+        labels = two_stones(7, 300, dtype)
+        values = decode(tiff(labels), "a.tif", LIMIT).values
+        assert areas(read_stones(values)) == {7: 375, 300: 600}
+
+
+@pytest.mark.parametrize("write", [lambda a: pillow(a, "TIFF", compression="group4"), tiff])
+def test_one_bit_tiff_keeps_the_values_of_the_file(write):
+    mask = two_stones() > 0
+    values = decode(write(mask), "a.tif", LIMIT).values
+    np.testing.assert_array_equal(values.astype(bool), mask)
+
+
+@pytest.mark.parametrize("mode", ["1", "L"])
+def test_white_is_zero_tiff_reads_alike_from_both_decoders(mode):
+    values = two_stones(7, 255, np.uint8) > 9 if mode == "1" else two_stones(7, 9, np.uint8)
+    plain, packed = (
+        decode(pillow(values, "TIFF", compression=c, tiffinfo={262: 0}), "a.tif", LIMIT).values
+        for c in (None, "tiff_lzw")
+    )
+    np.testing.assert_array_equal(packed, plain)
+    assert (plain != values).all()  # Pillow stored them inverted, as the tag asks
+
+
+@pytest.mark.parametrize(("depth", "top"), [(1, 1), (2, 3), (4, 15)])
+@pytest.mark.parametrize("colour_type", [0, 3])
+def test_png_of_few_bits_keeps_its_own_values(depth, top, colour_type):
+    # Pillow would stretch grey 2- and 4-bit values to 0 ... 255, and a palette has colours.
+    labels = two_stones(1, top, np.uint8)
+    values = decode(png(labels, depth, colour_type), "a.png", LIMIT).values
+    np.testing.assert_array_equal(values, labels)
+
+
+def test_palette_picture_gives_indices_not_colours(tmp_path):
+    image = Image.fromarray(two_stones(1, 2, np.uint8))
+    image.putpalette([0, 0, 0, 9, 9, 9, 9, 9, 9])  # both stones look the same
+    for suffix in ("png", "tif", "bmp"):
+        image.save(tmp_path / f"p.{suffix}")
+        assert areas(read_stones(tmp_path / f"p.{suffix}")) == {1: 375, 2: 600}
+
+
+def rgb(labels):
+    return np.stack([labels >> shift & 255 for shift in (0, 8, 16)], axis=-1).astype(np.uint8)
+
+
+@pytest.mark.parametrize("alpha", [None, 255, 0])
+def test_colours_are_ids_and_alpha_is_ignored(tmp_path, alpha):
+    values = rgb(two_stones())
+    if alpha is not None:
+        values = np.dstack([values, np.full(values.shape[:2], alpha, np.uint8)])
+    Image.fromarray(values).save(tmp_path / "rgb.png")
+    stones = read_stones(tmp_path / "rgb.png")
+    assert areas(stones) == {300: 375, 70000: 600}
+    assert codes(stones) == ["W115"]
+    assert "3 colours" in stones.notices[0].message
+    assert "2 stones" in stones.notices[0].message
+
+
+@pytest.mark.parametrize("channels", [2, 3, 4])
+def test_grey_pictures_in_colour_modes_are_grey(tmp_path, channels):
+    grey = two_stones(8, 255, np.uint8)
+    Image.fromarray(np.dstack([grey] * channels)).save(tmp_path / "g.png")
+    stones = read_stones(tmp_path / "g.png")
+    assert areas(stones) == {8: 375, 255: 600}
+    assert codes(stones) == []
+
+
+@pytest.mark.parametrize("planar", ["contig", "separate"])
+def test_colour_tiff(planar):
+    values = rgb(two_stones())
+    given = values if planar == "contig" else np.moveaxis(values, -1, 0)
+    data = tiff(given, photometric="rgb", planarconfig=planar)
+    np.testing.assert_array_equal(decode(data, "a.tif", LIMIT).values, values)
+
+
+@pytest.mark.parametrize(
+    "array",
+    [
+        two_stones(),
+        two_stones().astype(np.int64),
+        two_stones().astype(np.float64),
+        np.asfortranarray(two_stones()),
+        two_stones()[None],
+        two_stones()[:, :, None],
+        two_stones().astype(">u4"),
+        rgb(two_stones()),
+    ],
+)
+def test_arrays_and_npy(tmp_path, array):
+    np.save(tmp_path / "a.npy", array)
+    for source in (array, tmp_path / "a.npy", str(tmp_path / "a.npy")):
+        stones = read_stones(source)
+        assert areas(stones) == {300: 375, 70000: 600}
+        assert (stones.source.width_px, stones.source.height_px) == (60, 40)
+
+
+def test_largest_id_of_arrays():
+    assert areas(read_stones(two_stones(1, 2**32 - 1, np.uint64)))[2**32 - 1] == 600
+
+
+def test_source_names_the_bytes(tmp_path):
+    path = tmp_path / "stones.png"
+    path.write_bytes(pillow(two_stones(7, 9, np.uint8), "PNG"))
+    source = read_stones(path).source
+    assert source.path == "stones.png"
+    assert source.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+    array = two_stones()
+    digests = {read_stones(a).source.sha256 for a in (array, array.astype(np.int64), array[:, :59])}
+    assert len(digests) == 3
+    assert read_stones(array).source.sha256 == read_stones(array.copy()).source.sha256
+
+
+def test_pose_in_the_source_frame():
+    stone = read_stones(two_stones()).by_id(300)
+    # rows 5 ... 19 of 40, columns 5 ... 29: y is up from the bottom edge
+    assert (stone.left_px, stone.bottom_px) == (5, 20)
+    assert stone.centroid == (17.5, 27.5)
+
+
+@pytest.mark.parametrize("kind", ["PNG", "BMP", "GIF", "TIFF"])
+@pytest.mark.parametrize("kept", [0.3, 0.6, 0.9])
+def test_truncated_files(tmp_path, kind, kept):
+    rng = np.random.default_rng(0)
+    data = pillow(rng.integers(0, 9, (60, 60)).astype(np.uint8), kind)
+    path = tmp_path / "a.png"
+    path.write_bytes(data[: int(kept * len(data))])
+    with pytest.raises(InputError, match=r"E106.*damaged or cut short") as caught:
+        read_stones(path)
+    assert caught.value.where == "a.png"
+
+
+def test_empty_and_missing_files(tmp_path):
+    (tmp_path / "a.png").write_bytes(b"")
+    with pytest.raises(InputError, match=r"E106.*0 bytes"):
+        read_stones(tmp_path / "a.png")
+    with pytest.raises(InputError, match=r"E100.*no such file"):
+        read_stones(tmp_path / "b.png")
+
+
+@pytest.mark.parametrize("content", [b'{"shapes": []}', b"PK\x03\x04...", b"hello"])
+def test_unknown_formats_name_the_known_ones(tmp_path, content):
+    path = tmp_path / "stones.json"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=r"E107.*PNG, TIFF, BMP, GIF, NPY or a folder"):
+        read_stones(path)
+
+
+def test_damaged_npy():
+    buffer = io.BytesIO()
+    np.save(buffer, two_stones())
+    for data in (buffer.getvalue()[:-1], buffer.getvalue()[:20]):
+        with pytest.raises(InputError, match=r"E106"):
+            decode(data, "a.npy", LIMIT)
+    np.save(buffer := io.BytesIO(), np.array([{}, {}]), allow_pickle=True)
+    with pytest.raises(InputError, match=r"E106.*pickle"):
+        decode(buffer.getvalue(), "a.npy", LIMIT)
+
+
+def test_16_bit_colour_png_is_refused_not_halved():
+    data = bytearray(png(np.zeros((2, 6), np.uint8), 8, 2)[:26])
+    data[24] = 16
+    with pytest.raises(InputError, match=r"E107.*16 bits a colour channel"):
+        decode(bytes(data), "a.png", LIMIT)
+
+
+def test_16_bit_colour_tiff():
+    values = np.dstack([two_stones(7, 300, np.uint16)] * 3)
+    found = decode(tiff(values, photometric="rgb"), "a.tif", LIMIT).values
+    assert areas(read_stones(found)) == {7: 375, 300: 600}
+    values[0, 0, 0] = 9
+    with pytest.raises(InputError, match=r"E108.*outside 0 ... 255"):
+        read_stones(values)
+
+
+def test_several_pages(tmp_path):
+    stack = np.stack([two_stones()] * 2)
+    frames = [Image.fromarray(two_stones(i, 9, np.uint8)) for i in (5, 7)]
+    frames[0].save(tmp_path / "a.gif", save_all=True, append_images=frames[1:])
+    frames[0].save(tmp_path / "a.tif", save_all=True, append_images=frames[1:])
+    tifffile.imwrite(tmp_path / "b.tif", stack, photometric="minisblack")
+    np.save(tmp_path / "a.npy", stack)
+    for source in (*(tmp_path / n for n in ("a.gif", "a.tif", "b.tif", "a.npy")), stack):
+        with pytest.raises(InputError, match=r"E109.*where one picture is needed"):
+            read_stones(source)
+
+
+def test_huge_pictures_are_refused_before_decoding_and_the_limit_is_a_setting(tmp_path):
+    path = tmp_path / "a.png"
+    Image.fromarray(two_stones(7, 9, np.uint8)).save(path)
+    data = bytearray(path.read_bytes())
+    data[16:24] = struct.pack(">II", 100_000, 50_000)
+    data[29:33] = struct.pack(">I", zlib.crc32(data[12:29]))
+    path.write_bytes(data)
+    with pytest.raises(InputError, match=r"E110.*100000 x 50000 px are 5000 million.*200 million"):
+        read_stones(path)
+    for name in ("b.tif", "b.npy", "b.bmp"):
+        target = tmp_path / name
+        small = two_stones(7, 9, np.uint8)
+        np.save(target, small) if name == "b.npy" else Image.fromarray(small).save(target)
+        with pytest.raises(InputError, match=r"E110"):
+            read_stones(target, settings=ReadSettings(max_image_mpx=0.001))
+
+
+def test_pictures_beyond_pillows_guard_are_read(monkeypatch):
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 100)
+    data = pillow(two_stones(7, 9, np.uint8), "PNG")
+    assert decode(data, "a.png", LIMIT).values.shape == (40, 60)
+    with pytest.raises(Image.DecompressionBombError):
+        Image.open(io.BytesIO(data))

@@ -1,0 +1,59 @@
+"""Cutting out, holes, pieces and necks against slow twins."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import array_shapes, arrays
+
+from drystone.io.census import take_census
+from drystone.io.necks import neck_width_px
+from drystone.io.patches import cut, enclosed
+from tests.io.pictures import discs
+from tests.naive import io as naive
+
+shapes = array_shapes(min_dims=2, max_dims=2, max_side=12)
+
+
+@given(arrays(np.uint8, shapes, elements=st.integers(0, 4)))
+def test_cut_puts_every_pixel_where_it_was(labels):
+    census = take_census(labels)
+    patches = cut(census.index, census.values)
+    assert {patch.id: patch.area_px for patch in patches} == naive.areas(labels)
+    for patch in patches:
+        rows = slice(patch.row, patch.row + patch.mask.shape[0])
+        cols = slice(patch.col, patch.col + patch.mask.shape[1])
+        np.testing.assert_array_equal(labels[rows, cols] == patch.id, patch.mask)
+        others = (labels[rows, cols] != patch.id) & (labels[rows, cols] > 0)
+        np.testing.assert_array_equal(others, patch.others)
+        assert patch.mask[0].any()
+        assert patch.mask[:, -1].any()
+        stone = patch.to_stone()
+        assert stone.left_px == patch.col
+        assert stone.bottom_px == labels.shape[0] - rows.stop
+
+
+@given(arrays(bool, shapes))
+def test_holes(mask):
+    np.testing.assert_array_equal(enclosed(mask), naive.holes(mask))
+
+
+@pytest.mark.parametrize("width", [2, 4, 6, 8])
+def test_neck_width(width):
+    mask = discs((50, 90), [(25, 22), (25, 68)], 20.3) >= 0.5
+    assert neck_width_px(mask) is None or not mask[25, 45]
+    mask[25 - width // 2 : 25 + width // 2, 30:60] = True
+    assert neck_width_px(mask) == width
+    assert neck_width_px(mask.T) == width
+
+
+def test_stones_without_a_neck():
+    round_stone = discs((50, 50), [(25, 25)], 20) >= 0.5
+    long_stone = np.ones((12, 80), bool)
+    angled = np.zeros((60, 60), bool)
+    angled[:, :20] = angled[40:] = True
+    nosed = np.zeros((50, 90), bool)
+    nosed[:, :50] = nosed[22:28, 50:] = True
+    waisted = discs((50, 80), [(25, 25), (25, 49)], 20) >= 0.5  # 32 px between parts of 40 px
+    for mask in (waisted, round_stone, long_stone, angled, nosed, np.ones((1, 9), bool)):
+        assert neck_width_px(mask) is None

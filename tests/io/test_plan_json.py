@@ -1,0 +1,310 @@
+import copy
+import json
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.errors import PlanError
+from drystone.io.plan_json import (
+    plan_from_json,
+    plan_to_json,
+    read_plan,
+    write_plan,
+)
+from drystone.io.plan_schema import plan_schema
+from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
+from tests.strategies import repeatable
+
+INDICES = {"SF": 0.9, "LFR": 1 / 3, "GDS": 0.5, "NHR": 0.1, "IWR": 0.2, "IS": -0.1, "LLC": 0.7}
+
+
+def stone_step(**values: Any) -> StoneStep:
+    step = StoneStep(
+        1, 17, 12.0, (30.25, 40.1), (100.0, 0.1 + 0.2), "left", 3, 1, INDICES, 21.5, None, None
+    )
+    return replace(step, **values)
+
+
+def plan(**values: Any) -> Plan:
+    wedge = WedgeStep(2, 256, 17, ((1.0, 0.0), (3.0, 0.0), (3.0, 2.0)), 0.41, 0.39)
+    whole = Plan(
+        version="0.1.0",
+        method="paper",
+        seed=1,
+        settings={"mu": 0.58, "stop": {"failures": 5, "filling": 0.99}},
+        length_unit="px",
+        px_per_m=None,
+        working_scale=0.5,
+        source={"path": "PR.png", "sha256": "5" * 64, "stones": 32, "width_px": 598,
+                "height_px": 156},
+        width=560.0,
+        height=160.0,
+        steps=(stone_step(), wedge),
+        unused=(4,),
+        stopped="Steine aufgebraucht: größte übrig",
+        metrics=PlanMetrics(0.8, None, 2.5, 0.67, 0.1, 0.2, 0.41, 0.39, 8.0),
+    )  # fmt: skip
+    return replace(whole, **values)
+
+
+def test_plan_survives_its_file(tmp_path: Path) -> None:
+    path = tmp_path / "plan.json"
+    for one in (plan(), plan(length_unit="m", px_per_m=437.25), plan(steps=(), unused=())):
+        write_plan(one, path)
+        assert read_plan(path) == one
+        assert read_plan(tmp_path) == one
+    assert [p.name for p in tmp_path.iterdir()] == ["plan.json"]
+
+
+def test_keys_are_those_of_the_contract_in_its_order() -> None:
+    data = plan_to_json(plan())
+    assert list(data) == [
+        "schema", "version", "method", "seed", "settings", "units", "source", "wall", "steps",
+        "unused", "stopped", "metrics",
+    ]  # fmt: skip
+    assert data["schema"] == "drystone-plan/1"
+    assert data["units"] == {"length": "px", "px_per_m": None, "working_scale": 0.5}
+    assert list(data["source"]) == ["path", "sha256", "stones", "width_px", "height_px"]
+    assert data["wall"] == {"width": 560.0, "height": 160.0}
+    stone, wedge = data["steps"]
+    assert list(stone) == [
+        "step", "kind", "stone", "angle_deg", "source_centroid", "centroid", "side", "cluster",
+        "rotation_moves", "indices", "course_height", "alpha_left", "alpha_right",
+    ]  # fmt: skip
+    assert list(stone["indices"]) == ["SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC"]
+    assert list(wedge) == [
+        "step", "kind", "id", "under", "polygon", "alpha_left", "alpha_right",
+    ]  # fmt: skip
+    assert stone["kind"] == "stone"
+    assert wedge["polygon"] == [[1.0, 0.0], [3.0, 0.0], [3.0, 2.0]]
+    assert list(data["metrics"]) == [
+        "F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH", "alpha_left", "alpha_right",
+        "wedge_area",
+    ]  # fmt: skip
+
+
+def test_equal_plans_give_equal_bytes(tmp_path: Path) -> None:
+    one = plan(source={**plan().source, "files": ["a.png"], "b": 1, "a": 2})
+    other = plan(
+        settings=dict(reversed(one.settings.items())),
+        source=dict(reversed(one.source.items())),
+        steps=(
+            stone_step(indices=dict(reversed(INDICES.items())), angle_deg=12),
+            *one.steps[1:],
+        ),
+        width=560,
+        seed=np.int64(1),
+    )
+    assert one == other
+    write_plan(one, tmp_path / "one.json")
+    write_plan(other, tmp_path / "other.json")
+    text = (tmp_path / "one.json").read_bytes()
+    assert text == (tmp_path / "other.json").read_bytes()
+    assert text.endswith(b"}\n")
+    assert "größte".encode() in text
+    zero, minus = (plan(steps=(stone_step(angle_deg=value),)) for value in (0.0, -0.0))
+    assert json.dumps(plan_to_json(zero)) == json.dumps(plan_to_json(minus))
+
+
+@repeatable(60)
+@given(st.floats(allow_nan=False, allow_infinity=False), st.floats(1e-300, 1e300))
+def test_floats_keep_full_precision(angle_deg: float, width: float) -> None:
+    one = plan(steps=(stone_step(angle_deg=angle_deg),), width=width)
+    found = plan_from_json(json.loads(json.dumps(plan_to_json(one))))
+    assert found == one
+
+
+def test_settings_of_any_shape_are_kept() -> None:
+    settings = {"b": (1, 2.5), "a": {"z": None, "y": np.float64(0.5)}, "c": "text", "d": True}
+    data = plan_to_json(plan(settings=settings))
+    assert json.dumps(data["settings"]) == (
+        '{"a": {"y": 0.5, "z": null}, "b": [1, 2.5], "c": "text", "d": true}'
+    )
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize(
+    ("place", "change"),
+    [
+        ("$.steps[0].angle_deg", lambda v: plan(steps=(stone_step(angle_deg=v),))),
+        ("$.settings.a[1]", lambda v: plan(settings={"a": [0, v]})),
+        ("$.metrics.F_AV", lambda v: plan(metrics=replace(plan().metrics, F_AV=v))),
+    ],
+)
+def test_numbers_that_are_not_finite_are_never_written(
+    tmp_path: Path, place: str, change: Callable[[float], Plan], value: float
+) -> None:
+    path = tmp_path / "plan.json"
+    with pytest.raises(PlanError, match="E205") as caught:
+        write_plan(change(value), path)
+    assert place in caught.value.where
+    assert not path.exists()
+
+
+def test_failed_write_leaves_the_old_plan(tmp_path: Path) -> None:
+    path = tmp_path / "plan.json"
+    write_plan(plan(), path)
+    before = path.read_bytes()
+    with pytest.raises(PlanError, match="E205"):
+        write_plan(plan(working_scale=-1.0), path)
+    assert path.read_bytes() == before
+    with pytest.raises(PlanError, match="E206"):
+        write_plan(plan(), tmp_path / "no folder" / "plan.json")
+    (tmp_path / "taken").mkdir()
+    with pytest.raises(PlanError, match="E206"):
+        write_plan(plan(), tmp_path / "taken")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["plan.json", "taken"]
+
+
+def bad(path: str, value: Any) -> dict[str, Any]:
+    """The contents of a plan with one value replaced; `...` takes it out."""
+    data = copy.deepcopy(plan_to_json(plan()))
+    *parents, last = path.split("/")
+    at: Any = data
+    for name in parents:
+        at = at[int(name)] if isinstance(at, list) else at[name]
+    key = int(last) if isinstance(at, list) else last
+    if value is ...:
+        del at[key]
+    else:
+        at[key] = value
+    return data
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "place"),
+    [
+        ("steps/0/angle_deg", "12", "$.steps[0].angle_deg"),
+        ("steps/0/angle_deg", ..., "$.steps[0]"),
+        ("steps/0/angel_deg", 12.0, "$.steps[0]"),
+        ("steps/0/stone", 0, "$.steps[0].stone"),
+        ("steps/0/stone", 2**32, "$.steps[0].stone"),
+        ("steps/0/stone", 1.5, "$.steps[0].stone"),
+        ("steps/0/side", "top", "$.steps[0].side"),
+        ("steps/0/centroid", [1.0], "$.steps[0].centroid"),
+        ("steps/0/centroid/1", None, "$.steps[0].centroid[1]"),
+        ("steps/0/indices/LFR", ..., "$.steps[0].indices"),
+        ("steps/0/indices/SF", None, "$.steps[0].indices.SF"),
+        ("steps/0/polygon", [], "$.steps[0]"),
+        ("steps/0/kind", "mortar", "$.steps[0].kind"),
+        ("steps/0/kind", ..., "$.steps[0]"),
+        ("steps/0/alpha_left", ..., "$.steps[0]"),
+        ("steps/1/under", ..., "$.steps[1]"),
+        ("steps/1/angle_deg", 1.0, "$.steps[1]"),
+        ("steps/1/polygon", [[0, 0], [1, 1]], "$.steps[1].polygon"),
+        ("steps/1", 5, "$.steps[1]"),
+        ("units/length", "cm", "$.units.length"),
+        ("units/length", "m", "$.units.px_per_m"),
+        ("units/px_per_m", 200.0, "$.units.px_per_m"),
+        ("units/working_scale", 0, "$.units.working_scale"),
+        ("units/working_scale", 1.5, "$.units.working_scale"),
+        ("source/sha256", "abc", "$.source.sha256"),
+        ("source/stones", -1, "$.source.stones"),
+        ("wall/width", 0, "$.wall.width"),
+        ("wall/width", 10**400, "$.wall.width"),
+        ("unused/0", "4", "$.unused[0]"),
+        ("metrics/F_SF", None, "$.metrics.F_SF"),
+        ("metrics/F_LR", ..., "$.metrics"),
+        ("seed", True, "$.seed"),
+        ("colour", "red", "$"),
+        ("method", ..., "$"),
+    ],
+)
+def test_plan_that_breaks_the_schema_is_refused_with_its_place(
+    path: str, value: Any, place: str
+) -> None:
+    with pytest.raises(PlanError) as caught:
+        plan_from_json(bad(path, value))
+    assert caught.value.code == "E205"
+    assert caught.value.where == f"plan: {place}"
+    assert caught.value.what
+    assert caught.value.cure
+    assert len(str(caught.value)) < 700
+
+
+def test_error_says_what_belongs_there() -> None:
+    with pytest.raises(PlanError, match="Degrees counter-clockwise as seen in the picture"):
+        plan_from_json(bad("steps/0/angle_deg", "12"))
+
+
+def test_what_the_contract_does_not_ask_for_may_be_missing() -> None:
+    data = bad("steps/0/course_height", ...)
+    del data["steps"][1]["alpha_left"], data["steps"][1]["alpha_right"]
+    del data["metrics"]["T_LEVEL"], data["metrics"]["E_FLUSH"]
+    found = plan_from_json(data)
+    assert found.stone_steps[0].course_height is None
+    assert found.wedge_steps[0].alpha_left is None
+    assert found.metrics.T_LEVEL is None
+
+
+def test_more_about_the_source_is_kept() -> None:
+    data = bad("source/photographer", {"name": "A. B."})
+    assert plan_to_json(plan_from_json(data)) == data
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("", "E203"),
+        ("{", "E203"),
+        ("wall", "E203"),
+        ('{"schema": "drystone-plan/1", "seed": NaN}', "E203"),
+        ('{"schema": "drystone-plan/1", "schema": "drystone-plan/1"}', "E203"),
+        ("[" * 100_000, "E203"),
+        ("[]", "E204"),
+        ("{}", "E204"),
+        ('{"schema": "drystone-plan/2"}', "E204"),
+        ('{"schema": "drystone-plan/1"}', "E205"),
+        ('{"schema": "drystone-plan/1", "seed": 1e999}', "E205"),
+    ],
+)
+def test_file_that_is_no_plan_is_refused(tmp_path: Path, text: str, code: str) -> None:
+    path = tmp_path / "plan.json"
+    path.write_text(text)
+    with pytest.raises(PlanError) as caught:
+        read_plan(path)
+    assert caught.value.code == code
+    assert str(path) in caught.value.where
+
+
+def test_bytes_that_are_no_text_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "plan.json").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(PlanError, match="E203"):
+        read_plan(tmp_path / "plan.json")
+
+
+def test_missing_plan_is_named(tmp_path: Path) -> None:
+    with pytest.raises(PlanError, match="E202") as caught:
+        read_plan(tmp_path)
+    assert str(tmp_path / "plan.json") in caught.value.where
+
+
+def test_other_version_is_refused_with_both_versions() -> None:
+    with pytest.raises(PlanError, match=r"drystone-plan/9.*drystone-plan/1"):
+        plan_from_json(bad("schema", "drystone-plan/9"))
+
+
+def test_schema_is_valid_and_describes_every_field() -> None:
+    schema = plan_schema()
+    jsonschema.Draft202012Validator.check_schema(schema)
+
+    def undescribed(node: Any, path: str) -> list[str]:
+        found = []
+        for name, field in node.get("properties", {}).items():
+            target = schema["$defs"][field["$ref"].split("/")[-1]] if "$ref" in field else field
+            if "description" not in {**target, **field} and "const" not in field:
+                found.append(f"{path}.{name}")
+            found += undescribed(target, f"{path}.{name}")
+        return found
+
+    assert undescribed(schema, "$") == []
+    for name, node in schema["$defs"].items():
+        assert undescribed(node, name) == []

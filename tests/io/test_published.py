@@ -1,0 +1,47 @@
+"""The published pictures of stones are read whole."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from drystone.io.read_stones import ReadSettings, read_stones
+from tests.io.pictures import codes
+
+COUNTS = {
+    "almeida/IR.png": 61,
+    "almeida/PR.png": 32,
+    "almeida/R.png": 34,
+    "thangavelu/noise_10.png": 28,
+    "thangavelu/noise_20.png": 23,
+    "thangavelu/noise_40.png": 26,
+    "thangavelu/noise_50.png": 27,
+    "thangavelu/noise_70.png": 25,
+}
+LEFT_OUT_PX = {"thangavelu/noise_20.png": 12}
+
+
+@pytest.mark.parametrize("name", COUNTS)
+def test_published_picture(data_dir, name):
+    stones = read_stones(data_dir / name)
+    with Image.open(data_dir / name) as image:
+        grey = np.asarray(image if image.mode == "L" else image.getchannel("R"))
+    ids = [int(i) for i in np.unique(grey) if i]
+    assert len(ids) == COUNTS[name]
+    assert [stone.id for stone in stones] == ids
+    left_out = LEFT_OUT_PX.get(name, 0)
+    assert stones.total_area_px == int((grey > 0).sum()) - left_out
+    assert codes(stones) == (["W111"] if left_out else [])
+    for stone in stones:
+        top = grey.shape[0] - stone.bottom_px - stone.mask.shape[0]
+        rows = slice(top, top + stone.mask.shape[0])
+        cols = slice(stone.left_px, stone.left_px + stone.mask.shape[1])
+        assert (grey[rows, cols][stone.mask] == stone.id).all()
+
+
+def test_the_pieces_of_noise_20_are_listed_and_can_be_refused_or_kept(data_dir):
+    path = data_dir / "thangavelu/noise_20.png"
+    text = read_stones(path).notices[0].message
+    assert "stone 22: 1 px at column 139, row 398" in text
+    assert "stone 211: 11 px at column 311, row 213" in text
+    split = read_stones(path, settings=ReadSettings(pieces="split", min_area_px=1))
+    assert (len(split), split.total_area_px) == (25, 208954)

@@ -1,0 +1,134 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+from PIL import Image
+
+from drystone.errors import DrystoneError, PlanError
+from drystone.io.wall_image import read_wall_image, write_wall_image
+
+
+def wall(*ids: int) -> np.ndarray:
+    """A course of touching stones under empty rows, one of them in two pieces."""
+    labels = np.zeros((12, 10 * len(ids)), np.uint32)
+    for index, value in enumerate(ids):
+        labels[4:, 10 * index : 10 * index + 10] = value
+    labels[2, 0] = ids[-1]
+    return labels
+
+
+@pytest.mark.parametrize(
+    ("ids", "name"),
+    [
+        ((1, 2), "wall.png"),
+        ((300, 65535), "wall.png"),
+        ((70000, 2), "wall.tif"),
+        ((2**32 - 1, 2**24 + 1), "wall.tif"),
+    ],
+)
+def test_wall_image_keeps_every_id(tmp_path: Path, ids: tuple[int, ...], name: str) -> None:
+    path = write_wall_image(wall(*ids), tmp_path)
+    assert path == tmp_path / name
+    found = read_wall_image(path)
+    assert found.dtype == np.uint32
+    np.testing.assert_array_equal(found, wall(*ids))
+    assert [p.name for p in tmp_path.iterdir()] == [name]
+
+
+def test_png_has_16_bits_and_tiff_32(tmp_path: Path) -> None:
+    with Image.open(write_wall_image(wall(1, 2), tmp_path)) as image:
+        assert image.mode == "I;16"
+    assert tifffile.imread(write_wall_image(wall(1, 70000), tmp_path)).dtype == np.uint32
+
+
+def test_equal_walls_give_equal_bytes(tmp_path: Path) -> None:
+    for ids in ((1, 300), (1, 70000)):
+        first = write_wall_image(wall(*ids), tmp_path).read_bytes()
+        assert write_wall_image(wall(*ids), tmp_path).read_bytes() == first
+
+
+def test_empty_wall_is_written(tmp_path: Path) -> None:
+    path = write_wall_image(np.zeros((3, 4), np.uint32), tmp_path)
+    assert np.asarray(Image.open(path)).tolist() == [[0] * 4] * 3
+
+
+def test_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(PlanError, match="E206"):
+        write_wall_image(wall(1, 2), tmp_path / "none")
+
+
+def rgb(labels: np.ndarray, channels: int = 3) -> np.ndarray:
+    colours = np.zeros((*labels.shape, channels), np.uint8)
+    for channel in range(3):
+        colours[:, :, channel] = labels >> (8 * channel) & 255
+    return colours
+
+
+def test_any_kind_of_label_image_is_read_as_a_wall(tmp_path: Path) -> None:
+    small, large = wall(8, 255), wall(300, 70000)
+    grey = np.dstack([small] * 3 + [np.full_like(small, 255)]).astype(np.uint8)
+    palette = Image.fromarray(small.astype(np.uint8))
+    palette = palette.convert("P")
+    palette.putpalette([value for i in range(256) for value in (i, 255 - i, 7)])
+    Image.fromarray(small.astype(np.uint8)).save(tmp_path / "8.png")
+    Image.fromarray(rgb(large)).save(tmp_path / "rgb.png")
+    Image.fromarray(rgb(large, 4)).save(tmp_path / "clear.png")
+    Image.fromarray(grey).save(tmp_path / "grey.png")
+    palette.save(tmp_path / "palette.png")
+    tifffile.imwrite(tmp_path / "16.tif", wall(300, 2).astype(np.uint16))
+    np.save(tmp_path / "wall.npy", large)
+    for name, expected in {
+        "8.png": small, "rgb.png": large, "clear.png": large, "grey.png": small,
+        "palette.png": small, "16.tif": wall(300, 2), "wall.npy": large,
+    }.items():  # fmt: skip
+        np.testing.assert_array_equal(read_wall_image(tmp_path / name), expected, err_msg=name)
+
+
+def test_nothing_is_dropped_split_or_filled(tmp_path: Path) -> None:
+    labels = wall(3, 300)
+    labels[8, 4] = 0  # a hole
+    labels[0, 9] = 77  # a speck
+    path = write_wall_image(labels, tmp_path)
+    np.testing.assert_array_equal(read_wall_image(path), labels)
+
+
+def test_one_stone_may_fill_the_image(tmp_path: Path) -> None:
+    path = write_wall_image(np.full((40, 20), 7, np.uint32), tmp_path)
+    assert (read_wall_image(path) == 7).all()
+
+
+def test_other_background_becomes_zero(tmp_path: Path) -> None:
+    labels = wall(3, 300)
+    labels[labels == 0] = 999
+    path = write_wall_image(labels, tmp_path)
+    np.testing.assert_array_equal(read_wall_image(path, background=999), wall(3, 300))
+    labels[5, 5] = 0
+    with pytest.raises(DrystoneError, match="E108"):
+        read_wall_image(write_wall_image(labels, tmp_path), background=999)
+
+
+def test_files_that_are_no_walls_are_refused_with_a_code(tmp_path: Path) -> None:
+    rng = np.random.default_rng(1)
+    many = np.kron(rng.integers(1, 255, (6, 9)), np.ones((9, 9), int)).astype(np.uint8)
+    Image.fromarray(many).save(tmp_path / "lossy.jpg", quality=60)
+    photo = rng.integers(0, 255, (60, 80, 3)).astype(np.uint8)
+    Image.fromarray(photo).save(tmp_path / "photo.png")
+    Image.fromarray(np.zeros((9, 9), np.uint8)).save(tmp_path / "empty.png")
+    framed = np.pad(wall(3, 9), 6, constant_values=255)
+    framed[framed == 0] = 255
+    Image.fromarray(framed.astype(np.uint8)).save(tmp_path / "white.png")
+    (tmp_path / "nothing.png").write_bytes(b"")
+    (tmp_path / "words.png").write_text("a wall")
+    np.save(tmp_path / "halves.npy", wall(1, 2) / 2)
+    tifffile.imwrite(tmp_path / "pages.tif", np.stack([wall(1, 2)] * 3), photometric="minisblack")
+    for name, code in {
+        "none.png": "E100", "lossy.jpg": "E101", "photo.png": "E102", "empty.png": "E104",
+        "white.png": "E105", "nothing.png": "E106", "words.png": "E107", "halves.npy": "E108",
+        "pages.tif": "E109", ".": "E100",
+    }.items():  # fmt: skip
+        with pytest.raises(DrystoneError) as caught:
+            read_wall_image(tmp_path / name)
+        assert (name, caught.value.code) == (name, code)
+    with pytest.raises(DrystoneError, match="E110"):
+        read_wall_image(tmp_path / "photo.png", max_image_mpx=0.001)

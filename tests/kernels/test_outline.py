@@ -1,0 +1,91 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from drystone.kernels.outline import pixel_polygon, rasterise_polygon
+from drystone.kernels.raster import Mask
+from tests.naive.outline import centre_inside
+from tests.strategies import masks, repeatable
+
+
+def _area(polygon: NDArray[np.float64]) -> float:
+    x, y = polygon.T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+
+
+@repeatable(150)
+@given(masks(max_px=9))
+def test_rasterising_the_polygon_of_a_mask_gives_the_mask_back(mask: Mask) -> None:
+    polygon = pixel_polygon(mask)
+    found, left, bottom = rasterise_polygon(polygon)
+    assert (left, bottom) == (0, 0)
+    np.testing.assert_array_equal(found, mask)
+
+
+@repeatable(150)
+@given(masks(max_px=9))
+def test_polygon_runs_counter_clockwise_along_pixel_edges(mask: Mask) -> None:
+    polygon = pixel_polygon(mask)
+    assert _area(polygon) == mask.sum()
+    steps = np.roll(polygon, -1, axis=0) - polygon
+    assert ((steps == 0).sum(axis=1) == 1).all()
+    vertical = steps[:, 0] == 0
+    assert (vertical != np.roll(vertical, 1)).all()
+    start = polygon[0]
+    assert start[1] == 0
+    assert start[0] == np.flatnonzero(mask[-1])[0]
+
+
+def test_polygon_passes_a_corner_where_two_pixels_touch_twice() -> None:
+    ring = np.array([[1, 1, 0], [1, 0, 1], [1, 1, 1]], bool)
+    polygon = pixel_polygon(ring)
+    corners = [tuple(corner) for corner in polygon.tolist()]
+    assert corners.count((2.0, 2.0)) == 2
+    assert _area(polygon) == 7
+    np.testing.assert_array_equal(rasterise_polygon(polygon)[0], ring)
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ([[0, 0]], "no pixel"),
+        ([[1, 0, 1]], "several pieces"),
+        ([[1, 0], [0, 1]], "several pieces"),
+        ([[1, 1, 1], [1, 0, 1], [1, 1, 1]], "hole"),
+    ],
+)
+def test_masks_that_one_polygon_cannot_describe_are_refused(
+    rows: list[list[int]], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        pixel_polygon(np.array(rows, bool))
+
+
+@repeatable(150)
+@given(st.lists(st.tuples(st.integers(-6, 6), st.integers(-6, 6)), min_size=3, max_size=8))
+def test_rasterised_polygon_holds_the_pixels_whose_centres_are_inside(
+    corners: list[tuple[int, int]],
+) -> None:
+    mask, left, bottom = rasterise_polygon(np.array(corners, float))
+    canvas = np.zeros((14, 14), bool)
+    if mask.size:
+        top = 14 - (bottom + 7) - mask.shape[0]
+        canvas[top : top + mask.shape[0], left + 7 : left + 7 + mask.shape[1]] = mask
+    for row in range(-7, 7):
+        for col in range(-7, 7):
+            inside = centre_inside(corners, col, row)
+            if inside is not None:
+                assert canvas[13 - (row + 7), col + 7] == inside
+
+
+def test_rounding_errors_of_metres_do_not_change_the_pixels() -> None:
+    square = np.array([[3.0, 1.0], [5.0, 1.0], [5.0, 2.0], [3.0, 2.0]])
+    mask, left, bottom = rasterise_polygon(square * (1 + 1e-12) - 1e-12)
+    assert (mask.tolist(), left, bottom) == ([[True, True]], 3, 1)
+
+
+def test_polygon_without_a_pixel_centre_has_an_empty_mask() -> None:
+    mask, _, _ = rasterise_polygon(np.array([[0.1, 0.1], [0.4, 0.1], [0.4, 0.4]]))
+    assert mask.shape == (0, 0)

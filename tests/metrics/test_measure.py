@@ -1,0 +1,91 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+
+from drystone.errors import LabelImageError, UsageError
+from drystone.metrics.measure import measure_labels
+from drystone.metrics.reduce import reduce_labels
+from tests.metrics.walls import bricks, walls
+from tests.strategies import repeatable
+
+
+@pytest.mark.parametrize(
+    ("name", "scale", "stones", "expected"),
+    [
+        ("R", 0.2, 34, (0.846, 33.95, 0.59)),
+        ("PR", 0.5, 32, (0.808, 29.50, 1.50)),
+        ("IR", 0.3, 61, (0.850, 23.77, 3.69)),
+    ],
+)
+def test_walls_of_the_masons(data_dir, name, scale, stones, expected):
+    """F_SF, F_AV and F_AH measured when the definition was fixed, to their rounding."""
+    with Image.open(data_dir / "almeida" / f"{name}.png") as picture:
+        pixels = np.asarray(picture)
+    ids = pixels if pixels.ndim == 2 else pixels[..., 0]
+    metrics = measure_labels(reduce_labels(ids, scale))
+    assert metrics.stones == stones
+    assert (round(metrics.F_SF, 3), round(metrics.F_AV, 2), round(metrics.F_AH, 2)) == expected
+
+
+def test_a_full_wall():
+    metrics = measure_labels(bricks(4, 5, 12, 30), lateral_resistance=0.7)
+    assert (metrics.F_SF, metrics.F_LR, metrics.stones) == (1.0, 0.7, 22)
+    assert (metrics.width, metrics.height) == (150.0, 48.0)
+    assert (metrics.T_LEVEL, metrics.E_FLUSH) == (0.0, 0.0)
+
+
+def test_a_wall_size_changes_what_filling_refers_to():
+    metrics = measure_labels(bricks(4, 5, 12, 30), wall_px=(200.0, 60.0))
+    assert abs(metrics.F_SF - 150 * 48 / (200 * 60)) < 1e-12
+    assert (metrics.width, metrics.height) == (200.0, 60.0)
+    assert abs(metrics.E_FLUSH - 25 / np.mean([30] * 18 + [15] * 4)) < 1e-12
+
+
+def test_a_better_known_area_is_used():
+    metrics = measure_labels(bricks(4, 5, 12, 30), stone_area_px=7000.0)
+    assert abs(metrics.F_SF - 7000 / 7200) < 1e-12
+
+
+def test_wedges_are_no_stones_but_joints_run_around_them():
+    labels = bricks(4, 5, 12, 30)
+    wedged = labels.copy()
+    wedged[40:44, 60:70] = 99
+    plain, metrics = measure_labels(labels), measure_labels(wedged, wedge_ids={99})
+    assert metrics.stones == plain.stones
+    assert abs(metrics.F_SF - (7200 - 40) / 7200) < 1e-12
+    assert metrics.T_LEVEL == 0.0
+
+
+@repeatable()
+@given(walls(max_px=40), st.integers(0, 9), st.integers(0, 9))
+def test_empty_space_around_the_wall_changes_nothing(labels, rows, cols):
+    padded = np.pad(labels, ((rows, 9 - rows), (cols, 9 - cols)))
+    assert measure_labels(padded) == measure_labels(labels)
+
+
+@repeatable()
+@given(walls(max_px=40))
+def test_numbers_of_stones_change_nothing(labels):
+    ids, numbers = np.unique(labels, return_inverse=True)
+    shift = 0 if ids[0] == 0 else 1
+    renumbered = (numbers.reshape(labels.shape) + shift).astype(np.uint8)
+    assert measure_labels(renumbered) == measure_labels(labels)
+
+
+def test_a_pebble_is_too_small_for_paths_and_says_none():
+    metrics = measure_labels(np.ones((6, 6), np.uint32))
+    assert metrics.F_AV is None
+    assert metrics.F_AH is None
+
+
+@pytest.mark.parametrize("size", [(0.0, 80.0), (280.0, -1.0)])
+def test_a_wall_without_room(size):
+    with pytest.raises(UsageError, match="E121"):
+        measure_labels(bricks(2, 2, 5, 8), wall_px=size)
+
+
+def test_no_stones():
+    with pytest.raises(LabelImageError, match="E104"):
+        measure_labels(np.zeros((10, 10), np.uint32))

@@ -1,0 +1,91 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from skimage.graph import MCP_Geometric
+
+from drystone.metrics.joints import joint_mask
+from drystone.metrics.paths import horizontal_paths, vertical_paths
+from tests.metrics.walls import bricks, walls
+from tests.naive import metrics as naive
+from tests.strategies import repeatable
+
+JOINTS = st.tuples(st.integers(2, 14), st.integers(21, 45)).flatmap(
+    lambda shape: hnp.arrays(bool, shape, elements=st.integers(0, 2).map(bool))
+)
+
+
+@repeatable()
+@given(JOINTS)
+def test_lengths_are_those_of_the_slow_twin(joint):
+    lengths = [path.length_px for path in vertical_paths(joint)]
+    assert lengths == pytest.approx(naive.vertical_lengths(joint), abs=1e-9)
+
+
+@repeatable()
+@given(JOINTS)
+def test_horizontal_paths_are_vertical_paths_of_the_turned_image(joint):
+    lengths = [path.length_px for path in horizontal_paths(joint.T)]
+    assert lengths == pytest.approx(naive.vertical_lengths(joint), abs=1e-9)
+
+
+@repeatable()
+@given(walls())
+def test_pixels_lead_along_the_joints_from_top_to_bottom(labels):
+    joint = joint_mask(labels)
+    for path in vertical_paths(joint):
+        rows, cols = path.pixels.T
+        assert joint[rows, cols].all()
+        assert (rows[0], rows[-1]) == (0, joint.shape[0] - 1)
+        assert cols[0] == cols[-1]
+        steps = np.abs(np.diff(path.pixels, axis=0))
+        assert (steps.max(axis=1) == 1).all()
+        assert path.length_px == pytest.approx(np.hypot(*steps.T).sum())
+    for path in horizontal_paths(joint):
+        rows, cols = path.pixels.T
+        assert joint[rows, cols].all()
+        assert (cols[0], cols[-1]) == (0, joint.shape[1] - 1)
+        assert rows[0] == rows[-1]
+
+
+def test_an_independent_solver_finds_the_same_lengths():
+    joint = joint_mask(bricks(5, 4, 11, 23))
+    lengths = []
+    for column in range(10, joint.shape[1] - 10, joint.shape[1] // 10):
+        solver = MCP_Geometric(np.where(joint, 1.0, -1.0))
+        costs = solver.find_costs([(0, column)], [(joint.shape[0] - 1, column)])[0]
+        lengths.append(costs[-1, column])
+    found = [path.length_px for path in vertical_paths(joint)]
+    assert found == pytest.approx(sorted(lengths), abs=1e-9)
+
+
+def test_starts_stand_ten_pixels_from_the_ends_and_a_tenth_of_the_width_apart():
+    columns = [path.pixels[0, 1] for path in vertical_paths(np.ones((5, 57), bool))]
+    assert columns == [10, 15, 20, 25, 30, 35, 40, 45]
+
+
+def test_a_detour_takes_the_diagonals():
+    joint = np.ones((5, 21), bool)
+    joint[2, 10] = False
+    (path,) = vertical_paths(joint)
+    assert path.length_px == 2 + 2 * math.sqrt(2)
+
+
+def test_a_wall_across_the_image_leaves_no_path():
+    joint = np.ones((5, 40), bool)
+    joint[2] = False
+    assert vertical_paths(joint) == ()
+
+
+def test_a_start_inside_a_stone_has_no_path():
+    joint = np.ones((5, 21), bool)
+    joint[0, 10] = False
+    assert vertical_paths(joint) == ()
+
+
+def test_an_image_of_twenty_columns_has_no_start():
+    assert vertical_paths(np.ones((5, 20), bool)) == ()
+    assert horizontal_paths(np.ones((20, 5), bool)) == ()

@@ -1,0 +1,23 @@
+"""The site: working size and units."""
+
+import pytest
+
+from drystone.errors import UsageError
+from drystone.model.site import Site, working_px
+
+
+@pytest.mark.parametrize(
+    ("length", "scale", "expected"), [(5, 0.5, 3), (7, 0.5, 4), (1445, 0.2, 289), (383, 0.3, 115)]
+)
+def test_halves_round_up(length: float, scale: float, expected: int) -> None:
+    assert working_px(length, scale) == expected
+
+
+def test_units() -> None:
+    assert Site.from_source(560, 160, 0.5).units_per_px == 2.0
+    assert Site.from_source(560, 160, 0.5, px_per_m=400.0).units_per_px == 0.005
+
+
+def test_a_site_without_a_pixel_is_refused() -> None:
+    with pytest.raises(UsageError, match=r"E121 --wall: .*Give a larger wall"):
+        Site.from_source(2, 160, 0.2)

@@ -1,0 +1,97 @@
+"""A stone as found: area, centroid, hull, outline, eccentricity (DESIGN 4.1)."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+
+from drystone.errors import PlanError
+from drystone.kernels.raster import Mask
+from drystone.model.stone import OUTLINE_TOLERANCE_PX, Source, Stone, StoneSet
+from tests.naive import raster as naive
+from tests.strategies import blobs, masks, repeatable
+
+
+@repeatable()
+@given(mask=masks())
+def test_area_and_centroid_are_those_of_the_pixel_squares(mask: Mask) -> None:
+    stone = Stone(3, mask, left_px=10, bottom_px=20)
+    polygon = naive.polygon_of(mask)
+    assert stone.area_px == polygon.area
+    assert stone.local_centroid == pytest.approx((polygon.centroid.x, polygon.centroid.y))
+    assert stone.centroid == pytest.approx((10 + polygon.centroid.x, 20 + polygon.centroid.y))
+
+
+@repeatable()
+@given(mask=masks())
+def test_hull_is_that_of_the_pixel_squares(mask: Mask) -> None:
+    stone = Stone(3, mask)
+    hull = shapely.Polygon(stone.hull + stone.local_centroid)
+    assert hull.symmetric_difference(naive.polygon_of(mask).convex_hull).area < 1e-9
+
+
+@repeatable(25)
+@given(mask=blobs())
+def test_outline_follows_the_pixels_counter_clockwise(mask: Mask) -> None:
+    stone = Stone(3, mask)
+    outline = shapely.Polygon(stone.outline + stone.local_centroid)
+    assert outline.exterior.is_ccw
+    # The contour at one half cuts the corners of pixels by at most half a diagonal.
+    distance = outline.exterior.hausdorff_distance(naive.polygon_of(mask).exterior)
+    assert distance <= 0.5**0.5 + OUTLINE_TOLERANCE_PX + 1e-9
+
+
+def test_outline_of_an_l_is_not_mirrored() -> None:
+    mask = np.zeros((30, 20), bool)
+    mask[:, :6] = True
+    mask[-6:, :] = True
+    stone = Stone(1, mask)
+    x, y = (stone.outline + stone.local_centroid).T
+    assert x[y > 10].max() < 7
+    assert x[y < 5].max() > 19
+
+
+@repeatable(30)
+@given(mask=masks())
+def test_eccentricity_is_that_of_the_second_moments(mask: Mask) -> None:
+    assert Stone(1, mask).eccentricity == pytest.approx(
+        naive.second_moment_eccentricity(mask), abs=0.02
+    )
+
+
+def test_eccentricity_of_a_rectangle_in_closed_form() -> None:
+    assert Stone(1, np.ones((30, 60), bool)).eccentricity == pytest.approx((1 - 0.25) ** 0.5)
+    assert Stone(1, np.ones((9, 9), bool)).eccentricity == 0.0
+
+
+def test_a_stone_keeps_its_own_pixels() -> None:
+    pixels = np.ones((2, 2), bool)
+    stone = Stone(70_000, pixels)
+    pixels[0, 0] = False
+    assert stone.area_px == 4
+    with pytest.raises(ValueError, match="read-only"):
+        stone.mask[0, 0] = False
+
+
+@pytest.mark.parametrize("stone_id", [0, -1])
+def test_ids_are_positive(stone_id: int) -> None:
+    with pytest.raises(ValueError, match="id must be positive"):
+        Stone(stone_id, np.ones((1, 1), bool))
+
+
+@pytest.mark.parametrize("shape", [(2, 2), (0, 3), (4,)])
+def test_a_stone_has_pixels(shape: tuple[int, ...]) -> None:
+    with pytest.raises(ValueError, match="at least one pixel"):
+        Stone(1, np.zeros(shape, bool))
+
+
+def test_a_set_is_ordered_and_knows_its_stones() -> None:
+    pixel = np.ones((1, 1), bool)
+    stones = StoneSet((Stone(300, pixel), Stone(7, pixel)), Source("a.png"))
+    assert [stone.id for stone in stones] == [7, 300]
+    assert stones.by_id(300).id == 300
+    assert (len(stones), stones.total_area_px) == (2, 2)
+    with pytest.raises(PlanError, match=r"E201 a\.png: there is no stone 8 .*Give the stones"):
+        stones.by_id(8)
+    with pytest.raises(ValueError, match="same id"):
+        StoneSet((Stone(7, pixel), Stone(7, pixel)))

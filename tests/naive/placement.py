@@ -1,0 +1,93 @@
+"""Slow, obvious twins of placement: every position of the image, one after the other (§3.6)."""
+
+import numpy as np
+
+from drystone.kernels.raster import Mask
+from tests.naive import indices, rays
+from tests.naive.overlap import lowered, overlaps
+
+Position = tuple[int, int]
+
+
+def all_positions(occupied: Mask, mask: Mask) -> list[Position]:
+    rows = range(occupied.shape[0] - mask.shape[0] + 1)
+    cols = range(occupied.shape[1] - mask.shape[1] + 1)
+    return [(row, col) for row in rows for col in cols]
+
+
+def touching_positions(occupied: Mask, mask: Mask) -> list[Position]:
+    """Fig. 8: free, and overlapping the landscape (with its ground) dilated by one pixel."""
+    height, width = occupied.shape
+    scene = np.vstack([occupied, np.ones((1, width), bool)])
+    dilated = np.zeros_like(scene)
+    for row, col in zip(*np.nonzero(scene), strict=True):
+        dilated[max(0, row - 1) : row + 2, max(0, col - 1) : col + 2] = True
+    return [
+        at
+        for at in all_positions(occupied, mask)
+        if not overlaps(occupied, mask, *at) and overlaps(dilated[:height], mask, *at)
+    ]
+
+
+def resting_positions(occupied: Mask, mask: Mask) -> list[Position]:
+    """Free, and one pixel lower not free or in the ground (DESIGN 4.4)."""
+    return [
+        (row, col)
+        for row, col in all_positions(occupied, mask)
+        if not overlaps(occupied, mask, row, col) and overlaps(occupied, mask, row + 1, col)
+    ]
+
+
+def positions_from_above(occupied: Mask, mask: Mask, clearance: int = 0) -> list[Position]:
+    """Where a mask comes to rest that is lowered from above (reach="above").
+
+    With a clearance: widened to both sides by it, the mask comes down at least to one own height
+    above that place; what is beyond the ends of the site is empty.
+    """
+    height, width = mask.shape
+    wide = np.zeros((height, width + 2 * clearance), bool)
+    for shift in range(2 * clearance + 1):
+        wide[:, shift : shift + width] |= mask
+    beside = np.zeros((occupied.shape[0], clearance), bool)
+    scene = np.hstack([beside, occupied, beside])
+    # The site is high enough for the widened mask to be lowered from above it.
+    sky = np.zeros((2 * height, scene.shape[1]), bool)
+    found = []
+    for col in range(occupied.shape[1] - width + 1):
+        row = lowered(occupied, mask, col)
+        if row is None:
+            continue
+        comes_to = lowered(np.vstack([sky, scene]), wide, col)
+        if comes_to is not None and comes_to - 2 * height >= row - height:
+            found.append((row, col))
+    return sorted(found)
+
+
+def eq12(occupied: Mask, mask: Mask, anchor_x: float, at: Position, beta: float) -> float:
+    """Eq. 12a at one position."""
+    dice = indices.dice_score(occupied, indices.painted(occupied.shape, mask, *at))
+    filling = rays.local_filling_ratio(occupied, mask, *at)
+    x_c = (at[1] + anchor_x) / occupied.shape[1]
+    return float(filling + (dice if dice > beta else 0.0) - x_c)
+
+
+def gap_beside(occupied: Mask, mask: Mask, at: Position) -> int:
+    """Empty pixels between a stone and the first thing to its left, row by row."""
+    empty = 0
+    for i in range(mask.shape[0]):
+        col = at[1] + int(np.flatnonzero(mask[i])[0]) - 1
+        while col >= 0 and not occupied[at[0] + i, col]:
+            empty += 1
+            col -= 1
+    return empty
+
+
+def void_below(occupied: Mask, mask: Mask, at: Position) -> int:
+    """Empty pixels between a stone and the first thing below it, for a stone open from above."""
+    empty = 0
+    for j in range(mask.shape[1]):
+        row = at[0] + int(np.flatnonzero(mask[:, j])[-1]) + 1
+        while row < occupied.shape[0] and not occupied[row, at[1] + j]:
+            empty += 1
+            row += 1
+    return empty

@@ -1,0 +1,98 @@
+"""Slow, obvious twins of drystone.statics and drystone.kernels.boundary."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linprog
+
+from drystone.statics.model import GROUND, RigidBlockModel
+
+Pair = tuple[int, int]
+Edge = frozenset[tuple[int, int]]
+
+
+def pixel_edges(labels: NDArray[np.uint32]) -> dict[Pair, set[Edge]]:
+    """Unit edges between each pair of labels, as sets of two wall-frame corners (x, y)."""
+    height, width = labels.shape
+    edges: dict[Pair, set[Edge]] = {}
+
+    def label(x: int, y: int) -> int:
+        """Of the pixel whose lower left corner is (x, y); -1 where nothing is."""
+        if y < 0:
+            return GROUND
+        inside = 0 <= x < width and y < height
+        return int(labels[height - 1 - y, x]) or -1 if inside else -1
+
+    for x in range(width):
+        for y in range(height):
+            for (dx, dy), ends in (
+                ((0, -1), ((x, y), (x + 1, y))),
+                ((1, 0), ((x + 1, y), (x + 1, y + 1))),
+            ):
+                a, b = label(x, y), label(x + dx, y + dy)
+                if a != b and min(a, b) >= 0:
+                    edges.setdefault((max(a, b), min(a, b)), set()).add(frozenset(ends))
+    return edges
+
+
+def diagonal_touches(labels: NDArray[np.uint32]) -> set[tuple[int, int, int, int]]:
+    """(larger id, smaller id, x, y) where two labels touch across two empty pixels."""
+    height, width = labels.shape
+    found = set()
+    for row in range(1, height):
+        for col in range(1, width):
+            (a, b), (c, d) = labels[row - 1 : row + 1, col - 1 : col + 1].tolist()
+            for first, second, beside, beneath in ((a, d, b, c), (b, c, a, d)):
+                if first and second and first != second and not beside and not beneath:
+                    found.add((max(first, second), min(first, second), col, height - row))
+    return found
+
+
+def limit_alphas(model: RigidBlockModel) -> tuple[float, float] | None:
+    """Least upper bounds of alpha to the left and right; None when unstable by itself.
+
+    Forces are normal and tangential, friction is two inequalities (Eq. 23c), nothing is scaled.
+    """
+    rows = {block.id: 3 * i for i, block in enumerate(model.blocks)}
+    contacts = [(i, p) for i in model.interfaces for p in i.points]
+    count = 1 + 2 * len(contacts)
+    equilibrium = np.zeros((3 * len(model.blocks), count))
+    friction = np.zeros((2 * len(contacts), count))
+    dead = np.zeros(3 * len(model.blocks))
+    for block in model.blocks:
+        equilibrium[rows[block.id], 0] = block.weight
+        dead[rows[block.id] + 1] = block.weight
+    centroid = {block.id: block.centroid for block in model.blocks}
+    for k, (interface, (px, py)) in enumerate(contacts):
+        nx, ny = interface.normal
+        for column, (fx, fy) in ((1 + 2 * k, (nx, ny)), (2 + 2 * k, (ny, -nx))):
+            for block, sign in ((interface.block, 1), (interface.other, -1)):
+                if block == GROUND:
+                    continue
+                cx, cy = centroid[block]
+                moment = (px - cx) * fy - (py - cy) * fx
+                at = rows[block]
+                equilibrium[at : at + 3, column] = sign * np.array([fx, fy, moment])
+        friction[2 * k, 1 + 2 * k : 3 + 2 * k] = (-model.mu, 1)
+        friction[2 * k + 1, 1 + 2 * k : 3 + 2 * k] = (-model.mu, -1)
+    forces = [bounds for _ in contacts for bounds in ((0, None), (None, None))]
+
+    def solve(sign: float, highest: float | None) -> float | None:
+        push = equilibrium.copy()
+        push[:, 0] *= sign
+        answer = linprog(
+            np.eye(count)[0] * -1,
+            A_ub=friction,
+            b_ub=np.zeros(len(friction)),
+            A_eq=push,
+            b_eq=dead,
+            bounds=[(0, highest), *forces],
+        )
+        assert answer.status in (0, 2)
+        return -answer.fun if answer.status == 0 else None
+
+    if solve(1.0, 0.0) is None:
+        return None
+    left, right = solve(-1.0, None), solve(1.0, None)
+    assert left is not None
+    assert right is not None
+    return left, right

@@ -1,0 +1,86 @@
+"""The best positions, ties and rules (§3.6, DESIGN 4.4)."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from drystone.model.landscape import Landscape
+from drystone.model.placement import Placement
+from drystone.model.pose import PosedStone
+from drystone.model.site import Site
+from drystone.model.stone import Stone
+from drystone.model.wall import Wall
+from drystone.placement.best import Spot, best_spots
+from drystone.placement.settings import PlacementSettings
+from drystone.poses import PoseBook
+from tests.naive import placement as naive
+from tests.naive import rays
+from tests.strategies import posed_on_walls, repeatable
+
+Scene = tuple[Wall, PosedStone, int, int]
+
+
+def block(height: int, width: int, stone_id: int = 1) -> PosedStone:
+    return PoseBook().pose(Stone(stone_id, np.ones((height, width), bool)), 0.0)
+
+
+@repeatable(40)
+@given(scene=posed_on_walls())
+def test_eq12_takes_the_largest_value_then_the_lower_then_the_left(scene: Scene) -> None:
+    wall, posed, _, _ = scene
+    settings = PlacementSettings(tries=5)
+    value = {
+        at: naive.eq12(wall.occupied, posed.mask, posed.anchor[0], at, settings.beta)
+        for at in naive.resting_positions(wall.occupied, posed.mask)
+    }
+    ranked = sorted(value, key=lambda at: (-round(value[at], 9), -at[0], at[1]))
+    got = best_spots(Landscape.of(wall), [posed], settings)
+    assert [(spot.row, spot.col) for spot in got] == ranked[:5]
+
+
+@repeatable(40)
+@given(scene=posed_on_walls())
+def test_lowest_takes_the_lowest_then_the_tightest_then_the_left(scene: Scene) -> None:
+    wall, posed, _, _ = scene
+    places = naive.resting_positions(wall.occupied, posed.mask)
+    filling = {p: rays.local_filling_ratio(wall.occupied, posed.mask, *p) for p in places}
+    expected = min(places, key=lambda p: (-p[0], -round(filling[p], 9), p[1]))
+    spot = best_spots(Landscape.of(wall), [posed], PlacementSettings(rule="lowest"))[0]
+    assert (spot.row, spot.col) == expected
+
+
+def test_equal_merits_go_to_the_lower_place_then_to_the_building_side_then_to_the_first() -> None:
+    wall = Wall.empty(Site(20, 9)).add(Placement(block(3, 4), 6, 8))
+    settings = PlacementSettings(
+        rule="snug", tries=99, height_weight=0, void_weight=0, gap_weight=0, end_weight=0
+    )
+    one, other = block(2, 2, 2), block(2, 2, 3)
+    spots = best_spots(Landscape.of(wall), [one, other], settings)
+    assert spots[:3] == [Spot(0, 7, 0), Spot(1, 7, 0), Spot(0, 7, 1)]
+    rows = [spot.row for spot in spots]
+    assert rows == sorted(rows, reverse=True)
+
+
+def test_a_lower_place_is_one_with_a_lower_underside_whatever_the_pose() -> None:
+    settings = PlacementSettings(rule="lowest", tries=99)
+    wall = Wall.empty(Site(10, 9)).add(Placement(block(2, 4), 7, 0))
+    spots = best_spots(Landscape.of(wall), [block(2, 3, 2), block(3, 2, 2)], settings)
+    undersides = [spot.row + (2, 3)[spot.pose] for spot in spots]
+    assert undersides == sorted(undersides, reverse=True)
+
+
+@pytest.mark.parametrize("rule", ["eq12", "lowest", "snug"])
+def test_no_room_is_an_empty_list(rule: str) -> None:
+    settings = PlacementSettings(rule=rule)  # type: ignore[arg-type]
+    assert (
+        best_spots(Landscape.of(Wall.empty(Site(5, 5))), [block(6, 2), block(2, 6)], settings) == []
+    )
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"rule": "x"}, {"reach": "x"}, {"tries": 0}, {"clearance_px": -1}],
+)
+def test_settings_refuse_what_means_nothing(wrong: dict[str, object]) -> None:
+    with pytest.raises(ValueError, match=r"unknown|must be"):
+        PlacementSettings(**wrong)  # type: ignore[arg-type]

@@ -1,0 +1,112 @@
+"""Feasible positions (§3.6, Fig. 8, DESIGN 4.4)."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels.raster import Mask
+from drystone.model.landscape import Landscape
+from drystone.model.pose import PosedStone
+from drystone.model.stone import Stone
+from drystone.placement.feasible import Reach, feasible_positions
+from drystone.poses import PoseBook
+from tests.naive import placement as naive
+from tests.strategies import landscapes, masks, repeatable
+
+
+def landscape_of(occupied: Mask) -> Landscape:
+    return Landscape(occupied, ())
+
+
+def pose_of(mask: Mask) -> PosedStone:
+    return PoseBook().pose(Stone(1, mask), 0.0)
+
+
+def found(occupied: Mask, mask: Mask, reach: Reach = "any", clearance: int = 0) -> list[list[int]]:
+    positions = feasible_positions(landscape_of(occupied), pose_of(mask), reach, clearance)
+    return [list(at) for at in positions.tolist()]
+
+
+@repeatable(80)
+@given(occupied=landscapes(14), mask=masks())
+def test_any_position_that_is_free_and_one_pixel_lower_is_not(occupied: Mask, mask: Mask) -> None:
+    resting = [list(at) for at in naive.resting_positions(occupied, mask)]
+    assert found(occupied, mask) == resting
+
+
+@repeatable(40)
+@given(occupied=landscapes(12), mask=masks(5))
+def test_resting_positions_are_feasible_in_the_sense_of_the_paper(
+    occupied: Mask, mask: Mask
+) -> None:
+    touching = {tuple(at) for at in naive.touching_positions(occupied, mask)}
+    assert {tuple(at) for at in found(occupied, mask)} <= touching
+
+
+@repeatable(80)
+@given(occupied=landscapes(14), mask=masks())
+def test_from_above_is_where_a_lowered_stone_comes_to_rest(occupied: Mask, mask: Mask) -> None:
+    lowered = [list(at) for at in naive.positions_from_above(occupied, mask)]
+    assert found(occupied, mask, "above") == lowered
+    everywhere = found(occupied, mask)
+    assert all(at in everywhere for at in lowered)
+
+
+@repeatable(80)
+@given(occupied=landscapes(14), mask=masks(), clearance=st.integers(1, 3))
+def test_clearance_is_free_on_both_sides_of_the_stone(
+    occupied: Mask, mask: Mask, clearance: int
+) -> None:
+    wide = [list(at) for at in naive.positions_from_above(occupied, mask, clearance)]
+    assert found(occupied, mask, "above", clearance) == wide
+
+
+def test_a_closed_cavity_can_be_reached_by_any_but_not_from_above() -> None:
+    occupied = np.zeros((6, 8), bool)
+    occupied[2, 2:] = True
+    block = np.ones((2, 2), bool)
+    assert [4, 4] in found(occupied, block)
+    assert [4, 4] not in found(occupied, block, "above")
+    assert [0, 4] in found(occupied, block, "above")
+
+
+def test_touching_only_a_side_is_floating() -> None:
+    occupied = np.zeros((8, 8), bool)
+    occupied[:, 4:] = True
+    block = np.ones((2, 4), bool)
+    assert (3, 0) in naive.touching_positions(occupied, block)
+    assert found(occupied, block) == [[6, 0]]
+
+
+def test_under_an_overhang_means_floating_too() -> None:
+    occupied = np.zeros((8, 4), bool)
+    occupied[2] = True
+    assert found(occupied, np.ones((2, 4), bool)) == [[0, 0], [6, 0]]
+
+
+def test_a_slot_of_the_stones_own_width_has_no_clearance() -> None:
+    occupied = np.zeros((12, 9), bool)
+    occupied[4:, :3] = occupied[4:, 6:] = True
+    block = np.ones((2, 3), bool)
+    assert [10, 3] in found(occupied, block, "above", 0)
+    assert [10, 3] not in found(occupied, block, "above", 1)
+
+
+def test_clearance_counts_at_every_height_of_the_stone() -> None:
+    stone = np.array([[1, 1], [0, 1], [0, 1]], bool)
+    occupied = np.zeros((12, 6), bool)
+    # A post beside the stone.  Three px above its place the stone's foot reaches down to row 8;
+    # from the top of the post it has one free px to its left, not two.
+    occupied[9:, 1] = True
+    assert [9, 2] in found(occupied, stone, "above", 2)
+    occupied[8, 1] = True
+    assert [9, 2] not in found(occupied, stone, "above", 2)
+    assert [9, 2] in found(occupied, stone, "above", 1)
+
+
+@pytest.mark.parametrize("reach", ["any", "above"])
+def test_a_stone_larger_than_the_site_fits_nowhere(reach: Reach) -> None:
+    occupied = np.zeros((4, 6), bool)
+    assert found(occupied, np.ones((5, 2), bool), reach) == []
+    assert found(occupied, np.ones((2, 7), bool), reach) == []

@@ -1,0 +1,116 @@
+"""Settings: composed, checked, read from TOML, written to the plan."""
+
+import json
+import tomllib
+from typing import Any
+
+import pytest
+import tomli_w
+
+from drystone.errors import UsageError
+from drystone.planner.settings import METHODS, PlannerSettings, StopSettings, method_settings
+
+
+@pytest.mark.parametrize("method", list(METHODS))
+def test_settings_survive_toml_and_json(method: str) -> None:
+    settings = method_settings(method)
+    written = settings.as_dict()
+    assert PlannerSettings().updated(tomllib.loads(tomli_w.dumps(written))) == settings
+    assert PlannerSettings().updated(json.loads(json.dumps(written))) == settings
+
+
+def test_missing_values_stay_as_they_are() -> None:
+    settings = method_settings("best").updated({"mu": 0.65, "placement": {"tries": 3}})
+    assert settings.mu == 0.65
+    assert settings.placement.tries == 3
+    assert settings.placement.rule == method_settings("best").placement.rule
+    assert settings.updated({}) == settings
+
+
+def test_an_int_is_a_float_where_one_is_wanted() -> None:
+    settings = PlannerSettings().updated({"mu": 1, "stabilise": {"max_turn_deg": 20}})
+    assert type(settings.mu) is float
+    assert type(settings.stabilise.max_turn_deg) is float
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"two_sided": 1},
+        {"placement": {"tries": True}},
+        {"placement": {"tries": 2.0}},
+        {"mu": True},
+        {"mu": "0.58"},
+        {"orientations": 10},
+        {"placement": 3},
+        {"stop": {"failures": "five"}},
+    ],
+)
+def test_values_of_the_wrong_type_are_refused(changes: dict[str, Any]) -> None:
+    with pytest.raises(UsageError) as caught:
+        PlannerSettings().updated(changes)
+    assert caught.value.code == "E123"
+    assert next(iter(changes)) in str(caught.value)
+    assert caught.value.cure
+
+
+@pytest.mark.parametrize(
+    ("changes", "named", "cure"),
+    [
+        ({"wonder": 1}, "'wonder'", "sampling"),
+        ({"placement": {"wonder": 1}}, "'placement.wonder'", "reach"),
+        ({"sampling": "some"}, "sampling = 'some'", "twofold"),
+        ({"stabilise": {"method": "glue"}}, "stabilise.method = 'glue'", "wedge"),
+    ],
+)
+def test_unknown_settings_are_refused_with_the_known_ones(
+    changes: dict[str, Any], named: str, cure: str
+) -> None:
+    with pytest.raises(UsageError) as caught:
+        PlannerSettings().updated(changes)
+    assert caught.value.code == "E123"
+    assert named in caught.value.what
+    assert cure in caught.value.cure
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"mu": 0.0},
+        {"mu": float("nan")},
+        {"stabilise": {"margin": 0.5}},
+        {"stabilise": {"step_deg": 0}},
+        {"stabilise": {"max_shift_px": -1}},
+        {"clusters": {"distance": -1}},
+        {"placement": {"tries": 0}},
+        {"stop": {"filling": 1.5}},
+    ],
+)
+def test_values_out_of_range_are_refused(changes: dict[str, Any]) -> None:
+    with pytest.raises(UsageError, match="E123 settings"):
+        PlannerSettings().updated(changes)
+
+
+def test_a_wrong_orientation_set_keeps_its_own_code() -> None:
+    with pytest.raises(UsageError, match="E122"):
+        PlannerSettings().updated({"orientations": "north"})
+
+
+def test_constructors_check_too() -> None:
+    with pytest.raises(ValueError, match="unknown sampling"):
+        PlannerSettings(sampling="some")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="orientation choice"):
+        PlannerSettings(orientation_choice="x")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="failures positive"):
+        StopSettings(failures=0)
+
+
+def test_methods() -> None:
+    paper = method_settings("paper")
+    assert (paper.sampling, paper.two_sided, paper.orientations) == ("variant", False, "sf")
+    assert (paper.placement.rule, paper.placement.reach, paper.stabilise.margin) == (
+        "eq12", "any", 0.0,
+    )  # fmt: skip
+    assert method_settings("best").placement.reach == "above"
+    with pytest.raises(UsageError, match=r"E124 --method: there is no method 'x'\. .*paper, best"):
+        method_settings("x")

@@ -1,0 +1,59 @@
+import subprocess
+import sys
+
+import matplotlib as mpl
+import pytest
+from PIL import Image
+
+from drystone.plotting import plot_mechanism, plot_wall, save, write_pictures
+from tests.plotting import examples
+
+
+@pytest.mark.parametrize("name", ["wall.png", "wall.pdf", "wall.svg"])
+def test_same_picture_same_bytes(tmp_path, name):
+    for folder in ("one", "two"):
+        (tmp_path / folder).mkdir()
+        ax = plot_wall(examples.wall(), examples.CLUSTERS, title="twice")
+        save(ax.figure, tmp_path / folder / name, dpi=50)
+    first, second = ((tmp_path / folder / name).read_bytes() for folder in ("one", "two"))
+    assert first == second
+    # Two files of the same second would agree in spite of a date.
+    assert not any(date in first for date in (b"CreationDate", b"dc:date", b"tIME"))
+
+
+def test_png_has_no_date_or_version(tmp_path):
+    save(plot_wall(examples.wall()).figure, tmp_path / "wall.png", dpi=50)
+    with Image.open(tmp_path / "wall.png") as image:
+        assert set(image.info) <= {"dpi"}
+
+
+def test_other_endings_are_refused(tmp_path):
+    with pytest.raises(ValueError, match=r"pictures end in \.png, \.pdf, \.svg"):
+        save(plot_wall(examples.wall()).figure, tmp_path / "wall.bmp")
+
+
+def test_pictures_are_written_where_a_mechanism_exists(tmp_path):
+    stale = tmp_path / "mechanism_right.png"
+    stale.write_bytes(b"of another wall")
+    written = write_pictures(
+        tmp_path, examples.wall(), examples.CLUSTERS, resistance=examples.resistance(), dpi=50
+    )
+    assert [path.name for path in written] == ["picture.png", "mechanism_left.png"]
+    assert {path.name for path in tmp_path.iterdir()} == {"picture.png", "mechanism_left.png"}
+
+
+def test_without_statics_there_is_only_the_picture(tmp_path):
+    (path,) = write_pictures(tmp_path, examples.wall(), dpi=50)
+    assert path == tmp_path / "picture.png"
+
+
+def test_nothing_global_changes(tmp_path):
+    before = dict(mpl.rcParams)
+    save(plot_wall(examples.wall(), examples.CLUSTERS).figure, tmp_path / "wall.svg")
+    plot_mechanism(examples.wall().labels, examples.mechanism(), "left", 0.4)
+    assert dict(mpl.rcParams) == before
+    code = "import sys, drystone.plotting; print('matplotlib.pyplot' in sys.modules)"
+    done = subprocess.run(  # noqa: S603 - our own interpreter and text
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "False"

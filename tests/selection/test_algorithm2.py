@@ -1,0 +1,130 @@
+"""Selecting the best action (§3.8, Algorithm 2, DESIGN 4.7)."""
+
+import dataclasses
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.indices.values import Indices
+from drystone.selection.algorithm2 import Action, SelectionSettings, select_action, weighted_sum
+from tests.naive.selection import algorithm2
+from tests.strategies import repeatable
+
+EVEN = Indices(SF=1, LFR=0.5, GDS=0.5, NHR=0.5, IWR=0.5, IS=0.5, LLC=0.5, boundary=False)
+EIGHTHS = st.integers(0, 8).map(lambda n: n / 8)
+
+
+def action(stone_id: int, angle_deg: float = 0.0, **changes: float | bool | None) -> Action:
+    return Action(stone_id, angle_deg, dataclasses.replace(EVEN, **changes))  # type: ignore[arg-type]
+
+
+@st.composite
+def actions(draw: st.DrawFn) -> list[Action]:
+    # Few values, so that ties and equal means are common.
+    return [
+        action(
+            draw(st.integers(1, 5)),
+            draw(st.sampled_from([-90.0, 0.0, 90.0])),
+            LLC=draw(st.one_of(st.none(), st.integers(-1, 4).map(lambda n: n / 4))),
+            NHR=draw(EIGHTHS),
+            IWR=draw(EIGHTHS),
+            IS=draw(EIGHTHS),
+            GDS=draw(EIGHTHS),
+            LFR=draw(EIGHTHS),
+            boundary=draw(st.booleans()),
+        )
+        for _ in range(draw(st.integers(0, 9)))
+    ]
+
+
+@repeatable(200)
+@given(pi=actions(), weights=st.tuples(*[st.sampled_from([0.0, 0.5, 1.0, 2.0])] * 5))
+def test_choice_is_that_of_the_appendix(pi: list[Action], weights: tuple[float, ...]) -> None:
+    w_llc, w_nhr, w_third, w_gds, w_lfr = weights
+    settings = SelectionSettings(
+        w_llc=w_llc, w_nhr=w_nhr, w_third=w_third, w_gds=w_gds, w_lfr=w_lfr
+    )
+    selected = select_action(pi, settings)
+    expected = algorithm2(pi, weights)
+    if expected is None:
+        assert selected is None
+        return
+    assert selected is not None
+    assert pi[selected.position] == expected
+    assert weighted_sum(expected, settings) == pytest.approx(
+        sum(w * t for w, t in zip(weights, expected.terms, strict=True))
+    )
+
+
+@pytest.mark.parametrize("llc", [0.0, -0.1, None])
+def test_nothing_that_does_not_stand_is_chosen(llc: float | None) -> None:
+    assert select_action([action(1, LLC=llc), action(2, LLC=llc)]) is None
+    selected = select_action([action(1, LLC=llc, GDS=1.0), action(2, LLC=1e-9)])
+    assert selected is not None
+    assert selected.position == 1
+    assert select_action([]) is None
+
+
+@pytest.mark.parametrize("name", ["LLC", "NHR", "IWR", "GDS", "LFR"])
+@pytest.mark.parametrize("value", [0.1 + 0.2, 0.7 / 3, 1 / 3, 1e-3])
+@pytest.mark.parametrize("count", [3, 6, 7, 10])
+def test_equal_values_do_not_vanish_by_rounding(name: str, value: float, count: int) -> None:
+    selected = select_action([action(k + 1, **{name: value}) for k in range(count)])
+    assert selected is not None
+    assert selected.survivors == (count,) * 6
+    assert selected.position == 0
+
+
+def test_values_a_rounding_apart_pass_together() -> None:
+    selected = select_action([action(1, LLC=0.3), action(2, LLC=0.1 + 0.2, GDS=0.6)])
+    assert selected is not None
+    assert selected.survivors[1] == 2
+    assert selected.position == 1
+
+
+@pytest.mark.parametrize(
+    ("better", "worse"),
+    [
+        ({"LLC": 0.6}, {"NHR": 0.0}),
+        ({"NHR": 0.4}, {"IWR": 1.0}),
+        ({"IWR": 0.6}, {"GDS": 1.0}),
+        ({"GDS": 0.6}, {"LFR": 1.0}),
+    ],
+)
+def test_earlier_criteria_decide_before_later_ones(
+    better: dict[str, float], worse: dict[str, float]
+) -> None:
+    selected = select_action([action(1, **worse), action(2, **better)])
+    assert selected is not None
+    assert selected.position == 1
+
+
+def test_boundary_and_inner_stones_are_compared_among_their_own_kind() -> None:
+    inner = [action(1, IWR=0.9), action(2, IWR=0.7)]
+    boundary = [action(3, IS=0.2, boundary=True), action(4, IS=0.1, boundary=True)]
+    selected = select_action([*inner, *boundary])
+    assert selected is not None
+    # Against a common mean of .475 both inner ones would pass and no boundary stone.
+    assert selected.survivors == (4, 4, 4, 2, 2, 2)
+
+
+def test_a_better_boundary_stone_survives_for_the_later_filters() -> None:
+    boundary = action(3, IS=0.2, GDS=0.9, boundary=True)
+    selected = select_action([action(1, IWR=0.9), action(2, IWR=0.7), boundary])
+    assert selected is not None
+    assert selected.position == 2
+
+
+def test_ties_go_to_the_lower_id_then_to_the_smaller_angle() -> None:
+    tied = [action(9), action(4, 90.0), action(4, -90.0), action(4, 0.0)]
+    selected = select_action(tied)
+    assert selected is not None
+    assert selected.position == 2
+
+
+def test_the_weights_belong_to_the_terms() -> None:
+    weights = SelectionSettings(w_llc=1, w_nhr=10, w_third=100, w_gds=1000, w_lfr=10000)
+    one = action(1, LLC=0.5, LFR=0.9)
+    assert weighted_sum(one, weights) == pytest.approx(0.5 - 5 + 50 + 500 + 9000)
+    assert weighted_sum(one, weights, 3) == pytest.approx(0.5 - 5 + 50)

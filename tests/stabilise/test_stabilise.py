@@ -1,0 +1,124 @@
+"""Rotation first, wedging second (§3.7, Fig. 20, DESIGN 4.6)."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.model.pose import PosedStone
+from drystone.model.wall import Wall
+from drystone.poses import PoseBook
+from drystone.stabilise.settings import Method, StabiliseSettings
+from drystone.stabilise.stabilise import Stabilised, WedgeStock, stabilise
+from tests.naive import support as naive
+from tests.stabilise.scenes import bar_on_the_ledge, ledge
+from tests.stabilise.test_wedge import check_wedge, holds
+from tests.strategies import posed_on_walls, repeatable
+
+STOCK = WedgeStock(next_id=100, mean_height_px=12.0)
+METHODS: tuple[Method, ...] = ("both", "rotation", "wedge", "none")
+
+
+def stabilised_bar(method: Method, **limits: float) -> Stabilised | None:
+    book, occupied = PoseBook(), ledge()
+    settings = StabiliseSettings(method=method, **limits)  # type: ignore[arg-type]
+    return stabilise(occupied, bar_on_the_ledge(occupied, book), "left", book, STOCK, settings)
+
+
+def test_methods_select_rotation_wedging_both_or_neither() -> None:
+    assert stabilised_bar("none") is None
+    rotated = stabilised_bar("rotation")
+    assert rotated is not None
+    assert rotated.placement.posed.angle_deg < 0
+    assert rotated.placement.rotation_moves >= 1
+    assert rotated.wedges == ()
+    wedged = stabilised_bar("wedge")
+    assert wedged is not None
+    assert (wedged.placement.posed.angle_deg, wedged.placement.rotation_moves) == (0.0, 0)
+    assert [wedge.id for wedge in wedged.wedges] == [100]
+    both = stabilised_bar("both")
+    assert both is not None
+    assert both.placement.posed.angle_deg == rotated.placement.posed.angle_deg
+
+
+def test_wedging_comes_when_rotation_fails_and_starts_from_the_trial_pose() -> None:
+    assert stabilised_bar("rotation", max_turn_deg=5.0) is None
+    both = stabilised_bar("both", max_turn_deg=5.0)
+    assert both is not None
+    assert both.placement.posed.angle_deg == 0.0
+    assert len(both.wedges) == 1
+
+
+def test_a_stone_balanced_on_a_point_is_wedged_on_both_sides_or_refused() -> None:
+    """With a margin, a support too narrow for it must be widened to both sides."""
+    book = PoseBook()
+    occupied = np.zeros((24, 50), bool)
+    occupied[20:, 16:18] = True
+    posed, row, _ = bar_on_the_ledge(occupied, book, col=16, length=30)
+    trial = posed, row, 2
+    settings = StabiliseSettings(method="wedge", margin=0.1)
+    result = stabilise(occupied, trial, "left", book, STOCK, settings)
+    assert result is not None
+    assert [wedge.id for wedge in result.wedges] == [100, 101]
+    assert holds(occupied, trial, result.wedges, 0.1)
+
+
+@repeatable(120)
+@given(
+    scene=posed_on_walls(),
+    method=st.sampled_from(METHODS),
+    margin=st.sampled_from([0.0, 0.1, 0.2]),
+)
+def test_whatever_comes_out_is_a_stable_rigid_copy_inside_the_site(
+    scene: tuple[Wall, PosedStone, int, int], method: Method, margin: float
+) -> None:
+    wall, posed, row, col = scene
+    book = PoseBook()
+    settings = StabiliseSettings(method=method, margin=margin)
+    stock = WedgeStock(100, 8.0)
+    result = stabilise(wall.occupied, (posed, row, col), "right", book, stock, settings)
+    stable = naive.rests_stably(
+        wall.occupied, posed.mask, row, col, col + posed.anchor[0], margin * posed.width_px
+    )
+    if result is None:
+        assert not stable
+        return
+    placed = result.placement
+    pose = placed.posed, placed.row, placed.col
+    wall.add(placed, result.wedges)  # refuses what overlaps or leaves the site
+    assert np.array_equal(
+        placed.posed.mask, PoseBook().pose(posed.stone, placed.posed.angle_deg).mask
+    )
+    assert placed.side == "right"
+    assert abs(placed.posed.angle_deg) <= settings.max_turn_deg
+    assert holds(wall.occupied, pose, result.wedges, margin)
+    for k, wedge in enumerate(result.wedges):
+        assert wedge.id == 100 + k
+        check_wedge(wall.occupied, pose, wedge, 4.0, settings)
+    if stable:
+        assert (placed.row, placed.col, result.wedges) == (row, col, ())
+    if method in ("none", "rotation"):
+        assert result.wedges == ()
+    if method in ("none", "wedge"):
+        assert placed.posed.angle_deg == posed.angle_deg
+    if result.wedges:
+        assert placed.rotation_moves == 0
+
+
+def test_a_floating_stone_is_not_stabilised() -> None:
+    book = PoseBook()
+    posed, _, _ = bar_on_the_ledge(ledge(), book)
+    assert stabilise(ledge(), (posed, 2, 15), "left", book, STOCK, StabiliseSettings()) is None
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"method": "glue"}, {"margin": 0.5}, {"margin": -0.1}, {"step_deg": 0.0},
+        {"max_turn_deg": -1.0}, {"max_pivots": -1}, {"max_shift_px": -1}, {"min_wedge_px": 0},
+        {"max_wedge_height": 0.0},
+    ],
+)  # fmt: skip
+def test_settings_refuse_what_means_nothing(wrong: dict[str, object]) -> None:
+    with pytest.raises(ValueError, match=r"unknown|must be"):
+        StabiliseSettings(**wrong)  # type: ignore[arg-type]

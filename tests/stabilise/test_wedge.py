@@ -1,0 +1,116 @@
+"""Wedging (§3.7, Fig. 9c)."""
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from drystone.kernels.raster import Mask
+from drystone.model.placement import Wedge
+from drystone.model.stone import Stone
+from drystone.poses import PoseBook
+from drystone.stabilise.settings import StabiliseSettings
+from drystone.stabilise.wedge import wedge_under
+from tests.naive import support as naive
+from tests.stabilise.scenes import Pose, bar_on_the_ledge, ledge, mirrored
+
+ID = 70_000
+
+
+def check_wedge(
+    occupied: Mask, pose: Pose, wedge: Wedge, largest_px: float, settings: StabiliseSettings
+) -> None:
+    """What DESIGN 4.6 asks of a wedge."""
+    posed, row, col = pose
+    stone = np.zeros_like(occupied)
+    stone[row : row + posed.height_px, col : col + posed.width_px] = posed.mask
+    cut = np.zeros_like(occupied)
+    cut[wedge.window] = wedge.mask
+    assert not (cut & (stone | occupied)).any()
+    assert ndimage.label(wedge.mask)[1] == 1
+    assert wedge.under == posed.stone.id
+    for column in range(wedge.mask.shape[1]):
+        rows = np.flatnonzero(cut[:, wedge.col + column])
+        assert settings.min_wedge_px <= rows.size <= largest_px
+        assert rows.size == rows[-1] - rows[0] + 1
+        assert stone[rows[0] - 1, wedge.col + column]  # touches the stone all along
+        under = rows[-1] + 1
+        assert under == len(occupied) or occupied[under, wedge.col + column]  # and what is below
+    assert wedge.mask.shape[1] >= settings.min_wedge_px
+
+
+def holds(occupied: Mask, pose: Pose, wedges: tuple[Wedge, ...], margin: float = 0.0) -> bool:
+    posed, row, col = pose
+    scene = occupied.copy()
+    for wedge in wedges:
+        scene[wedge.window] |= wedge.mask
+    margin_px = margin * posed.width_px
+    x_c = col + posed.anchor[0]
+    return naive.rests_stably(scene, posed.mask, row, col, x_c, margin_px)
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+@pytest.mark.parametrize("margin", [0.0, 0.1])
+def test_a_wedge_holds_an_overhanging_bar(side: str, margin: float) -> None:
+    occupied = ledge()
+    trial = bar_on_the_ledge(occupied, PoseBook())
+    if side == "left":
+        occupied, trial = mirrored(occupied, trial, PoseBook())
+    settings = StabiliseSettings(margin=margin)
+    wedge = wedge_under(occupied, trial, ID, 12.0, settings)
+    assert wedge is not None
+    assert wedge.id == ID
+    check_wedge(occupied, trial, wedge, 6.0, settings)
+    assert not holds(occupied, trial, (), margin)
+    assert holds(occupied, trial, (wedge,), margin)
+
+
+def test_the_wedge_is_where_the_free_side_touches_first() -> None:
+    occupied = ledge()
+    occupied[-2:, 24:28] = True
+    wedge = wedge_under(
+        occupied, bar_on_the_ledge(occupied, PoseBook()), ID, 12.0, StabiliseSettings()
+    )
+    assert wedge is not None
+    assert (wedge.col, wedge.mask.shape) == (24, (2, 4))
+
+
+@pytest.mark.parametrize(
+    ("height", "mean", "smallest", "found"),
+    [(4, 8.0, 2, True), (5, 8.0, 2, False), (2, 8.0, 2, True), (2, 8.0, 3, False)],
+)
+def test_smallest_and_largest_size(height: int, mean: float, smallest: int, found: bool) -> None:
+    occupied = ledge(height=height)
+    settings = StabiliseSettings(min_wedge_px=smallest)
+    wedge = wedge_under(occupied, bar_on_the_ledge(occupied, PoseBook()), ID, mean, settings)
+    assert (wedge is not None) is found
+
+
+def test_a_gap_narrower_than_a_wedge_takes_none() -> None:
+    occupied = ledge()
+    trial = bar_on_the_ledge(occupied, PoseBook())
+    occupied[-4:, 17:31] = False
+    occupied[:, 33:] = True
+    occupied = np.vstack([occupied, np.zeros((20, 50), bool)])
+    occupied[24:, :14] = True
+    occupied[22, 31] = True  # one column, the only one within reach
+    assert wedge_under(occupied, trial, ID, 12.0, StabiliseSettings()) is None
+
+
+def test_stable_and_floating_stones_get_none() -> None:
+    occupied = ledge()
+    settings = StabiliseSettings()
+    stable = bar_on_the_ledge(occupied, PoseBook(), col=0, length=20)
+    assert wedge_under(occupied, stable, ID, 12.0, settings) is None
+    floating = PoseBook().pose(Stone(3, np.ones((4, 9), bool)), 0.0), 3, 20
+    assert wedge_under(occupied, floating, ID, 12.0, settings) is None
+
+
+def test_columns_that_do_not_help_are_not_wedged() -> None:
+    """A low shelf just beside the support but short of the centre of mass holds nothing."""
+    occupied = ledge()
+    occupied[-2:, 14:16] = True
+    trial = bar_on_the_ledge(occupied, PoseBook())
+    wedge = wedge_under(occupied, trial, ID, 12.0, StabiliseSettings())
+    assert wedge is not None
+    assert wedge.col + wedge.mask.shape[1] >= 17  # the centre of mass is at x = 17
+    assert holds(occupied, trial, (wedge,))

@@ -1,0 +1,269 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.statics import limit
+from drystone.statics.blocks import model_from_labels
+from drystone.statics.given import model_from_json
+from drystone.statics.limit import lateral_resistance, limit_load
+from drystone.statics.model import GROUND, LimitStatus, RigidBlockModel
+from tests.naive.statics import limit_alphas
+from tests.statics.walls import brick_model, coursed, irregular, stacked
+from tests.strategies import repeatable
+
+
+def alphas(labels, mu=0.58):
+    both = lateral_resistance(model_from_labels(labels, mu).model)
+    return both.left.alpha, both.right.alpha
+
+
+def statuses(both):
+    return both.left.status, both.right.status
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "mu", "expected"),
+    [(20, 40, 0.58, 0.5), (20, 40, 0.3, 0.3), (40, 20, 0.58, 0.58), (10, 40, 0.58, 0.25)],
+)
+def test_one_block_of_pixels_slides_or_overturns(width, height, mu, expected):
+    labels = np.zeros((height + 7, width + 9), np.uint32)
+    labels[3 : height + 3, 5 : width + 5] = 300
+    assert alphas(labels, mu) == pytest.approx((expected, expected), abs=1e-9)
+
+
+def test_two_blocks_of_pixels_overturn_together():
+    assert alphas(stacked((20, 20, 0), (20, 20, 0)), mu=0.65) == pytest.approx((0.5, 0.5))
+
+
+def test_four_blocks_at_a_crossing_of_joints_have_the_strength_of_their_columns():
+    labels = np.kron([[1, 2], [3, 4]], np.ones((20, 20))).astype(np.uint32)
+    rectangles = [[x, y, 20, 20] for y in (0, 20) for x in (0, 20)]
+    expected = lateral_resistance(model_from_json({"blocks_xywh": rectangles, "mu": 0.58}))
+    assert alphas(labels) == pytest.approx((expected.left.alpha, expected.right.alpha))
+    assert expected.left.alpha <= 0.58
+
+
+def test_a_course_across_a_narrow_gap_slides_at_the_friction():
+    """A corner on a corner across the gap must not lock the bed joint."""
+    labels = np.zeros((40, 42), np.uint32)
+    labels[20:, :20], labels[20:, 21:] = 1, 2
+    labels[:20, :21] = 3
+    assert alphas(labels, mu=0.3) == pytest.approx((0.3, 0.3))
+
+
+def test_a_stone_bridging_two_pillars_is_stable():
+    labels = np.zeros((60, 100), np.uint32)
+    labels[20:, :20], labels[20:, 80:] = 1, 2
+    labels[:20] = 3
+    both = lateral_resistance(model_from_labels(labels).model)
+    assert both.stable
+    assert both.left.alpha == pytest.approx(both.right.alpha)
+    assert 0.4 < both.right.alpha < 0.58
+
+
+def test_left_means_towards_minus_x():
+    left, right = alphas(stacked((20, 20, 0), (20, 20, 8)), mu=0.9)
+    assert (left, right) == pytest.approx((0.7, 0.2))
+    model = model_from_labels(stacked((20, 20, 0), (20, 20, 8)), 0.9).model
+    assert limit_load(model, "left").alpha == left
+    assert limit_load(model, "left").direction == "left"
+    assert limit_load(model, "right").alpha == right
+
+
+def test_what_overhangs_too_far_is_unstable_in_both_directions():
+    """A push to the left would hold it up; by itself it falls."""
+    both = lateral_resistance(model_from_labels(stacked((20, 20, 0), (20, 20, 12)), 0.9).model)
+    assert statuses(both) == (LimitStatus.UNSTABLE, LimitStatus.UNSTABLE)
+    assert (both.left.alpha, both.right.alpha, both.value) == (None, None, None)
+    assert not both.stable
+    assert "own weight" in both.right.message
+
+
+def test_what_balances_carries_nothing_on_one_side():
+    both = lateral_resistance(model_from_labels(stacked((20, 20, 0), (20, 20, 10)), 0.9).model)
+    assert statuses(both) == (LimitStatus.OPTIMAL, LimitStatus.OPTIMAL)
+    assert (both.left.alpha, both.right.alpha) == pytest.approx((0.75, 0.0), abs=1e-9)
+    assert both.right.alpha >= 0
+
+
+def test_a_floating_block_is_unstable():
+    labels = np.zeros((9, 9), np.uint32)
+    labels[6:, :3], labels[:3, 5:] = 1, 2
+    assert not lateral_resistance(model_from_labels(labels).model).stable
+
+
+def test_no_blocks_no_bound():
+    both = lateral_resistance(RigidBlockModel((), ()))
+    assert statuses(both) == (LimitStatus.UNBOUNDED, LimitStatus.UNBOUNDED)
+    assert both.value is None
+
+
+def test_a_block_between_fixed_ones_carries_any_load():
+    fixed = [[0, 0], [1, 0], [1, 2], [0, 2]]
+    model = model_from_json(
+        {
+            "blocks": [
+                {"id": 1, "polygon": fixed, "fixed": True},
+                {"id": 2, "polygon": [[1, 0], [2, 0], [2, 1], [1, 1]]},
+            ]
+        }
+    )
+    both = lateral_resistance(model, mechanism=True)
+    assert statuses(both) == (LimitStatus.UNBOUNDED, LimitStatus.OPTIMAL)
+    assert both.left.alpha is None
+    assert both.right.alpha == pytest.approx(0.58)
+    assert both.right.mechanism.block_ids == (2,)
+
+
+def test_without_friction_there_is_no_ratio_to_it():
+    both = lateral_resistance(model_from_labels(np.ones((4, 4), np.uint32), 0.0).model)
+    assert (both.left.alpha, both.right.alpha) == pytest.approx((0, 0), abs=1e-9)
+    assert both.value is None
+
+
+@pytest.mark.parametrize(("direction", "sign"), [("left", -1), ("right", 1)])
+def test_a_tall_block_rocks_about_its_toe(direction, sign):
+    model = model_from_labels(stacked((20, 40, 0))).model
+    velocity = limit_load(model, direction, mechanism=True).mechanism.velocity[0]
+    assert math.hypot(velocity[0], velocity[1]) == pytest.approx(1)
+    assert sign * velocity[0] > 0
+    toe = 20.0 if sign > 0 else 0.0
+    arm = np.array([toe, 0.0]) - model.blocks[0].centroid
+    at_toe = velocity[:2] + velocity[2] * np.array([-arm[1], arm[0]])
+    assert at_toe == pytest.approx([0, 0], abs=1e-9)
+    assert sign * velocity[2] < 0  # counter-clockwise is positive
+
+
+@pytest.mark.parametrize(("direction", "sign"), [("left", -1), ("right", 1)])
+def test_a_flat_block_slides_and_dilates(direction, sign):
+    model = model_from_labels(stacked((40, 20, 0))).model
+    velocity = limit_load(model, direction, mechanism=True).mechanism.velocity[0]
+    expected = np.array([sign, 0.58, 0]) / math.hypot(1, 0.58)  # associated flow
+    assert velocity == pytest.approx(expected, abs=1e-9)
+
+
+def test_no_mechanism_unless_asked_for():
+    both = lateral_resistance(model_from_labels(stacked((20, 40, 0))).model)
+    assert both.left.mechanism is None
+    assert both.right.mechanism is None
+
+
+def assert_certified(model, result, sign):
+    """The mechanism is admissible, and its work balance gives the same alpha: both are exact."""
+    velocity = dict(zip(result.mechanism.block_ids, result.mechanism.velocity, strict=True))
+    velocity[GROUND] = np.zeros(3)
+    centroid = {block.id: block.centroid for block in model.blocks} | {GROUND: (0.0, 0.0)}
+
+    def at(block, point):
+        arm = point - centroid[block]
+        vx, vy, turning = velocity[block]
+        return np.array([vx - turning * arm[1], vy + turning * arm[0]])
+
+    for interface in model.interfaces:
+        nx, ny = interface.normal
+        for point in interface.points:
+            apart = at(interface.block, point) - at(interface.other, point)
+            opening, slip = apart @ (nx, ny), abs(apart @ (ny, -nx))
+            assert opening >= model.mu * slip - 1e-7
+    moved = np.array([velocity[block.id] for block in model.blocks])
+    weight = np.array([block.weight for block in model.blocks])
+    pushed = sign * float(weight @ moved[:, 0])
+    assert pushed > 0
+    assert float(weight @ moved[:, 1]) / pushed == pytest.approx(result.alpha, abs=1e-6)
+    assert np.hypot(moved[:, 0], moved[:, 1]).max() == pytest.approx(1)
+
+
+def assert_equals_twin(model):
+    both = lateral_resistance(model, mechanism=True)
+    expected = limit_alphas(model)
+    if expected is None:
+        assert statuses(both) == (LimitStatus.UNSTABLE, LimitStatus.UNSTABLE)
+        return
+    assert statuses(both) == (LimitStatus.OPTIMAL, LimitStatus.OPTIMAL)
+    assert (both.left.alpha, both.right.alpha) == pytest.approx(expected, abs=1e-6)
+    assert both.value == pytest.approx(min(expected) / model.mu, abs=1e-5)
+    assert_certified(model, both.left, -1.0)
+    assert_certified(model, both.right, 1.0)
+
+
+@given(
+    seed=st.integers(0, 10**6),
+    courses=st.integers(1, 5),
+    length_px=st.integers(20, 90),
+    gap_px=st.integers(0, 3),
+    mu=st.sampled_from([0.3, 0.58, 0.9]),
+)
+@repeatable(40)
+def test_coursed_walls_equal_their_twin(seed, courses, length_px, gap_px, mu):
+    assert_equals_twin(model_from_labels(coursed(seed, courses, length_px, gap_px), mu).model)
+
+
+@given(
+    courses=st.integers(1, 6),
+    bricks=st.integers(1, 4),
+    height=st.sampled_from([0.5, 1.0, 3.0]),
+    mu=st.sampled_from([0.3, 0.58, 0.9]),
+)
+@repeatable(25)
+def test_brick_walls_equal_their_twin(courses, bricks, height, mu):
+    assert_equals_twin(brick_model(courses, bricks, height, mu))
+
+
+@given(seed=st.integers(0, 10**6), count=st.integers(2, 14))
+@repeatable(25)
+def test_irregular_walls_equal_their_twin(seed, count):
+    assert_equals_twin(model_from_labels(irregular(seed, count, 90, 50)).model)
+
+
+@pytest.mark.parametrize("factor", [1e-3, 40.0, 1e4])
+def test_the_unit_of_length_does_not_matter(factor):
+    rows = [[0, 0, 3, 2], [3, 0, 2, 2], [1, 2, 3, 1], [0.5, 3, 3, 4]]
+    scaled = [[factor * number for number in row] for row in rows]
+    one, other = (lateral_resistance(model_from_json({"blocks_xywh": r})) for r in (rows, scaled))
+    assert one.left.alpha == pytest.approx(other.left.alpha, abs=1e-9)
+    assert one.right.alpha == pytest.approx(other.right.alpha, abs=1e-9)
+
+
+def test_equal_calls_give_equal_bits():
+    model = model_from_labels(coursed(3, 5, 120)).model
+    one, other = (
+        lateral_resistance(model, mechanism=True),
+        lateral_resistance(model, mechanism=True),
+    )
+    assert (one.left.alpha, one.right.alpha) == (other.left.alpha, other.right.alpha)
+    assert (one.left.mechanism.velocity == other.left.mechanism.velocity).all()
+
+
+@pytest.mark.parametrize("labels", [coursed(5, 4, 90), stacked((20, 20, 0), (20, 20, 12))])
+def test_what_the_first_algorithm_gives_up_on_is_tried_with_another(labels, monkeypatch):
+    model = model_from_labels(labels).model
+    expected = lateral_resistance(model)
+    monkeypatch.setattr(limit, "_FIRST", {**limit._FIRST, "simplex_iteration_limit": 1})
+    again = lateral_resistance(model)
+    assert statuses(again) == statuses(expected)
+    if expected.stable:
+        assert again.value == pytest.approx(expected.value, abs=1e-7)
+
+
+def test_what_both_algorithms_give_up_on_is_failed_and_no_number(monkeypatch):
+    model = model_from_labels(coursed(5, 4, 90)).model
+    monkeypatch.setattr(limit, "_FIRST", {**limit._FIRST, "simplex_iteration_limit": 1})
+    monkeypatch.setattr(limit, "_AGAIN", limit._FIRST)
+    both = lateral_resistance(model, mechanism=True)
+    assert statuses(both) == (LimitStatus.FAILED, LimitStatus.FAILED)
+    assert (both.value, both.left.alpha, both.left.mechanism) == (None, None, None)
+    assert "gave up" in both.left.message
+
+
+def test_one_failed_direction_leaves_the_other_unknown(monkeypatch):
+    """That the wall stands by itself follows only from both."""
+    model = model_from_labels(coursed(5, 4, 90)).model
+    stuck = {**limit._FIRST, "simplex_iteration_limit": 0}
+    monkeypatch.setattr(limit, "_FROM_BASIS", stuck)
+    monkeypatch.setattr(limit, "_AGAIN", stuck)
+    both = lateral_resistance(model)
+    assert statuses(both) == (LimitStatus.FAILED, LimitStatus.FAILED)
+    assert "other direction" in both.right.message

@@ -1,0 +1,297 @@
+import json
+from collections.abc import Callable
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drystone.errors import PlanError
+from drystone.generate import PolygonSettings, polygon_stones
+from drystone.io.plan_json import plan_from_json, plan_to_json
+from drystone.io.read_stones import read_stones
+from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
+from drystone.model.stone import Source, StoneSet
+from drystone.planner.plan_wall import plan_wall
+from drystone.planner.settings import PlannerSettings
+from drystone.verify.check import check_plan
+from drystone.verify.report import CheckReport
+from tests.verify.examples import L_STONE, SLAB, WEDGE, Example, example
+
+
+@pytest.fixture(scope="module")
+def true() -> Example:
+    return example()
+
+
+def codes(report: CheckReport) -> set[str]:
+    return {problem.code for problem in report.problems}
+
+
+def step_of(plan: Plan, piece: int) -> Any:
+    """The step of a stone or wedge."""
+    return next(s for s in plan.steps if piece == (s.id if isinstance(s, WedgeStep) else s.stone))
+
+
+def changed(plan: Plan, piece: int, **values: Any) -> Plan:
+    step = step_of(plan, piece)
+    steps = tuple(replace(s, **values) if s is step else s for s in plan.steps)
+    return replace(plan, steps=steps)
+
+
+def moved(plan: Plan, piece: int, dx: float, dy: float) -> Plan:
+    x, y = step_of(plan, piece).centroid
+    return changed(plan, piece, centroid=(x + dx, y + dy))
+
+
+def reshaped(plan: Plan, change: Callable[[np.ndarray], np.ndarray]) -> Plan:
+    polygon = change(np.array(step_of(plan, WEDGE).polygon))
+    return changed(plan, WEDGE, polygon=tuple((float(x), float(y)) for x, y in polygon))
+
+
+def without(plan: Plan, piece: int) -> Plan:
+    steps = [s for s in plan.steps if s is not step_of(plan, piece)]
+    return replace(plan, steps=tuple(replace(s, step=n) for n, s in enumerate(steps, 1)))
+
+
+def with_index(plan: Plan, name: str, by: float) -> Plan:
+    step = step_of(plan, SLAB)
+    return changed(plan, SLAB, indices={**step.indices, name: step.indices[name] + by})
+
+
+def swapped(plan: Plan, first: int, second: int) -> Plan:
+    plan = changed(changed(plan, first, stone=999), second, stone=first)
+    return changed(plan, 999, stone=second)
+
+
+@pytest.mark.parametrize(
+    ("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, None), (0.5, 200.0)]
+)
+def test_true_plan_passes_in_any_unit_and_at_any_scale(
+    scale: float, px_per_m: float | None
+) -> None:
+    made = example(scale, px_per_m)
+    report = check_plan(made.plan, made.stones, wall_labels=made.wall.labels)
+    assert report.problems == ()
+    assert report.ok
+    assert report.notes == ()
+    assert report.overlap_depth < 1e-9
+    assert report.area_error == 0
+    assert report.metrics is not None
+    assert report.prefixes[0].alpha_left == pytest.approx(0.58)  # a square block slides
+    assert [prefix.step for prefix in report.prefixes] == [1, 2, 4, 5, 6]
+
+
+def test_true_plan_passes_as_a_file_form(true: Example) -> None:
+    text = json.dumps(plan_to_json(true.plan))
+    report = check_plan(plan_from_json(json.loads(text)), true.stones)
+    assert report.ok
+    assert report.notes == ("wall.png was not compared.",)
+
+
+# What is changed in the plan, and the codes that name it: exactly these.
+EXACT: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+    "another digest": (lambda p: replace(p, source={**p.source, "sha256": "0" * 64}), {"E210"}),
+    "number of stones": (lambda p: replace(p, source={**p.source, "stones": 7}), {"E211"}),
+    "image width": (lambda p: replace(p, source={**p.source, "width_px": 7}), {"E211"}),
+    "image height": (lambda p: replace(p, source={**p.source, "height_px": 7}), {"E211"}),
+    "file names": (lambda p: replace(p, source={**p.source, "files": ["a.png"]}), {"E211"}),
+    "step number": (lambda p: changed(p, SLAB, step=9), {"E214"}),
+    "alpha before the wedge": (lambda p: changed(p, SLAB, alpha_left=0.5), {"E214"}),
+    "unused stone missing": (lambda p: replace(p, unused=()), {"E216"}),
+    "used stone listed": (lambda p: replace(p, unused=(9, 3)), {"E216"}),
+    "settings": (lambda p: replace(p, settings={**p.settings, "wings": 2}), {"E217", "E235"}),
+    "stone 1 px left of the wall": (lambda p: moved(p, 3, -1, 0), {"E220"}),
+    "stone 1 px below the ground": (lambda p: moved(p, 5, 0, -1), {"E220"}),
+    "stone above the top": (lambda p: moved(p, SLAB, 0, 5), {"E220"}),
+    "stone 1 px into another": (lambda p: moved(p, SLAB, 0, -1), {"E221"}),
+    "wedge clockwise": (lambda p: reshaped(p, lambda points: points[::-1]), {"E222"}),
+    "wedge without pixels": (lambda p: reshaped(p, lambda w: w[0] + (w - w[0]) / 99), {"E222"}),
+    "wedge far outside": (lambda p: reshaped(p, lambda points: points + 1e9), {"E220"}),
+    "source centroid": (lambda p: changed(p, 3, source_centroid=(12.0, 13.5)), {"E225"}),
+    "cluster": (lambda p: changed(p, 3, cluster=77), {"E233"}),
+    "rotation moves": (lambda p: changed(p, 3, rotation_moves=1), {"E235"}),
+    "too many rotation moves": (lambda p: changed(p, 3, rotation_moves=99), {"E235"}),
+    "alpha of a stone": (lambda p: changed(p, 3, alpha_left=0.580001), {"E231"}),
+    "alpha of a wedge": (lambda p: changed(p, WEDGE, alpha_right=None), {"E231"}),
+    "course height of an inner stone": (lambda p: changed(p, L_STONE, course_height=9.0), {"E232"}),
+    "course height left out": (lambda p: changed(p, 3, course_height=None), {"E232"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_tampering_is_caught_by_its_code(true: Example, name: str) -> None:
+    change, expected = EXACT[name]
+    report = check_plan(change(true.plan), true.stones)
+    assert codes(report) == expected
+    assert not report.ok
+
+
+# Changes with more than one consequence: these codes are among those found.
+AMONG: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+    "stone moved by 1 px": (lambda p: moved(p, SLAB, 1, 0), {"E232", "E236"}),
+    "stone lifted by 1 px": (lambda p: moved(p, L_STONE, 0, 1), {"E230", "E236"}),
+    "first stone lifted by 1 px": (lambda p: moved(without(p, SLAB), 3, 0, 1), {"E230"}),
+    "stone turned by 3 degrees": (lambda p: changed(p, 3, angle_deg=3.0), {"E235", "E236"}),
+    "stone turned by 180 degrees": (lambda p: changed(p, L_STONE, angle_deg=-90.0), {"E236"}),
+    "ids swapped": (lambda p: swapped(p, 3, 5), {"E220", "E225", "E236"}),
+    "ids of equal boxes swapped": (lambda p: swapped(p, L_STONE, 300), {"E225", "E236"}),
+    "stone that is not there": (lambda p: changed(p, 3, stone=4), {"E212", "E216"}),
+    "stone used twice": (lambda p: changed(p, 300, stone=3), {"E213", "E216"}),
+    "stone left out": (lambda p: without(p, 3), {"E216", "E230"}),
+    "side": (lambda p: changed(p, 300, side="left"), {"E232"}),
+    "wedge left out": (lambda p: without(p, WEDGE), {"E230", "E234", "E236"}),
+    "wedge with a stone's id": (lambda p: changed(p, WEDGE, id=9), {"E213", "E236"}),
+    "wedge under another stone": (lambda p: changed(p, WEDGE, under=3), {"E214"}),
+    "wedge too thin": (lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (0, 3)),
+                       {"E223", "E224"}),
+    "wedge hanging": (lambda p: reshaped(p, lambda w: w + (w == w.min(axis=0)) * (0, 1)),
+                      {"E223"}),
+    "wedge a pixel narrower": (lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (1, 0)),
+                               {"E234", "E236"}),
+    "wedge polygon off the grid": (
+        lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (0.3, 0)), {"E222"}),
+    "friction": (lambda p: replace(p, settings={**p.settings, "mu": 0.3}), {"E231", "E234"}),
+    "largest wedge": (
+        lambda p: replace(p, settings={**p.settings, "stabilise": {"max_wedge_height": 0.1}}),
+        {"E224"}),
+    "one-sided": (lambda p: replace(p, settings={**p.settings, "two_sided": False}), {"E235"}),
+    "wall wider": (lambda p: replace(p, width=90.0), {"E234", "E236"}),
+    "wall lower": (lambda p: replace(p, height=25.0), {"E220", "E236"}),
+    "unit of length": (lambda p: replace(p, px_per_m=2.0, length_unit="m"), {"E230", "E236"}),
+    "working scale": (lambda p: replace(p, working_scale=0.5), {"E236"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", AMONG)
+def test_tampering_with_consequences_is_caught(true: Example, name: str) -> None:
+    change, expected = AMONG[name]
+    report = check_plan(change(true.plan), true.stones, wall_labels=true.wall.labels)
+    assert codes(report) >= expected
+
+
+@pytest.mark.parametrize("name", ["SF", "LFR", "GDS", "NHR", "IWR", "IS"])
+def test_every_index_is_verified(true: Example, name: str) -> None:
+    report = check_plan(with_index(true.plan, name, 1e-8), true.stones)
+    assert codes(report) == {"E232"}
+    assert report.problems[0].step == step_of(true.plan, SLAB).step
+    assert name in report.problems[0].message
+
+
+def test_llc_is_verified(true: Example) -> None:
+    assert codes(check_plan(with_index(true.plan, "LLC", 1e-6), true.stones)) == {"E232"}
+    assert check_plan(with_index(true.plan, "LLC", 1e-9), true.stones).ok
+
+
+@pytest.mark.parametrize("name", [field.name for field in fields(PlanMetrics)])
+def test_every_metric_is_verified(true: Example, name: str) -> None:
+    value = getattr(true.plan.metrics, name)
+    metrics = replace(true.plan.metrics, **{name: value + 1e-6 * max(1.0, value)})
+    report = check_plan(replace(true.plan, metrics=metrics), true.stones)
+    assert codes(report) == {"E234"}
+    assert name in report.problems[0].message
+
+
+def test_metrics_beyond_the_contract_may_be_left_out(true: Example) -> None:
+    data = plan_to_json(true.plan)
+    del data["metrics"]["T_LEVEL"], data["metrics"]["E_FLUSH"]
+    assert check_plan(plan_from_json(data), true.stones).ok
+
+
+def test_mirrored_stone_in_the_wall_image_is_caught(true: Example) -> None:
+    labels = true.wall.labels.copy()
+    window = next(p.window for p in true.wall.placements if p.stone_id == L_STONE)
+    labels[window] = labels[window][:, ::-1]
+    report = check_plan(true.plan, true.stones, wall_labels=labels)
+    assert codes(report) == {"E236"}
+    assert [p.step for p in report.problems] == [step_of(true.plan, L_STONE).step]
+
+
+def test_wall_image_of_another_wall_is_caught(true: Example) -> None:
+    labels = true.wall.labels.copy()
+    labels[0, 0] = 555
+    report = check_plan(true.plan, true.stones, wall_labels=labels)
+    assert [(p.code, p.step) for p in report.problems] == [("E236", None)]
+    report = check_plan(true.plan, true.stones, wall_labels=labels[:-1])
+    assert codes(report) == {"E236"}
+
+
+def test_wall_that_is_no_image_is_refused(true: Example) -> None:
+    for size in (1e12, 0.1):
+        with pytest.raises(PlanError, match="E215"):
+            check_plan(replace(true.plan, width=size), true.stones)
+
+
+def test_sources_without_digest_are_not_compared(true: Example) -> None:
+    stones = replace(true.stones, source=replace(true.stones.source, sha256=""))
+    report = check_plan(true.plan, stones, wall_labels=true.wall.labels)
+    assert report.ok
+    assert len(report.notes) == 1
+    assert "digest" in report.notes[0]
+
+
+def test_steps_after_a_broken_one_are_said_to_be_unchecked(true: Example) -> None:
+    report = check_plan(moved(true.plan, SLAB, 0, -1), true.stones)
+    assert report.metrics is None
+    assert [prefix.step for prefix in report.prefixes] == [1, 2]
+    assert any("From step 3 on" in note for note in report.notes)
+
+
+def test_real_outlines_that_overlap_are_reported_and_no_problem_is_made_of_them() -> None:
+    made = example()
+    plan = moved(made.plan, SLAB, 0, -1 / 256)  # rounds to the same pixels
+    report = check_plan(plan, made.stones)
+    assert report.ok
+    assert report.overlap_depth_at is None
+    deep = check_plan(moved(made.plan, SLAB, 0, -0.25), made.stones)
+    assert deep.overlap_depth == pytest.approx(0.25)
+    assert deep.overlap_depth_at == (3, SLAB)
+
+
+def test_stone_that_cannot_be_lowered_in_is_listed(true: Example) -> None:
+    assert check_plan(true.plan, true.stones).buried == ()
+    below_the_slab = moved(true.plan, 300, 22 - 74, 0)
+    assert check_plan(below_the_slab, true.stones).buried == (300,)
+
+
+def test_empty_plan_is_checked(true: Example) -> None:
+    empty = PlanMetrics(0.0, None, None, None, 0.0, 0.0, None, None, 0.0)
+    ids = tuple(stone.id for stone in true.stones)
+    plan = replace(true.plan, steps=(), unused=ids, metrics=empty)
+    report = check_plan(plan, true.stones)
+    assert report.ok
+    assert report.area_error_at is None
+
+
+def test_other_stones_are_reported_and_nothing_is_raised(true: Example) -> None:
+    report = check_plan(true.plan, StoneSet((), Source("none.png", "00" * 32, 1, 1)))
+    assert codes(report) >= {"E210", "E211", "E212", "E216"}
+
+
+def test_report_is_json(true: Example) -> None:
+    data = json.loads(json.dumps(check_plan(moved(true.plan, 3, -1, 0), true.stones).as_dict()))
+    assert list(data)[:3] == ["ok", "problems", "overlap_depth"]
+    assert data["ok"] is False
+    assert data["problems"][0].keys() == {"code", "step", "message"}
+
+
+@pytest.mark.parametrize("px_per_m", [None, 130.0])
+def test_plan_of_the_planner_passes(px_per_m: float | None) -> None:
+    rng = np.random.default_rng(4)
+    stones = polygon_stones(PolygonSettings(count=9, width_px=44, height_px=28), rng)
+    settings = PlannerSettings(two_sided=True)
+    made = plan_wall(stones, 160, 90, seed=3, settings=settings, scale=0.5, px_per_m=px_per_m)
+    plan = plan_from_json(plan_to_json(made.plan))
+    report = check_plan(plan, stones, wall_labels=made.wall.labels)
+    assert report.problems == ()
+    assert len(plan.stone_steps) >= 3
+
+
+def test_plan_of_a_published_set_passes(data_dir: Path) -> None:
+    stones = read_stones(data_dir / "almeida" / "PR.png")
+    made = plan_wall(stones, 560, 160, seed=1, settings=PlannerSettings(), scale=0.5)
+    report = check_plan(made.plan, stones, wall_labels=made.wall.labels)
+    assert report.problems == ()
+    assert 0 < report.overlap_depth < 4
+    assert report.area_error < 0.05
