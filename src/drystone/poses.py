@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from drystone.errors import UsageError
-from drystone.kernels.raster import quantise, rasterise, turn
+from drystone.kernels.raster import areas_by_phase, quantise, rasterise, turn
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 
@@ -65,8 +65,8 @@ class PoseBook:
 
     def __init__(self, scale: float = 1.0) -> None:
         self.scale = scale
-        self._poses: dict[tuple[int, float], PosedStone] = {}
-        self._angles: dict[int, float] = {}
+        self._poses: dict[tuple[Stone, float], PosedStone] = {}
+        self._angles: dict[Stone, float] = {}
 
     def pose(self, stone: Stone, angle_deg: float) -> PosedStone:
         """Return the stone turned by an angle, rasterised at a favourable sub-pixel position.
@@ -74,16 +74,16 @@ class PoseBook:
         Favourable is the position, starting from edges on pixel edges, at which the area of the
         pixels comes within 1 % (or 2 px) of the stone's own, or else comes closest.
         """
-        key = (stone.id, wrap_deg(angle_deg))
+        key = (stone, wrap_deg(angle_deg))
         if key not in self._poses:
             self._poses[key] = _best_phase_pose(stone, key[1], self.scale)
         return self._poses[key]
 
     def initial_angle(self, stone: Stone) -> float:
         """Return :func:`initial_angle_deg` of a stone, computed once."""
-        if stone.id not in self._angles:
-            self._angles[stone.id] = initial_angle_deg(stone)
-        return self._angles[stone.id]
+        if stone not in self._angles:
+            self._angles[stone] = initial_angle_deg(stone)
+        return self._angles[stone]
 
     def orientations(self, stone: Stone, orientations: str) -> tuple[PosedStone, ...]:
         """Return the poses of a stone that are candidates (DESIGN 4.2).
@@ -145,18 +145,12 @@ def pose_at(
 
 def _best_phase_pose(stone: Stone, angle_deg: float, scale: float) -> PosedStone:
     area = stone.area_px * scale**2
-    tolerance = max(0.01 * area, 2.0)
     edge = -turn(stone.hull, angle_deg).min(axis=0) * scale
-    best: tuple[float, PosedStone] | None = None
+    first = (quantise(edge[0]) % 1.0, quantise(edge[1]) % 1.0)
+    areas = areas_by_phase(stone.mask, stone.local_centroid, angle_deg, scale, first)
     # Rows first: a bottom edge on a pixel edge rests flat.
-    for up in (0.0, 0.25, 0.5, 0.75):
-        for right in (0.0, 0.25, 0.5, 0.75):
-            phase = (quantise(edge[0] + right) % 1.0, quantise(edge[1] + up) % 1.0)
-            posed = pose_at(stone, angle_deg, scale, phase)[0]
-            error = abs(posed.area_px - area)
-            if best is None or error < best[0]:
-                best = (error, posed)
-            if error <= tolerance:
-                return posed
-    assert best is not None  # noqa: S101 - the loops above ran
-    return best[1]
+    error = np.abs(areas - area).ravel()
+    close = np.flatnonzero(error <= max(0.01 * area, 2.0))
+    up, right = divmod(int(close[0]) if close.size else int(np.argmin(error)), 4)
+    phase = ((first[0] + right / 4) % 1.0, (first[1] + up / 4) % 1.0)
+    return pose_at(stone, angle_deg, scale, phase)[0]

@@ -94,8 +94,8 @@ def test_keys_are_those_of_the_contract_in_its_order() -> None:
 def test_equal_plans_give_equal_bytes(tmp_path: Path) -> None:
     one = plan(source={**plan().source, "files": ["a.png"], "b": 1, "a": 2})
     other = plan(
-        settings=dict(reversed(one.settings.items())),
-        source=dict(reversed(one.source.items())),
+        settings=dict(reversed(list(one.settings.items()))),
+        source=dict(reversed(list(one.source.items()))),
         steps=(
             stone_step(indices=dict(reversed(INDICES.items())), angle_deg=12),
             *one.steps[1:],

@@ -7,7 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.raster import PHASE_STEPS, Mask, quantise, rasterise, rotation, turn
+from drystone.kernels.raster import (
+    PHASE_STEPS,
+    Mask,
+    areas_by_phase,
+    quantise,
+    rasterise,
+    rotation,
+    turn,
+)
 from tests.naive import raster as naive
 from tests.strategies import blobs, masks, repeatable
 
@@ -113,3 +121,15 @@ def test_a_whole_pixel_of_phase_moves_and_changes_nothing() -> None:
     there = rasterise(L_SHAPE, (1.2, 0.7), 33.0, 1.0, (2.25, 3.5))
     assert np.array_equal(here[0], there[0])
     assert (there[1] - here[1], there[2] - here[2]) == (2, 3)
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.5, 0.3])
+def test_areas_at_all_phases_are_those_of_rasterising_at_each(scale: float) -> None:
+    mask = np.zeros((23, 31), bool)
+    mask[2:20, 3:29] = True
+    mask[2:9, 3:12] = False
+    areas = areas_by_phase(mask, (14.3, 9.8), 17.0, scale, (0.125, 0.5))
+    for i in range(4):
+        for j in range(4):
+            phase = (0.125 + j / 4, 0.5 + i / 4)
+            assert areas[i, j] == rasterise(mask, (14.3, 9.8), 17.0, scale, phase)[0].sum()

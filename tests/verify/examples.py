@@ -7,7 +7,7 @@ import numpy as np
 from drystone.clusters import cluster_stones
 from drystone.kernels.outline import pixel_polygon
 from drystone.model.landscape import Landscape
-from drystone.model.placement import Placement, Wedge
+from drystone.model.placement import Placement, Side, Wedge
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.model.site import Site
 from drystone.model.stone import Source, Stone, StoneSet
@@ -71,8 +71,8 @@ def example(scale: float = 1.0, px_per_m: float | None = None) -> Example:
     ):
         posed = PoseBook(scale).pose(stones.by_id(stone_id), angle_deg)
         row = site.height_px - round(bottom * scale) - posed.height_px
-        side = "right" if stone_id == 300 else "left"
-        wedges = ()
+        side: Side = "right" if stone_id == 300 else "left"
+        wedges: tuple[Wedge, ...] = ()
         if stone_id == SLAB:
             shape, at = np.array([[4, 8], [14 - 4, 42]]) * scale
             mask = np.ones(shape.astype(int), bool)

@@ -11,12 +11,12 @@ from drystone.errors import PlanError
 from drystone.generate import PolygonSettings, polygon_stones
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.io.read_stones import read_stones
-from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
+from drystone.model.plan import Plan, PlanMetrics, WedgeStep
 from drystone.model.stone import Source, StoneSet
 from drystone.planner.plan_wall import plan_wall
 from drystone.planner.settings import PlannerSettings
 from drystone.verify.check import check_plan
-from drystone.verify.report import CheckReport
+from drystone.verify.report import CheckReport, PrefixAlpha
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example, example
 
 
@@ -253,6 +253,21 @@ def test_stone_that_cannot_be_lowered_in_is_listed(true: Example) -> None:
     assert check_plan(true.plan, true.stones).buried == ()
     below_the_slab = moved(true.plan, 300, 22 - 74, 0)
     assert check_plan(below_the_slab, true.stones).buried == (300,)
+
+
+def test_wall_in_the_air_does_not_stand(true: Example) -> None:
+    alone = moved(replace(true.plan, steps=true.plan.steps[:1]), 3, 0, 1)
+    report = check_plan(alone, true.stones)
+    assert codes(report) >= {"E230"}
+    assert report.prefixes == (PrefixAlpha(1, None, None),)
+
+
+def test_largest_deviation_of_pixel_area_is_reported() -> None:
+    made = example()
+    turned = check_plan(changed(made.plan, 3, angle_deg=45.0), made.stones)
+    assert turned.area_error_at == 3
+    # A square of 20 px on its tip, its centre on a pixel corner: 2 (2 + 4 + ... + 28) px.
+    assert turned.area_error == pytest.approx(420 / 400 - 1)
 
 
 def test_empty_plan_is_checked(true: Example) -> None:

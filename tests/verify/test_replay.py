@@ -76,9 +76,10 @@ def test_wall_size_in_metres_does_not_depend_on_rounding() -> None:
 
 def test_pieces_that_overlap_stay_in_the_replay_and_the_wall_ends_before() -> None:
     made = example()
-    steps = list(made.plan.steps)
-    x, y = steps[1].centroid
-    steps[1] = replace(steps[1], centroid=(x - 25, y))
+    second = made.plan.stone_steps[1]
+    x, y = second.centroid
+    moved = replace(second, centroid=(x - 25, y))
+    steps = [moved if step is second else step for step in made.plan.steps]
     replay = replay_plan(replace(made.plan, steps=tuple(steps)), made.stones)
     assert replay.broken_at == 2
     assert [problem.code for problem in replay.problems] == ["E221"]

@@ -17,7 +17,7 @@ from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.planner.plan_wall import PlanResult, plan_wall
 from drystone.planner.settings import PlannerSettings
-from drystone.verify import rebuild_wall
+from drystone.verify.replay import rebuild_wall
 
 _EXIT = {
     "complete": ExitCode.DONE,

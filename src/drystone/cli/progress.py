@@ -8,17 +8,41 @@ from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
     Progress,
+    TaskID,
     TextColumn,
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
 
-from drystone.planner.events import Step, StepCallback
+from drystone.planner.events import Callbacks, Round, Step
+
+
+class _Bar(Callbacks):
+    def __init__(self, bar: Progress, stones: int) -> None:
+        self._bar = bar
+        self._stones = bar.add_task("stones", total=stones)
+        self._rounds: TaskID | None = None
+
+    def on_step(self, step: Step) -> None:
+        carried = step.action.resistance.value
+        text = "" if carried is None else f", LLC {carried:.2f}"
+        filling = 100 * step.build.wall.filling
+        self._bar.update(
+            self._stones, advance=1, description=f"stones, filling {filling:.0f} %{text}"
+        )
+
+    def on_round(self, round_: Round) -> None:
+        if round_.rounds == 0:
+            return
+        if self._rounds is None:
+            self._rounds = self._bar.add_task("rework", total=round_.rounds)
+        text = f"rework, best has {round_.stones} stones, merit {round_.merit:.2f}"
+        self._bar.update(self._rounds, completed=round_.number, description=text)
 
 
 @contextmanager
-def step_bar(stones: int, *, quiet: bool) -> Iterator[tuple[StepCallback, ...]]:
-    """Show stones placed, filling, load multiplier and the time that is left.
+def step_bar(stones: int, *, quiet: bool) -> Iterator[Callbacks]:
+    """Show stones placed, filling, load multiplier, rounds of rework and the time that is left.
 
     Parameters
     ----------
@@ -29,30 +53,21 @@ def step_bar(stones: int, *, quiet: bool) -> Iterator[tuple[StepCallback, ...]]:
 
     Yields
     ------
-    callbacks : tuple of callables
+    callbacks : Callbacks
         For the planner.
     """
     if quiet:
-        yield ()
+        yield Callbacks()
         return
     bar = Progress(
-        TextColumn("stone"),
+        TextColumn("{task.description}"),
         MofNCompleteColumn(),
         BarColumn(bar_width=24),
-        TextColumn("{task.description}"),
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),
         console=Console(stderr=True),
         transient=True,
     )
-    task = bar.add_task("", total=stones)
-
-    def show(step: Step) -> None:
-        resistance = step.action.resistance.value
-        carried = "" if resistance is None else f", LLC {resistance:.2f}"
-        text = f"filling {100 * step.build.wall.filling:.0f} %{carried}"
-        bar.update(task, advance=1, description=text)
-
     with bar:
-        yield (show,)
+        yield _Bar(bar, stones)

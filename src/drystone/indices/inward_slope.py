@@ -21,14 +21,16 @@ def inward_slope(landscape: Landscape, posed: PosedStone, col: int) -> float:
     col : int
         Column of the mask's left edge.
     """
-    x = np.arange(posed.width_px) + 0.5
-    in_left = x <= posed.anchor[0]
-    if in_left.all() or not in_left.any():
+    column = np.arange(posed.width_px)
+    top, x_c = posed.top, posed.anchor[0]
+    # The column that contains the centroid belongs to both halves, as x_c does in Eq. 10.
+    left_half, right_half = top[column < x_c], top[column + 1 > x_c]
+    if not (left_half.size and right_half.size):
         return 0.0
-    top = posed.top
-    split = int(np.count_nonzero(in_left))
-    left = int(np.argmin(top[:split]))
-    right = posed.width_px - 1 - int(np.argmin(top[split:][::-1]))
+    left = int(np.argmin(left_half))
+    right = posed.width_px - 1 - int(np.argmin(right_half[::-1]))
+    if left == right:
+        return 0.0
     # Rows count downwards: a smaller row is higher.
     slope = (top[right] - top[left]) / (left - right)
     centre = col + posed.anchor[0] - landscape.width_px / 2

@@ -7,7 +7,7 @@ import numpy as np
 import tifffile
 from PIL import Image
 
-from drystone.errors import InputError, LabelImageError
+from drystone.errors import InputError, LabelImageError, UsageError
 from drystone.io.atomic import write_atomically
 from drystone.io.census import take_census
 from drystone.io.checks import (
@@ -44,16 +44,37 @@ def write_wall_image(labels: Labels, folder: str | Path) -> Path:
     PlanError
         E206: the file cannot be written.
     """
-    buffer = io.BytesIO()
-    if int(labels.max(initial=0)) <= _MAX_ID_16_BIT:
-        path = Path(folder) / "wall.png"
-        Image.fromarray(labels.astype(np.uint16)).save(buffer, format="PNG")
-    else:
-        path = Path(folder) / "wall.tif"
+    narrow = int(labels.max(initial=0)) <= _MAX_ID_16_BIT
+    path = Path(folder) / ("wall.png" if narrow else "wall.tif")
+    write_labels(labels, path)
+    return path
+
+
+def write_labels(labels: Labels, path: str | Path) -> None:
+    """Write a label image: 16-bit PNG, or 32-bit TIFF when the path ends in .tif or .tiff.
+
+    Raises
+    ------
+    UsageError
+        E139: another ending, or an id above 65535 in a PNG.
+    PlanError
+        E206: the file cannot be written.
+    """
+    path, buffer = Path(path), io.BytesIO()
+    suffix = path.suffix.lower()
+    if suffix in (".tif", ".tiff"):
         wide = labels.astype(np.uint32)
         tifffile.imwrite(buffer, wide, photometric="minisblack", compression="zlib", metadata=None)
+    elif suffix == ".png" and int(labels.max(initial=0)) <= _MAX_ID_16_BIT:
+        Image.fromarray(labels.astype(np.uint16)).save(buffer, format="PNG")
+    else:
+        raise UsageError(
+            "E139",
+            "label images are written as .png (ids to 65535) or .tif (any id).",
+            where=str(path),
+            cure="Choose another ending.",
+        )
     write_atomically(path, buffer.getvalue())
-    return path
 
 
 def read_wall_image(

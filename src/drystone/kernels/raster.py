@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 Mask = NDArray[np.bool_]
 
@@ -78,35 +79,106 @@ def rasterise(
 
     Notes
     -----
-    Coverage is counted on k x k sample points a pixel, k = max(4, ceil(1/scale)), so every
-    source pixel is seen.  Nothing is resampled twice.
+    Coverage is counted on k x k sample points a pixel, k the power of two from 4 on that is at
+    least 1/scale, so every source pixel is seen.  Nothing is resampled twice.
 
     Examples
     --------
     >>> rasterise(np.ones((2, 4), bool), (2.0, 1.0), 90.0, 1.0, (0.0, 0.0))[0].shape
     (4, 2)
     """
+    hit, k, x0, y1 = _sampled(mask, centre, angle_deg, scale, phase)
+    turned = _in_one_piece(_counted(hit, k), k * k)
+    rows, cols = np.flatnonzero(turned.any(axis=1)), np.flatnonzero(turned.any(axis=0))
+    cropped = turned[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
+    return np.ascontiguousarray(cropped), x0 + int(cols[0]), y1 - int(rows[-1]) - 1
+
+
+def areas_by_phase(
+    mask: Mask,
+    centre: tuple[float, float],
+    angle_deg: float,
+    scale: float,
+    phase: tuple[float, float],
+) -> NDArray[np.int64]:
+    """Return the area of the rasterised mask at 16 sub-pixel positions, from one sampling.
+
+    Parameters
+    ----------
+    mask, centre, angle_deg, scale, phase
+        As for :func:`rasterise`.
+
+    Returns
+    -------
+    area : (4, 4) int array
+        area[i, j] is the number of pixels covered to a half with the phase j/4 px further right
+        and i/4 px further up.
+    """
+    hit, k, _, _ = _sampled(mask, centre, angle_deg, scale, phase)
+    # A phase further right and up is a grid of pixels further left and down on the same samples.
+    hit = np.pad(hit, k)
+    height, width = hit.shape[0] // k - 1, hit.shape[1] // k - 1
+    area = np.zeros((4, 4), np.int64)
+    for i in range(4):
+        for j in range(4):
+            top, left = i * k // 4, k - j * k // 4
+            view = hit[top : top + height * k, left : left + width * k]
+            area[i, j] = np.count_nonzero(2 * _counted(view, k) >= k * k)
+    return area
+
+
+def _sampled(
+    mask: Mask,
+    centre: tuple[float, float],
+    angle_deg: float,
+    scale: float,
+    phase: tuple[float, float],
+) -> tuple[Mask, int, int, int]:
+    """Sample a turned mask on k x k points a pixel.
+
+    Returns
+    -------
+    hit : (n k, m k) bool array
+        The samples.
+    k, left, top : int
+        Samples a pixel, and the top-left pixel corner of the samples relative to the corner that
+        the phase is measured from.
+    """
     height, width = mask.shape
     cos, sin = rotation(angle_deg)
     corners = np.array([[0, 0], [width, 0], [width, height], [0, height]], float) - centre
     box = turn(corners, angle_deg) * scale + phase
-    x0, y0 = np.floor(box.min(axis=0) + 1e-9).astype(int)
-    x1, y1 = np.ceil(box.max(axis=0) - 1e-9).astype(int)
-    k = max(4, math.ceil(1.0 / scale - 1e-9))
+    x0, y0 = np.floor(box.min(axis=0) + 1e-9).astype(int).tolist()
+    x1, y1 = np.ceil(box.max(axis=0) - 1e-9).astype(int).tolist()
+    # A power of two: sample points are then exact in floats at every phase.
+    k = max(4, 1 << math.ceil(math.log2(1.0 / scale) - 1e-9))
     # Sample points of the result, from its centre, in source px; then turned back.
     sx = (np.arange((x1 - x0) * k) + 0.5) / k + (x0 - phase[0])
     sy = y1 - (np.arange((y1 - y0) * k) + 0.5) / k - phase[1]
     u, v = sx[None, :] / scale, sy[:, None] / scale
-    col = np.floor(cos * u + sin * v + centre[0]).astype(np.intp)
-    row = np.floor(height - (cos * v - sin * u + centre[1])).astype(np.intp)
+    col = np.floor(cos * u + (sin * v + centre[0])).astype(np.int32)
+    row = np.floor(sin * u + (height - centre[1] - cos * v)).astype(np.int32)
     padded = np.zeros((height + 2, width + 2), bool)
     padded[1:-1, 1:-1] = mask
-    hit = padded[np.clip(row + 1, 0, height + 1), np.clip(col + 1, 0, width + 1)]
-    covered = hit.reshape(y1 - y0, k, x1 - x0, k).sum(axis=(1, 3), dtype=np.int32)
-    turned = 2 * covered >= k * k
-    if not turned.any():
-        # Thinner than half a pixel everywhere: keep the best covered pixel, a stone never vanishes.
-        turned = covered == covered.max()
-    rows, cols = np.flatnonzero(turned.any(axis=1)), np.flatnonzero(turned.any(axis=0))
-    cropped = turned[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
-    return np.ascontiguousarray(cropped), int(x0 + cols[0]), int(y1 - rows[-1] - 1)
+    np.clip(row, -1, height, out=row)
+    np.clip(col, -1, width, out=col)
+    return padded[row + 1, col + 1], k, x0, y1
+
+
+def _counted(hit: Mask, k: int) -> NDArray[np.int64]:
+    """Return how many of the k x k samples of each pixel are hit."""
+    height, width = hit.shape[0] // k, hit.shape[1] // k
+    rows = hit.reshape(height, k, width * k).sum(axis=1, dtype=np.int64)
+    return np.asarray(rows.reshape(height, width, k).sum(axis=2))
+
+
+def _in_one_piece(covered: NDArray[np.int64], full: int) -> Mask:
+    """Return the pixels covered to a half, or to less where a thin neck would break otherwise.
+
+    A stone neither vanishes nor falls apart at a coarse resolution.
+    """
+    for share in (2, 4):
+        turned = share * covered >= full
+        if ndimage.label(turned, np.ones((3, 3)))[1] == 1:
+            return turned
+    return np.asarray(covered > 0)

@@ -38,10 +38,10 @@ class PlacementSettings:
     beta: float = 0.7
     tries: int = 1
     compare: bool = False
-    height_weight: float = 2.0
-    void_weight: float = 1.0
-    gap_weight: float = 0.5
-    end_weight: float = 0.3
+    height_weight: float = 1.6
+    void_weight: float = 0.5
+    gap_weight: float = 0.7
+    end_weight: float = 0.25
 
     def __post_init__(self) -> None:
         if self.rule not in ("eq12", "lowest", "snug"):

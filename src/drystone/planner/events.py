@@ -1,6 +1,5 @@
 """What the planner tells while it works."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -45,4 +44,31 @@ class Stopped:
     text: str
 
 
-StepCallback = Callable[[Step], None]
+@dataclass(frozen=True)
+class Round:
+    """What a round of rework came to (:mod:`drystone.planner.rework`).
+
+    Parameters
+    ----------
+    number, rounds : int
+        Of how many.
+    stones : int
+        Placed in the best wall so far.
+    merit : float
+        Of the best wall so far.
+    """
+
+    number: int
+    rounds: int
+    stones: int
+    merit: float
+
+
+class Callbacks:
+    """Told of everything the planner does; does nothing.  Subclass it to follow along."""
+
+    def on_step(self, step: Step) -> None:
+        """Follow the first pass: an action was chosen."""
+
+    def on_round(self, round_: Round) -> None:
+        """Follow the rework: a round is over."""

@@ -1,11 +1,12 @@
 """From stones to a finished plan in one call."""
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 
@@ -15,8 +16,9 @@ from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame, assemble_plan, plan_metrics
-from drystone.planner.events import StepCallback, Stopped
+from drystone.planner.events import Callbacks, Round, Stopped
 from drystone.planner.planner import Planner
+from drystone.planner.rework import rework
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import LateralResistance
@@ -86,7 +88,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     px_per_m: float | None = None,
     n_jobs: int = 1,
     executor: Executor | None = None,
-    callbacks: Sequence[StepCallback] = (),
+    callbacks: Callbacks | None = None,
     built: Wall | None = None,
     course_heights_px: Mapping[int, float] | None = None,
 ) -> PlanResult:
@@ -112,8 +114,8 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         Threads that evaluate candidates; never changes the result.
     executor : concurrent.futures.Executor, optional
         Used instead of `n_jobs` threads; must share memory, such as a thread pool.
-    callbacks : sequence of callables
-        Called with every step.
+    callbacks : Callbacks, optional
+        Told of every step and every round of rework.
     built, course_heights_px : Wall and mapping, optional
         What is built already, to go on from (:meth:`Planner.restore`).
 
@@ -149,35 +151,53 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         )
         if built is not None:
             planner.restore(built, course_heights_px or {})
-        stopped = run_to_end(planner)
+        planner, stopped = run_to_end(planner)
     seconds = time.perf_counter() - started
-    return finish(planner, frame, stopped, method, seconds)
+    provenance = {
+        "version": version("drystone"),
+        "method": method,
+        "seed": seed,
+        "settings": settings.as_dict(),
+    }
+    return finish(planner, frame, stopped, provenance, seconds)
 
 
-def run_to_end(planner: Planner) -> Stopped:
-    """Take all steps; an interrupt ends construction and keeps what is built."""
+def run_to_end(planner: Planner) -> tuple[Planner, Stopped]:
+    """Take all steps and all rounds of rework; an interrupt keeps the best so far.
+
+    Returns
+    -------
+    planner : Planner
+        The one that built the best wall.
+    stopped : Stopped
+        Why construction ended.
+    """
+    best = planner
+    rounds = planner.settings.rework.rounds
     try:
         for _ in planner.steps():
             pass
+        for number, incumbent in enumerate(rework(planner)):
+            best = incumbent.planner
+            stones = len(best.build.actions)
+            planner.callbacks.on_round(Round(number, rounds, stones, incumbent.merit))
     except KeyboardInterrupt:
-        return Stopped("interrupted", "interrupted")
-    assert planner.stopped is not None  # noqa: S101 - steps() ended by itself
-    return planner.stopped
+        return best, Stopped("interrupted", "interrupted")
+    assert best.stopped is not None  # noqa: S101 - steps() ended by itself
+    return best, best.stopped
 
 
 def finish(
-    planner: Planner, frame: Frame, stopped: Stopped, method: str, seconds: float
+    planner: Planner,
+    frame: Frame,
+    stopped: Stopped,
+    provenance: Mapping[str, Any],
+    seconds: float,
 ) -> PlanResult:
     """Judge what a planner has built and write the plan."""
     build = planner.build
     resistance = lateral_resistance(build.model, mechanism=True)
     metrics = plan_metrics(build, frame, resistance)
-    provenance = {
-        "version": version("drystone"),
-        "method": method,
-        "seed": planner.seed,
-        "settings": planner.settings.as_dict(),
-    }
     plan = assemble_plan(planner.workshop, frame, build, stopped, metrics, provenance)
     status = "complete"
     if stopped.reason == "interrupted":

@@ -1,6 +1,6 @@
 """The stone stacking algorithm (Algorithm 1)."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor
 
 import numpy as np
@@ -11,7 +11,7 @@ from drystone.model.wall import Wall
 from drystone.planner.attempt import Attempt
 from drystone.planner.build import Build, Proposal
 from drystone.planner.evaluate import Evaluator
-from drystone.planner.events import Step, StepCallback, Stopped
+from drystone.planner.events import Callbacks, Step, Stopped
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.stabilise.stabilise import Stabilised
@@ -35,8 +35,8 @@ class Planner:
     executor : concurrent.futures.Executor, optional
         Evaluates candidates; must share memory, such as a thread pool.  The result does not
         depend on it.
-    callbacks : sequence of callables
-        Called with every :class:`Step`.
+    callbacks : Callbacks, optional
+        Told of every :class:`Step`.
     workshop : Workshop, optional
         The same stones and site, prepared before.
 
@@ -58,7 +58,7 @@ class Planner:
         seed: int = 0,
         settings: PlannerSettings | None = None,
         executor: Executor | None = None,
-        callbacks: Sequence[StepCallback] = (),
+        callbacks: Callbacks | None = None,
         workshop: Workshop | None = None,
     ) -> None:
         self.seed = seed
@@ -67,7 +67,7 @@ class Planner:
         self.executor = executor
         self.build = Build(Wall.empty(site), RigidBlockModel((), (), self.settings.mu))
         self.stopped: Stopped | None = None
-        self._callbacks = tuple(callbacks)
+        self.callbacks = callbacks or Callbacks()
 
     def steps(self) -> Iterator[Step]:
         """Place stone after stone (Algorithm 1), yielding each step as it is decided.
@@ -87,8 +87,7 @@ class Planner:
             self.build = self.build.add(action)  # lines 18-22
             step = Step(len(self.build.actions), action, self.build, attempt.candidates)
             attempt, failures = self._attempt(), 0
-            for callback in self._callbacks:
-                callback(step)
+            self.callbacks.on_step(step)
             yield step
         self.stopped = stopped
 

@@ -6,7 +6,7 @@ again with other weights, and the better wall is kept.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -36,29 +36,6 @@ class Incumbent:
     planner: Planner
     states: tuple[Build, ...]
     merit: float
-
-
-@dataclass(frozen=True)
-class Round:
-    """What a round of rework came to.
-
-    Parameters
-    ----------
-    number, rounds : int
-        Of how many.
-    stones : int
-        Placed in the best wall.
-    merit : float
-        Of the best wall.
-    """
-
-    number: int
-    rounds: int
-    stones: int
-    merit: float
-
-
-RoundCallback = Callable[[Round], None]
 
 
 def rework(planner: Planner) -> Iterator[Incumbent]:

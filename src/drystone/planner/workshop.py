@@ -59,6 +59,7 @@ class Workshop:
         poses = {s.id: _fitting_poses(s, site, book, settings.orientations) for s in stones}
         if not settings.skip_too_large:
             _refuse_too_large(poses, site)
+        _leave_ids_for_wedges(stones)
         initial = {s.id: book.pose(s, book.initial_angle(s)) for s in stones}
         return cls(
             stones,
@@ -88,6 +89,18 @@ def _fitting_poses(
         for posed in book.orientations(stone, orientations)
         if posed.width_px <= site.width_px and posed.height_px <= site.height_px
     )
+
+
+def _leave_ids_for_wedges(stones: StoneSet) -> None:
+    """Raise UsageError (E137) when ids of 32 bits would run out: each stone may get two wedges."""
+    largest = max(stone.id for stone in stones)
+    if largest + 2 * len(stones) >= 2**32:
+        raise UsageError(
+            "E137",
+            f"stone {largest} leaves no ids for wedges, which are numbered after the largest id.",
+            where=stones.source.path,
+            cure="Renumber the stones with smaller ids.",
+        )
 
 
 def _refuse_too_large(poses: dict[int, tuple[PosedStone, ...]], site: Site) -> None:

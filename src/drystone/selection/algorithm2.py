@@ -104,7 +104,7 @@ def select_action(
     best = min(
         pool,
         key=lambda k: (
-            -weighted_sum(actions[k], settings, used),
+            -round(weighted_sum(actions[k], settings, used), 12),
             actions[k].stone_id,
             actions[k].angle_deg,
         ),

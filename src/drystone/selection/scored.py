@@ -67,17 +67,17 @@ class ScoreSettings:
         How many of the cheapest actions that stand are compared by LLC.
     """
 
-    height: float = 1.0
-    void: float = 1.0
+    height: float = 1.4
+    void: float = 1.2
     gap: float = 1.0
-    slot: float = 1.0
+    slot: float = 1.5
     headroom: float = 1.0
     step: float = 0.5
-    roughness: float = 0.5
-    upright: float = 0.3
-    joint: float = 0.1
-    area: float = 0.5
-    llc: float = 0.5
+    roughness: float = 0.4
+    upright: float = 0.7
+    joint: float = 0.15
+    area: float = 1.8
+    llc: float = 1.3
     analysed: int = 4
 
     def __post_init__(self) -> None:

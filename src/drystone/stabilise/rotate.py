@@ -102,7 +102,7 @@ def _turn_about(
             return None
         falls = _falls(new, pose, settings)
         pivot_x = new.left_x if side < 0 else new.right_x
-        if falls != side or abs(pivot_x - x_a) > settings.max_shift_px:
+        if falls != side or abs(pivot_x - x_a) > settings.new_pivot_px:
             return pose
     return None
 

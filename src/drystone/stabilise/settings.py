@@ -23,6 +23,8 @@ class StabiliseSettings:
         Largest total turn away from the trial pose.
     max_pivots : int
         How many points a stone may turn about, one after the other.
+    new_pivot_px : int
+        How far, working px, the end of the support must move to be a new point A.
     max_shift_px : int
         How far a turned stone may be moved up or down, working px, to rest on pixels again.
     min_wedge_px : int
@@ -36,6 +38,7 @@ class StabiliseSettings:
     step_deg: float = 1.0
     max_turn_deg: float = 15.0
     max_pivots: int = 4
+    new_pivot_px: int = 3
     max_shift_px: int = 3
     min_wedge_px: int = 2
     max_wedge_height: float = 0.5
@@ -47,5 +50,9 @@ class StabiliseSettings:
             raise ValueError("margin must be in [0, 0.5)")
         if self.step_deg <= 0 or self.max_turn_deg < 0 or self.max_pivots < 0:
             raise ValueError("rotation step must be positive, limits not negative")
-        if self.max_shift_px < 0 or self.min_wedge_px < 1 or self.max_wedge_height <= 0:
+        if (
+            min(self.max_shift_px, self.new_pivot_px) < 0
+            or self.min_wedge_px < 1
+            or self.max_wedge_height <= 0
+        ):
             raise ValueError("limits of shifts and wedges must be positive")

@@ -56,14 +56,15 @@ def wedge_under(
         return None
     x = col + np.arange(posed.width_px)
     useful = x + 1 >= x_c + margin if side > 0 else x <= x_c - margin
-    useful &= x >= support.right_x if side > 0 else x < support.left_x
     gap = free_below(occupied, posed.bottom, row, col)
     largest = max(settings.min_wedge_px, settings.max_wedge_height * mean_height_px)
     fits = useful & (gap >= settings.min_wedge_px) & (gap <= largest)
     run = _touching_run(gap, fits, settings.min_wedge_px)
     if run is None:
         return None
-    return _fill(pose, gap, run, wedge_id)
+    wedge = _fill(pose, gap, run, wedge_id)
+    # Between sloping faces a wedge may be higher than each of its columns.
+    return wedge if wedge is not None and wedge.mask.shape[0] <= largest else None
 
 
 def _touching_run(gap: NDArray[np.intp], fits: Mask, min_width_px: int) -> tuple[int, int] | None:

@@ -10,7 +10,7 @@ from drystone.io.plan_json import read_plan
 from drystone.io.read_stones import read_stones
 from drystone.io.wall_image import read_wall_image
 from drystone.model.plan import Plan
-from drystone.verify import check_plan
+from drystone.verify.check import check_plan
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
