@@ -54,3 +54,9 @@ def test_boundary_stones_are_nearer_to_an_end_than_the_narrowest_is_wide(
     left: int, right: int, expected: bool
 ) -> None:
     assert is_boundary(EMPTY, Box(left, right, 0, 3), narrowest_px=5) is expected
+
+
+def test_a_peak_exactly_at_the_centroid_slopes_to_neither_side() -> None:
+    pyramid = np.array([[0, 0, 1, 0, 0], [0, 1, 1, 1, 0], [1, 1, 1, 1, 1]], bool)
+    posed = PosedStone(Stone(1, pyramid), 0.0, 1.0, pyramid, (2.5, 1.0))
+    assert inward_slope(EMPTY, posed, 0) == 0.0

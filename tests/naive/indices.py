@@ -105,11 +105,13 @@ def inward_slope(stone: Mask, x_c: float) -> float:
         if stone[:, col].any()
     }
     left = {x: y for x, y in tops.items() if x <= x_c}
-    right = {x: y for x, y in tops.items() if x > x_c}
+    right = {x: y for x, y in tops.items() if x >= x_c}
     if not left or not right:
         return 0.0
     x_l = min(x for x, y in left.items() if y == max(left.values()))
     x_r = max(x for x, y in right.items() if y == max(right.values()))
+    if x_l == x_r:
+        return 0.0
     slope = (left[x_l] - right[x_r]) / (x_l - x_r)
     sign = (x_c > width / 2) - (x_c < width / 2)
     return max(-1.0, min(1.0, float(slope * sign)))

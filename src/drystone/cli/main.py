@@ -1,11 +1,12 @@
 """Entry point: parse, dispatch, and turn errors into exit codes."""
 
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
 
 from drystone.cli.parser import build_parser
-from drystone.errors import DrystoneError, ExitCode
+from drystone.errors import DrystoneError, ExitCode, InputError
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -17,16 +18,42 @@ def main(argv: Sequence[str] | None = None) -> int:
     # Commands are imported when they are called: --help must not wait for NumPy.
     command = import_module(f"drystone.cli.commands.{arguments.command}")
     try:
-        return int(command.run(arguments))
-    except DrystoneError as error:
-        if arguments.debug:
-            raise
-        print(f"drystone: {error}", file=sys.stderr)
-        return int(error.exit_code)
+        code = int(command.run(arguments))
+        # A reader that went away is noticed here and not when the interpreter ends.
+        sys.stdout.flush()
+    except BrokenPipeError:
+        return _leave_pipe()
     except KeyboardInterrupt:
         print("drystone: interrupted", file=sys.stderr)
         return int(ExitCode.INTERRUPTED)
-    except BrokenPipeError:
-        # The reader of our output went away, as in `drystone stones X | head`.
-        sys.stderr.close()
-        return int(ExitCode.DONE)
+    except (DrystoneError, OSError, MemoryError) as error:
+        if arguments.debug:
+            raise
+        coded = _coded(error)
+        print(f"drystone: {coded}", file=sys.stderr)
+        return int(coded.exit_code)
+    return code
+
+
+def _coded(error: DrystoneError | OSError | MemoryError) -> DrystoneError:
+    """Return an error with a code; what the system refuses has none of its own."""
+    if isinstance(error, DrystoneError):
+        return error
+    if isinstance(error, MemoryError):
+        return InputError(
+            "E142", "the memory is not large enough.", cure="Use a smaller --scale or wall."
+        )
+    return InputError(
+        "E141",
+        f"the system refuses this: {error.strerror or error}.",
+        where=str(error.filename or ""),
+        cure="Check the path, your right to write there, and the space that is left.",
+    )
+
+
+def _leave_pipe() -> int:
+    """Throw the rest of the output away: its reader is gone, as in `drystone stones X | head`."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)
+    return int(ExitCode.DONE)

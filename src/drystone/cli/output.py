@@ -1,29 +1,53 @@
-"""Folders, tables and JSON on the way out."""
+"""Folders, files, tables and JSON on the way out."""
 
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-from rich.table import Table
-
 from drystone.errors import UsageError
+
+_PICTURES = (".png", ".pdf", ".svg")
 
 
 def prepare_folder(path: Path, *, overwrite: bool) -> Path:
     """Make a folder to write into; refuse one that has files, unless told otherwise (E129)."""
-    if path.exists() and not path.is_dir():
-        raise UsageError("E129", "is a file, not a folder.", where=str(path))
-    if path.is_dir() and any(path.iterdir()) and not overwrite:
+    _make_folder(path)
+    if any(path.iterdir()) and not overwrite:
         raise UsageError(
             "E129",
             "the folder is not empty.",
             where=str(path),
-            cure="Choose another with -o, or add --overwrite; nothing in it is ever deleted.",
+            cure="Choose another with -o, or add --overwrite; nothing else in it is touched.",
         )
-    path.mkdir(parents=True, exist_ok=True)
     return path
+
+
+def prepare_files(paths: Sequence[Path], *, overwrite: bool) -> None:
+    """Make room for files, with the folders they go into; refuse to replace one (E129)."""
+    for path in paths:
+        if path.is_dir():
+            raise UsageError("E129", "is a folder, not a file.", where=str(path))
+        if path.exists() and not overwrite:
+            raise UsageError(
+                "E129",
+                "exists already.",
+                where=str(path),
+                cure="Choose another with -o, or add --overwrite to replace it.",
+            )
+        _make_folder(path.parent)
+
+
+def prepare_picture(path: Path, *, overwrite: bool) -> None:
+    """Make room for a picture; refuse an ending that is no format (E139)."""
+    if path.suffix.lower() not in _PICTURES:
+        raise UsageError(
+            "E139",
+            f"pictures are written as {', '.join(_PICTURES)}.",
+            where=str(path),
+            cure="Choose another ending.",
+        )
+    prepare_files([path], overwrite=overwrite)
 
 
 def print_json(value: Mapping[str, Any]) -> None:
@@ -33,14 +57,19 @@ def print_json(value: Mapping[str, Any]) -> None:
 
 def print_table(title: str, rows: Sequence[tuple[str, str]]) -> None:
     """Print names and values, one a line."""
-    table = Table(title=title, title_justify="left", show_header=False, box=None, pad_edge=False)
-    table.add_column(style="bold")
-    table.add_column()
+    width = max(len(name) for name, _ in rows)
+    print(title)
     for name, value in rows:
-        table.add_row(name, value)
-    Console(highlight=False, width=100).print(table)
+        print(f"{name:<{width}}  {value}")
 
 
 def number(value: float | None, digits: int = 3) -> str:
     """Write a number, or that there is none."""
     return "not defined" if value is None else f"{value:.{digits}f}"
+
+
+def _make_folder(path: Path) -> None:
+    for place in (path, *path.parents):
+        if place.exists() and not place.is_dir():
+            raise UsageError("E129", "is a file, not a folder.", where=str(place))
+    path.mkdir(parents=True, exist_ok=True)

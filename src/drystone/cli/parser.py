@@ -1,12 +1,16 @@
 """Commands and options."""
 
 import argparse
+import math
 from collections.abc import Callable
+from typing import NoReturn
+
+from drystone.errors import ExitCode
 
 
 def build_parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="drystone",
         description="Plans dry-stone walls from images of found stones.",
         epilog="drystone COMMAND --help explains a command. Start with: drystone demo",
@@ -18,6 +22,51 @@ def build_parser() -> argparse.ArgumentParser:
         command.add_argument("--debug", action="store_true", help="show the traceback of an error")
         add(command)
     return parser
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, with a code (E138), and where help is."""
+
+    def error(self, message: str) -> NoReturn:
+        """End the program: the options cannot be understood."""
+        self.exit(
+            int(ExitCode.USAGE), f"drystone: E138 {message}. `{self.prog} --help` explains.\n"
+        )
+
+
+def _seed(text: str) -> int:
+    return _at_least(text, 0)
+
+
+def _count(text: str) -> int:
+    return _at_least(text, 1)
+
+
+def _at_least(text: str, smallest: int) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = smallest - 1
+    if value < smallest:
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number from {smallest} on")
+    return value
+
+
+def _positive(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number above 0")
+    return value
+
+
+def _share(text: str) -> float:
+    value = _positive(text)
+    if value > 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is above 1")
+    return value
 
 
 class _Version(argparse.Action):
@@ -62,11 +111,11 @@ def _planning(command: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--settings", metavar="FILE.toml", help="parameters that replace the method's"
     )
-    group.add_argument("--seed", type=int, default=0, help="of the random choices (default 0)")
+    group.add_argument("--seed", type=_seed, default=0, help="of the random choices (default 0)")
     group.add_argument(
-        "--scale", type=float, metavar="S", help="plan on images reduced by S, 0 to 1"
+        "--scale", type=_share, metavar="S", help="plan on images reduced by S, 0 to 1"
     )
-    group.add_argument("--px-per-m", type=float, metavar="N", help="source px in a metre")
+    group.add_argument("--px-per-m", type=_positive, metavar="N", help="source px in a metre")
     group.add_argument("--sampling", choices=["variant", "uniform", "twofold", "full"])
     group.add_argument("--placement", choices=["snug", "eq12", "lowest"])
     group.add_argument("--reach", choices=["any", "above"], help="where a stone may be inserted")
@@ -88,7 +137,9 @@ def _planning(command: argparse.ArgumentParser) -> None:
         "--skip-too-large", action="store_true", default=None,
         help="leave out stones that fit into the wall in no orientation",
     )  # fmt: skip
-    group.add_argument("--jobs", type=int, default=1, metavar="N", help="threads; never the result")
+    group.add_argument(
+        "--jobs", type=_count, default=1, metavar="N", help="threads; never the result"
+    )
 
 
 def _writing(command: argparse.ArgumentParser) -> None:
@@ -100,29 +151,37 @@ def _writing(command: argparse.ArgumentParser) -> None:
     group.add_argument("--quiet", action="store_true", help="no progress")
 
 
+def _overwriting(command: argparse.ArgumentParser, text: str) -> None:
+    command.add_argument("--overwrite", action="store_true", help=text)
+
+
 def _stones(command: argparse.ArgumentParser) -> None:
     command.add_argument("stones", metavar="STONES", help="label image, mask, folder of masks, NPY")
     command.add_argument("-o", "--output", metavar="PICTURE.png", help="draw the stones")
+    _overwriting(command, "replace the picture")
     command.add_argument("--json", action="store_true", help="print as JSON")
 
 
 def _wall_input(command: argparse.ArgumentParser) -> None:
-    command.add_argument("wall_path", metavar="WALL", help="label image or plan.json")
+    command.add_argument(
+        "wall_path", metavar="WALL", help="label image, plan.json, or block model (JSON)"
+    )
     command.add_argument("--json", action="store_true", help="print as JSON")
     command.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
     command.add_argument("-o", "--output", metavar="DIR", help="draw pictures into a folder")
+    _overwriting(command, "replace pictures of the same names")
 
 
 def _measure(command: argparse.ArgumentParser) -> None:
     _wall_input(command)
     command.add_argument("--wall", metavar="WxH", help="wall that was to be built, px of the image")
     command.add_argument(
-        "--scale", type=float, default=1.0, metavar="S", help="reduce the image by S first"
+        "--scale", type=_share, default=1.0, metavar="S", help="reduce the image by S first"
     )
 
 
 def _check(command: argparse.ArgumentParser) -> None:
-    command.add_argument("plan", metavar="PLAN.json", help="plan to verify")
+    command.add_argument("plan", metavar="PLAN.json", help="plan to verify, or its folder")
     command.add_argument("--stones", metavar="STONES", help="what the plan was made from")
     command.add_argument("--json", action="store_true", help="print as JSON")
 
@@ -130,9 +189,9 @@ def _check(command: argparse.ArgumentParser) -> None:
 def _generate(command: argparse.ArgumentParser) -> None:
     command.add_argument("kind", choices=["fourier", "polygon", "brick", "rubble"])
     command.add_argument("-o", "--output", required=True, metavar="STONES.png")
-    command.add_argument("--count", type=int, default=None, help="number of stones")
-    command.add_argument("--seed", type=int, default=0)
-    command.add_argument("--overwrite", action="store_true", help="replace the file")
+    command.add_argument("--count", type=_count, default=None, help="number of stones")
+    command.add_argument("--seed", type=_seed, default=0)
+    _overwriting(command, "replace the file")
     command.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
         help="a parameter of the generator, such as noise=0.4 or D2=0.2 (see the docs)",

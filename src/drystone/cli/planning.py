@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import tomli_w
 
 from drystone.cli.output import number, prepare_folder, print_json, print_table
@@ -15,7 +16,7 @@ from drystone.io.plan_json import read_plan, write_plan
 from drystone.io.wall_image import write_wall_image
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
-from drystone.planner.plan_wall import PlanResult, plan_wall
+from drystone.planner.plan_wall import PlanResult, plan_wall, working_scale
 from drystone.planner.settings import PlannerSettings
 from drystone.verify.replay import rebuild_wall
 
@@ -32,7 +33,7 @@ def plan_and_write(
     """Plan a wall of given size in source px, write all files, print the summary."""
     folder = Path(arguments.output)
     settings = settings_from(arguments)
-    partial = _partial_plan(folder, arguments, settings)
+    partial = _partial_plan(folder, stones, wall, arguments, settings)
     prepare_folder(folder, overwrite=arguments.overwrite or partial is not None)
     with step_bar(len(stones), quiet=arguments.quiet or arguments.json) as callbacks:
         result = plan_wall(
@@ -60,7 +61,10 @@ def write_result(result: PlanResult, stones: StoneSet, folder: Path) -> None:
     """Write plan.json, settings.toml, wall.png, the pictures and the report."""
     write_plan(result.plan, folder / "plan.json")
     (folder / "settings.toml").write_bytes(tomli_w.dumps(dict(result.plan.settings)).encode())
-    write_wall_image(result.wall.labels, folder)
+    written = write_wall_image(result.wall.labels, folder)
+    for name in {"wall.png", "wall.tif"} - {written.name}:
+        # One that an earlier run left would belong to another wall.
+        (folder / name).unlink(missing_ok=True)
     # Drawing loads matplotlib, which takes as long as a small plan.
     from drystone.plotting import wall_outlines, write_pictures  # noqa: PLC0415
     from drystone.report import write_report  # noqa: PLC0415
@@ -77,19 +81,35 @@ def write_result(result: PlanResult, stones: StoneSet, folder: Path) -> None:
 
 
 def _partial_plan(
-    folder: Path, arguments: argparse.Namespace, settings: PlannerSettings
+    folder: Path,
+    stones: StoneSet,
+    wall: tuple[float, float],
+    arguments: argparse.Namespace,
+    settings: PlannerSettings,
 ) -> Plan | None:
-    """Return the plan to go on from; refuse one made with other settings (E136)."""
+    """Return the plan to go on from; refuse one that was made of or for something else (E136)."""
     path = folder / "plan.json"
     if not getattr(arguments, "resume", False) or not path.exists():
         return None
     plan = read_plan(path)
-    if dict(plan.settings) != settings.as_dict() or plan.seed != arguments.seed:
+    px_per_m = arguments.px_per_m or 1.0
+    scale = arguments.scale or working_scale(stones)
+    equal = {
+        "stones": plan.source["sha256"] == stones.source.sha256,
+        "--wall": np.allclose((plan.width * px_per_m, plan.height * px_per_m), wall, atol=1e-6),
+        "--px-per-m": plan.px_per_m == arguments.px_per_m,
+        "--scale": plan.working_scale == scale,
+        "--seed": plan.seed == arguments.seed,
+        "--method": plan.method == arguments.method,
+        "settings": dict(plan.settings) == settings.as_dict(),
+    }
+    different = [name for name, same in equal.items() if not same]
+    if different:
         raise UsageError(
             "E136",
-            "the partial plan was made with other settings or another seed.",
+            f"the partial plan was made with other {', '.join(different)}.",
             where=str(path),
-            cure=f"Give --seed {plan.seed} and --settings with the settings.toml from there.",
+            cure="Give the same command again with --resume added, or plan into another folder.",
         )
     print(f"drystone: going on after {len(plan.stone_steps)} stones", file=sys.stderr)
     return plan

@@ -49,14 +49,15 @@ def step_bar(stones: int, *, quiet: bool) -> Iterator[Callbacks]:
     stones : int
         How many there are.
     quiet : bool
-        Show nothing.
+        Show nothing; nothing is shown either when stderr is no terminal.
 
     Yields
     ------
     callbacks : Callbacks
         For the planner.
     """
-    if quiet:
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
         yield Callbacks()
         return
     bar = Progress(
@@ -66,7 +67,7 @@ def step_bar(stones: int, *, quiet: bool) -> Iterator[Callbacks]:
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),
-        console=Console(stderr=True),
+        console=console,
         transient=True,
     )
     with bar:

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from drystone.errors import InputError, Notice
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
@@ -12,7 +14,7 @@ from drystone.model.plan import Plan
 from drystone.model.wall import Labels
 from drystone.statics.blocks import model_from_labels
 from drystone.statics.given import model_from_json
-from drystone.statics.model import RigidBlockModel
+from drystone.statics.model import GROUND, RigidBlockModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,22 +54,77 @@ class GivenWall:
 
 def read_wall(path: Path) -> GivenWall:
     """Read a label image, a plan.json (with the wall image beside it), or a block model."""
+    if path.is_dir():
+        path /= "plan.json"
     if path.suffix.lower() != ".json":
         return GivenWall(read_wall_image(path))
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise InputError("E132", f"cannot be read as JSON: {error}.", where=str(path)) from None
+    content = _read_json(path)
     if isinstance(content, dict) and ("blocks" in content or "blocks_xywh" in content):
         return GivenWall(None, blocks=content)
     plan = read_plan(path)
-    images = [path.parent / name for name in ("wall.png", "wall.tif")]
-    image = next((image for image in images if image.exists()), None)
-    if image is None:
+    labels = read_image_of(plan, path.parent)
+    if labels is None:
         raise InputError(
             "E133",
-            "there is no wall.png beside the plan.",
+            f"there is no {image_name(plan)} beside the plan.",
             where=str(path),
             cure="Keep the files of a plan together, or give the label image itself.",
         )
-    return GivenWall(read_wall_image(image), plan)
+    if set(np.unique(labels).tolist()) - {0} != set(_ids(plan)):
+        raise InputError(
+            "E133",
+            f"the {image_name(plan)} beside the plan shows other stones than the plan.",
+            where=str(path),
+            cure="Keep the files of a plan together, or give the label image itself.",
+        )
+    return GivenWall(labels, plan)
+
+
+def image_name(plan: Plan) -> str:
+    """Return the name of the wall image that is written with a plan (DESIGN 2)."""
+    return "wall.png" if max(_ids(plan), default=0) <= 65535 else "wall.tif"
+
+
+def read_image_of(plan: Plan, folder: Path) -> Labels | None:
+    """Return the wall image in the folder of a plan; None when it is not there."""
+    path = folder / image_name(plan)
+    return read_wall_image(path) if path.exists() else None
+
+
+def unsupported(model: RigidBlockModel) -> Notice | None:
+    """Name the blocks that no chain of contacts connects with the ground (W302)."""
+    touching: dict[int, set[int]] = {}
+    for interface in model.interfaces:
+        touching.setdefault(interface.block, set()).add(interface.other)
+        touching.setdefault(interface.other, set()).add(interface.block)
+    supports = {GROUND} | {block.id for block in model.blocks if block.fixed}
+    new = set(supports)
+    while new:
+        new = set().union(*(touching.get(block, set()) for block in new)) - supports
+        supports |= new
+    loose = [block.id for block in model.blocks if block.id not in supports]
+    if not loose:
+        return None
+    named = ", ".join(map(str, loose[:8])) + (", …" if len(loose) > 8 else "")
+    return Notice(
+        "W302",
+        f"{len(loose)} of {len(model.blocks)} blocks touch neither the ground nor a block that is "
+        f"connected with it: {named}.",
+        "Only edges that meet bear on each other: close the gaps that are drawn between stones.",
+    )
+
+
+def _ids(plan: Plan) -> list[int]:
+    stones = [step.stone for step in plan.stone_steps]
+    return stones + [step.id for step in plan.wedge_steps]
+
+
+def _read_json(path: Path) -> Any:
+    cure = "Give a label image, the plan.json of a plan, or a block model."
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        what = f"cannot be read ({error.strerror})."
+    except ValueError as error:
+        what = f"is no JSON ({error})."
+    raise InputError("E132", what, where=str(path), cure=cure)

@@ -21,10 +21,10 @@ def inward_slope(landscape: Landscape, posed: PosedStone, col: int) -> float:
     col : int
         Column of the mask's left edge.
     """
-    column = np.arange(posed.width_px)
+    x = np.arange(posed.width_px) + 0.5
     top, x_c = posed.top, posed.anchor[0]
-    # The column that contains the centroid belongs to both halves, as x_c does in Eq. 10.
-    left_half, right_half = top[column < x_c], top[column + 1 > x_c]
+    # A column exactly at the centroid belongs to both halves, as x_c does in Eq. 10.
+    left_half, right_half = top[x <= x_c], top[x >= x_c]
     if not (left_half.size and right_half.size):
         return 0.0
     left = int(np.argmin(left_half))

@@ -95,8 +95,8 @@ class PlanMetrics:
     F_AV: float | None
     F_AH: float | None
     F_LR: float | None
-    T_LEVEL: float
-    E_FLUSH: float
+    T_LEVEL: float | None
+    E_FLUSH: float | None
     alpha_left: float | None
     alpha_right: float | None
     wedge_area: float

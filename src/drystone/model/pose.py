@@ -65,6 +65,11 @@ class PosedStone:
         return np.asarray(np.argmax(self.mask, axis=0))
 
     @cached_property
+    def top_roughness_px(self) -> float:
+        """Mean deviation of the top of the columns from their median height."""
+        return float(np.abs(self.top - np.median(self.top)).mean())
+
+    @cached_property
     def ray_pattern(self) -> RayPattern:
         """What the rays of LFR sweep inside the bounding box (Eq. 4)."""
         return ray_pattern(self.mask)

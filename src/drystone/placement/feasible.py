@@ -51,6 +51,12 @@ def feasible_positions(
     return np.argwhere(free & rests)
 
 
+def can_be_lowered(landscape: Landscape, posed: PosedStone, row: int, col: int) -> bool:
+    """Say whether nothing stands above a place, so that the stone can be lowered in from above."""
+    tops = landscape.skyline[col : col + posed.width_px]
+    return bool(np.all(tops > row + posed.bottom))
+
+
 def _lowered(landscape: Landscape, posed: PosedStone, clearance_px: int) -> Positions:
     skyline = landscape.skyline
     rows = drop_rows(skyline, posed.bottom)

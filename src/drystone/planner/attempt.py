@@ -52,7 +52,7 @@ class Attempt:
         self._workshop = workshop
         self._settings = settings
         self._executor = executor
-        self._evaluator = Evaluator(settings, workshop.book, workshop.stock)
+        self._evaluator = Evaluator(settings, workshop.memory, workshop.stock)
         sides: tuple[Side, ...] = ("left", "right") if settings.two_sided else ("left",)
         self._landscapes = tuple(Landscape.of(build.wall, side) for side in sides)
         self._rest = workshop.rest(build)

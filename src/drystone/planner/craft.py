@@ -1,7 +1,5 @@
 """The craft terms of an action (see :mod:`drystone.selection.scored`)."""
 
-import numpy as np
-
 from drystone.indices.interlocking import interlocking_width_ratio
 from drystone.indices.inward_slope import inward_slope, is_boundary
 from drystone.indices.neighbour_height import left_neighbour
@@ -35,7 +33,6 @@ def action_craft(landscape: Landscape, stabilised: Stabilised, stock: Stock, res
     left, right_width = free_beside(landscape.occupied, posed.mask, row, col)
     neighbour = left_neighbour(landscape, box)
     step = 0.0 if neighbour is None else abs(box.top - neighbour.top) / stock.mean_height_px
-    top = posed.top
     if is_boundary(landscape, box, stock.narrowest_px):
         third = inward_slope(landscape, posed, col)
     else:
@@ -49,7 +46,7 @@ def action_craft(landscape: Landscape, stabilised: Stabilised, stock: Stock, res
         * posed.width_px
         / stock.mean_area_px,
         step=step,
-        roughness=float(np.abs(top - np.median(top)).mean()) / stock.mean_height_px,
+        roughness=posed.top_roughness_px / stock.mean_height_px,
         upright=max(0.0, 1.0 - posed.width_px / posed.height_px),
         joint=1.0 - third,
         area=posed.area_px / stock.mean_area_px,

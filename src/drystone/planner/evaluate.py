@@ -17,13 +17,14 @@ from drystone.model.landscape import Landscape, view_box
 from drystone.model.placement import Placement
 from drystone.model.pose import PosedStone
 from drystone.placement.best import best_spots
+from drystone.placement.feasible import can_be_lowered
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.craft import action_craft
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, Stock
-from drystone.poses import PoseBook
 from drystone.selection.scored import craft_cost
-from drystone.stabilise.stabilise import Stabilised, WedgeStock, stabilise
+from drystone.stabilise.memory import StabiliseMemory
+from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.blocks import model_with
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import LateralResistance
@@ -56,14 +57,14 @@ class Evaluator:
     ----------
     settings : PlannerSettings
         Of the planner.
-    book : PoseBook
-        Turned stones.
+    memory : StabiliseMemory
+        Stabilises stones.
     stock : Stock
         Sizes of the set.
     """
 
     settings: PlannerSettings
-    book: PoseBook
+    memory: StabiliseMemory
     stock: Stock
 
     def propose(self, build: Build, trial: Trial) -> Proposal | None:
@@ -78,15 +79,13 @@ class Evaluator:
         best: Proposal | None = None
         for spot in best_spots(landscape, views, self.settings.placement):
             posed = trial.poses[spot.pose]
-            stabilised = stabilise(
+            stabilised = self.memory.stabilise(
                 build.wall.occupied,
                 (posed, spot.row, landscape.view_col(posed, spot.col)),
                 landscape.side,
-                self.book,
-                WedgeStock(self._next_wedge(build), self.stock.mean_height_px),
-                self.settings.stabilise,
+                self.stock.largest_id + len(build.wall.wedges) + 1,
             )
-            if stabilised is None:
+            if stabilised is None or not self._reached(landscape, stabilised):
                 continue
             proposal = self._proposal(trial, posed.angle_deg, stabilised)
             if not self.settings.placement.compare:
@@ -94,6 +93,14 @@ class Evaluator:
             if best is None or proposal.cost < best.cost - 1e-12:
                 best = proposal
         return best
+
+    def _reached(self, landscape: Landscape, stabilised: Stabilised) -> bool:
+        """Say whether a stone that was turned can still be put where it is."""
+        if self.settings.placement.reach == "any":
+            return True
+        placement = stabilised.placement
+        posed, col = placement.posed, landscape.view_col(placement.posed, placement.col)
+        return can_be_lowered(landscape, landscape.view(posed), placement.row, col)
 
     def judge(self, build: Build, proposal: Proposal) -> Candidate:
         """Return the candidate of a proposal: all indices, with the wall's resistance after it."""
@@ -123,9 +130,6 @@ class Evaluator:
             craft = action_craft(trial.landscape, stabilised, self.stock, trial.rest)
             cost = craft_cost(craft, self.settings.score)
         return Proposal(stabilised, trial_angle_deg, cost=cost)
-
-    def _next_wedge(self, build: Build) -> int:
-        return self.stock.largest_id + len(build.wall.wedges) + 1
 
 
 def action_indices(

@@ -100,7 +100,8 @@ class Planner:
         if self.build.wall.filling > stop.filling:
             return Stopped("filled", f"filling above {stop.filling}")
         if not self.workshop.remaining(self.build):
-            return Stopped("stones", "all stones placed")
+            left = len(self.workshop.stones) - len(self.build.actions)
+            return Stopped("stones", "all stones that fit placed" if left else "all stones placed")
         # There is nothing to resample when all stones were tried.
         if failures >= stop.failures or (failures and self.settings.sampling == "full"):
             return Stopped("failures", "no stone that is left can be placed")
@@ -116,7 +117,7 @@ class Planner:
         course_heights_px : mapping of int to float
             For stones that began a course: the height that Eq. 8 compared with.
         """
-        evaluator = Evaluator(self.settings, self.workshop.book, self.workshop.stock)
+        evaluator = Evaluator(self.settings, self.workshop.memory, self.workshop.stock)
         build = Build(Wall.empty(wall.site), RigidBlockModel((), (), self.settings.mu))
         for group in wall.groups:
             placement = group.placement

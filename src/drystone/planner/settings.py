@@ -55,9 +55,9 @@ class ReworkSettings:
     """
 
     rounds: int = 0
-    deepest: float = 0.5
-    spread: float = 0.4
-    filling: float = 10.0
+    deepest: float = 0.6
+    spread: float = 0.5
+    filling: float = 15.0
     resistance: float = 1.0
     vertical: float = 0.025
     horizontal: float = 0.1
@@ -151,7 +151,7 @@ METHODS: Mapping[str, PlannerSettings] = types.MappingProxyType(
             selection_rule="score",
             placement=PlacementSettings(rule="snug", reach="above", tries=4, compare=True),
             stabilise=StabiliseSettings(margin=0.1),
-            rework=ReworkSettings(rounds=8),
+            rework=ReworkSettings(rounds=12),
         ),
     }
 )

@@ -11,6 +11,7 @@ from drystone.planner.build import Build
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, Stock
 from drystone.poses import PoseBook
+from drystone.stabilise.memory import StabiliseMemory
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +34,8 @@ class Workshop:
         Pose of largest SF of each stone (Eq. 12d).
     stock : Stock
         Sizes of the set.
+    memory : StabiliseMemory
+        Stabilises stones.
     """
 
     stones: StoneSet
@@ -42,6 +45,7 @@ class Workshop:
     poses: dict[int, tuple[PosedStone, ...]]
     initial: dict[int, PosedStone]
     stock: Stock
+    memory: StabiliseMemory
 
     @classmethod
     def prepare(cls, stones: StoneSet, site: Site, settings: PlannerSettings) -> "Workshop":
@@ -61,15 +65,10 @@ class Workshop:
             _refuse_too_large(poses, site)
         _leave_ids_for_wedges(stones)
         initial = {s.id: book.pose(s, book.initial_angle(s)) for s in stones}
-        return cls(
-            stones,
-            site,
-            book,
-            cluster_stones(stones, book, settings.clusters),
-            poses,
-            initial,
-            Stock.of(tuple(initial.values())),
-        )
+        stock = Stock.of(tuple(initial.values()))
+        clusters = cluster_stones(stones, book, settings.clusters)
+        memory = StabiliseMemory(book, stock.mean_height_px, settings.stabilise)
+        return cls(stones, site, book, clusters, poses, initial, stock, memory)
 
     def remaining(self, build: Build) -> tuple[int, ...]:
         """Return the ids of the stones that are left and fit into the wall, Omega_i."""

@@ -72,10 +72,10 @@ class ScoreSettings:
     gap: float = 1.0
     slot: float = 1.5
     headroom: float = 1.0
-    step: float = 0.5
+    step: float = 0.9
     roughness: float = 0.4
     upright: float = 0.7
-    joint: float = 0.15
+    joint: float = 0.4
     area: float = 1.8
     llc: float = 1.3
     analysed: int = 4

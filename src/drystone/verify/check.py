@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from drystone.errors import UsageError
-from drystone.kernels.bits import drop_rows
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, PlanMetrics, WedgeStep
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
+from drystone.placement.feasible import can_be_lowered
 from drystone.planner.settings import PlannerSettings
 from drystone.verify.claims import (
     Reference,
@@ -97,8 +97,8 @@ def check_plan(plan: Plan, stones: StoneSet, *, wall_labels: Labels | None = Non
 def is_buried(stage: Stage) -> bool:
     """Say whether a stone cannot be lowered to its place from straight above."""
     placement = stage.group.placement
-    skyline = Landscape.of(stage.before).skyline
-    return bool(drop_rows(skyline, placement.posed.bottom)[placement.col] < placement.row)
+    before = Landscape.of(stage.before)
+    return not can_be_lowered(before, placement.posed, placement.row, placement.col)
 
 
 def _settings(plan: Plan) -> tuple[PlannerSettings, list[Problem]]:

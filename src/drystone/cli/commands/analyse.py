@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from drystone.cli.output import number, print_json, print_table
-from drystone.cli.walls import GivenWall, read_wall
+from drystone.cli.output import number, prepare_files, print_json, print_table
+from drystone.cli.walls import GivenWall, read_wall, unsupported
 from drystone.errors import ExitCode
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import Direction, LateralResistance, LimitResult, RigidBlockModel
@@ -21,8 +21,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     for notice in notices:
         print(f"drystone: {notice}", file=sys.stderr)
     resistance = lateral_resistance(model, mechanism=True)
+    loose = None if resistance.stable else unsupported(model)
+    if loose is not None:
+        print(f"drystone: {loose}", file=sys.stderr)
     if arguments.output is not None:
-        _draw(wall, resistance, Path(arguments.output))
+        _draw(wall, resistance, Path(arguments.output), overwrite=arguments.overwrite)
     if arguments.json:
         print_json(_report(model, resistance))
         return ExitCode.DONE
@@ -83,15 +86,21 @@ def _report(model: RigidBlockModel, resistance: LateralResistance) -> dict[str, 
     }
 
 
-def _draw(wall: GivenWall, resistance: LateralResistance, folder: Path) -> None:
+def _draw(wall: GivenWall, resistance: LateralResistance, folder: Path, *, overwrite: bool) -> None:
     if wall.labels is None:
         print("drystone: a block model has no image to draw", file=sys.stderr)
         return
     from drystone.plotting import plot_labels, plot_mechanism, save  # noqa: PLC0415 - slow import
+    from drystone.plotting.files import MECHANISMS  # noqa: PLC0415
 
-    folder.mkdir(parents=True, exist_ok=True)
-    save(plot_labels(wall.labels).figure, folder / "wall_picture.png")
-    for direction, result in zip(_DIRECTIONS, _results(resistance), strict=True):
+    picture = folder / "wall_picture.png"
+    mechanisms = [folder / MECHANISMS[direction] for direction in _DIRECTIONS]
+    prepare_files([picture, *mechanisms], overwrite=overwrite)
+    save(plot_labels(wall.labels).figure, picture)
+    for path, result in zip(mechanisms, _results(resistance), strict=True):
         if result.mechanism is not None:
-            axes = plot_mechanism(wall.labels, result.mechanism, direction, result.alpha)
-            save(axes.figure, folder / f"mechanism_{direction}.png")
+            axes = plot_mechanism(wall.labels, result.mechanism, result.direction, result.alpha)
+            save(axes.figure, path)
+        else:
+            # One that an earlier run left would belong to another wall.
+            path.unlink(missing_ok=True)

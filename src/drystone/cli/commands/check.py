@@ -5,10 +5,10 @@ from hashlib import sha256
 from pathlib import Path
 
 from drystone.cli.output import print_json, print_table
+from drystone.cli.walls import read_image_of
 from drystone.errors import ExitCode, PlanError
 from drystone.io.plan_json import read_plan
 from drystone.io.read_stones import read_stones
-from drystone.io.wall_image import read_wall_image
 from drystone.model.plan import Plan
 from drystone.verify.check import check_plan
 
@@ -16,12 +16,12 @@ from drystone.verify.check import check_plan
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print whether the plan holds, and each problem."""
     path = Path(arguments.plan)
+    if path.is_dir():
+        path /= "plan.json"
     plan = read_plan(path)
     source = Path(arguments.stones) if arguments.stones else _find_stones(plan, path.parent)
-    image = next(
-        (p for p in (path.parent / "wall.png", path.parent / "wall.tif") if p.exists()), None
-    )
-    labels = None if image is None else read_wall_image(image)
+    # The image of a plan without stones is no picture of stones.
+    labels = read_image_of(plan, path.parent) if plan.steps else None
     report = check_plan(plan, read_stones(source), wall_labels=labels)
     if arguments.json:
         print_json(report.as_dict())

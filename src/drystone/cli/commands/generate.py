@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from drystone import generate
+from drystone.cli.output import prepare_files
 from drystone.errors import ExitCode, UsageError
 from drystone.io.wall_image import write_labels
 from drystone.model.settings import updated
@@ -24,15 +25,13 @@ _KINDS: dict[str, tuple[type[Any], Any]] = {
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Make stones and write them as one label image."""
     path = Path(arguments.output)
-    if path.exists() and not arguments.overwrite:
-        raise UsageError("E129", "exists.", where=str(path), cure="Add --overwrite to replace it.")
+    prepare_files([path], overwrite=arguments.overwrite)
     settings_type, make = _KINDS[arguments.kind]
     changes = _changes(arguments.changes, settings_type)
     if arguments.count is not None:
         changes["count"] = arguments.count
     settings = updated(settings_type(), changes)
     stones = make(settings, np.random.default_rng(arguments.seed))
-    path.parent.mkdir(parents=True, exist_ok=True)
     write_labels(generate.lay_out(stones), path)
     size = stones.source
     print(f"{len(stones)} stones, {size.width_px} x {size.height_px} px: {path}")

@@ -1,12 +1,13 @@
 """`drystone measure`: the figures of merit of any wall."""
 
 import argparse
+import sys
 from dataclasses import asdict
 from pathlib import Path
 
 from drystone.cli.lengths import parse_wall
-from drystone.cli.output import number, print_json, print_table
-from drystone.cli.walls import GivenWall, read_wall
+from drystone.cli.output import number, prepare_files, print_json, print_table
+from drystone.cli.walls import GivenWall, read_wall, unsupported
 from drystone.errors import ExitCode, UsageError
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
@@ -22,7 +23,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     labels = reduce_labels(wall.labels, arguments.scale) if arguments.scale != 1 else wall.labels
     metrics = _measured(GivenWall(labels, wall.plan), labels, arguments)
     if arguments.output is not None:
-        _draw(labels, Path(arguments.output))
+        _draw(labels, Path(arguments.output), overwrite=arguments.overwrite)
     if arguments.json:
         print_json(asdict(metrics))
         return ExitCode.DONE
@@ -51,24 +52,30 @@ def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) ->
         to_px = wall.plan.working_scale * (wall.plan.px_per_m or 1.0)
         wall_px = (wall.plan.width * to_px, wall.plan.height * to_px)
     model, _ = wall.model(arguments.mu)
+    resistance = lateral_resistance(model)
+    loose = None if resistance.stable else unsupported(model)
+    if loose is not None:
+        print(f"drystone: F_LR is not defined. {loose}", file=sys.stderr)
     return measure_labels(
         labels,
         wall_px=wall_px,
         wedge_ids=wall.wedge_ids,
-        lateral_resistance=lateral_resistance(model).value,
+        lateral_resistance=resistance.value,
     )
 
 
-def _draw(labels: Labels, folder: Path) -> None:
+def _draw(labels: Labels, folder: Path, *, overwrite: bool) -> None:
     from drystone.metrics.frame import frame_wall  # noqa: PLC0415
     from drystone.metrics.joints import joint_mask  # noqa: PLC0415
     from drystone.metrics.paths import horizontal_paths, vertical_paths  # noqa: PLC0415
     from drystone.plotting import plot_joint_paths, save  # noqa: PLC0415 - slow import
 
-    folder.mkdir(parents=True, exist_ok=True)
+    pictures = [folder / f"paths_{name}.png" for name in ("F_AV", "F_AH")]
+    prepare_files(pictures, overwrite=overwrite)
     framed = frame_wall(labels).labels
     joint = joint_mask(framed)
-    for name, found in (("F_AV", vertical_paths(joint)), ("F_AH", horizontal_paths(joint))):
+    both = (vertical_paths(joint), horizontal_paths(joint))
+    for picture, found in zip(pictures, both, strict=True):
         # The joint image has one more row and column of joint around the wall.
         paths = [path.pixels - 1 for path in found[:5]]
-        save(plot_joint_paths(framed, paths).figure, folder / f"paths_{name}.png")
+        save(plot_joint_paths(framed, paths).figure, picture)

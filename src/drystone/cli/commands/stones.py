@@ -4,7 +4,7 @@ import argparse
 import statistics
 from pathlib import Path
 
-from drystone.cli.output import print_json, print_table
+from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode
 from drystone.io.read_stones import read_stones
@@ -13,15 +13,18 @@ from drystone.poses import PoseBook
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print count, sizes, clusters and notices; draw the stones when asked."""
+    picture = None if arguments.output is None else Path(arguments.output)
+    if picture is not None:
+        prepare_picture(picture, overwrite=arguments.overwrite)
     stones = read_stones(Path(arguments.stones))
     clusters = cluster_stones(stones, PoseBook())
     areas = [stone.area_px for stone in stones]
     sizes = [(stone.mask.shape[1], stone.mask.shape[0]) for stone in stones]
     largest = max(stones, key=lambda stone: stone.area_px)
-    if arguments.output is not None:
+    if picture is not None:
         from drystone.plotting import plot_stones, save  # noqa: PLC0415 - matplotlib is slow
 
-        save(plot_stones(stones, clusters).figure, Path(arguments.output))
+        save(plot_stones(stones, clusters).figure, picture)
     if arguments.json:
         print_json(
             {

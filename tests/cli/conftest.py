@@ -1,0 +1,87 @@
+"""Run the command line in process, on small stone sets."""
+
+import json
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from drystone.cli import main
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What a command returned and printed."""
+
+    code: int
+    out: str
+    err: str
+
+    def json(self) -> dict[str, Any]:
+        """The one JSON object on stdout."""
+        value: dict[str, Any] = json.loads(self.out)
+        return value
+
+
+Run = Callable[..., Ran]
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    """Call ``drystone`` with some arguments."""
+
+    def call(*arguments: object) -> Ran:
+        capsys.readouterr()
+        try:
+            code = main([str(argument) for argument in arguments])
+        except SystemExit as stopped:
+            code = int(stopped.code or 0)
+        return Ran(code, *capsys.readouterr())
+
+    return call
+
+
+@pytest.fixture(scope="session")
+def rubble(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Eight stones of two courses for a wall of 100 x 36 px."""
+    path = tmp_path_factory.mktemp("stones") / "rubble.png"
+    sizes = ["width_px=100", "height_px=36", "courses=2"]
+    made = main(
+        ["generate", "rubble", "-o", str(path), "--count", "8"]
+        + [word for size in sizes for word in ("--set", size)]
+    )
+    assert made == 0
+    return path
+
+
+@pytest.fixture(scope="session")
+def bricks(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Six bricks of 20 x 10 px."""
+    path = tmp_path_factory.mktemp("stones") / "bricks.png"
+    sizes = ["--set", "height_px=10", "--set", "aspect=2"]
+    assert main(["generate", "brick", "-o", str(path), "--count", "6", *sizes]) == 0
+    return path
+
+
+WALL = ("--wall", "100x36", "--scale", "1", "--method", "paper")
+"""A wall for the rubble, planned quickly."""
+
+
+@pytest.fixture(scope="session")
+def finished(rubble: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a plan of the rubble; not to be changed."""
+    folder = tmp_path_factory.mktemp("plans") / "finished"
+    assert main(["plan", str(rubble), *WALL, "-o", str(folder), "--seed", "1"]) in (0, 4)
+    return folder
+
+
+@pytest.fixture
+def plan_copy(finished: Path, rubble: Path, tmp_path: Path) -> Path:
+    """A plan in a folder of its own, the stones beside it, to be tampered with."""
+    folder = tmp_path / "copy"
+    shutil.copytree(finished, folder)
+    shutil.copy(rubble, folder)
+    return folder

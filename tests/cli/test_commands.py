@@ -1,0 +1,298 @@
+"""The commands beside `plan`: what they print and write."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from drystone.io.plan_json import read_plan
+from drystone.io.wall_image import read_wall_image, write_labels
+from tests.cli.conftest import Run
+
+
+def _tower(path: Path) -> Path:
+    """A block of 20 x 40 px on the ground: alpha is .5, F_SF 1."""
+    labels = np.zeros((50, 30), np.uint32)
+    labels[10:, 5:25] = 9
+    write_labels(labels, path)
+    return path
+
+
+def test_stones(rubble: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("stones", rubble)
+    assert ran.code == 0
+    assert ran.out.startswith("rubble.png: 8 stones\n")
+    summary = run("stones", rubble, "--json", "-o", tmp_path / "new" / "stones.png").json()
+    assert summary["stones"] == 8
+    assert len(summary["sha256"]) == 64
+    assert set(summary["clusters"]) == {str(stone_id) for stone_id in range(1, 9)}
+    with Image.open(tmp_path / "new" / "stones.png") as picture:
+        assert min(picture.size) > 100
+
+
+def test_stones_never_draws_over_a_file(rubble: Path, tmp_path: Path, run: Run) -> None:
+    mine = tmp_path / "mine.png"
+    shutil.copy(rubble, mine)
+    ran = run("stones", mine, "-o", mine)
+    assert (ran.code, ran.out) == (2, "")
+    assert "E129" in ran.err
+    assert mine.read_bytes() == rubble.read_bytes()
+    assert "E129" in run("stones", mine, "-o", tmp_path / "mine.png" / "x.png").err
+    assert "E139" in run("stones", mine, "-o", tmp_path / "picture.txt").err
+    assert "E139" in run("stones", mine, "-o", tmp_path).err
+    assert run("stones", rubble, "-o", mine, "--overwrite").code == 0
+    assert mine.read_bytes() != rubble.read_bytes()
+
+
+def test_analyse_an_image(tmp_path: Path, run: Run) -> None:
+    tower = _tower(tmp_path / "tower.png")
+    report = run("analyse", tower, "--json").json()
+    assert (report["status_left"], report["status_right"]) == ("optimal", "optimal")
+    assert report["alpha_left"] == pytest.approx(0.5, abs=0.005)
+    assert report["alpha_right"] == pytest.approx(0.5, abs=0.005)
+    assert report["F_LR"] == pytest.approx(0.5 / 0.58, abs=0.01)
+    assert (report["mu"], report["blocks"], report["contacts"]) == (0.58, 1, 2)
+    assert set(report["mechanism"]) == {"left", "right"}
+    slippery = run("analyse", tower, "--json", "--mu", ".3").json()
+    assert slippery["alpha_left"] == pytest.approx(0.3)
+    ran = run("analyse", tower)
+    assert "alpha = 0.5000" in ran.out
+    assert "moving: 9" in ran.out
+
+
+def test_analyse_a_block_model(tmp_path: Path, run: Run) -> None:
+    model = tmp_path / "model.json"
+    model.write_text(json.dumps({"blocks_xywh": [[0, 0, 1, 2]], "mu": 0.7}), encoding="utf-8")
+    report = run("analyse", model, "--json").json()
+    assert report["alpha_left"] == pytest.approx(0.5)
+    assert report["mu"] == 0.7
+    ran = run("analyse", model, "-o", tmp_path / "pictures")
+    assert ran.code == 0
+    assert "no image to draw" in ran.err
+    assert "E134" in run("measure", model).err
+
+
+def test_analyse_the_published_block_model(data_dir: Path, run: Run) -> None:
+    path = data_dir / "ferris" / "ferris_ex1.json"
+    report = run("analyse", path, "--json").json()
+    assert report["blocks"] == len(json.loads(path.read_text(encoding="utf-8"))["blocks_xywh"])
+    assert report["status_left"] == "optimal"
+
+
+def test_analyse_draws_and_never_over_a_file(tmp_path: Path, run: Run) -> None:
+    tower, out = _tower(tmp_path / "tower.png"), tmp_path / "out"
+    names = {"wall_picture.png", "mechanism_left.png", "mechanism_right.png"}
+    assert run("analyse", tower, "-o", out).code == 0
+    assert {path.name for path in out.iterdir()} == names
+    assert "E129" in run("analyse", tower, "-o", out).err
+    assert "E129" in run("analyse", tower, "-o", tower).err
+    # A wall that does not stand has no mechanism: none of another wall may stay.
+    labels = np.zeros((20, 20), np.uint32)
+    labels[15:, 2:8], labels[5:10, 2:8] = 1, 2
+    write_labels(labels, tmp_path / "floating.png")
+    assert run("analyse", tmp_path / "floating.png", "-o", out, "--overwrite").code == 0
+    assert {path.name for path in out.iterdir()} == {"wall_picture.png"}
+
+
+def test_a_wall_that_does_not_stand_says_why(tmp_path: Path, run: Run) -> None:
+    labels = np.zeros((20, 20), np.uint32)
+    labels[15:, 2:8], labels[5:10, 2:8], labels[0:5, 2:8] = 4, 5, 6
+    write_labels(labels, tmp_path / "floating.png")
+    ran = run("analyse", tmp_path / "floating.png")
+    assert ran.code == 0
+    assert "unstable" in ran.out
+    assert "W302 2 of 3 blocks touch neither the ground" in ran.err
+    assert ": 5, 6." in ran.err
+    ran = run("measure", tmp_path / "floating.png", "--json")
+    assert ran.json()["F_LR"] is None
+    assert "W302" in ran.err
+
+
+def test_a_masons_wall_says_why_it_has_no_resistance(data_dir: Path, run: Run) -> None:
+    ran = run("analyse", data_dir / "almeida" / "PR.png")
+    assert ran.code == 0
+    assert "W302" in ran.err
+    assert "close the gaps" in ran.err
+
+
+def test_analyse_and_measure_a_plan(plan_copy: Path, run: Run) -> None:
+    plan = read_plan(plan_copy)
+    for given in (plan_copy, plan_copy / "plan.json"):
+        report = run("analyse", given, "--json").json()
+        assert report["F_LR"] == pytest.approx(plan.metrics.F_LR)
+        measured = run("measure", given, "--json").json()
+        assert list(measured) == [
+            "F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH", "stones", "width", "height",
+        ]  # fmt: skip
+        assert (measured["width"], measured["height"]) == (100.0, 36.0)
+        assert measured["stones"] == len(plan.stone_steps)
+        for name in ("F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH"):
+            assert measured[name] == pytest.approx(getattr(plan.metrics, name))
+        assert measured["F_SF"] == pytest.approx(plan.metrics.F_SF, rel=0.02)
+
+
+def test_a_plan_needs_its_own_wall_image(plan_copy: Path, run: Run) -> None:
+    labels = read_wall_image(plan_copy / "wall.png").copy()
+    labels[labels == labels.max()] = 77
+    write_labels(labels, plan_copy / "wall.png")
+    for command in ("analyse", "measure"):
+        ran = run(command, plan_copy)
+        assert ran.code == 3
+        assert "E133" in ran.err
+        assert "other stones" in ran.err
+    (plan_copy / "wall.png").unlink()
+    ran = run("analyse", plan_copy / "plan.json")
+    assert ran.code == 3
+    assert "E133" in ran.err
+
+
+def test_measure(tmp_path: Path, run: Run) -> None:
+    tower = _tower(tmp_path / "tower.png")
+    assert run("measure", tower, "--json").json()["F_SF"] == 1.0
+    given = run("measure", tower, "--json", "--wall", "40x50").json()
+    assert given["F_SF"] == pytest.approx(20 * 40 / (40 * 50))
+    reduced = run("measure", tower, "--json", "--scale", ".5", "--wall", "40x50").json()
+    assert (reduced["width"], reduced["height"]) == (20.0, 25.0)
+    assert reduced["F_SF"] == pytest.approx(20 * 40 / (40 * 50))
+    assert "E127" in run("measure", tower, "--wall", "40").err
+    assert "E131" in run("measure", tower, "--wall", "1mx1m").err
+    assert "measured at 30 x 50 px" in run("measure", tower).out
+
+
+def test_measure_draws_and_never_over_a_file(finished: Path, tmp_path: Path, run: Run) -> None:
+    assert run("measure", finished, "-o", tmp_path).code == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"paths_F_AV.png", "paths_F_AH.png"}
+    assert "E129" in run("measure", finished, "-o", tmp_path).err
+    assert run("measure", finished, "-o", tmp_path, "--overwrite").code == 0
+
+
+def test_check(plan_copy: Path, run: Run) -> None:
+    for given in (plan_copy, plan_copy / "plan.json"):
+        ran = run("check", given)
+        assert ran.code == 0
+        assert ": holds\n" in ran.out
+    report = run("check", plan_copy, "--json").json()
+    assert list(report)[:3] == ["ok", "problems", "overlap_depth"]
+    assert (report["ok"], report["problems"]) == (True, [])
+
+
+@pytest.mark.parametrize(
+    ("tamper", "code"),
+    [
+        (lambda plan: plan["steps"][0].update(angle_deg=plan["steps"][0]["angle_deg"] + 9), "E2"),
+        (lambda plan: plan["metrics"].update(F_LR=0.99), "E234"),
+        (lambda plan: plan["steps"][0]["centroid"].__setitem__(0, -50.0), "E220"),
+        (lambda plan: plan["source"].update(sha256="0" * 64), "E210"),
+        (lambda plan: plan["unused"].clear(), "E216"),
+    ],
+)
+def test_a_tampered_plan_does_not_hold(
+    tamper: object, code: str, plan_copy: Path, rubble: Path, run: Run
+) -> None:
+    assert callable(tamper)
+    path = plan_copy / "plan.json"
+    plan = json.loads(path.read_text(encoding="utf-8"))
+    tamper(plan)
+    path.write_text(json.dumps(plan), encoding="utf-8")
+    ran = run("check", path, "--stones", rubble)
+    assert ran.code == 5
+    assert "does not hold" in ran.out
+    assert f"problem  {code}" in ran.out
+    report = run("check", path, "--stones", rubble, "--json")
+    assert (report.code, report.json()["ok"]) == (5, False)
+    assert any(problem["code"].startswith(code) for problem in report.json()["problems"])
+
+
+def test_a_mirrored_stone_in_the_image_does_not_hold(plan_copy: Path, run: Run) -> None:
+    labels = read_wall_image(plan_copy / "wall.png").copy()
+    write_labels(labels[:, ::-1], plan_copy / "wall.png")
+    ran = run("check", plan_copy)
+    assert ran.code == 5
+    assert "E236" in ran.out
+
+
+def test_check_finds_the_stones_or_asks(
+    plan_copy: Path, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    assert run("check", plan_copy).code == 0
+    (plan_copy / "rubble.png").rename(tmp_path / "rubble.png")  # above the folder
+    assert run("check", plan_copy).code == 0
+    (tmp_path / "rubble.png").unlink()
+    ran = run("check", plan_copy)
+    assert ran.code == 3
+    assert "E202" in ran.err
+    assert "--stones" in ran.err
+    # Other stones of the same name are not these stones.
+    (plan_copy / "rubble.png").write_bytes(rubble.read_bytes() + b"x")
+    assert "E202" in run("check", plan_copy).err
+
+
+@pytest.mark.parametrize("kind", ["fourier", "polygon", "brick", "rubble"])
+def test_generate(kind: str, tmp_path: Path, run: Run) -> None:
+    paths = [tmp_path / name for name in ("a.png", "new/b.tif", "c.png")]
+    for path, seed in zip(paths, (1, 1, 2), strict=True):
+        ran = run("generate", kind, "-o", path, "--count", 4, "--seed", seed)
+        assert ran.code == 0
+        assert ran.out.startswith("4 stones, ")
+    first, again, other = (read_wall_image(path) for path in paths)
+    assert (first == again).all()
+    assert set(np.unique(first).tolist()) == {0, 1, 2, 3, 4}
+    if kind != "brick":  # all bricks are alike
+        assert first.shape != other.shape or (first != other).any()
+    assert run("stones", paths[0], "--json").json()["stones"] == 4
+
+
+def test_generate_takes_parameters(tmp_path: Path, run: Run) -> None:
+    path = tmp_path / "bricks.png"
+    run("generate", "brick", "-o", path, "--count", 2, "--set", "height_px=6", "--set", "aspect=2")
+    labels = read_wall_image(path)
+    assert [int((labels == stone).sum()) for stone in (1, 2)] == [72, 72]
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [
+        (["--set", "wonder=1"], "E123"),
+        (["--set", "height_px"], "E135"),
+        (["--set", "height_px=tall"], "E135"),
+        (["--set", "height_px=-4"], "E130"),
+    ],
+)
+def test_generate_refuses_wrong_parameters(
+    options: list[str], code: str, tmp_path: Path, run: Run
+) -> None:
+    ran = run("generate", "brick", "-o", tmp_path / "x.png", *options)
+    assert ran.code == 2
+    assert code in ran.err
+    assert not (tmp_path / "x.png").exists()
+
+
+def test_generate_never_writes_over_a_file(bricks: Path, tmp_path: Path, run: Run) -> None:
+    path = tmp_path / "mine.png"
+    shutil.copy(bricks, path)
+    assert "E129" in run("generate", "brick", "-o", path).err
+    assert path.read_bytes() == bricks.read_bytes()
+    assert "E129" in run("generate", "brick", "-o", path / "x.png").err
+    assert "E139" in run("generate", "brick", "-o", tmp_path / "x.jpg").err
+    assert run("generate", "brick", "-o", path, "--overwrite").code == 0
+    assert path.read_bytes() != bricks.read_bytes()
+
+
+def test_demo_needs_nothing_and_can_be_checked(
+    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    ran = run("demo", "--method", "paper")
+    assert ran.code in (0, 4)
+    out = tmp_path / "drystone-demo"
+    assert str(Path("drystone-demo") / "report.html") in ran.out
+    assert {"stones.png", "plan.json", "picture.png", "report.html"} <= {
+        path.name for path in out.iterdir()
+    }
+    assert run("check", out).code == 0
+    assert "E129" in run("demo", "--method", "paper").err
+    assert run("demo", "--method", "wurst", "-o", "other").code == 2
+    assert not (tmp_path / "other").exists()

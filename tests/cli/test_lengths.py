@@ -1,0 +1,41 @@
+"""Sizes of walls on the command line."""
+
+import pytest
+
+from drystone.cli.lengths import parse_wall
+from drystone.errors import UsageError
+
+
+@pytest.mark.parametrize(
+    ("text", "px_per_m", "size"),
+    [
+        ("560x160", None, (560.0, 160.0)),
+        ("560X160.5", 200.0, (560.0, 160.5)),
+        ("560pxx160px", None, (560.0, 160.0)),
+        (" 560 x 160 ", None, (560.0, 160.0)),
+        ("1.4mx0.4m", 200.0, (280.0, 80.0)),
+        ("140cmx40cm", 200.0, (280.0, 80.0)),
+        ("1400mmx.4m", 200.0, (280.0, 80.0)),
+        ("1.4mx80", 200.0, (280.0, 80.0)),
+    ],
+)
+def test_sizes(text: str, px_per_m: float | None, size: tuple[float, float]) -> None:
+    assert parse_wall(text, px_per_m) == pytest.approx(size, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "text", ["5", "x5", "5x", "5x5x5", "ax5", "-5x5", "5kmx5km", "1e3x5", "infxinf", "0x10", "10x0"]
+)
+def test_what_is_no_size(text: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        parse_wall(text, 100.0)
+    assert caught.value.code == "E127"
+    assert caught.value.where == "--wall"
+
+
+@pytest.mark.parametrize("text", ["1.4mx0.4m", "280x40cm"])
+def test_metres_need_a_scale(text: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        parse_wall(text, None)
+    assert caught.value.code == "E131"
+    assert "--px-per-m" in caught.value.cure

@@ -1,0 +1,67 @@
+"""What the shell gets to know: exit codes, and no traceback that was not asked for."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from drystone.cli.commands import stones as command
+from drystone.errors import UsageError
+from tests.cli.conftest import Run
+
+
+@pytest.mark.parametrize(
+    ("raised", "code", "said"),
+    [
+        (
+            UsageError("E999", "is wrong.", where="--x", cure="Do y."),
+            2,
+            "E999 --x: is wrong. Do y.",
+        ),
+        (PermissionError(13, "Permission denied", "/there"), 3, "E141 /there: the system refuses"),
+        (OSError("odd"), 3, "E141 the system refuses this: odd."),
+        (MemoryError(), 3, "E142 the memory is not large enough."),
+        (KeyboardInterrupt(), 130, "interrupted"),
+    ],
+)
+def test_errors_become_exit_codes(
+    raised: BaseException, code: int, said: str, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_: object) -> int:
+        raise raised
+
+    monkeypatch.setattr(command, "run", fail)
+    ran = run("stones", "x.png")
+    assert (ran.code, ran.out) == (code, "")
+    assert ran.err.startswith(f"drystone: {said}")
+    assert ran.err.count("\n") == 1
+
+
+def test_debug_shows_the_traceback(run: Run) -> None:
+    with pytest.raises(Exception, match="E100"):
+        run("stones", "nowhere.png", "--debug")
+
+
+def test_a_bug_is_not_hidden(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(_: object) -> int:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(command, "run", fail)
+    with pytest.raises(ZeroDivisionError):
+        run("stones", "x.png")
+
+
+def test_a_reader_that_goes_away_is_no_error(rubble: Path) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(  # noqa: S603 - our own code
+        [sys.executable, "-m", "drystone", "stones", str(rubble)],
+        stdout=write,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    os.close(write)
+    assert (done.returncode, done.stderr) == (0, "")

@@ -1,0 +1,292 @@
+"""`drystone plan`: what it writes, prints and returns."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+from PIL import Image
+
+from drystone.cli.commands import plan as plan_command
+from drystone.errors import Notice
+from drystone.io.plan_json import read_plan
+from drystone.io.wall_image import read_wall_image, write_labels
+from tests.cli.conftest import WALL, Run
+
+FILES = {
+    "plan.json", "settings.toml", "wall.png", "picture.png", "mechanism_left.png",
+    "mechanism_right.png", "report.html",
+}  # fmt: skip
+
+SUMMARY = [
+    "plan", "status", "stopped", "placed", "stones", "unused", "wedges", "F_SF", "F_AV", "F_AH",
+    "F_LR", "T_LEVEL", "E_FLUSH", "alpha_left", "alpha_right", "wedge_area", "working_scale",
+    "seconds",
+]  # fmt: skip
+
+
+def test_all_files_are_written(finished: Path) -> None:
+    assert {path.name for path in finished.iterdir()} == FILES
+    for name in ("picture.png", "mechanism_left.png", "mechanism_right.png"):
+        with Image.open(finished / name) as picture:
+            assert min(picture.size) > 100
+    assert (finished / "report.html").read_text(encoding="utf-8").startswith("<!")
+
+
+def test_the_contract_of_plan_json(finished: Path) -> None:
+    plan = json.loads((finished / "plan.json").read_text(encoding="utf-8"))
+    assert list(plan) == [
+        "schema", "version", "method", "seed", "settings", "units", "source", "wall", "steps",
+        "unused", "stopped", "metrics",
+    ]  # fmt: skip
+    assert plan["schema"] == "drystone-plan/1"
+    assert (plan["method"], plan["seed"]) == ("paper", 1)
+    assert plan["units"] == {"length": "px", "px_per_m": None, "working_scale": 1.0}
+    assert plan["wall"] == {"width": 100.0, "height": 36.0}
+    assert plan["source"]["path"] == "rubble.png"
+    stones = [step for step in plan["steps"] if step["kind"] == "stone"]
+    assert sorted([step["stone"] for step in stones] + plan["unused"]) == list(range(1, 9))
+    assert [step["step"] for step in plan["steps"]] == list(range(1, len(plan["steps"]) + 1))
+
+
+def test_stdout_is_a_table_and_stderr_the_notices(
+    rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read = plan_command.read_stones
+
+    def read_with_notice(path: Path) -> object:
+        stones = read(path)
+        notice = Notice("W110", "stone 1 may be two.")
+        return type(stones)(stones.stones, stones.source, (notice,))
+
+    monkeypatch.setattr(plan_command, "read_stones", read_with_notice)
+    ran = run("plan", rubble, *WALL, "-o", tmp_path / "out")
+    assert ran.err == "drystone: W110 stone 1 may be two.\n"
+    lines = ran.out.splitlines()
+    assert lines[0].startswith(("complete: ", "incomplete: "))
+    names = [line.split()[0] for line in lines[1:]]
+    assert {"stones", "F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH"} <= set(names)
+    assert lines[-1].split()[-1] == str(tmp_path / "out" / "report.html")
+
+
+def test_json_has_the_summary(rubble: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", rubble, *WALL, "-o", tmp_path, "--json")
+    summary = ran.json()
+    assert list(summary) == SUMMARY
+    plan = read_plan(summary["plan"])
+    assert summary["placed"] == len(plan.stone_steps)
+    assert summary["stones"] == 8
+    assert summary["unused"] == list(plan.unused)
+    assert summary["F_LR"] == plan.metrics.F_LR
+    assert summary["stopped"] == plan.stopped
+    assert summary["seconds"] > 0
+    assert (summary["status"], ran.code) in {("complete", 0), ("incomplete", 4)}
+
+
+def test_a_wall_that_is_filled_returns_0(bricks: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", bricks, "--wall", "60x20", "--scale", "1", "-o", tmp_path, "--json",
+              "--method", "paper")  # fmt: skip
+    assert ran.code == 0
+    assert ran.json()["F_SF"] == 1.0
+    assert ran.json()["unused"] == []
+
+
+def test_too_few_stones_for_a_wall_return_4(bricks: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", bricks, "--wall", "300x80", "--scale", "1", "-o", tmp_path, "--json",
+              "--method", "paper")  # fmt: skip
+    assert ran.code == 4
+    summary = ran.json()
+    assert (summary["status"], summary["placed"]) == ("incomplete", 6)
+    assert run("check", tmp_path, "--stones", bricks).code == 0
+
+
+def test_a_folder_with_files_is_refused_and_not_touched(
+    rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    (tmp_path / "diary.txt").write_text("mine", encoding="utf-8")
+    (tmp_path / "plan.json").write_text("also mine", encoding="utf-8")
+    ran = run("plan", rubble, *WALL, "-o", tmp_path)
+    assert ran.code == 2
+    assert "E129" in ran.err
+    assert "--overwrite" in ran.err
+    assert (tmp_path / "plan.json").read_text(encoding="utf-8") == "also mine"
+    assert {path.name for path in tmp_path.iterdir()} == {"diary.txt", "plan.json"}
+    ran = run("plan", rubble, *WALL, "-o", tmp_path, "--overwrite")
+    assert ran.code in (0, 4)
+    assert (tmp_path / "diary.txt").read_text(encoding="utf-8") == "mine"
+    assert read_plan(tmp_path / "plan.json").stone_steps
+
+
+def test_a_file_is_no_folder(rubble: Path, tmp_path: Path, run: Run) -> None:
+    (tmp_path / "file").write_text("mine", encoding="utf-8")
+    for place in ("file", "file/below"):
+        ran = run("plan", rubble, *WALL, "-o", tmp_path / place, "--overwrite")
+        assert ran.code == 2
+        assert "E129" in ran.err
+
+
+def test_equal_seeds_give_equal_bytes_and_others_do_not(
+    finished: Path, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    def files(name: str, *options: object) -> tuple[bytes, ...]:
+        assert run("plan", rubble, *WALL, "-o", tmp_path / name, *options).code in (0, 4)
+        return tuple((tmp_path / name / f).read_bytes() for f in ("plan.json", "wall.png"))
+
+    first = tuple((finished / f).read_bytes() for f in ("plan.json", "wall.png"))
+    assert files("again", "--seed", 1) == first
+    assert files("jobs", "--seed", 1, "--jobs", 2) == first
+    assert files("other", "--seed", 2)[1] != first[1]
+
+
+def test_best_does_not_depend_on_jobs(rubble: Path, tmp_path: Path, run: Run) -> None:
+    toml = tmp_path / "quick.toml"
+    toml.write_text("[rework]\nrounds = 1\n", encoding="utf-8")
+    plans = []
+    for jobs in (1, 2):
+        folder = tmp_path / str(jobs)
+        ran = run("plan", rubble, "--wall", "100x36", "--scale", "1", "-o", folder,
+                  "--settings", toml, "--jobs", jobs)  # fmt: skip
+        assert ran.code in (0, 4)
+        plans.append([(folder / name).read_bytes() for name in ("plan.json", "wall.png")])
+    assert plans[0] == plans[1]
+
+
+def test_settings_of_a_plan_make_it_again(rubble: Path, tmp_path: Path, run: Run) -> None:
+    options = ("--sampling", "uniform", "--placement", "lowest", "--mu", ".65", "--seed", 3)
+    size = ("--wall", "100x36", "--scale", "1", "--method", "paper", "--seed", 3)
+    run("plan", rubble, *size, *options, "-o", tmp_path / "first")
+    toml = tmp_path / "first" / "settings.toml"
+    run("plan", rubble, *size, "--settings", toml, "-o", tmp_path / "second")
+    plans = [(tmp_path / name / "plan.json").read_bytes() for name in ("first", "second")]
+    assert plans[0] == plans[1]
+    settings = json.loads(plans[0])["settings"]
+    assert (settings["sampling"], settings["placement"]["rule"], settings["mu"]) == (
+        "uniform", "lowest", 0.65,
+    )  # fmt: skip
+
+
+def test_options_win_over_the_settings_file(rubble: Path, tmp_path: Path, run: Run) -> None:
+    toml = tmp_path / "mine.toml"
+    toml.write_text('mu = 0.7\nsampling = "full"\n[stop]\nfailures = 2\n', encoding="utf-8")
+    run("plan", rubble, *WALL, "--settings", toml, "--sampling", "variant", "-o", tmp_path / "x")
+    settings = read_plan(tmp_path / "x").settings
+    assert (settings["mu"], settings["sampling"]) == (0.7, "variant")
+    assert settings["stop"]["failures"] == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "exit_code"),
+    [
+        ("wonder = 1", "E123", 2),
+        ("[placement]\nwonder = 1", "E123", 2),
+        ("mu = 'high'", "E123", 2),
+        ("mu = ", "E128", 3),
+    ],
+)
+def test_wrong_settings_are_refused(
+    text: str, code: str, exit_code: int, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    toml = tmp_path / "mine.toml"
+    toml.write_text(text, encoding="utf-8")
+    ran = run("plan", rubble, *WALL, "--settings", toml, "-o", tmp_path / "out")
+    assert ran.code == exit_code
+    assert code in ran.err
+    assert not (tmp_path / "out").exists()
+
+
+def test_metres(rubble: Path, tmp_path: Path, run: Run) -> None:
+    run("plan", rubble, "--wall", "0.5mx18cm", "--px-per-m", 200, "--scale", ".5", "--method",
+        "paper", "-o", tmp_path / "m")  # fmt: skip
+    run("plan", rubble, "--wall", "100x36", "--scale", ".5", "--method", "paper",
+        "-o", tmp_path / "px")  # fmt: skip
+    metres, px = read_plan(tmp_path / "m"), read_plan(tmp_path / "px")
+    assert (metres.length_unit, metres.px_per_m, metres.working_scale) == ("m", 200.0, 0.5)
+    assert (metres.width, metres.height) == pytest.approx((0.5, 0.18))
+    assert metres.metrics.wedge_area == pytest.approx(px.metrics.wedge_area / 200**2)
+    for one, other in zip(metres.stone_steps, px.stone_steps, strict=True):
+        assert one.stone == other.stone
+        assert one.source_centroid == other.source_centroid
+        assert np.array(one.centroid) * 200 == pytest.approx(np.array(other.centroid), abs=1e-9)
+    assert (tmp_path / "m" / "wall.png").read_bytes() == (tmp_path / "px/wall.png").read_bytes()
+    assert run("check", tmp_path / "m", "--stones", rubble).code == 0
+
+
+def test_metres_without_a_scale(rubble: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", rubble, "--wall", "1.4mx0.4m", "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert "E131" in ran.err
+    assert "--px-per-m" in ran.err
+
+
+def test_stones_too_large(rubble: Path, tmp_path: Path, run: Run) -> None:
+    small = ("--wall", "60x17", "--scale", "1", "--method", "paper", "-o", tmp_path / "out")
+    ran = run("plan", rubble, *small)
+    assert ran.code == 2
+    assert "E120" in ran.err
+    assert "--skip-too-large" in ran.err
+    ran = run("plan", rubble, *small, "--skip-too-large", "--json")
+    assert ran.code in (0, 4)
+    plan = read_plan(tmp_path / "out")
+    named = {int(text) for text in _listed(run("plan", rubble, *small, "--overwrite").err)}
+    assert named
+    assert named <= set(plan.unused)
+    assert ran.json()["unused"] == list(plan.unused)
+    assert run("check", tmp_path / "out", "--stones", rubble).code == 0
+
+
+def _listed(message: str) -> list[str]:
+    return message.split("stones ")[1].split(" fit", maxsplit=1)[0].split(", ")
+
+
+def test_all_stones_too_large_is_an_empty_plan(bricks: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", bricks, "--wall", "15x8", "--scale", "1", "--method", "paper",
+              "--skip-too-large", "-o", tmp_path / "out", "--json")  # fmt: skip
+    assert ran.code == 4
+    assert ran.json()["placed"] == 0
+    assert ran.json()["unused"] == [1, 2, 3, 4, 5, 6]
+    assert ran.json()["stopped"] == "all stones that fit placed"
+    assert run("check", tmp_path / "out", "--stones", bricks).code == 0
+
+
+def test_ids_above_16_bits_survive(tmp_path: Path, run: Run) -> None:
+    labels = np.zeros((40, 70), np.uint32)
+    for place, stone_id in enumerate((3, 300, 70_000)):
+        labels[5 + 10 * place : 13 + 10 * place, 5 : 45 + 5 * place] = stone_id
+    write_labels(labels, tmp_path / "stones.tif")
+    out = tmp_path / "out"
+    ran = run("plan", tmp_path / "stones.tif", "--wall", "70x40", "--scale", "1", "--method",
+              "paper", "-o", out)  # fmt: skip
+    assert ran.code in (0, 4)
+    assert not (out / "wall.png").exists()
+    wall = tifffile.imread(out / "wall.tif")
+    assert wall.dtype == np.uint32
+    plan = read_plan(out)
+    placed = {step.stone for step in plan.stone_steps}
+    assert placed == {3, 300, 70_000}
+    wedges = {step.id for step in plan.wedge_steps}
+    assert set(np.unique(wall).tolist()) - {0} == placed | wedges
+    assert (read_wall_image(out / "wall.tif") == wall).all()
+    assert run("check", out, "--stones", tmp_path / "stones.tif").code == 0
+    # A later plan of smaller ids into the same folder leaves no wall of the earlier one.
+    labels[labels == 70_000] = 7
+    write_labels(labels, tmp_path / "small.png")
+    run("plan", tmp_path / "small.png", "--wall", "70x40", "--scale", "1", "--method", "paper",
+        "-o", out, "--overwrite")  # fmt: skip
+    assert (out / "wall.png").exists()
+    assert not (out / "wall.tif").exists()
+
+
+def test_no_working_size_is_left_over(rubble: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", rubble, "--wall", "100x36", "--scale", ".01", "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert "E121" in ran.err
+
+
+def test_a_scale_is_chosen_and_said(rubble: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", rubble, "--wall", "100x36", "--method", "paper", "-o", tmp_path, "--json")
+    scale = ran.json()["working_scale"]
+    assert 0 < scale <= 1
+    assert read_plan(tmp_path).working_scale == scale
+    assert math.isclose(scale, 1.0)  # the stones are smaller than the planner likes

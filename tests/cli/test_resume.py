@@ -1,0 +1,83 @@
+"""An interrupt keeps what is built, and --resume goes on from there."""
+
+from pathlib import Path
+
+import pytest
+
+from drystone.io.plan_json import read_plan
+from drystone.planner.events import Callbacks, Step
+from tests.cli.conftest import WALL, Run
+
+
+@pytest.fixture
+def interrupted(rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of a plan that was interrupted after its third stone."""
+
+    def interrupt(_: Callbacks, step: Step) -> None:
+        if step.number == 3:
+            raise KeyboardInterrupt
+
+    folder = tmp_path / "partial"
+    with monkeypatch.context() as patch:
+        patch.setattr(Callbacks, "on_step", interrupt)
+        ran = run("plan", rubble, *WALL, "--seed", 1, "-o", folder)
+    assert ran.code == 130
+    assert ran.out.startswith("interrupted: interrupted")
+    return folder
+
+
+def test_the_partial_plan_is_whole(interrupted: Path, rubble: Path, run: Run) -> None:
+    plan = read_plan(interrupted)
+    assert plan.stopped == "interrupted"
+    assert len(plan.stone_steps) == 3
+    assert len(plan.unused) == 5
+    assert (interrupted / "report.html").exists()
+    assert run("check", interrupted, "--stones", rubble).code == 0
+
+
+def test_resume_gives_the_plan_that_no_interrupt_would_have_changed(
+    interrupted: Path, finished: Path, rubble: Path, run: Run
+) -> None:
+    assert len(read_plan(finished).stone_steps) > 3
+    ran = run("plan", rubble, *WALL, "--seed", 1, "-o", interrupted, "--resume")
+    assert ran.code in (0, 4)
+    assert ran.err == "drystone: going on after 3 stones\n"
+    for name in ("plan.json", "wall.png", "settings.toml", "picture.png"):
+        assert (interrupted / name).read_bytes() == (finished / name).read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--seed", "2"], "--seed"),
+        (["--sampling", "full"], "settings"),
+        (["--wall", "110x36"], "--wall"),
+        (["--wall", "100x37"], "--wall"),
+        (["--scale", ".9"], "--scale"),
+        (["--px-per-m", "100"], "--px-per-m"),
+    ],
+)
+def test_resume_refuses_another_command(
+    options: list[str], said: str, interrupted: Path, rubble: Path, run: Run
+) -> None:
+    before = (interrupted / "plan.json").read_bytes()
+    ran = run("plan", rubble, *WALL, "--seed", 1, "-o", interrupted, "--resume", *options)
+    assert ran.code == 2
+    assert "E136" in ran.err
+    assert said in ran.err
+    assert (interrupted / "plan.json").read_bytes() == before
+
+
+def test_resume_refuses_other_stones(interrupted: Path, bricks: Path, run: Run) -> None:
+    ran = run("plan", bricks, *WALL, "--seed", 1, "-o", interrupted, "--resume")
+    assert ran.code == 2
+    assert "E136" in ran.err
+    assert "other stones" in ran.err
+
+
+def test_resume_without_a_plan_starts(
+    rubble: Path, finished: Path, tmp_path: Path, run: Run
+) -> None:
+    folder = tmp_path / "new"
+    assert run("plan", rubble, *WALL, "--seed", 1, "-o", folder, "--resume").code in (0, 4)
+    assert (folder / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()
