@@ -308,3 +308,14 @@ def test_pictures_beyond_pillows_guard_are_read(monkeypatch):
     assert decode(data, "a.png", LIMIT).values.shape == (40, 60)
     with pytest.raises(Image.DecompressionBombError):
         Image.open(io.BytesIO(data))
+
+
+def test_what_reading_was_told_is_kept_with_the_source() -> None:
+    labels = np.full((40, 60), 255, np.uint32)
+    labels[5:25, 5:30] = 3
+    labels[5:25, 35:55] = 4
+    plain = read_stones(np.where(labels == 255, 0, labels))
+    assert plain.source.reading == ()
+    told = read_stones(labels, settings=ReadSettings(background=255, skip=(4,)))
+    assert dict(told.source.reading) == {"background": 255, "skip": [4]}
+    assert [stone.id for stone in told] == [3]

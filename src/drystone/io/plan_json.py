@@ -15,7 +15,7 @@ from drystone.model.plan import SCHEMA, Plan, PlanMetrics, Point, StoneStep, Wed
 
 _INDEX_NAMES = ("SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC")
 _METRIC_NAMES = tuple(PlanMetrics.__dataclass_fields__)
-_SOURCE_NAMES = ("path", "sha256", "stones", "width_px", "height_px", "files")
+_SOURCE_NAMES = ("path", "sha256", "stones", "width_px", "height_px", "files", "reading")
 
 
 def write_plan(plan: Plan, path: str | Path) -> None:

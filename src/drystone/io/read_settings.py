@@ -1,7 +1,7 @@
 """What the user may say about a picture of stones."""
 
-from dataclasses import dataclass
-from typing import Literal, get_args
+from dataclasses import dataclass, fields
+from typing import Any, Literal, get_args
 
 from drystone.errors import UsageError
 
@@ -46,6 +46,15 @@ class ReadSettings:
     mask: bool | None = None
     skip: tuple[int, ...] = ()
     max_image_mpx: float = 200.0
+
+    def changed(self) -> tuple[tuple[str, Any], ...]:
+        """Return the settings that are not the defaults, as names and JSON values."""
+        values = [(field.name, getattr(self, field.name), field.default) for field in fields(self)]
+        return tuple(
+            (name, list(value) if isinstance(value, tuple) else value)
+            for name, value, default in values
+            if value != default
+        )
 
     def __post_init__(self) -> None:
         for name, value, choices in (

@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +62,12 @@ def read_stones(
     [(300, 375), (70000, 600)]
     """
     settings = settings or ReadSettings()
+    stones = _read(source, settings)
+    # A plan names its source; whoever reads that again must read it in the same way.
+    return replace(stones, source=replace(stones.source, reading=settings.changed()))
+
+
+def _read(source: str | Path | NDArray[Any], settings: ReadSettings) -> StoneSet:
     if not isinstance(source, str | Path):
         return _read_array(source, settings)
     path = Path(source)

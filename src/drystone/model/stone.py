@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -127,6 +128,9 @@ class Source:
         Size of the source image (of a folder of masks: of the largest).
     files : tuple of str
         File names in the order of their numbers when the source is a folder.
+    reading : tuple of (str, value) pairs
+        Settings that the source was read with, where they are not the defaults: what reads it
+        again needs them.
     """
 
     path: str = ""
@@ -134,6 +138,7 @@ class Source:
     width_px: int = 0
     height_px: int = 0
     files: tuple[str, ...] = ()
+    reading: tuple[tuple[str, Any], ...] = ()
 
 
 @dataclass(frozen=True)

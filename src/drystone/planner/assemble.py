@@ -125,6 +125,8 @@ def assemble_plan(
     }
     if source.files:
         described["files"] = list(source.files)
+    if source.reading:
+        described["reading"] = dict(source.reading)
     placed = {action.stone_id for action in build.actions}
     return Plan(
         version=provenance["version"],

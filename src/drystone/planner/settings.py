@@ -75,6 +75,8 @@ class PlannerSettings:
 
     Parameters
     ----------
+    geometry : {"raster"}
+        Stones are their pixels at the working resolution.
     orientations : str
         ``"sf"``, ``"quarter"``, or a step such as ``"10deg"`` (DESIGN 4.2).
     orientation_choice : {"candidates", "placement"}
@@ -95,6 +97,7 @@ class PlannerSettings:
         Settings of the stages.
     """
 
+    geometry: Literal["raster"] = "raster"
     orientations: str = "sf"
     orientation_choice: Literal["candidates", "placement"] = "candidates"
     sampling: Sampling = "variant"
