@@ -9,7 +9,7 @@ from drystone.kernels.raster import Mask
 from drystone.model.landscape import Landscape
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
-from drystone.placement.feasible import Reach, feasible_positions
+from drystone.placement.feasible import Reach, can_be_lowered, feasible_positions
 from drystone.poses import PoseBook
 from tests.naive import placement as naive
 from tests.strategies import landscapes, masks, repeatable
@@ -110,3 +110,13 @@ def test_a_stone_larger_than_the_site_fits_nowhere(reach: Reach) -> None:
     occupied = np.zeros((4, 6), bool)
     assert found(occupied, np.ones((5, 2), bool), reach) == []
     assert found(occupied, np.ones((2, 7), bool), reach) == []
+
+
+@repeatable()
+@given(landscapes(), masks())
+def test_what_can_be_lowered_is_what_reach_above_finds(occupied: Mask, mask: Mask) -> None:
+    landscape = Landscape(occupied, ())
+    posed = PosedStone(Stone(1, mask), 0.0, 1.0, mask.copy(), (0.5, 0.5))
+    lowered = {tuple(p) for p in feasible_positions(landscape, posed, "above").tolist()}
+    for row, col in feasible_positions(landscape, posed, "any").tolist():
+        assert can_be_lowered(landscape, posed, row, col) == ((row, col) in lowered)
