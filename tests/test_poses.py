@@ -130,7 +130,9 @@ def test_poses_with_the_same_pixels_are_given_once() -> None:
     assert len(PoseBook().orientations(bar, "quarter")) == 2
 
 
-@pytest.mark.parametrize("text", ["", "10", "deg", "0deg", "-5deg", "361deg", "nandeg", "SF"])
+@pytest.mark.parametrize(
+    "text", ["", "10", "deg", "0deg", "-5deg", "0.001deg", "361deg", "nandeg", "SF"]
+)
 def test_unknown_orientation_sets_are_refused(text: str) -> None:
     with pytest.raises(UsageError, match=r"E122 --orientations: .*Use sf, quarter, or a step"):
         orientation_step_deg(text)

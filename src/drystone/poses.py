@@ -44,12 +44,12 @@ def orientation_step_deg(orientations: str) -> float | None:
         step = float(text)
     except ValueError:
         step = math.nan
-    if not orientations.endswith("deg") or not 0 < step <= 360:
+    if not orientations.endswith("deg") or not 0.5 <= step <= 360:
         raise UsageError(
             "E122",
             f"{orientations!r} is no set of orientations.",
             where="--orientations",
-            cure="Use sf, quarter, or a step such as 10deg.",
+            cure="Use sf, quarter, or a step from 0.5deg to 360deg, such as 10deg.",
         )
     return step
 

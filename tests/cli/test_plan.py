@@ -12,6 +12,7 @@ from PIL import Image
 from drystone.cli.commands import plan as plan_command
 from drystone.errors import Notice
 from drystone.io.plan_json import read_plan
+from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.wall_image import read_wall_image, write_labels
 from tests.cli.conftest import WALL, Run
 
@@ -54,10 +55,8 @@ def test_the_contract_of_plan_json(finished: Path) -> None:
 def test_stdout_is_a_table_and_stderr_the_notices(
     rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    read = plan_command.read_stones
-
-    def read_with_notice(path: Path) -> object:
-        stones = read(path)
+    def read_with_notice(path: Path, *, settings: ReadSettings) -> object:
+        stones = read_stones(path, settings=settings)
         notice = Notice("W110", "stone 1 may be two.")
         return type(stones)(stones.stones, stones.source, (notice,))
 

@@ -36,14 +36,18 @@ def test_the_partial_plan_is_whole(interrupted: Path, rubble: Path, run: Run) ->
 
 
 def test_resume_gives_the_plan_that_no_interrupt_would_have_changed(
-    interrupted: Path, finished: Path, rubble: Path, run: Run
+    interrupted: Path, finished: Path, rubble: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert len(read_plan(finished).stone_steps) > 3
+    count = len(read_plan(finished).stone_steps)
+    assert count > 3
+    told: list[int] = []
+    monkeypatch.setattr(Callbacks, "on_step", lambda _, step: told.append(step.number))
     ran = run("plan", rubble, *WALL, "--seed", 1, "-o", interrupted, "--resume")
     assert ran.code in (0, 4)
     assert ran.err == "drystone: going on after 3 stones\n"
     for name in ("plan.json", "wall.png", "settings.toml", "picture.png"):
         assert (interrupted / name).read_bytes() == (finished / name).read_bytes()
+    assert told == list(range(4, count + 1))  # the first three were not planned again
 
 
 @pytest.mark.parametrize(

@@ -21,3 +21,9 @@ def test_units() -> None:
 def test_a_site_without_a_pixel_is_refused() -> None:
     with pytest.raises(UsageError, match=r"E121 --wall: .*Give a larger wall"):
         Site.from_source(2, 160, 0.2)
+
+
+def test_a_wall_of_too_many_pixels_is_refused_with_the_cure() -> None:
+    with pytest.raises(UsageError, match=r"E121.*--scale"):
+        Site.from_source(9999, 9999)
+    assert Site.from_source(9999, 9999, scale=0.5).width_px == 5000

@@ -5,7 +5,8 @@ import math
 from collections.abc import Callable
 from typing import NoReturn
 
-from drystone.errors import ExitCode
+from drystone.cli.reading import add_reading
+from drystone.errors import UsageError
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -29,9 +30,8 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """End the program: the options cannot be understood."""
-        self.exit(
-            int(ExitCode.USAGE), f"drystone: E138 {message}. `{self.prog} --help` explains.\n"
-        )
+        coded = UsageError("E138", f"{message}.", cure=f"`{self.prog} --help` explains.")
+        self.exit(int(coded.exit_code), f"drystone: {coded}\n")
 
 
 def _seed(text: str) -> int:
@@ -93,6 +93,7 @@ def _plan(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--resume", action="store_true", help="go on from the partial plan in the output folder"
     )
+    add_reading(command)
     _planning(command)
     _writing(command)
 
@@ -159,6 +160,7 @@ def _stones(command: argparse.ArgumentParser) -> None:
     command.add_argument("stones", metavar="STONES", help="label image, mask, folder of masks, NPY")
     command.add_argument("-o", "--output", metavar="PICTURE.png", help="draw the stones")
     _overwriting(command, "replace the picture")
+    add_reading(command)
     command.add_argument("--json", action="store_true", help="print as JSON")
 
 

@@ -96,6 +96,7 @@ def _partial_plan(
     scale = arguments.scale or working_scale(stones)
     equal = {
         "stones": plan.source["sha256"] == stones.source.sha256,
+        "reading": plan.source.get("reading", {}) == dict(stones.source.reading),
         "--wall": np.allclose((plan.width * px_per_m, plan.height * px_per_m), wall, atol=1e-6),
         "--px-per-m": plan.px_per_m == arguments.px_per_m,
         "--scale": plan.working_scale == scale,

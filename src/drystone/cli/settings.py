@@ -15,7 +15,7 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
     if arguments.settings is not None:
         settings = settings.updated(read_toml(Path(arguments.settings)))
     changes: dict[str, Any] = {}
-    for name in ("sampling", "two_sided", "orientations", "mu", "skip_too_large"):
+    for name in ("geometry", "sampling", "two_sided", "orientations", "mu", "skip_too_large"):
         value = getattr(arguments, name)
         if value is not None:
             changes[name] = value

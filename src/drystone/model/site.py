@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 from drystone.errors import UsageError
 
+MAX_SITE_PX = 50_000_000
+"""A larger wall fills the memory; its stones are many times finer than planning needs."""
+
 
 @dataclass(frozen=True)
 class Site:
@@ -40,6 +43,14 @@ class Site:
                 f"a wall of {self.width_px} x {self.height_px} working pixels has no room.",
                 where="--wall",
                 cure="Give a larger wall or a larger --scale.",
+            )
+        if self.width_px * self.height_px > MAX_SITE_PX:
+            raise UsageError(
+                "E121",
+                f"a wall of {self.width_px} x {self.height_px} working pixels is too large; "
+                f"{MAX_SITE_PX} are the most.",
+                where="--wall",
+                cure="Give a smaller --scale.",
             )
 
     @classmethod

@@ -12,14 +12,14 @@ from drystone.kernels.outline import rasterise_polygon
 from drystone.kernels.raster import Mask, quantise
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, Point, StoneStep, WedgeStep
-from drystone.model.site import Site
+from drystone.model.site import MAX_SITE_PX, Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Group, Labels, Wall
 from drystone.poses import pose_at
 from drystone.verify.report import Problem
 
-MAX_WALL_PX = 200_000_000
-"""Larger walls are not rebuilt: they would fill the memory."""
+MAX_WALL_PX = MAX_SITE_PX
+"""Larger walls are neither planned nor rebuilt."""
 
 
 @dataclass(frozen=True, eq=False)

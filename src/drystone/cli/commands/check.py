@@ -5,6 +5,7 @@ from hashlib import sha256
 from pathlib import Path
 
 from drystone.cli.output import print_json, print_table
+from drystone.cli.reading import reading_of
 from drystone.cli.walls import read_image_of
 from drystone.errors import ExitCode, PlanError
 from drystone.io.plan_json import read_plan
@@ -22,7 +23,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     source = Path(arguments.stones) if arguments.stones else _find_stones(plan, path.parent)
     # The image of a plan without stones is no picture of stones.
     labels = read_image_of(plan, path.parent) if plan.steps else None
-    report = check_plan(plan, read_stones(source), wall_labels=labels)
+    stones = read_stones(source, settings=reading_of(plan.source))
+    report = check_plan(plan, stones, wall_labels=labels)
     if arguments.json:
         print_json(report.as_dict())
     else:

@@ -44,13 +44,15 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) -> WallMetrics:
-    wall_px = None
+    wall_px = stone_area_px = None
     if arguments.wall is not None:
         width, height = parse_wall(arguments.wall, None)
         wall_px = (width * arguments.scale, height * arguments.scale)
     elif wall.plan is not None and arguments.scale == 1:
         to_px = wall.plan.working_scale * (wall.plan.px_per_m or 1.0)
         wall_px = (wall.plan.width * to_px, wall.plan.height * to_px)
+        # The pixels of reduced stones are off by a little; the plan knows their real area.
+        stone_area_px = wall.plan.metrics.F_SF * wall_px[0] * wall_px[1]
     model, _ = wall.model(arguments.mu)
     resistance = lateral_resistance(model)
     loose = None if resistance.stable else unsupported(model)
@@ -60,6 +62,7 @@ def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) ->
         labels,
         wall_px=wall_px,
         wedge_ids=wall.wedge_ids,
+        stone_area_px=stone_area_px,
         lateral_resistance=resistance.value,
     )
 

@@ -5,6 +5,7 @@ import statistics
 from pathlib import Path
 
 from drystone.cli.output import prepare_picture, print_json, print_table
+from drystone.cli.reading import reading_from
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode
 from drystone.io.read_stones import read_stones
@@ -16,7 +17,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     picture = None if arguments.output is None else Path(arguments.output)
     if picture is not None:
         prepare_picture(picture, overwrite=arguments.overwrite)
-    stones = read_stones(Path(arguments.stones))
+    stones = read_stones(Path(arguments.stones), settings=reading_from(arguments))
     clusters = cluster_stones(stones, PoseBook())
     areas = [stone.area_px for stone in stones]
     sizes = [(stone.mask.shape[1], stone.mask.shape[0]) for stone in stones]

@@ -1,0 +1,74 @@
+"""Small stone sets and planners."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from drystone.generate import BrickSettings, RubbleSettings, brick_stones, rubble_stones
+from drystone.kernels.raster import Mask
+from drystone.model.site import Site
+from drystone.model.stone import Source, Stone, StoneSet
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings, method_settings
+
+RUBBLE_SITE = Site(100, 36)
+"""What :func:`rubble` is for."""
+
+
+def rubble(seed: int = 0, count: int = 8) -> StoneSet:
+    """Rubble of two courses."""
+    settings = RubbleSettings(count=count, width_px=100, height_px=36, courses=2)
+    return rubble_stones(settings, np.random.default_rng(seed))
+
+
+def bricks(count: int = 6, halves: int = 0) -> StoneSet:
+    """Bricks of 20 x 10 px."""
+    settings = BrickSettings(count=count, height_px=10, aspect=2, halves=halves)
+    return brick_stones(settings, np.random.default_rng(0))
+
+
+def stones_of_masks(masks: Mapping[int, Mask]) -> StoneSet:
+    """Stones with given ids, side by side in a source image."""
+    stones, left = [], 1
+    for stone_id, mask in masks.items():
+        stones.append(Stone(stone_id, mask, left_px=left, bottom_px=2))
+        left += mask.shape[1] + 2
+    return StoneSet(tuple(stones), Source("stones.png", "ab" * 32, left, 60))
+
+
+def blocks(sizes: Mapping[int, tuple[int, int]]) -> StoneSet:
+    """Rectangular stones: id to (width, height)."""
+    return stones_of_masks({i: np.ones((h, w), bool) for i, (w, h) in sizes.items()})
+
+
+def greedy(changes: Mapping[str, object] | None = None) -> PlannerSettings:
+    """The default method without rework."""
+    return method_settings("best").updated({"rework": {"rounds": 0}, **(changes or {})})
+
+
+def order(planner: Planner) -> list[tuple[int, float, int, int, str]]:
+    """Stone, angle, row, column and side of every action."""
+    placements = [action.stabilised.placement for action in planner.build.actions]
+    return [(p.stone_id, p.posed.angle_deg, p.row, p.col, p.side) for p in placements]
+
+
+def finish(planner: Planner) -> Planner:
+    """Take all steps."""
+    for _ in planner.steps():
+        pass
+    return planner
+
+
+def same(one: Planner, other: Planner) -> bool:
+    """Say whether two planners did the same, with the same figures."""
+    figures: Sequence[list[object]] = [
+        [(a.indices, a.resistance.value, a.course_height_px) for a in planner.build.actions]
+        for planner in (one, other)
+    ]
+    labels = [planner.build.wall.labels for planner in (one, other)]
+    return (
+        order(one) == order(other)
+        and figures[0] == figures[1]
+        and labels[0].tobytes() == labels[1].tobytes()
+        and one.stopped == other.stopped
+    )

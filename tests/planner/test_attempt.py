@@ -1,0 +1,132 @@
+"""One step: nothing is evaluated twice, and both sides and folds are tried."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from drystone.model.site import Site
+from drystone.planner.attempt import Attempt
+from drystone.planner.build import Build, Proposal
+from drystone.planner.evaluate import Evaluator, Trial
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings
+from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
+
+Key = tuple[int, float, str]
+
+
+class _Calls:
+    """How often the evaluator proposed and judged each candidate."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.proposed: Counter[Key] = Counter()
+        self.judged: Counter[Key] = Counter()
+        propose, judge = Evaluator.propose, Evaluator.judge
+
+        def propose_once(this: Evaluator, build: Build, trial: Trial) -> object:
+            posed = trial.poses[0]
+            self.proposed[posed.stone.id, posed.angle_deg, trial.landscape.side] += 1
+            return propose(this, build, trial)
+
+        def judge_once(this: Evaluator, build: Build, proposal: Proposal) -> object:
+            self.judged[proposal.stone_id, proposal.trial_angle_deg, proposal.side] += 1
+            return judge(this, build, proposal)
+
+        monkeypatch.setattr(Evaluator, "propose", propose_once)
+        monkeypatch.setattr(Evaluator, "judge", judge_once)
+
+
+def _attempt(settings: PlannerSettings, built: int = 2) -> Attempt:
+    planner = Planner(rubble(), RUBBLE_SITE, settings=settings)
+    for step in planner.steps():
+        if step.number == built:
+            break
+    return Attempt(planner.workshop, settings, planner.build)
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        PlannerSettings(sampling="twofold", two_sided=True),
+        PlannerSettings(sampling="uniform", orientations="quarter"),
+        greedy(),
+    ],
+    ids=["two-fold", "quarter", "best"],
+)
+def test_nothing_is_evaluated_twice(
+    settings: PlannerSettings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    attempt = _attempt(settings)
+    calls = _Calls(monkeypatch)
+    for seed in range(4):
+        attempt.choose(np.random.default_rng(seed))
+    assert set(calls.proposed.values()) == {1}
+    assert set(calls.judged.values()) == {1}
+    assert attempt.candidates == len(calls.proposed)
+
+
+def test_a_repeated_attempt_chooses_what_a_new_one_does() -> None:
+    settings = PlannerSettings(sampling="twofold", two_sided=True)
+    used = _attempt(settings)
+    for seed in range(4):
+        chosen = used.choose(np.random.default_rng(seed))
+        fresh = _attempt(settings).choose(np.random.default_rng(seed))
+        assert (chosen is None) == (fresh is None)
+        if chosen is not None and fresh is not None:
+            assert (chosen.stone_id, chosen.side) == (fresh.stone_id, fresh.side)
+            assert chosen.indices == fresh.indices
+            assert chosen.course_height_px == fresh.course_height_px
+
+
+def test_both_sides_are_tried_when_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    for two_sided, sides in ((True, {"left", "right"}), (False, {"left"})):
+        attempt = _attempt(PlannerSettings(sampling="full", two_sided=two_sided))
+        with monkeypatch.context() as patch:
+            calls = _Calls(patch)
+            attempt.choose(np.random.default_rng(0))
+        assert {side for _, _, side in calls.proposed} == sides
+
+
+def test_the_second_fold_tries_the_cluster_of_the_winner(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Two clusters of three stones: one of each is drawn, then the rest of one of them.
+    stones = blocks({1: (10, 10), 2: (10, 10), 3: (10, 10), 4: (30, 5), 5: (30, 5), 6: (30, 5)})
+    settings = PlannerSettings(sampling="twofold")
+    planner = Planner(stones, Site(60, 20), settings=settings)
+    calls = _Calls(monkeypatch)
+    attempt = Attempt(planner.workshop, settings, planner.build)
+    chosen = attempt.choose(np.random.default_rng(0))
+    assert chosen is not None
+    tried = {stone_id for stone_id, _, _ in calls.proposed}
+    members = {1, 2, 3} if chosen.stone_id <= 3 else {4, 5, 6}
+    assert members <= tried
+    assert len(tried - members) == 1
+
+
+def test_other_heights_are_those_of_other_stones() -> None:
+    # Eq. 8: the first stone is compared with the mean height of the other candidates.
+    stones = blocks({1: (20, 10), 2: (20, 10), 3: (20, 4)})
+    settings = PlannerSettings(sampling="full")
+    planner = Planner(stones, Site(60, 20), settings=settings)
+    attempt = Attempt(planner.workshop, settings, planner.build)
+    chosen = attempt.choose(np.random.default_rng(0))
+    assert chosen is not None
+    assert chosen.stone_id == 1
+    assert chosen.proposal.other_heights_px == (10.0, 4.0)
+    assert chosen.course_height_px == 7.0
+    assert chosen.indices.NHR == pytest.approx(0.3)
+
+
+def test_orientations_are_candidates_or_the_rule_picks_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    stones = blocks({1: (20, 10), 2: (16, 8)})
+    for choice, tried in (("candidates", 4), ("placement", 2)):
+        settings = PlannerSettings(sampling="full", orientations="quarter").updated(
+            {"orientation_choice": choice}
+        )
+        planner = Planner(stones, Site(60, 30), settings=settings)
+        with monkeypatch.context() as patch:
+            calls = _Calls(patch)
+            Attempt(planner.workshop, settings, planner.build).choose(np.random.default_rng(0))
+        assert len(calls.proposed) == tried

@@ -1,0 +1,141 @@
+"""Choosing between sides (Eq. 29) and by cost."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from drystone.indices.values import Indices
+from drystone.model.placement import Placement, Side
+from drystone.model.site import Site
+from drystone.model.stone import Stone
+from drystone.model.wall import Wall
+from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.choose import better_side, choose_by_algorithm2, choose_by_score
+from drystone.poses import PoseBook
+from drystone.selection.algorithm2 import SelectionSettings
+from drystone.selection.scored import ScoreSettings
+from drystone.stabilise.stabilise import Stabilised
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+
+EMPTY = Build(Wall.empty(Site(20, 20)), RigidBlockModel((), ()))
+INDICES = Indices(SF=1.0, LFR=1.0, GDS=0.5, NHR=0.0, IWR=0.5, IS=0.0, LLC=0.5, boundary=False)
+
+
+def _proposal(stone_id: int, side: Side = "left", cost: float = 0.0) -> Proposal:
+    posed = PoseBook().pose(Stone(stone_id, np.ones((2, 4), bool)), 0.0)
+    return Proposal(Stabilised(Placement(posed, 18, 0, side)), 0.0, cost=cost)
+
+
+def _candidate(proposal: Proposal, llc: float | None = 0.5, gds: float = 0.5) -> Candidate:
+    model = RigidBlockModel((), ())
+    indices = replace(INDICES, LLC=llc, GDS=gds)
+    return Candidate(proposal, indices, None, model, lateral_resistance(model))
+
+
+def _winner(side: Side, gds: float, llc: float = 0.5) -> Candidate:
+    return _candidate(_proposal(1, side), llc, gds)
+
+
+def test_the_larger_gds_wins() -> None:
+    left, right = _winner("left", 0.6, llc=0.1), _winner("right", 0.6 + 1e-8, llc=0.05)
+    assert better_side([left, right], EMPTY, SelectionSettings()) is right
+
+
+def test_equal_gds_is_decided_by_the_weighted_sum() -> None:
+    left, right = _winner("left", 1.0, llc=0.4), _winner("right", 1.0 - 5e-10, llc=0.5)
+    assert better_side([left, right], EMPTY, SelectionSettings()) is right
+
+
+def test_then_by_the_side_used_less_then_left() -> None:
+    left, right = _winner("left", 1.0), _winner("right", 1.0)
+    for winners in ([left, right], [right, left]):
+        assert better_side(winners, EMPTY, SelectionSettings()) is left
+        once = Build(EMPTY.wall, EMPTY.model, (left,))
+        assert better_side(winners, once, SelectionSettings()) is right
+        twice = Build(EMPTY.wall, EMPTY.model, (left, right))
+        assert better_side(winners, twice, SelectionSettings()) is left
+
+
+def test_a_side_without_a_winner_loses() -> None:
+    right = _winner("right", 0.1)
+    assert better_side([right], EMPTY, SelectionSettings()) is right
+    assert better_side([], EMPTY, SelectionSettings()) is None
+
+
+class _Judge:
+    """Gives candidates a known LLC, and keeps what it was asked."""
+
+    def __init__(self, llc: dict[int, float | None]) -> None:
+        self.llc = llc
+        self.batches: list[list[int]] = []
+
+    def __call__(self, proposals: Sequence[Proposal]) -> list[Candidate]:
+        self.batches.append([p.stone_id for p in proposals])
+        return [_candidate(p, self.llc[p.stone_id]) for p in proposals]
+
+
+def test_algorithm_2_analyses_everything_and_gives_the_candidate_back() -> None:
+    judge = _Judge({1: 0.2, 2: 0.9, 3: None})
+    chosen = choose_by_algorithm2([_proposal(i) for i in (1, 2, 3)], judge, SelectionSettings())
+    assert chosen is not None
+    assert chosen.stone_id == 2
+    assert judge.batches == [[1, 2, 3]]
+    nothing = _Judge({1: None, 2: 0.0})
+    assert choose_by_algorithm2([_proposal(1), _proposal(2)], nothing, SelectionSettings()) is None
+
+
+def _by_score(
+    costs: dict[int, float], found: dict[int, float | None], **settings: float
+) -> tuple[Candidate | None, _Judge]:
+    judge = _Judge(found)
+    proposals = [_proposal(i, cost=cost) for i, cost in costs.items()]
+    weights = ScoreSettings(**{"llc": 0.0, "analysed": 2, **settings})  # type: ignore[arg-type]
+    return choose_by_score(proposals, judge, weights), judge
+
+
+def test_the_cheapest_that_stands_is_chosen() -> None:
+    chosen, judge = _by_score({1: 0.3, 2: 0.1, 3: 0.2}, {1: 0.5, 2: None, 3: 0.5})
+    assert chosen is not None
+    assert chosen.stone_id == 3
+    assert judge.batches == [[2, 3], [1]]  # one of the first two stands, so it goes on
+
+
+def test_analysing_ends_when_enough_stand() -> None:
+    chosen, judge = _by_score(dict.fromkeys((5, 6, 7, 8), 1.0), dict.fromkeys((5, 6, 7, 8), 0.5))
+    assert judge.batches == [[5, 6]]
+    assert chosen is not None
+    assert chosen.stone_id == 5  # equal costs: the lower id
+
+
+def test_what_carries_nothing_does_not_stand() -> None:
+    assert _by_score({1: 0.1, 2: 0.2}, {1: 0.0, 2: None})[0] is None
+    assert _by_score({}, {})[0] is None
+
+
+@pytest.mark.parametrize(
+    ("settings", "chosen"),
+    [
+        ({"llc": 0.1}, 1),  # costs 0 - .01, .3 - .09
+        ({"llc": 1.0}, 2),  # costs 0 - .1, .3 - .9; the third is not analysed
+        ({"llc": 1.0, "analysed": 1}, 1),
+        ({"llc": 9.0, "analysed": 3}, 3),
+    ],
+)
+def test_resistance_counts_among_those_analysed(settings: dict[str, float], chosen: int) -> None:
+    best, _ = _by_score({1: 0.0, 2: 0.3, 3: 0.4}, {1: 0.1, 2: 0.9, 3: 1.0}, **settings)
+    assert best is not None
+    assert best.stone_id == chosen
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_order_of_analysis_is_the_order_of_costs(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    costs = dict(enumerate(rng.uniform(0, 1, 9).tolist(), 1))
+    judge = _by_score(costs, dict.fromkeys(costs), analysed=3)[1]
+    asked = [stone for batch in judge.batches for stone in batch]
+    assert sorted(asked) == sorted(costs)
+    assert all(costs[one] <= costs[other] for one, other in pairwise(asked))

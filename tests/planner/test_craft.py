@@ -1,0 +1,132 @@
+"""The craft terms of an action, by hand."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from drystone.model.landscape import Landscape
+from drystone.model.placement import Placement, Wedge
+from drystone.model.pose import PosedStone
+from drystone.model.site import Site
+from drystone.model.stone import Stone
+from drystone.model.wall import Wall
+from drystone.planner.craft import action_craft
+from drystone.planner.stock import Rest, Stock
+from drystone.poses import PoseBook
+from drystone.selection.scored import Craft
+from drystone.stabilise.stabilise import Stabilised
+from tests.naive import planner as naive
+from tests.strategies import posed_on_walls, repeatable
+
+STOCK = Stock(narrowest_px=4.0, mean_height_px=5.0, mean_area_px=50.0, largest_id=9)
+SITE = Site(40, 20)
+
+
+def _block(stone_id: int, width: int, height: int) -> PosedStone:
+    return PoseBook().pose(Stone(stone_id, np.ones((height, width), bool)), 0.0)
+
+
+def _rest(leaves: int = 0) -> Rest:
+    """Stones that always leave so much of a free length."""
+    return Rest(np.full(21, leaves), np.full(41, leaves))
+
+
+def _at(posed: PosedStone, left: int, bottom: int) -> Placement:
+    return Placement(posed, SITE.height_px - bottom - posed.height_px, left)
+
+
+def _wall(*placements: Placement) -> Wall:
+    wall = Wall.empty(SITE)
+    for placement in placements:
+        wall = wall.add(placement)
+    return wall
+
+
+def _craft(wall: Wall, placement: Placement, rest: Rest | None = None) -> Craft:
+    return action_craft(Landscape.of(wall), Stabilised(placement), STOCK, rest or _rest())
+
+
+def test_a_block_in_the_corner() -> None:
+    craft = _craft(_wall(), _at(_block(1, 10, 5), 0, 0))
+    assert craft.height == pytest.approx(2.5 / 5)
+    assert craft.area == pytest.approx(1.0)
+    nothing = (craft.void, craft.gap, craft.slot, craft.headroom, craft.step, craft.roughness)
+    assert nothing == (0, 0, 0, 0, 0, 0)
+    assert craft.upright == 0
+    assert craft.joint == 1.0  # a boundary stone whose top does not slope: IS = 0
+
+
+def test_height_void_and_gap() -> None:
+    pillar = _at(_block(1, 10, 5), 0, 0)
+    # On the pillar, 4 of 10 columns over nothing: 4 x 5 px; 6 px free on the left, 4 px high.
+    craft = _craft(_wall(pillar), _at(_block(2, 8, 4), 6, 5))
+    assert craft.height == pytest.approx((5 + 2) / 5)
+    assert craft.void == pytest.approx(4 * 5 / 50)
+    assert craft.gap == pytest.approx(6 * 4 / 50)
+    # The gap counts for one stone at most.
+    assert _craft(_wall(), _at(_block(2, 8, 8), 30, 0)).gap == 1.0
+
+
+def test_a_wedge_fills_its_part_of_the_void() -> None:
+    wall = _wall(_at(_block(1, 10, 5), 0, 0))
+    placement = _at(_block(2, 8, 4), 6, 5)
+    wedge = Wedge(10, 2, np.ones((5, 3), bool), 15, 11)
+    craft = action_craft(Landscape.of(wall), Stabilised(placement, (wedge,)), STOCK, _rest())
+    assert craft.void == pytest.approx((4 * 5 - 15) / 50)
+
+
+def test_step_to_the_neighbour() -> None:
+    wall = _wall(_at(_block(1, 10, 5), 0, 0))
+    assert _craft(wall, _at(_block(2, 10, 8), 10, 0)).step == pytest.approx(3 / 5)
+    assert _craft(wall, _at(_block(2, 10, 5), 10, 0)).step == 0.0
+    assert _craft(_wall(), _at(_block(2, 10, 8), 10, 0)).step == 0.0  # nothing to compare with
+
+
+def test_what_the_rest_cannot_fill() -> None:
+    craft = _craft(_wall(), _at(_block(1, 10, 5), 0, 0), _rest(3))
+    assert craft.slot == pytest.approx(3 * 5 / 50)
+    assert craft.headroom == pytest.approx(3 * 10 / 50)
+    # The free width on the right is 30, the free height 15.
+    width, height = np.zeros(41, int), np.zeros(21, int)
+    width[30], height[15] = 2, 4
+    craft = _craft(_wall(), _at(_block(1, 10, 5), 0, 0), Rest(height, width))
+    assert craft.slot == pytest.approx(2 * 5 / 50)
+    assert craft.headroom == pytest.approx(4 * 10 / 50)
+
+
+def test_roughness_upright_and_joint() -> None:
+    mask = np.ones((6, 8), bool)
+    mask[:2, :4] = False  # a step of 2 px half way: 1 px on average from the median, 1 px down
+    wall = _wall(_at(_block(1, 20, 5), 0, 0), _at(_block(2, 20, 5), 20, 0))
+    stepped = PoseBook().pose(Stone(3, mask), 0.0)
+    craft = _craft(wall, _at(stepped, 10, 5))
+    assert craft.roughness == pytest.approx(1 / 5)
+    assert craft.upright == 0
+    # Its ends are 10 and 2 px from the joint at 20, of stones 20 px wide: IWR = (.5 + .1) / 2.
+    assert craft.joint == pytest.approx(1 - 0.3)
+    upright = _craft(wall, _at(_block(3, 4, 10), 10, 5))
+    assert upright.upright == pytest.approx(1 - 4 / 10)
+    assert upright.roughness == 0
+
+
+def test_from_the_right_everything_is_mirrored() -> None:
+    pillar, stone = _block(1, 10, 5), _block(2, 8, 4)
+    left = _craft(_wall(_at(pillar, 0, 0)), _at(stone, 6, 5), _rest(2))
+    mirrored = Placement(stone, SITE.height_px - 9, SITE.width_px - 6 - 8, "right")
+    wall = _wall(_at(pillar, 30, 0))
+    right = action_craft(Landscape.of(wall, "right"), Stabilised(mirrored), STOCK, _rest(2))
+    assert right == left
+
+
+@repeatable(60)
+@given(posed_on_walls())
+def test_the_void_is_what_is_free_below(scene: tuple[Wall, PosedStone, int, int]) -> None:
+    wall, posed, row, col = scene
+    cells = [(row + r, col + c) for r, c in np.argwhere(posed.mask).tolist()]
+    # Pixels under the stone's lowest ones only: its own hollows are the stone's business.
+    lowest = {c: max(r for r, other in cells if other == c) for _, c in cells}
+    rest = Rest(np.zeros(wall.site.height_px + 1, int), np.zeros(wall.site.width_px + 1, int))
+    placement = Placement(posed, row, col)
+    craft = action_craft(Landscape.of(wall), Stabilised(placement), STOCK, rest)
+    expected = naive.free_area_under(wall.occupied.tolist(), [(r, c) for c, r in lowest.items()])
+    assert craft.void == pytest.approx(expected / STOCK.mean_area_px)

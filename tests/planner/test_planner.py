@@ -1,0 +1,227 @@
+"""Algorithm 1: the loop, its ways to stop, and that it can be left and taken up again."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from drystone.errors import UsageError
+from drystone.model.site import Site
+from drystone.planner.attempt import Attempt
+from drystone.planner.events import Callbacks, Step, Stopped
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings, StopSettings
+from tests.planner.scenes import (
+    RUBBLE_SITE,
+    blocks,
+    bricks,
+    finish,
+    greedy,
+    order,
+    rubble,
+    same,
+)
+
+
+def test_it_stops_when_the_wall_is_filled() -> None:
+    planner = finish(Planner(bricks(8), Site(60, 20)))
+    assert planner.stopped is not None
+    assert planner.stopped.reason == "filled"
+    assert len(planner.build.actions) == 6
+    assert planner.build.wall.filling == 1.0
+
+
+def test_the_filling_wanted_is_a_setting() -> None:
+    settings = PlannerSettings(stop=StopSettings(filling=0.6))
+    planner = finish(Planner(bricks(8), Site(60, 20), settings=settings))
+    assert planner.stopped == Stopped("filled", "filling above 0.6")
+    assert len(planner.build.actions) == 4  # 4/6 is the first above .6
+
+
+def test_it_stops_when_no_stones_are_left() -> None:
+    planner = finish(Planner(bricks(3), Site(60, 20)))
+    assert planner.stopped == Stopped("stones", "all stones placed")
+    assert len(planner.build.actions) == 3
+
+
+def test_stones_that_do_not_fit_are_not_said_to_be_placed() -> None:
+    stones = blocks({1: (20, 10), 2: (90, 10)})
+    settings = PlannerSettings(skip_too_large=True)
+    planner = finish(Planner(stones, Site(60, 20), settings=settings))
+    assert planner.stopped == Stopped("stones", "all stones that fit placed")
+    assert [action.stone_id for action in planner.build.actions] == [1]
+
+
+@pytest.fixture
+def attempts(monkeypatch: pytest.MonkeyPatch) -> list[int | None]:
+    """What every attempt at a step chose."""
+    chosen: list[int | None] = []
+    choose = Attempt.choose
+
+    def watched(self: Attempt, rng: object) -> object:
+        action = choose(self, rng)  # type: ignore[arg-type]
+        chosen.append(None if action is None else action.stone_id)
+        return action
+
+    monkeypatch.setattr(Attempt, "choose", watched)
+    return chosen
+
+
+@pytest.mark.parametrize("failures", [1, 3, 5])
+def test_it_stops_after_failures_in_a_row(failures: int, attempts: list[int | None]) -> None:
+    settings = PlannerSettings(stop=StopSettings(failures=failures))
+    planner = finish(Planner(bricks(5), Site(30, 10), settings=settings))
+    assert planner.stopped == Stopped("failures", "no stone that is left can be placed")
+    assert attempts[0] is not None
+    assert attempts[1:] == [None] * failures
+
+
+def test_full_sampling_ends_at_the_first_failure(attempts: list[int | None]) -> None:
+    planner = finish(Planner(bricks(5), Site(30, 10), settings=PlannerSettings(sampling="full")))
+    assert planner.stopped is not None
+    assert planner.stopped.reason == "failures"
+    assert attempts[1:] == [None]
+
+
+def test_a_success_forgives_failures(
+    monkeypatch: pytest.MonkeyPatch, attempts: list[int | None]
+) -> None:
+    choose, count = Attempt.choose, iter(range(1000))
+
+    def moody(self: Attempt, rng: object) -> object:
+        # Four failures before every success.
+        return choose(self, rng) if next(count) % 5 == 4 else None  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Attempt, "choose", moody)
+    planner = finish(Planner(bricks(4), Site(60, 20)))
+    assert len(planner.build.actions) == 4
+    assert len(attempts) == 4
+
+
+def test_every_attempt_draws_its_own_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    choose = Attempt.choose
+    drawn: list[int] = []
+
+    def watched(self: Attempt, rng: np.random.Generator) -> object:
+        drawn.append(int(rng.integers(2**62)))
+        return choose(self, rng)
+
+    monkeypatch.setattr(Attempt, "choose", watched)
+    for seed in (1, 2):
+        finish(Planner(bricks(5), Site(30, 10), seed=seed))
+    assert len(drawn) == len(set(drawn)) == 2 * (1 + 5)  # one stone, five failures
+
+
+@pytest.mark.parametrize("settings", [PlannerSettings(), greedy()], ids=["paper", "best"])
+def test_steps_can_be_left_and_taken_up_again(settings: PlannerSettings) -> None:
+    whole = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
+    parts = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
+    numbers = []
+    for _ in range(3):
+        for step in parts.steps():
+            numbers.append(step.number)
+            if step.number % 2 == 0:
+                assert parts.stopped is None
+                break
+    numbers += [step.number for step in parts.steps()]
+    assert same(parts, whole)
+    assert numbers == list(range(1, len(whole.build.actions) + 1))
+    assert len(numbers) > 4
+
+
+def test_steps_tell_what_was_done() -> None:
+    planner = Planner(rubble(), RUBBLE_SITE)
+    for number, step in enumerate(planner.steps(), 1):
+        assert step.number == number
+        assert step.build is planner.build
+        assert step.build.actions[-1] is step.action
+        assert len(step.build.actions) == number
+        assert step.candidates >= 1
+
+
+def test_callbacks_come_in_order_before_the_step_is_yielded() -> None:
+    told: list[str] = []
+
+    class Watch(Callbacks):
+        def on_step(self, step: Step) -> None:
+            told.append(f"told {step.number}")
+
+    planner = Planner(bricks(3), Site(60, 20), callbacks=Watch())
+    told.extend(f"got {step.number}" for step in planner.steps())
+    assert told == ["told 1", "got 1", "told 2", "got 2", "told 3", "got 3"]
+
+
+def test_an_interrupt_in_a_callback_keeps_the_step() -> None:
+    class Impatient(Callbacks):
+        def on_step(self, step: Step) -> None:
+            if step.number == 2:
+                raise KeyboardInterrupt
+
+    whole = finish(Planner(rubble(), RUBBLE_SITE, seed=1))
+    planner = Planner(rubble(), RUBBLE_SITE, seed=1, callbacks=Impatient())
+    with pytest.raises(KeyboardInterrupt):
+        finish(planner)
+    assert len(planner.build.actions) == 2
+    assert same(finish(planner), whole)
+
+
+@pytest.mark.parametrize("settings", [PlannerSettings(), greedy()], ids=["paper", "best"])
+@pytest.mark.parametrize("built", [1, 3])
+def test_a_restored_wall_goes_on_as_if_never_interrupted(
+    built: int, settings: PlannerSettings
+) -> None:
+    whole = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
+    first = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
+    for step in first.steps():
+        if step.number == built:
+            break
+    heights = {
+        action.stone_id: action.course_height_px
+        for action in first.build.actions
+        if action.course_height_px is not None
+    }
+    again = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
+    again.restore(first.build.wall, heights)
+    assert same(finish(again), whole)
+
+
+def test_the_result_does_not_depend_on_the_executor() -> None:
+    settings = greedy()
+    alone = finish(Planner(rubble(), RUBBLE_SITE, seed=2, settings=settings))
+    with ThreadPoolExecutor(2) as pool:
+        helped = finish(Planner(rubble(), RUBBLE_SITE, seed=2, settings=settings, executor=pool))
+    assert same(helped, alone)
+
+
+def test_seeds_matter_only_for_random_samples() -> None:
+    def built(sampling: str, seed: int) -> list[tuple[int, float, int, int, str]]:
+        settings = PlannerSettings().updated({"sampling": sampling})
+        return order(finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings)))
+
+    assert built("full", 1) == built("full", 2)
+    assert built("uniform", 1) != built("uniform", 2)
+
+
+def test_every_step_stands() -> None:
+    for settings in (PlannerSettings(two_sided=True), greedy()):
+        for step in Planner(rubble(), RUBBLE_SITE, settings=settings).steps():
+            assert step.action.resistance.stable
+            assert step.action.indices.LLC is not None
+            assert step.action.indices.LLC > 0
+
+
+def test_what_cannot_be_planned() -> None:
+    with pytest.raises(UsageError, match="E126"):
+        Planner(blocks({}), Site(10, 10))
+    with pytest.raises(UsageError, match=r"E120 --wall: stones 2, 9 fit .*--skip-too-large"):
+        Planner(blocks({1: (5, 5), 2: (11, 5), 9: (5, 11)}), Site(10, 10))
+    with pytest.raises(UsageError, match="E137"):
+        Planner(blocks({2**32 - 2: (5, 5)}), Site(10, 10))
+
+
+def test_a_stone_that_fits_only_when_turned_is_not_too_large() -> None:
+    stones = blocks({1: (5, 10)})
+    with pytest.raises(UsageError, match="E120"):
+        Planner(stones, Site(20, 6))
+    planner = finish(Planner(stones, Site(20, 6), settings=PlannerSettings(orientations="quarter")))
+    assert len(planner.build.actions) == 1

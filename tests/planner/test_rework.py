@@ -1,0 +1,102 @@
+"""Rework: the wall never gets worse."""
+
+import math
+from itertools import islice, pairwise
+
+import pytest
+
+from drystone.model.site import Site
+from drystone.planner.events import Callbacks, Round, Step
+from drystone.planner.plan_wall import plan_wall, run_to_end
+from drystone.planner.planner import Planner
+from drystone.planner.rework import rework, wall_merit
+from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble, same
+
+
+def _planner(rounds: int, seed: int = 1) -> Planner:
+    settings = greedy({"rework": {"rounds": rounds}})
+    return Planner(rubble(seed=seed), RUBBLE_SITE, seed=seed, settings=settings)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_merit_never_falls(seed: int) -> None:
+    planner = finish(_planner(3, seed))
+    before = order(planner)
+    incumbents = list(rework(planner))
+    assert len(incumbents) == 4
+    assert incumbents[0].planner is planner
+    assert incumbents[0].merit == wall_merit(planner)
+    assert all(one.merit <= other.merit for one, other in pairwise(incumbents))
+    for incumbent in incumbents:
+        assert incumbent.merit == wall_merit(incumbent.planner)
+        assert incumbent.states[-1].actions == incumbent.planner.build.actions
+        assert len(incumbent.states) == len(incumbent.planner.build.actions) + 1
+        assert all(a.resistance.stable for a in incumbent.planner.build.actions)
+    assert order(planner) == before
+
+
+def test_a_wall_is_kept_when_its_merit_is_larger(monkeypatch: pytest.MonkeyPatch) -> None:
+    merits = iter([1.0, 0.5, 2.0, 2.0])
+    monkeypatch.setattr("drystone.planner.rework.wall_merit", lambda _: next(merits))
+    planner = finish(_planner(3))
+    incumbents = list(rework(planner))
+    assert [incumbent.merit for incumbent in incumbents] == [1.0, 1.0, 2.0, 2.0]
+    walls = [incumbent.planner for incumbent in incumbents]
+    assert walls[0] is walls[1] is planner
+    assert walls[2] is walls[3]
+    assert walls[2] is not planner
+
+
+def test_no_rounds_change_nothing() -> None:
+    plain = finish(_planner(0))
+    planner, stopped = run_to_end(_planner(0))
+    assert same(planner, plain)
+    assert stopped == plain.stopped
+
+
+def test_rounds_are_repeatable_and_told() -> None:
+    told: list[Round] = []
+    steps: list[int] = []
+
+    class Watch(Callbacks):
+        def on_step(self, step: Step) -> None:
+            steps.append(step.number)
+
+        def on_round(self, round_: Round) -> None:
+            told.append(round_)
+
+    one = _planner(2)
+    one.callbacks = Watch()
+    best, _ = run_to_end(one)
+    again, _ = run_to_end(_planner(2))
+    assert same(best, again)
+    assert [(r.number, r.rounds) for r in told] == [(0, 2), (1, 2), (2, 2)]
+    assert told[-1].stones == len(best.build.actions)
+    assert told[-1].merit == wall_merit(best)
+    assert steps == sorted(set(steps))  # rework does not tell the steps of walls it tries
+
+
+def test_an_interrupt_keeps_the_best_wall_so_far() -> None:
+    class Impatient(Callbacks):
+        def on_round(self, round_: Round) -> None:
+            if round_.number == 1:
+                raise KeyboardInterrupt
+
+    settings = greedy({"rework": {"rounds": 5}})
+    result = plan_wall(
+        rubble(seed=1), 100, 36, scale=1.0, seed=1, settings=settings, callbacks=Impatient()
+    )
+    assert (result.status, result.success) == ("interrupted", False)
+    assert result.plan.stopped == "interrupted"
+    first_rounds = list(islice(rework(finish(_planner(5))), 2))
+    kept = order(first_rounds[-1].planner)
+    assert [step.stone for step in result.plan.stone_steps] == [action[0] for action in kept]
+
+
+def test_an_empty_wall_has_no_merit() -> None:
+    planner = _planner(2)
+    assert wall_merit(planner) == -math.inf
+    # No stone that is 100 px wide fits: there is nothing to take down, and nothing breaks.
+    settings = greedy({"rework": {"rounds": 2}, "skip_too_large": True})
+    small, stopped = run_to_end(Planner(rubble(), Site(6, 6), settings=settings))
+    assert (small.build.actions, stopped.reason) == ((), "stones")

@@ -1,0 +1,216 @@
+"""Walls that the planner builds: courses, bridges, wedges, ids, and nothing mirrored."""
+
+import numpy as np
+import pytest
+import shapely
+from numpy.typing import NDArray
+from shapely import affinity
+
+from drystone.generate import RubbleSettings, rubble_stones
+from drystone.kernels.outline import pixel_polygon
+from drystone.model.landscape import Landscape
+from drystone.model.placement import Placement
+from drystone.model.plan import StoneStep
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.planner.build import Build
+from drystone.planner.evaluate import Evaluator, Trial
+from drystone.planner.plan_wall import mean_top, plan_wall, working_scale
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings
+from drystone.verify import check_plan
+from tests.planner.scenes import blocks, bricks, greedy, rubble, stones_of_masks
+
+
+def _longest_run(free: NDArray[np.bool_]) -> int:
+    longest = run = 0
+    for cell in free.tolist():
+        run = run + 1 if cell else 0
+        longest = max(longest, run)
+    return longest
+
+
+def _small_rubble(seed: int) -> StoneSet:
+    settings = RubbleSettings(count=12, width_px=120, height_px=50, courses=2)
+    return rubble_stones(settings, np.random.default_rng(seed))
+
+
+@pytest.mark.parametrize(
+    ("stones", "site"),
+    [
+        (_small_rubble(0), Site(120, 50)),
+        (_small_rubble(1), Site(120, 50)),
+        (bricks(9, halves=2), Site(60, 40)),
+    ],
+    ids=["rubble 0", "rubble 1", "bricks"],
+)
+def test_the_default_finishes_the_first_course_before_the_second(
+    stones: StoneSet, site: Site
+) -> None:
+    # DESIGN 4.4: when a stone is laid higher than the ground, no stone that is left would have
+    # found room on the ground.
+    planner = Planner(stones, site, settings=greedy())
+    before, left, above = planner.build.wall.occupied, {stone.id for stone in stones}, 0
+    for step in planner.steps():
+        placement = step.action.stabilised.placement
+        bottom = site.height_px - placement.row - placement.posed.height_px
+        if bottom > 2:
+            above += 1
+            room = _longest_run(np.asarray(~before.any(axis=0)))
+            narrowest = min(p.width_px for i in left for p in planner.workshop.poses[i])
+            assert room < narrowest
+        before = planner.build.wall.occupied
+        left.remove(step.action.stone_id)
+    assert above >= 4
+
+
+def _scene(
+    sizes: dict[int, tuple[int, int]],
+    places: dict[int, tuple[int, int]],
+    settings: PlannerSettings,
+    height: int = 40,
+) -> tuple[Planner, Evaluator]:
+    """A planner with some blocks placed by their left and bottom edges, 60 px wide."""
+    planner = Planner(blocks(sizes), Site(60, height), settings=settings)
+    workshop = planner.workshop
+    wall = planner.build.wall
+    for stone_id, (left, bottom) in places.items():
+        posed = workshop.initial[stone_id]
+        wall = wall.add(Placement(posed, height - bottom - posed.height_px, left))
+    planner.restore(wall, {})
+    return planner, Evaluator(settings, workshop.memory, workshop.stock)
+
+
+def _trial(planner: Planner, stone_id: int) -> Trial:
+    workshop, build = planner.workshop, planner.build
+    return Trial(workshop.poses[stone_id], Landscape.of(build.wall), workshop.rest(build))
+
+
+@pytest.mark.parametrize("settings", [PlannerSettings(), greedy()], ids=["paper", "best"])
+def test_a_stone_bridges_two_pillars_without_a_wedge(settings: PlannerSettings) -> None:
+    sizes = {1: (20, 20), 2: (20, 20), 3: (60, 8)}
+    planner, evaluator = _scene(sizes, {1: (0, 0), 2: (40, 0)}, settings)
+    proposal = evaluator.propose(planner.build, _trial(planner, 3))
+    assert proposal is not None
+    placement = proposal.stabilised.placement
+    assert (placement.row, placement.col, placement.rotation_moves) == (12, 0, 0)
+    assert proposal.stabilised.wedges == ()
+    candidate = evaluator.judge(planner.build, proposal)
+    assert candidate.resistance.stable
+    assert candidate.resistance.value is not None
+    assert candidate.resistance.value > 0.3
+
+
+def _half_supported(ids: tuple[int, int, int]) -> Build:
+    """A slab that one pillar carries at its end, and a lower pillar does not reach."""
+    high, low, slab = ids
+    settings = PlannerSettings().updated({"stabilise": {"method": "wedge"}})
+    sizes = {high: (20, 20), low: (20, 16), slab: (60, 8)}
+    planner, evaluator = _scene(sizes, {high: (0, 0), low: (40, 0)}, settings)
+    proposal = evaluator.propose(planner.build, _trial(planner, slab))
+    assert proposal is not None
+    return planner.build.add(evaluator.judge(planner.build, proposal))
+
+
+@pytest.mark.parametrize("ids", [(3, 5, 7), (7, 300, 5), (70_000, 300, 5), (300, 1, 70_000)])
+def test_wedges_are_numbered_after_the_largest_id(ids: tuple[int, int, int]) -> None:
+    build = _half_supported(ids)
+    wedges = build.wall.wedges
+    assert [wedge.id for wedge in wedges] == [max(ids) + 1]
+    assert wedges[0].under == ids[2]
+    assert {int(label) for label in np.unique(build.wall.labels)} == {0, *ids, max(ids) + 1}
+    assert build.actions[-1].resistance.stable
+
+
+def test_two_wedges_get_two_ids() -> None:
+    settings = PlannerSettings().updated({"stabilise": {"method": "wedge"}})
+    sizes = {1: (12, 12), 2: (12, 8), 3: (28, 5), 4: (12, 12), 5: (12, 8), 6: (28, 5)}
+    places = {1: (0, 0), 2: (16, 0), 4: (28, 0), 5: (44, 0)}
+    # Too low for one slab on top of the other.
+    planner, evaluator = _scene(sizes, places, settings, height=18)
+    build = planner.build
+    for slab in (3, 6):
+        planner.build = build
+        proposal = evaluator.propose(build, _trial(planner, slab))
+        assert proposal is not None
+        build = build.add(evaluator.judge(build, proposal))
+    assert [wedge.id for wedge in build.wall.wedges] == [7, 8]
+
+
+def _l_shape() -> NDArray[np.bool_]:
+    mask = np.ones((16, 24), bool)
+    mask[:10, 8:] = False
+    return mask
+
+
+@pytest.mark.parametrize(("scale", "orientations"), [(1.0, "quarter"), (0.5, "45deg")])
+def test_no_stone_is_mirrored(scale: float, orientations: str) -> None:
+    # Shapes without symmetry: the plan's poses, applied to outlines, give the pixels of the wall.
+    shape = _l_shape()
+    stones = stones_of_masks({4: shape, 9: shape[:, ::-1], 300: shape, 12: shape[:, ::-1]})
+    settings = greedy({"orientations": orientations})
+    result = plan_wall(stones, 72, 40, scale=scale, settings=settings)
+    placed = result.plan.stone_steps
+    assert len(placed) >= 2
+    assert any(round(step.angle_deg) % 360 for step in placed)
+    labels = result.wall.labels
+    for step in placed:
+        expected = _planned_polygon(step, stones).buffer(0)
+        seen = _pixels_polygon(labels == step.stone, scale)
+        mirror = affinity.scale(expected, xfact=-1.0, origin=step.centroid)
+        assert _overlap(seen, expected) > 0.9
+        assert _overlap(seen, mirror) < 0.8
+
+
+def _planned_polygon(step: StoneStep, stones: StoneSet) -> shapely.Polygon:
+    """A stone where the contract puts it: R(angle_deg) (p - source_centroid) + centroid."""
+    stone = stones.by_id(step.stone)
+    in_source = stone.outline + np.array(stone.centroid)
+    angle = np.radians(step.angle_deg)
+    rotation = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    points = (in_source - step.source_centroid) @ rotation.T + step.centroid
+    return shapely.Polygon(points)
+
+
+def _pixels_polygon(mask: NDArray[np.bool_], scale: float) -> shapely.Polygon:
+    rows, cols = np.nonzero(mask)
+    cropped = mask[rows.min() : rows.max() + 1, cols.min() : cols.max() + 1]
+    corner = np.array([cols.min(), mask.shape[0] - 1 - rows.max()])
+    return shapely.Polygon((pixel_polygon(cropped) + corner) / scale)
+
+
+def _overlap(one: shapely.Polygon, other: shapely.Polygon) -> float:
+    return float(one.intersection(other).area / one.union(other).area)
+
+
+def test_the_result_in_one_call() -> None:
+    stones = rubble()
+    result = plan_wall(stones, 100, 36, scale=1.0, method="paper", seed=3)
+    assert result.message == result.plan.stopped
+    assert result.success == (result.status == "complete")
+    assert (result.plan.method, result.plan.seed) == ("paper", 3)
+    assert result.plan.settings == PlannerSettings().as_dict()
+    assert result.metrics is result.plan.metrics
+    assert set(result.clusters) == {stone.id for stone in stones}
+    assert result.seconds > 0
+    assert check_plan(result.plan, stones, wall_labels=result.wall.labels).ok
+
+
+def test_what_is_incomplete() -> None:
+    # Half of the wall's height with all stones: not filled, and its top is too low.
+    result = plan_wall(bricks(3), 60, 20, scale=1.0, method="paper")
+    assert (result.status, result.message) == ("incomplete", "all stones placed")
+    assert mean_top(result.wall) == pytest.approx(0.5)
+    # A wall that is as high as wanted is complete though it has gaps.
+    tall = plan_wall(blocks({1: (58, 20)}), 60, 20, scale=1.0, method="paper")
+    assert tall.metrics.F_SF < 0.99
+    assert (tall.status, tall.success) == ("complete", True)
+
+
+def test_the_working_resolution() -> None:
+    assert working_scale(bricks()) == 1.0  # never finer than the source
+    large = blocks({1: (160, 80), 2: (200, 80), 3: (240, 100)})
+    assert working_scale(large) == 0.2  # 40 / 200
+    plan = plan_wall(large, 640, 240, method="paper").plan
+    assert plan.working_scale == 0.2
+    assert (plan.width, plan.height) == (640.0, 240.0)

@@ -1,0 +1,271 @@
+"""The documents say what the code does.
+
+``python -m tests.test_documents`` from the root of the checkout writes the tables of
+docs/settings.md anew from the docstrings of the settings.
+"""
+
+import dataclasses
+import json
+import os
+import re
+import shlex
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from drystone.cli.parser import build_parser
+from drystone.generate import (
+    BrickSettings,
+    FourierSettings,
+    PolygonSettings,
+    RubbleSettings,
+    brick_stones,
+    lay_out,
+)
+from drystone.io.plan_json import plan_from_json
+from drystone.io.plan_schema import plan_schema
+from drystone.io.read_settings import ReadSettings
+from drystone.io.wall_image import write_labels
+from drystone.planner.settings import METHODS, PlannerSettings
+from drystone.selection.scored import Craft
+
+ROOT = Path(__file__).resolve().parents[1]
+SETTINGS = ROOT / "docs" / "settings.md"
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
+NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
+
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
+TABLE = re.compile(r"<!-- table (\w+) -->\n(.*?)<!-- end -->", re.DOTALL)
+
+SOURCES: dict[str, type[Any]] = {
+    "read": ReadSettings,
+    "fourier": FourierSettings,
+    "polygon": PolygonSettings,
+    "brick": BrickSettings,
+    "rubble": RubbleSettings,
+}
+"""Settings outside the planner, by the name of their table."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What a docstring says of one parameter."""
+
+    kind: str
+    text: str
+
+
+def entries(described: type[Any]) -> dict[str, Entry]:
+    """Read the Parameters section of a numpydoc docstring."""
+    text = textwrap.dedent((described.__doc__ or "").expandtabs())
+    text = re.split(r"^ *Parameters\n *-+\n", text, flags=re.MULTILINE)[1]
+    text = re.split(r"\n *\w+\n *-{3,}\n", text)[0]
+    found: dict[str, Entry] = {}
+    parts = re.split(r"^(?:    )?(\w[\w, ]*?)(?: : (.*))?\n(?=        |    \S)", text, flags=re.M)
+    for names, kind, body in zip(parts[1::3], parts[2::3], parts[3::3], strict=True):
+        for name in names.split(", "):
+            found[name] = Entry(plain(kind or ""), plain(" ".join(body.split())))
+    return found
+
+
+def plain(text: str) -> str:
+    """Turn the marks of docstrings into those of the documents."""
+    text = re.sub(r":\w+:`~?([^`]+)`", r"`\1`", text)
+    text = re.sub(r" \(DESIGN [\d.]+\)", "", text)
+    return text.replace("``", "`").replace("|", "\\|")
+
+
+def meaning(entry: Entry) -> str:
+    """Say what values there are, unless the text does, then what they do."""
+    choices = re.findall(r'"[^"]+"', entry.kind) if entry.kind.startswith("{") else []
+    if all(choice in entry.text for choice in choices):
+        return entry.text
+    return f"{', '.join(f'`{choice}`' for choice in choices)}. {entry.text}"
+
+
+def value(thing: object) -> str:
+    """Write a value as in TOML; None, which TOML lacks, as none."""
+    if thing is None:
+        return "none"
+    return f"`{json.dumps(thing)}`"
+
+
+def plain_fields(described: type[Any]) -> list[str]:
+    """Return the names of the fields that are no settings themselves."""
+    return [
+        field.name
+        for field in dataclasses.fields(described)
+        if not isinstance(field.default_factory, type)
+    ]
+
+
+def planner_tables() -> dict[str, type[Any]]:
+    """Return the settings of the planner by the name of their TOML table."""
+    tables: dict[str, type[Any]] = {"planner": PlannerSettings}
+    for field in dataclasses.fields(PlannerSettings):
+        nested = getattr(METHODS["paper"], field.name)
+        if dataclasses.is_dataclass(nested):
+            tables[field.name] = type(nested)
+    return tables
+
+
+def explained_rows(name: str) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Yield the fields of a table with their meaning; those explained together are one row."""
+    described = SOURCES.get(name) or planner_tables()[name]
+    known = entries(described)
+    if name == "score":  # its weights are those of the costs, which are explained at the costs
+        known |= entries(Craft)
+    for entry, together in groupby(plain_fields(described), key=lambda field: known[field]):
+        yield tuple(together), meaning(entry)
+
+
+def written_table(name: str) -> str:
+    """Return a table of docs/settings.md as the code has it."""
+    if name in SOURCES:
+        columns = {"default": SOURCES[name]()}
+    else:
+        columns = {
+            f"`{method}`": settings if name == "planner" else getattr(settings, name)
+            for method, settings in METHODS.items()
+        }
+    lines = [f"| name | {' | '.join(columns)} | meaning |", "|---" * (len(columns) + 2) + "|"]
+    for names, text in explained_rows(name):
+        values = [
+            ", ".join(value(getattr(settings, field)) for field in names)
+            for settings in columns.values()
+        ]
+        lines.append(f"| {' | '.join([', '.join(f'`{n}`' for n in names), *values, text])} |")
+    return "\n".join(lines) + "\n"
+
+
+def rewritten(text: str) -> str:
+    """Return docs/settings.md with every table as the code has it."""
+    return TABLE.sub(lambda m: f"<!-- table {m[1]} -->\n{written_table(m[1])}<!-- end -->", text)
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    """Return the fenced blocks of a page in one language."""
+    text = page.read_text(encoding="utf-8")
+    return [body for found, body in BLOCK.findall(text) if found == language]
+
+
+def command_lines(page: Path) -> Iterator[list[str]]:
+    """Yield the words of every drystone command in the shell blocks of a page.
+
+    Of the README those in the text count too, when they have arguments.
+    """
+    for block in blocks(page, "sh"):
+        for line in block.replace("\\\n", " ").splitlines():
+            words = shlex.split(line, comments=True)
+            if words and Path(words[0]).name == "drystone":
+                yield words[1:]
+    if page.name == "README.md":  # elsewhere in text they have placeholders
+        for line in re.findall(r"`drystone ([^`]+ [^`]+ [^`]+)`", page.read_text(encoding="utf-8")):
+            yield shlex.split(line)
+
+
+def test_the_settings_are_those_of_the_code() -> None:
+    text = SETTINGS.read_text(encoding="utf-8")
+    names = [name for name, _ in TABLE.findall(text)]
+    assert names == [*planner_tables(), *SOURCES]
+    assert text == rewritten(text), "run python -m tests.test_documents"
+
+
+@pytest.mark.parametrize("described", [*planner_tables().values(), *SOURCES.values()])
+def test_every_setting_is_explained(described: type[Any]) -> None:
+    explained = entries(described)
+    assert list(explained) == [field.name for field in dataclasses.fields(described)]
+    assert all(explained[name].text for name in plain_fields(described))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_command_line_is_understood(name: str) -> None:
+    parser = build_parser()
+    for words in command_lines(ROOT / name):
+        if words not in (["--help"], ["--version"]):
+            assert parser.parse_args(words).command == words[0]
+
+
+def test_the_readme_shows_every_command() -> None:
+    shown = {words[0] for words in command_lines(ROOT / "README.md")}
+    assert shown >= {"plan", "demo", "stones", "analyse", "measure", "check", "generate"}
+
+
+def test_the_python_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = brick_stones(BrickSettings(count=6, height_px=10, aspect=2), np.random.default_rng(1))
+    write_labels(lay_out(made), tmp_path / "stones.png")
+    monkeypatch.chdir(tmp_path)
+    programs = blocks(ROOT / "README.md", "python")
+    assert len(programs) >= 2
+    for program in programs:
+        exec(compile(program, "README.md", "exec"), {})  # noqa: S102 - our own document
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_link_leads_to_a_file(name: str) -> None:
+    page = ROOT / name
+    for target, _ in LINK.findall(page.read_text(encoding="utf-8")):
+        if "://" not in target:
+            assert (page.parent / target).resolve().exists(), target
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_link_to_a_heading_finds_it(name: str) -> None:
+    page = ROOT / name
+    for target, heading in re.findall(
+        r"\]\(([^)#\s]*)#([^)\s]+)\)", page.read_text(encoding="utf-8")
+    ):
+        if "://" not in target:
+            there = (page.parent / target) if target else page
+            titles = re.findall(r"^#+ (.+)$", there.read_text(encoding="utf-8"), re.MULTILINE)
+            slugs = {re.sub(r"[^\w\- ]", "", t.lower()).replace(" ", "-") for t in titles}
+            assert heading in slugs
+
+
+def test_pictures_are_light_and_shown() -> None:
+    shown = {
+        os.path.normpath(page.parent / target)
+        for page in PAGES
+        for target, _ in LINK.findall(page.read_text(encoding="utf-8"))
+    }
+    pictures = list((ROOT / "docs" / "images").iterdir())
+    assert {str(picture) for picture in pictures} <= shown
+    for picture in pictures:
+        assert picture.stat().st_size < 300_000
+        with Image.open(picture) as image:
+            assert image.width >= 800
+
+
+def test_the_plan_of_the_documents_is_valid() -> None:
+    (example,) = blocks(ROOT / "docs" / "plan-format.md", "json")
+    plan = plan_from_json(json.loads(example))
+    assert [step.kind for step in plan.steps] == ["stone", "stone", "wedge"]
+
+
+def test_every_property_of_a_plan_is_described() -> None:
+    text = (ROOT / "docs" / "plan-format.md").read_text(encoding="utf-8")
+    missing = {name for name in _properties(plan_schema()) if f"`{name}`" not in text}
+    assert not missing
+
+
+def _properties(schema: object) -> set[str]:
+    """Return the names of all properties in a JSON Schema."""
+    if isinstance(schema, dict):
+        own = schema.get("properties", {})
+        found = set(own) if isinstance(own, dict) else set()
+        return found.union(*(_properties(item) for item in schema.values()))
+    if isinstance(schema, list):
+        return set[str]().union(*(_properties(item) for item in schema))
+    return set()
+
+
+if __name__ == "__main__":
+    SETTINGS.write_text(rewritten(SETTINGS.read_text(encoding="utf-8")), encoding="utf-8")

@@ -1,0 +1,61 @@
+"""The package as a whole: its names, its examples, its list of errors."""
+
+import doctest
+import importlib
+import pkgutil
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import drystone
+
+ROOT = Path(__file__).resolve().parents[1]
+CODE = re.compile(r'(?<!`)"([EW]\d{3})"')
+"""As it is written where it is raised; examples in docstrings stand in backticks."""
+
+ROW = re.compile(r"^\| ([EW]\d{3}) \| (.+) \| (.+) \|$", re.MULTILINE)
+MODULES = sorted(
+    module.name
+    for module in pkgutil.walk_packages(drystone.__path__, "drystone.")
+    if module.name != "drystone.__main__"
+)
+
+
+def test_importing_loads_nothing_heavy() -> None:
+    code = "import sys, drystone; sys.exit(bool({'numpy', 'scipy', 'matplotlib'} & {*sys.modules}))"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0  # noqa: S603
+
+
+def test_every_public_name_is_there() -> None:
+    for name in drystone.__all__:
+        assert getattr(drystone, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'wonder'"):
+        drystone.wonder  # noqa: B018
+
+
+@pytest.mark.parametrize("name", ["drystone", *MODULES])
+def test_the_examples_of_the_docstrings_run(name: str) -> None:
+    failed, _ = doctest.testmod(importlib.import_module(name))
+    assert failed == 0
+
+
+def test_every_error_code_is_explained() -> None:
+    text = (ROOT / "docs" / "errors.md").read_text(encoding="utf-8")
+    rows = ROW.findall(text)
+    codes = [code for code, _, _ in rows]
+    assert len(set(codes)) == len(codes), "a code has two rows"
+    sources = (ROOT / "src" / "drystone").rglob("*.py")
+    used = {code for path in sources for code in CODE.findall(path.read_text(encoding="utf-8"))}
+    assert sorted(used - set(codes)) == [], "without a row in docs/errors.md"
+    assert sorted(set(codes) - used) == [], "in docs/errors.md, but nowhere raised"
+    assert all(meaning.strip() and cure.strip() for _, meaning, cure in rows)
+
+
+def test_the_codes_are_in_order() -> None:
+    text = (ROOT / "docs" / "errors.md").read_text(encoding="utf-8")
+    for section in text.split("\n## ")[1:]:
+        codes = [code for code, _, _ in ROW.findall(section)]
+        assert codes == sorted(codes)
