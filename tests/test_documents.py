@@ -100,11 +100,9 @@ def value(thing: object) -> str:
 
 def plain_fields(described: type[Any]) -> list[str]:
     """Return the names of the fields that are no settings themselves."""
-    return [
-        field.name
-        for field in dataclasses.fields(described)
-        if not isinstance(field.default_factory, type)
-    ]
+    default = described()
+    names = [field.name for field in dataclasses.fields(described)]
+    return [name for name in names if not dataclasses.is_dataclass(getattr(default, name))]
 
 
 def planner_tables() -> dict[str, type[Any]]:

@@ -26,7 +26,7 @@ def test_background_and_skip_are_read_and_remembered(
     plan = ["plan", str(on_white), "--wall", "60x20", "--method", "paper", "--scale", "1"]
     assert main([*plan, "-o", str(tmp_path / "no")]) == 3
     assert "background" in capsys.readouterr().err
-    told = [*plan, "-o", str(tmp_path / "out"), "--background", "255", "--skip", "2", "4"]
+    told = [*plan, "-o", str(tmp_path / "out"), "--background", "255", "--skip", "2", "--skip", "4"]
     assert main(told) in (0, 4)
     source = json.loads((tmp_path / "out" / "plan.json").read_text())["source"]
     assert source["reading"] == {"background": 255, "skip": [2, 4]}

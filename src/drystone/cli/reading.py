@@ -24,7 +24,9 @@ def add_reading(command: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--min-area", type=int, metavar="PX", dest="min_area_px", help="leave out smaller stones"
     )
-    group.add_argument("--skip", type=int, nargs="+", metavar="ID", help="leave out these stones")
+    group.add_argument(
+        "--skip", type=int, action="append", metavar="ID", help="leave out a stone; may be repeated"
+    )
 
 
 def reading_from(arguments: argparse.Namespace) -> ReadSettings:

@@ -33,11 +33,6 @@ class Frame:
     height: float
     site: Site
 
-    @property
-    def units_per_source_px(self) -> float:
-        """Plan units (source px or metres) in a source px."""
-        return 1.0 / (self.site.px_per_m or 1.0)
-
     def point(self, x: float, y: float) -> tuple[float, float]:
         """Turn a point of the wall frame in working px into plan units."""
         unit = self.site.units_per_px
@@ -137,8 +132,8 @@ def assemble_plan(
         px_per_m=frame.site.px_per_m,
         working_scale=frame.site.scale,
         source=described,
-        width=frame.width * frame.units_per_source_px,
-        height=frame.height * frame.units_per_source_px,
+        width=frame.width / (frame.site.px_per_m or 1.0),
+        height=frame.height / (frame.site.px_per_m or 1.0),
         steps=plan_steps(build, frame, workshop.clusters),
         unused=tuple(stone.id for stone in stones if stone.id not in placed),
         stopped=stopped.text,

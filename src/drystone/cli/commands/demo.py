@@ -18,7 +18,7 @@ from drystone.io.wall_image import write_labels
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Plan a wall of coursed rubble and name the report."""
     settings_from(arguments)  # wrong options are refused before anything is written
-    settings = RubbleSettings()
+    settings = RubbleSettings(count=24)
     made = rubble_stones(settings, np.random.default_rng(arguments.seed))
     folder = prepare_folder(Path(arguments.output), overwrite=arguments.overwrite)
     # The stones lie beside the plan, so that `drystone check` finds them.
