@@ -15,7 +15,7 @@ TIMES = "\N{MULTIPLICATION SIGN}"
 INDICES = {
     "SF": "shape factor: area over area of the bounding box; 1 is a rectangle",
     "LFR": "local filling ratio: how full the site is to the left and below; higher is better",
-    "GDS": "geometrical dice score: how much the stone fills the height that is begun; higher is better",
+    "GDS": "geometrical dice score: how much it fills the height that is begun; higher is better",
     "NHR": "height beside the left neighbour's; 0 is a level course, lower is better",
     "IWR": "interlocking with the joints below; higher is better",
     "IS": "slope of the upper edge; positive falls inwards, higher is better",
