@@ -83,9 +83,3 @@ class UsageError(DrystoneError):
 
 class PlanError(DrystoneError):
     """A plan file is not valid or does not belong to these stones."""
-
-
-class InvariantError(DrystoneError):
-    """A wall breaks one of the named invariants of :mod:`drystone.model.checks`."""
-
-    exit_code = ExitCode.CHECK_FAILED

@@ -147,10 +147,16 @@ def _best_phase_pose(stone: Stone, angle_deg: float, scale: float) -> PosedStone
     area = stone.area_px * scale**2
     edge = -turn(stone.hull, angle_deg).min(axis=0) * scale
     first = (quantise(edge[0]) % 1.0, quantise(edge[1]) % 1.0)
-    areas = areas_by_phase(stone.mask, stone.local_centroid, angle_deg, scale, first)
+    tolerance = max(0.01 * area, 2.0)
+    best, least = 0, math.inf
     # Rows first: a bottom edge on a pixel edge rests flat.
-    error = np.abs(areas - area).ravel()
-    close = np.flatnonzero(error <= max(0.01 * area, 2.0))
-    up, right = divmod(int(close[0]) if close.size else int(np.argmin(error)), 4)
+    areas = areas_by_phase(stone.mask, stone.local_centroid, angle_deg, scale, first)
+    for number, found in enumerate(areas):
+        error = abs(found - area)
+        if error < least:
+            best, least = number, error
+        if error <= tolerance:
+            break
+    up, right = divmod(best, 4)
     phase = ((first[0] + right / 4) % 1.0, (first[1] + up / 4) % 1.0)
     return pose_at(stone, angle_deg, scale, phase)[0]

@@ -128,8 +128,8 @@ def test_areas_at_all_phases_are_those_of_rasterising_at_each(scale: float) -> N
     mask = np.zeros((23, 31), bool)
     mask[2:20, 3:29] = True
     mask[2:9, 3:12] = False
-    areas = areas_by_phase(mask, (14.3, 9.8), 17.0, scale, (0.125, 0.5))
-    for i in range(4):
-        for j in range(4):
-            phase = (0.125 + j / 4, 0.5 + i / 4)
-            assert areas[i, j] == rasterise(mask, (14.3, 9.8), 17.0, scale, phase)[0].sum()
+    areas = list(areas_by_phase(mask, (14.3, 9.8), 17.0, scale, (0.125, 0.5)))
+    assert len(areas) == 16
+    for number, area in enumerate(areas):
+        phase = (0.125 + number % 4 / 4, 0.5 + number // 4 / 4)
+        assert area == rasterise(mask, (14.3, 9.8), 17.0, scale, phase)[0].sum()

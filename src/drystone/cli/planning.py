@@ -34,6 +34,9 @@ def plan_and_write(
     folder = Path(arguments.output)
     settings = settings_from(arguments)
     partial = _partial_plan(folder, stones, wall, arguments, settings)
+    if partial is not None and partial.stopped != "interrupted":
+        print("drystone: this plan is finished, there is nothing to go on with", file=sys.stderr)
+        return ExitCode.DONE
     prepare_folder(folder, overwrite=arguments.overwrite or partial is not None)
     with step_bar(len(stones), quiet=arguments.quiet or arguments.json) as callbacks:
         result = plan_wall(
@@ -49,6 +52,8 @@ def plan_and_write(
             built=None if partial is None else rebuild_wall(partial, stones),
             course_heights_px=None if partial is None else _course_heights(partial),
         )
+    for notice in result.notices:
+        print(f"drystone: {notice}", file=sys.stderr)
     write_result(result, stones, folder)
     if arguments.json:
         print_json(_summary(result, folder))
@@ -74,7 +79,7 @@ def write_result(result: PlanResult, stones: StoneSet, folder: Path) -> None:
         folder / "report.html",
         plan=result.plan,
         pictures=folder,
-        notices=stones.notices,
+        notices=(*stones.notices, *result.notices),
         timings={"planning": result.seconds},
         outlines=wall_outlines(result.wall),
     )
@@ -94,10 +99,11 @@ def _partial_plan(
     plan = read_plan(path)
     px_per_m = arguments.px_per_m or 1.0
     scale = arguments.scale or working_scale(stones)
+    size = plan.width * px_per_m, plan.height * px_per_m
     equal = {
         "stones": plan.source["sha256"] == stones.source.sha256,
         "reading": plan.source.get("reading", {}) == dict(stones.source.reading),
-        "--wall": np.allclose((plan.width * px_per_m, plan.height * px_per_m), wall, atol=1e-6),
+        "--wall": np.allclose(size, wall, rtol=0, atol=1e-6),
         "--px-per-m": plan.px_per_m == arguments.px_per_m,
         "--scale": plan.working_scale == scale,
         "--seed": plan.seed == arguments.seed,

@@ -46,7 +46,7 @@ class GivenWall:
             given = self.blocks if mu is None else {**self.blocks, "mu": mu}
             return model_from_json(given), ()
         if mu is None:
-            mu = float(self.plan.settings["mu"]) if self.plan else 0.58
+            mu = float(self.plan.settings.get("mu", 0.58)) if self.plan else 0.58
         assert self.labels is not None  # noqa: S101 - a wall without blocks has an image
         image = model_from_labels(self.labels, mu)
         return image.model, image.notices

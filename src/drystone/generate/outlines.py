@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.errors import UsageError
+from drystone.kernels.outline import rasterise_polygon
 from drystone.kernels.raster import Mask
 
 Outline = NDArray[np.float64]
@@ -49,20 +50,7 @@ def outline_mask(outline: Outline) -> Mask:
     >>> outline_mask(np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 3.0]])).astype(int).tolist()
     [[1, 0], [1, 1]]
     """
-    left, bottom = np.floor(outline.min(axis=0)).astype(int)
-    right, top = np.ceil(outline.max(axis=0)).astype(int)
-    x = np.arange(left, right) + 0.5
-    y = np.arange(top, bottom, -1) - 0.5
-    inside = np.zeros((y.size, x.size), bool)
-    for (x0, y0), (x1, y1) in zip(outline, np.roll(outline, -1, axis=0), strict=True):
-        rows = np.flatnonzero((y >= min(y0, y1)) & (y < max(y0, y1)))
-        if rows.size:
-            crossing = x0 + (y[rows] - y0) * (x1 - x0) / (y1 - y0)
-            inside[rows] ^= x >= crossing[:, None]
-    rows, cols = np.flatnonzero(inside.any(axis=1)), np.flatnonzero(inside.any(axis=0))
-    if not rows.size:
-        return np.zeros((0, 0), bool)
-    return np.ascontiguousarray(inside[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1])
+    return rasterise_polygon(outline)[0]
 
 
 def is_whole(mask: Mask) -> bool:

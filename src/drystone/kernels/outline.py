@@ -103,7 +103,7 @@ def rasterise_polygon(polygon: Polygon) -> tuple[Mask, int, int]:
         first, last = (np.ceil(np.sort([y0, y1]) - 0.5).astype(int) - bottom).tolist()
         for row in range(first, last):
             crossing = x0 + (bottom + row + 0.5 - y0) * (x1 - x0) / (y1 - y0)
-            inside[row] ^= x > crossing
+            inside[row] ^= x >= crossing
     rows, cols = np.flatnonzero(inside.any(axis=1)), np.flatnonzero(inside.any(axis=0))
     if not rows.size:
         return np.zeros((0, 0), bool), left, bottom

@@ -1,6 +1,7 @@
 """Rasterise a turned, reduced binary mask once, by coverage (paper §3.3; DESIGN 4.2)."""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -100,31 +101,28 @@ def areas_by_phase(
     angle_deg: float,
     scale: float,
     phase: tuple[float, float],
-) -> NDArray[np.int64]:
-    """Return the area of the rasterised mask at 16 sub-pixel positions, from one sampling.
+) -> Iterator[int]:
+    """Yield the area of the rasterised mask at 16 sub-pixel positions, from one sampling.
 
     Parameters
     ----------
     mask, centre, angle_deg, scale, phase
         As for :func:`rasterise`.
 
-    Returns
-    -------
-    area : (4, 4) int array
-        area[i, j] is the number of pixels covered to a half with the phase j/4 px further right
-        and i/4 px further up.
+    Yields
+    ------
+    area : int
+        Number of pixels covered to a half; the n-th with the phase (n % 4)/4 px further right and
+        (n // 4)/4 px further up.
     """
     hit, k, _, _ = _sampled(mask, centre, angle_deg, scale, phase)
     # A phase further right and up is a grid of pixels further left and down on the same samples.
     hit = np.pad(hit, k)
     height, width = hit.shape[0] // k - 1, hit.shape[1] // k - 1
-    area = np.zeros((4, 4), np.int64)
-    for i in range(4):
-        for j in range(4):
-            top, left = i * k // 4, k - j * k // 4
-            view = hit[top : top + height * k, left : left + width * k]
-            area[i, j] = np.count_nonzero(2 * _counted(view, k) >= k * k)
-    return area
+    for number in range(16):
+        top, left = number // 4 * k // 4, k - number % 4 * k // 4
+        view = hit[top : top + height * k, left : left + width * k]
+        yield int(np.count_nonzero(2 * _counted(view, k) >= k * k))
 
 
 def _sampled(

@@ -1,6 +1,7 @@
 """Frozen settings from nested mappings, as TOML files and options give them."""
 
 import dataclasses
+import math
 import types
 from collections.abc import Mapping
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -67,6 +68,16 @@ def updated(settings: Settings, changes: Mapping[str, Any], prefix: str = "") ->
         raise UsageError("E123", f"{error}.", where=where) from None
 
 
+def check_finite(settings: Any) -> None:
+    """Raise ValueError when a number in settings, or in settings within them, is not finite."""
+    for field in dataclasses.fields(settings):
+        value = getattr(settings, field.name)
+        if dataclasses.is_dataclass(value):
+            check_finite(value)
+        elif isinstance(value, float) and not math.isfinite(value):
+            raise ValueError(f"{field.name} must be a finite number, not {value}")
+
+
 def _checked(value: Any, hint: Any, where: str) -> Any:
     """Return a value of the declared type, or raise UsageError."""
     if get_origin(hint) is Literal:
@@ -76,6 +87,10 @@ def _checked(value: Any, hint: Any, where: str) -> Any:
                 "E123", f"{where} = {value!r}.", where="settings", cure=f"Choose from {allowed}."
             )
         return value
+    if isinstance(value, float) and not math.isfinite(value):
+        raise UsageError(
+            "E123", f"{where} = {value}.", where="settings", cure="Give a finite number."
+        )
     kinds = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
     if float in kinds and isinstance(value, int) and not isinstance(value, bool):
         return float(value)

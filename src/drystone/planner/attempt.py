@@ -49,6 +49,7 @@ class Attempt:
     ) -> None:
         self.build = build
         self.candidates = 0
+        self.failed_solves = 0
         self._workshop = workshop
         self._settings = settings
         self._executor = executor
@@ -116,6 +117,7 @@ class Attempt:
             [proposals[k] for k in new],
         )
         self._judged.update(zip([keys[k] for k in new], results, strict=True))
+        self.failed_solves += sum(result.resistance.failed for result in results)
         # NHR depends on the other candidates, which differ between the folds.
         return [
             self._evaluator.compared(self.build, proposal, self._judged[key])

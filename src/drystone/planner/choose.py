@@ -3,7 +3,13 @@
 from collections.abc import Callable, Sequence
 
 from drystone.planner.build import Build, Candidate, Proposal
-from drystone.selection.algorithm2 import Action, SelectionSettings, select_action, weighted_sum
+from drystone.selection.algorithm2 import (
+    TIE_DIGITS,
+    Action,
+    SelectionSettings,
+    select_action,
+    weighted_sum,
+)
 from drystone.selection.scored import ScoreSettings, cheapest_first
 
 EQUAL_GDS = 1e-9
@@ -35,7 +41,7 @@ def better_side(
 
     def rank(winner: Candidate) -> tuple[float, int, bool]:
         total = weighted_sum(_action(winner), settings)
-        return -total, build.count(winner.side), winner.side != "left"
+        return -round(total, TIE_DIGITS), build.count(winner.side), winner.side != "left"
 
     return min(level, key=rank)
 
@@ -61,6 +67,7 @@ def choose_by_score(
             break
 
     def cost(candidate: Candidate) -> float:
-        return round(candidate.proposal.cost - settings.llc * (candidate.indices.LLC or 0.0), 12)
+        bonus = settings.llc * (candidate.indices.LLC or 0.0)
+        return round(candidate.proposal.cost - bonus, TIE_DIGITS)
 
     return min(standing[: settings.analysed], key=cost, default=None)

@@ -4,13 +4,14 @@ import time
 from collections.abc import Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 
-from drystone.errors import UsageError
+from drystone.errors import Notice, UsageError
+from drystone.metrics.level import top_profile
 from drystone.model.plan import Plan, PlanMetrics
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
@@ -25,6 +26,9 @@ from drystone.statics.model import LateralResistance
 
 TYPICAL_STONE_PX = 40
 """Longer side of the median stone at the resolution that is chosen when none is given."""
+
+FILLED = 0.99
+"""Filling from which a plan is complete whatever its top (DESIGN 2)."""
 
 FILLED_TOP = 0.9
 """A plan is incomplete when its mean top stays below this share of the wall's height."""
@@ -54,6 +58,8 @@ class PlanResult:
         Cluster of each stone.
     seconds : float
         From the stones to the last step.
+    notices : tuple of Notice
+        W303 when the solver gave up on some candidates, which were then passed over.
     """
 
     success: bool
@@ -65,6 +71,7 @@ class PlanResult:
     resistance: LateralResistance
     clusters: dict[int, int]
     seconds: float
+    notices: tuple[Notice, ...] = ()
 
 
 def working_scale(stones: StoneSet) -> float:
@@ -82,7 +89,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     height: float,
     *,
     seed: int = 0,
-    method: str = "best",
+    method: str | None = None,
     settings: PlannerSettings | None = None,
     scale: float | None = None,
     px_per_m: float | None = None,
@@ -102,10 +109,10 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         Of the wall, in px of the source image.
     seed : int
         Of the random choices; the same seed gives the same plan.
-    method : str
-        Named settings: ``"best"`` or ``"paper"``.
+    method : str, optional
+        Named settings: ``"best"`` (default) or ``"paper"``.
     settings : PlannerSettings, optional
-        Used instead of the method's.
+        Used instead of the method's; without a method's name the plan says ``"custom"``.
     scale : float, optional
         Working resolution over source resolution, in (0, 1]; chosen when missing.
     px_per_m : float, optional
@@ -133,6 +140,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     >>> result.success, len(result.plan.steps)
     (True, 6)
     """
+    method = method or ("custom" if settings else "best")
     settings = settings or method_settings(method)
     scale = working_scale(stones) if scale is None else scale
     if not 0 < scale <= 1:
@@ -141,7 +149,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     started = time.perf_counter()
     own = ThreadPoolExecutor(n_jobs) if executor is None and n_jobs > 1 else None
     with own or nullcontext():
-        planner = Planner(
+        first = Planner(
             stones,
             frame.site,
             seed=seed,
@@ -150,8 +158,8 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             callbacks=callbacks,
         )
         if built is not None:
-            planner.restore(built, course_heights_px or {})
-        planner, stopped = run_to_end(planner)
+            first.restore(built, course_heights_px or {})
+        planner, stopped = run_to_end(first)
     seconds = time.perf_counter() - started
     provenance = {
         "version": version("drystone"),
@@ -159,7 +167,15 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         "seed": seed,
         "settings": settings.as_dict(),
     }
-    return finish(planner, frame, stopped, provenance, seconds)
+    result = finish(planner, frame, stopped, provenance, seconds)
+    return replace(result, notices=_notices(first.failed_solves))
+
+
+def _notices(failed_solves: int) -> tuple[Notice, ...]:
+    if not failed_solves:
+        return ()
+    text = f"the solver gave up on {failed_solves} candidates, which were passed over."
+    return (Notice("W303", text, "Please report this with the stones and the settings."),)
 
 
 def run_to_end(planner: Planner) -> tuple[Planner, Stopped]:
@@ -202,7 +218,7 @@ def finish(
     status = "complete"
     if stopped.reason == "interrupted":
         status = "interrupted"
-    elif metrics.F_SF < planner.settings.stop.filling and mean_top(build.wall) < FILLED_TOP:
+    elif metrics.F_SF < FILLED and mean_top(build.wall) < FILLED_TOP:
         status = "incomplete"
     return PlanResult(
         success=status == "complete",
@@ -219,6 +235,4 @@ def finish(
 
 def mean_top(wall: Wall) -> float:
     """Return the mean height of the wall's top over its columns, as a share of its height."""
-    occupied = wall.occupied
-    top = np.where(occupied.any(axis=0), occupied.shape[0] - np.argmax(occupied, axis=0), 0)
-    return float(np.mean(top)) / float(occupied.shape[0])
+    return float(np.mean(top_profile(wall.labels))) / wall.site.height_px

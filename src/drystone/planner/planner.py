@@ -67,6 +67,7 @@ class Planner:
         self.executor = executor
         self.build = Build(Wall.empty(site), RigidBlockModel((), (), self.settings.mu))
         self.stopped: Stopped | None = None
+        self.failed_solves = 0
         self.callbacks = callbacks or Callbacks()
 
     def steps(self) -> Iterator[Step]:
@@ -84,11 +85,13 @@ class Planner:
             if action is None:
                 failures += 1  # lines 23-26: resample
                 continue
+            self.failed_solves += attempt.failed_solves
             self.build = self.build.add(action)  # lines 18-22
             step = Step(len(self.build.actions), action, self.build, attempt.candidates)
             attempt, failures = self._attempt(), 0
             self.callbacks.on_step(step)
             yield step
+        self.failed_solves += attempt.failed_solves
         self.stopped = stopped
 
     def _attempt(self) -> Attempt:

@@ -73,6 +73,7 @@ def rework(planner: Planner) -> Iterator[Incumbent]:
         varied.build = best.states[start]
         states = (*best.states[: start + 1], *(step.build for step in varied.steps()))
         merit = wall_merit(varied)
+        planner.failed_solves += varied.failed_solves
         if merit > best.merit + 1e-12:
             best = Incumbent(varied, states, merit)
         yield best

@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 
 from drystone.clusters import ClusterSettings
 from drystone.errors import UsageError
-from drystone.model.settings import updated
+from drystone.model.settings import check_finite, updated
 from drystone.placement.settings import PlacementSettings
 from drystone.poses import orientation_step_deg
 from drystone.selection.algorithm2 import SelectionSettings
@@ -114,6 +114,7 @@ class PlannerSettings:
     stop: StopSettings = field(default_factory=StopSettings)
 
     def __post_init__(self) -> None:
+        check_finite(self)
         orientation_step_deg(self.orientations)
         if self.sampling not in get_args(Sampling):
             raise ValueError(f"unknown sampling {self.sampling!r}")
@@ -154,7 +155,7 @@ METHODS: Mapping[str, PlannerSettings] = types.MappingProxyType(
             selection_rule="score",
             placement=PlacementSettings(rule="snug", reach="above", tries=4, compare=True),
             stabilise=StabiliseSettings(margin=0.1),
-            rework=ReworkSettings(rounds=12),
+            rework=ReworkSettings(rounds=8),
         ),
     }
 )

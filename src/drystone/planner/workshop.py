@@ -93,7 +93,7 @@ def _fitting_poses(
 def _leave_ids_for_wedges(stones: StoneSet) -> None:
     """Raise UsageError (E137) when ids of 32 bits would run out: each stone may get two wedges."""
     largest = max(stone.id for stone in stones)
-    if largest + 2 * len(stones) >= 2**32:
+    if largest + 2 * len(stones) >= 2**32 - 1:
         raise UsageError(
             "E137",
             f"stone {largest} leaves no ids for wedges, which are numbered after the largest id.",

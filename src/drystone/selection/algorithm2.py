@@ -10,6 +10,10 @@ MEAN_SLACK = 1e-12
 """A mean may round above every one of equal values; without slack the filter would drop all."""
 
 
+TIE_DIGITS = 9
+"""Sums that contain LLC are equal to the precision of the limit analysis."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class SelectionSettings:
     """Weights of the objective functions (Eq. 15-22).
@@ -104,7 +108,7 @@ def select_action(
     best = min(
         pool,
         key=lambda k: (
-            -round(weighted_sum(actions[k], settings, used), 12),
+            -round(weighted_sum(actions[k], settings, used), TIE_DIGITS),
             actions[k].stone_id,
             actions[k].angle_deg,
         ),

@@ -85,7 +85,7 @@ class Interface:
 
 @dataclass(frozen=True, eq=False)
 class RigidBlockModel:
-    """Blocks and interfaces; immutable, grown by :meth:`extended`.
+    """Blocks and interfaces; immutable.
 
     Parameters
     ----------
@@ -100,12 +100,6 @@ class RigidBlockModel:
     blocks: tuple[Block, ...]
     interfaces: tuple[Interface, ...]
     mu: float = 0.58
-
-    def extended(
-        self, blocks: tuple[Block, ...], interfaces: tuple[Interface, ...]
-    ) -> "RigidBlockModel":
-        """Return the model with more blocks and interfaces."""
-        return RigidBlockModel((*self.blocks, *blocks), (*self.interfaces, *interfaces), self.mu)
 
     @cached_property
     def contact_count(self) -> int:
@@ -185,6 +179,11 @@ class LateralResistance:
         if self.left.alpha is None or self.right.alpha is None or self.mu == 0:
             return None
         return min(self.left.alpha, self.right.alpha) / self.mu
+
+    @property
+    def failed(self) -> bool:
+        """True when the solver gave up on either direction: nothing is known then."""
+        return LimitStatus.FAILED in (self.left.status, self.right.status)
 
     @property
     def stable(self) -> bool:

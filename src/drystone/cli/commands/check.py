@@ -33,6 +33,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             [
                 ("stones", f"{len(plan.stone_steps)} placed, {len(plan.wedge_steps)} wedges"),
                 ("overlap", f"{report.overlap_depth:.2f} source px deep by the outlines"),
+                ("area", f"the pixels of a stone miss its area by {report.area_error:.1%} at most"),
                 ("buried", ", ".join(map(str, report.buried)) or "none"),
                 *[("note", note) for note in report.notes],
                 *[("problem", str(problem)) for problem in report.problems],

@@ -23,7 +23,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     labels = reduce_labels(wall.labels, arguments.scale) if arguments.scale != 1 else wall.labels
     metrics = _measured(GivenWall(labels, wall.plan), labels, arguments)
     if arguments.output is not None:
-        _draw(labels, Path(arguments.output), overwrite=arguments.overwrite)
+        whole = wall.plan is None and arguments.wall is None
+        width_px = None if whole else metrics.width
+        _draw(labels, width_px, Path(arguments.output), overwrite=arguments.overwrite)
     if arguments.json:
         print_json(asdict(metrics))
         return ExitCode.DONE
@@ -48,8 +50,8 @@ def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) ->
     if arguments.wall is not None:
         width, height = parse_wall(arguments.wall, None)
         wall_px = (width * arguments.scale, height * arguments.scale)
-    elif wall.plan is not None and arguments.scale == 1:
-        to_px = wall.plan.working_scale * (wall.plan.px_per_m or 1.0)
+    elif wall.plan is not None:
+        to_px = wall.plan.working_scale * (wall.plan.px_per_m or 1.0) * arguments.scale
         wall_px = (wall.plan.width * to_px, wall.plan.height * to_px)
         # The pixels of reduced stones are off by a little; the plan knows their real area.
         stone_area_px = wall.plan.metrics.F_SF * wall_px[0] * wall_px[1]
@@ -67,7 +69,7 @@ def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) ->
     )
 
 
-def _draw(labels: Labels, folder: Path, *, overwrite: bool) -> None:
+def _draw(labels: Labels, width_px: float | None, folder: Path, *, overwrite: bool) -> None:
     from drystone.metrics.frame import frame_wall  # noqa: PLC0415
     from drystone.metrics.joints import joint_mask  # noqa: PLC0415
     from drystone.metrics.paths import horizontal_paths, vertical_paths  # noqa: PLC0415
@@ -75,7 +77,7 @@ def _draw(labels: Labels, folder: Path, *, overwrite: bool) -> None:
 
     pictures = [folder / f"paths_{name}.png" for name in ("F_AV", "F_AH")]
     prepare_files(pictures, overwrite=overwrite)
-    framed = frame_wall(labels).labels
+    framed = frame_wall(labels, width_px).labels
     joint = joint_mask(framed)
     both = (vertical_paths(joint), horizontal_paths(joint))
     for picture, found in zip(pictures, both, strict=True):
