@@ -36,9 +36,11 @@ def read_ids(path: Path) -> NDArray[np.int64]:
     return np.where(grey.all(), red, red + 256 * green + 65536 * blue)
 
 
-@pytest.mark.parametrize(("name", "stones", "clusters"), [("PR", 32, 7), ("IR", None, 15)])
+@pytest.mark.parametrize(
+    ("name", "stones", "clusters"), [("PR", 32, 7), ("R", 34, 9), ("IR", None, 15)]
+)
 def test_published_sets(data_dir: Path, name: str, stones: int | None, clusters: int) -> None:
-    """PR: the paper's Fig. 5 says 32 stones in 7 clusters; IR: DESIGN 4.3."""
+    """PR: the paper's Fig. 5 says 32 stones in 7 clusters; R and IR: docs/decisions.md."""
     found = stones_of(read_ids(data_dir / "almeida" / f"{name}.png"))
     assert stones is None or len(found) == stones
     assert len(set(cluster_stones(found, PoseBook()).values())) == clusters

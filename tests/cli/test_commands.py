@@ -296,3 +296,17 @@ def test_demo_needs_nothing_and_can_be_checked(
     assert "E129" in run("demo", "--method", "paper").err
     assert run("demo", "--method", "wurst", "-o", "other").code == 2
     assert not (tmp_path / "other").exists()
+
+
+def test_measuring_a_plan_reduced_keeps_its_wall(finished: Path, run: Run) -> None:
+    whole = json.loads(run("measure", finished, "--json").out)
+    half = json.loads(run("measure", finished, "--scale", ".5", "--json").out)
+    assert half["F_SF"] == pytest.approx(whole["F_SF"])
+    assert (half["width"], half["height"]) == (whole["width"] / 2, whole["height"] / 2)
+
+
+def test_analyse_takes_a_plan_that_says_nothing_of_friction(plan_copy: Path, run: Run) -> None:
+    plan = json.loads((plan_copy / "plan.json").read_text(encoding="utf-8"))
+    del plan["settings"]["mu"]
+    (plan_copy / "plan.json").write_text(json.dumps(plan), encoding="utf-8")
+    assert json.loads(run("analyse", plan_copy, "--json").out)["mu"] == 0.58

@@ -85,3 +85,13 @@ def test_resume_without_a_plan_starts(
     folder = tmp_path / "new"
     assert run("plan", rubble, *WALL, "--seed", 1, "-o", folder, "--resume").code in (0, 4)
     assert (folder / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()
+
+
+def test_a_finished_plan_is_left_as_it_is(rubble: Path, tmp_path: Path, run: Run) -> None:
+    plan = ["plan", rubble, *WALL, "-o", tmp_path / "out"]
+    assert run(*plan).code in (0, 4)
+    before = {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()}
+    ran = run(*plan, "--resume")
+    assert ran.code == 0
+    assert "finished" in ran.err
+    assert {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()} == before

@@ -5,6 +5,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from drystone.model.landscape import Landscape
 from drystone.model.site import Site
 from drystone.planner.attempt import Attempt
 from drystone.planner.build import Build, Proposal
@@ -130,3 +131,19 @@ def test_orientations_are_candidates_or_the_rule_picks_one(
             calls = _Calls(patch)
             Attempt(planner.workshop, settings, planner.build).choose(np.random.default_rng(0))
         assert len(calls.proposed) == tried
+
+
+def test_a_stone_that_turns_out_of_reach_from_above_is_not_proposed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What can be lowered in before it is turned may end under an overhang."""
+    stones = blocks({1: (20, 10), 2: (20, 10)})
+    settings = greedy()
+    planner = Planner(stones, Site(60, 30), settings=settings)
+    evaluator = Evaluator(settings, planner.workshop.memory, planner.workshop.stock)
+    posed = planner.workshop.poses[1][0]
+    landscape = Landscape.of(planner.build.wall)
+    trial = Trial((posed,), landscape, planner.workshop.rest(planner.build))
+    assert evaluator.propose(planner.build, trial) is not None
+    monkeypatch.setattr("drystone.planner.evaluate.can_be_lowered", lambda *_: False)
+    assert evaluator.propose(planner.build, trial) is None

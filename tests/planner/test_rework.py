@@ -1,7 +1,10 @@
 """Rework: the wall never gets worse."""
 
 import math
+from dataclasses import fields, replace
 from itertools import islice, pairwise
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -10,6 +13,7 @@ from drystone.planner.events import Callbacks, Round, Step
 from drystone.planner.plan_wall import plan_wall, run_to_end
 from drystone.planner.planner import Planner
 from drystone.planner.rework import rework, wall_merit
+from drystone.selection.scored import ScoreSettings
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble, same
 
 
@@ -100,3 +104,54 @@ def test_an_empty_wall_has_no_merit() -> None:
     settings = greedy({"rework": {"rounds": 2}, "skip_too_large": True})
     small, stopped = run_to_end(Planner(rubble(), Site(6, 6), settings=settings))
     assert (small.build.actions, stopped.reason) == ((), "stones")
+
+
+def test_merit_rises_with_what_is_good_and_falls_with_what_is_bad(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    planner = finish(_planner(0))
+    measured = {"F_AV": 10.0, "F_AH": 2.0, "T_LEVEL": 0.2, "E_FLUSH": 0.2}
+
+    def merit(**changes: float) -> float:
+        values = SimpleNamespace(**{**measured, **changes})
+        monkeypatch.setattr("drystone.planner.rework.measure_labels", lambda *_, **__: values)
+        return wall_merit(planner)
+
+    weights = planner.settings.rework
+    base = merit()
+    assert merit(F_AV=11.0) - base == pytest.approx(weights.vertical)
+    assert merit(F_AH=3.0) - base == pytest.approx(-weights.horizontal)
+    assert merit(T_LEVEL=1.2) - base == pytest.approx(-weights.level)
+    assert merit(E_FLUSH=1.2) - base == pytest.approx(-weights.flush)
+    resistance = planner.build.actions[-1].resistance.value
+    assert resistance is not None
+    filling = planner.build.wall.filling
+    site = planner.build.wall.site
+    possible = planner.workshop.stones.total_area_px / (site.width_px * site.height_px)
+    expected = (
+        weights.filling * filling / possible
+        + weights.resistance * min(1.0, resistance)
+        + weights.vertical * 10
+        - weights.horizontal * 2
+        - (weights.level + weights.flush) * 0.2
+    )
+    assert base == pytest.approx(expected)
+
+
+def test_rounds_vary_every_craft_weight_and_nothing_else(monkeypatch: pytest.MonkeyPatch) -> None:
+    planner = finish(_planner(1))
+    made: list[Planner] = []
+    init = Planner.__init__
+
+    def spy(self: Planner, *arguments: Any, **keywords: Any) -> None:
+        init(self, *arguments, **keywords)
+        made.append(self)
+
+    monkeypatch.setattr(Planner, "__init__", spy)
+    list(rework(planner))
+    (varied,) = made
+    weights = [f.name for f in fields(ScoreSettings) if f.name != "analysed"]
+    old, new = planner.settings.score, varied.settings.score
+    assert all(getattr(old, name) != getattr(new, name) for name in weights)
+    assert old.analysed == new.analysed
+    assert replace(varied.settings, score=old) == planner.settings

@@ -1,0 +1,102 @@
+"""Units and areas of a finished plan, against hand-made walls."""
+
+import numpy as np
+import pytest
+
+from drystone.model.landscape import Landscape
+from drystone.model.placement import Placement, Wedge
+from drystone.model.site import Site
+from drystone.model.stone import Stone, StoneSet
+from drystone.model.wall import Wall
+from drystone.planner.assemble import Frame, plan_metrics, plan_steps
+from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.evaluate import action_indices
+from drystone.planner.plan_wall import plan_wall
+from drystone.planner.settings import method_settings
+from drystone.poses import PoseBook
+from drystone.stabilise.stabilise import Stabilised
+from drystone.statics.blocks import model_with
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+from drystone.verify import check_plan
+from tests.planner.scenes import blocks, rubble
+
+SCALE, PX_PER_M = 0.5, 200.0
+
+
+def wedged_build() -> tuple[Build, Frame]:
+    """A slab of 40 x 8 source px on two wedges of 4 x 2 working px."""
+    site = Site.from_source(60, 40, SCALE, PX_PER_M)
+    posed = PoseBook(SCALE).pose(Stone(7, np.ones((8, 40), bool)), 0.0)
+    row = site.height_px - 2 - posed.height_px
+    wedges = tuple(
+        Wedge(8 + k, 7, np.ones((2, 4), bool), site.height_px - 2, col)
+        for k, col in enumerate((2, 16))
+    )
+    stabilised = Stabilised(Placement(posed, row, 1), wedges)
+    empty = Wall.empty(site)
+    model = model_with(RigidBlockModel((), ()), empty.labels, stabilised.placement, wedges)
+    resistance = lateral_resistance(model)
+    indices, course = action_indices(Landscape.of(empty), stabilised, resistance, (), 4.0)
+    proposal = Proposal(stabilised, 0.0)
+    action = Candidate(proposal, indices, course, model, resistance)
+    return Build(empty, RigidBlockModel((), ())).add(action), Frame(60.0, 40.0, site)
+
+
+def test_areas_are_in_square_metres_when_a_scale_is_known() -> None:
+    build, frame = wedged_build()
+    metrics = plan_metrics(build, frame, build.actions[-1].resistance)
+    # 16 working px of 2 source px each way, 200 source px in a metre
+    assert metrics.wedge_area == pytest.approx(16 * (2 / 200) ** 2)
+
+
+def test_the_filling_counts_source_areas_not_pixels() -> None:
+    """A stone of 5 x 3 source px is 3 x 2 or 2 x 2 px at half size, never 3.75."""
+    build, frame = wedged_build()
+    stone = Stone(1, np.ones((3, 5), bool))
+    posed = PoseBook(SCALE).pose(stone, 0.0)
+    assert posed.area_px != stone.area_px * SCALE**2
+    result = plan_wall(StoneSet((stone,)), 10, 8, method="paper", scale=SCALE)
+    assert result.metrics.F_SF == pytest.approx(15 / 80)
+    metrics = plan_metrics(build, frame, build.actions[-1].resistance)
+    assert metrics.F_SF == pytest.approx(40 * 8 / (60 * 40))
+
+
+def test_the_multipliers_of_a_group_stand_at_its_last_step_only() -> None:
+    build, frame = wedged_build()
+    steps = plan_steps(build, frame, {7: 1})
+    assert [step.kind for step in steps] == ["stone", "wedge", "wedge"]
+    assert [step.step for step in steps] == [1, 2, 3]
+    assert [step.alpha_left is None for step in steps] == [True, True, False]
+    assert steps[-1].alpha_right == build.actions[0].resistance.right.alpha
+
+
+def test_a_wedge_polygon_is_in_metres() -> None:
+    build, frame = wedged_build()
+    wedge = plan_steps(build, frame, {7: 1})[1]
+    corners = np.array(wedge.polygon) * 100  # type: ignore[union-attr]
+    assert corners.min(axis=0) == pytest.approx([2.0, 0.0])
+    assert corners.max(axis=0) == pytest.approx([6.0, 2.0])
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_plans_of_the_default_method_hold_and_bury_nothing(seed: int) -> None:
+    stones = rubble(seed=seed)
+    settings = method_settings("best").updated({"rework": {"rounds": 2}})
+    result = plan_wall(stones, 100, 36, seed=seed, settings=settings, scale=1.0)
+    report = check_plan(result.plan, stones, wall_labels=result.wall.labels)
+    assert report.problems == ()
+    assert report.buried == ()
+
+
+def test_a_plan_says_which_method_made_it() -> None:
+    stones = blocks({1: (20, 10), 2: (20, 10)})
+    assert plan_wall(stones, 40, 10, scale=1.0, method="paper").plan.method == "paper"
+    own = method_settings("paper").updated({"sampling": "full"})
+    assert plan_wall(stones, 40, 10, scale=1.0, settings=own).plan.method == "custom"
+    assert plan_wall(stones, 40, 10, scale=1.0, settings=own, method="paper").plan.method == "paper"
+
+
+def test_numbers_that_are_not_finite_are_refused_before_planning() -> None:
+    with pytest.raises(ValueError, match="mu must be a finite number"):
+        method_settings("paper").__class__(mu=float("inf"))
