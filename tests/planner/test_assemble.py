@@ -17,7 +17,7 @@ from drystone.poses import PoseBook
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.blocks import model_with
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import RigidBlockModel
+from drystone.statics.model import LateralResistance, LimitResult, LimitStatus, RigidBlockModel
 from drystone.verify import check_plan
 from tests.planner.scenes import blocks, rubble
 
@@ -100,3 +100,35 @@ def test_a_plan_says_which_method_made_it() -> None:
 def test_numbers_that_are_not_finite_are_refused_before_planning() -> None:
     with pytest.raises(ValueError, match="mu must be a finite number"):
         method_settings("paper").__class__(mu=float("inf"))
+
+
+def test_candidates_on_which_the_solver_gave_up_are_counted_and_said(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    stones = blocks({1: (20, 10), 2: (20, 10), 3: (20, 10)})
+    assert plan_wall(stones, 60, 10, scale=1.0, method="paper").notices == ()
+    calls = iter(range(1000))
+
+    def fails_first(model: RigidBlockModel, *, mechanism: bool = False) -> LateralResistance:
+        if next(calls) > 0:
+            return lateral_resistance(model, mechanism=mechanism)
+        gave_up = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
+        return LateralResistance(gave_up[0], gave_up[1], model.mu)
+
+    monkeypatch.setattr("drystone.planner.evaluate.lateral_resistance", fails_first)
+    result = plan_wall(stones, 60, 10, scale=1.0, method="paper")
+    (notice,) = result.notices
+    assert notice.code == "W303"
+    assert "gave up on 1 candidates" in notice.message
+
+
+def test_a_wall_in_which_nothing_can_be_placed_is_an_incomplete_plan() -> None:
+    """A stone on its tip: neither rotation nor wedges allowed."""
+    tip = np.triu(np.ones((12, 12), bool))
+    result = plan_wall(
+        StoneSet((Stone(1, tip),)), 14, 14, scale=1.0,
+        settings=method_settings("paper").updated({"stabilise": {"method": "none"}}),
+    )  # fmt: skip
+    assert result.status == "incomplete"
+    assert result.plan.steps == ()
+    assert result.metrics.F_LR is None
