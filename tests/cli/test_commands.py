@@ -89,12 +89,14 @@ def test_analyse_draws_and_never_over_a_file(tmp_path: Path, run: Run) -> None:
     assert {path.name for path in out.iterdir()} == names
     assert "E129" in run("analyse", tower, "-o", out).err
     assert "E129" in run("analyse", tower, "-o", tower).err
-    # A wall that does not stand has no mechanism: none of another wall may stay.
+    # A wall that does not stand is drawn as it falls.
+    before = (out / "mechanism_left.png").read_bytes()
     labels = np.zeros((20, 20), np.uint32)
     labels[15:, 2:8], labels[5:10, 2:8] = 1, 2
     write_labels(labels, tmp_path / "floating.png")
     assert run("analyse", tmp_path / "floating.png", "-o", out, "--overwrite").code == 0
-    assert {path.name for path in out.iterdir()} == {"wall_picture.png"}
+    assert {path.name for path in out.iterdir()} == names
+    assert (out / "mechanism_left.png").read_bytes() != before
 
 
 def test_a_wall_that_does_not_stand_says_why(tmp_path: Path, run: Run) -> None:

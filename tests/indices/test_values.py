@@ -4,7 +4,7 @@ import dataclasses
 
 from drystone.indices.load_coefficient import limit_load_coefficient
 from drystone.indices.values import Indices
-from drystone.statics.model import LateralResistance, LimitResult, LimitStatus
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 
 INDICES = Indices(SF=0.9, LFR=0.8, GDS=0.7, NHR=0.1, IWR=0.5, IS=-0.2, LLC=0.4, boundary=False)
 

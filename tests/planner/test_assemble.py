@@ -17,7 +17,8 @@ from drystone.poses import PoseBook
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.blocks import model_with
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import LateralResistance, LimitResult, LimitStatus, RigidBlockModel
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify import check_plan
 from tests.planner.scenes import blocks, rubble
 

@@ -8,7 +8,7 @@ from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import Source, Stone, StoneSet
 from drystone.model.wall import Wall
-from drystone.statics.model import LateralResistance, LimitResult, LimitStatus, Mechanism
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, Mechanism
 
 CLUSTERS = {3: 1, 5: 2, 8: 1, 12: 3, 300: 2}
 UNUSED = 40

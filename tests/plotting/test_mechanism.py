@@ -7,7 +7,7 @@ from matplotlib.colors import to_hex
 from drystone.plotting import plot_mechanism
 from drystone.plotting.mechanism import COLOURS, LARGEST_SHARE
 from drystone.plotting.palette import relative_luminance
-from drystone.statics.model import Mechanism
+from drystone.statics.result import Mechanism
 from tests.plotting import examples
 from tests.plotting.test_stones import patches
 

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,10 @@ from drystone.statics import limit
 from drystone.statics.blocks import model_from_labels
 from drystone.statics.given import model_from_json
 from drystone.statics.limit import lateral_resistance, limit_load
-from drystone.statics.model import GROUND, LimitStatus, RigidBlockModel
+from drystone.statics.model import GROUND, RigidBlockModel
+from drystone.statics.result import LimitStatus
+from drystone.statics.solvers import clarabel, highs
+from drystone.statics.solvers.highs import HighsSession
 from tests.naive.statics import limit_alphas
 from tests.statics.walls import brick_model, coursed, irregular, stacked
 from tests.strategies import repeatable
@@ -241,17 +245,25 @@ def test_equal_calls_give_equal_bits():
 def test_what_the_first_algorithm_gives_up_on_is_tried_with_another(labels, monkeypatch):
     model = model_from_labels(labels).model
     expected = lateral_resistance(model)
-    monkeypatch.setattr(limit, "_FIRST", {**limit._FIRST, "simplex_iteration_limit": 1})
+    give_up_after(1, monkeypatch, "simplex")
     again = lateral_resistance(model)
     assert statuses(again) == statuses(expected)
+    assert again.left.solver != expected.left.solver
     if expected.stable:
         assert again.value == pytest.approx(expected.value, abs=1e-7)
 
 
-def test_what_both_algorithms_give_up_on_is_failed_and_no_number(monkeypatch):
+def give_up_after(iterations, monkeypatch, *algorithms):
+    options = dict(highs._OPTIONS)
+    for algorithm in algorithms:
+        options[algorithm] = {**highs._SIMPLEX, "simplex_iteration_limit": iterations}
+    monkeypatch.setattr(highs, "_OPTIONS", options)
+
+
+def test_what_all_algorithms_give_up_on_is_failed_and_no_number(monkeypatch):
     model = model_from_labels(coursed(5, 4, 90)).model
-    monkeypatch.setattr(limit, "_FIRST", {**limit._FIRST, "simplex_iteration_limit": 1})
-    monkeypatch.setattr(limit, "_AGAIN", limit._FIRST)
+    give_up_after(1, monkeypatch, "simplex", "ipm")
+    monkeypatch.setattr(clarabel, "_SETTINGS", {**clarabel._SETTINGS, "max_iter": 1})
     both = lateral_resistance(model, mechanism=True)
     assert statuses(both) == (LimitStatus.FAILED, LimitStatus.FAILED)
     assert (both.value, both.left.alpha, both.left.mechanism) == (None, None, None)
@@ -261,9 +273,121 @@ def test_what_both_algorithms_give_up_on_is_failed_and_no_number(monkeypatch):
 def test_one_failed_direction_leaves_the_other_unknown(monkeypatch):
     """That the wall stands by itself follows only from both."""
     model = model_from_labels(coursed(5, 4, 90)).model
-    stuck = {**limit._FIRST, "simplex_iteration_limit": 0}
-    monkeypatch.setattr(limit, "_FROM_BASIS", stuck)
-    monkeypatch.setattr(limit, "_AGAIN", stuck)
+    monkeypatch.setattr(highs, "_FROM_BASIS", {"simplex_iteration_limit": 0})
+    both = lateral_resistance(model, solver="highs")
+    assert both.left.status is LimitStatus.OPTIMAL  # a cold solve came to help
+    only_upwards = limit.answered
+
+    def stuck(program, session, sign):
+        answer = only_upwards(program, session, sign)
+        return answer if sign > 0 else replace(answer, certificate=None)
+
+    monkeypatch.setattr(limit, "answered", stuck)
     both = lateral_resistance(model)
     assert statuses(both) == (LimitStatus.FAILED, LimitStatus.FAILED)
     assert "other direction" in both.right.message
+    assert "could not be certified" in both.left.message
+
+
+@pytest.mark.parametrize("wrong", ["columns", "duals"])
+def test_a_wrong_optimal_answer_is_found_out_and_asked_again(wrong, monkeypatch):
+    """As a warm-started solver once gave them (HiGHS issue 3194)."""
+    model = model_from_labels(coursed(5, 4, 90)).model
+    expected = lateral_resistance(model)
+    right = HighsSession._vectors
+
+    def vectors(session, status):
+        found = dict(zip(("columns", "duals"), right(session, status), strict=True))
+        if session.name == "HiGHS simplex":
+            found[wrong] = found[wrong] + 1e-3 * np.arange(len(found[wrong]))
+        return found["columns"], found["duals"]
+
+    monkeypatch.setattr(HighsSession, "_vectors", vectors)
+    again = lateral_resistance(model)
+    assert again.right.solver == "HiGHS ipm"
+    assert again.value == pytest.approx(expected.value, abs=1e-8)
+    alone = lateral_resistance(model, solver="highs")
+    assert statuses(alone) == (LimitStatus.FAILED, LimitStatus.FAILED)
+
+
+SOLVERS = ("highs", "highs-ipm", "clarabel")
+
+
+@given(seed=st.integers(0, 10**6), count=st.integers(2, 25), coursing=st.booleans())
+@repeatable(25)
+def test_solvers_agree_and_every_answer_is_certified(seed, count, coursing):
+    labels = coursed(seed, 2 + count // 8, 90) if coursing else irregular(seed, count, 90, 50)
+    model = model_from_labels(labels).model
+    answers = [lateral_resistance(model, solver=solver, mechanism=True) for solver in SOLVERS]
+    assert len({statuses(both) for both in answers}) == 1
+    for both in answers:
+        for result, twin in ((both.left, answers[0].left), (both.right, answers[0].right)):
+            assert result.certificate.holds
+            if result.success:
+                assert result.alpha == pytest.approx(twin.alpha, abs=1e-8)
+                assert result.certificate.gap <= 1e-8
+            else:
+                assert result.certificate.fall_work > 1e-6
+
+
+def test_the_forces_are_in_equilibrium_with_the_load():
+    model = model_from_labels(coursed(7, 4, 90)).model
+    result = limit_load(model, "right", mechanism=True)
+    pushed = {block.id: np.array([result.alpha, -1.0]) * block.weight for block in model.blocks}
+    pushed[GROUND] = np.zeros(2)
+    at = 0
+    for interface in model.interfaces:
+        nx, ny = interface.normal
+        for normal, along in result.forces[at : at + len(interface.points)]:
+            assert abs(along) <= model.mu * normal + 1e-9
+            force = normal * np.array([nx, ny]) + along * np.array([ny, -nx])
+            pushed[interface.block] = pushed[interface.block] + force
+            pushed[interface.other] = pushed[interface.other] - force
+        at += len(interface.points)
+    assert at == len(result.forces)
+    for block in model.blocks:
+        assert pushed[block.id] == pytest.approx([0, 0], abs=1e-7)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_what_falls_comes_with_its_fall(solver):
+    """The upper stone of an overhanging pair turns about the edge of the lower one."""
+    model = model_from_labels(stacked((20, 20, 0), (20, 20, 12)), 0.9).model
+    result = limit_load(model, "right", mechanism=True, solver=solver)
+    assert result.status is LimitStatus.UNSTABLE
+    assert result.certificate.holds
+    velocity = dict(zip(result.mechanism.block_ids, result.mechanism.velocity, strict=True))
+    assert velocity[2][1] < 0  # down
+    assert velocity[2][2] < 0  # clockwise
+
+
+def test_friction_of_an_interface_counts_before_that_of_the_model():
+    model = model_from_labels(stacked((40, 10, 0), (40, 10, 0)), 0.9).model
+    slippery = tuple(replace(i, mu=0.2) if i.other == 1 else i for i in model.interfaces)
+    result = limit_load(replace(model, interfaces=slippery), "right", mechanism=True)
+    assert result.alpha == pytest.approx(0.2)
+    velocity = dict(zip(result.mechanism.block_ids, result.mechanism.velocity, strict=True))
+    assert velocity[1] == pytest.approx(np.zeros(3), abs=1e-9)
+
+
+@pytest.mark.parametrize(("held", "alpha"), [((), 0.25), (("turn",), 0.58), (("x", "turn"), None)])
+def test_a_guide_keeps_a_block_from_turning(held, alpha):
+    model = model_from_labels(stacked((10, 40, 0))).model
+    guided = replace(model, blocks=(replace(model.blocks[0], held=held),))
+    result = limit_load(guided, "right", mechanism=True)
+    if alpha is None:
+        assert result.status is LimitStatus.UNBOUNDED
+        assert result.certificate.holds
+    else:
+        assert result.alpha == pytest.approx(alpha)
+        assert (result.mechanism.velocity[0][2] == 0) == bool(held)
+
+
+def test_many_blocks_are_solved_by_the_interior_point_method(monkeypatch):
+    model = model_from_labels(coursed(5, 4, 90)).model
+    expected = lateral_resistance(model)
+    monkeypatch.setattr(limit, "MANY_BLOCKS", 3)
+    found = lateral_resistance(model)
+    assert found.left.solver == "Clarabel"
+    assert found.value == pytest.approx(expected.value, abs=1e-9)
+    assert lateral_resistance(model, mechanism=True).left.solver == "HiGHS simplex"

@@ -1,6 +1,6 @@
 """LLC: the lateral load that the wall carries with the stone in it (Eq. 11)."""
 
-from drystone.statics.model import LateralResistance
+from drystone.statics.result import LateralResistance
 
 
 def limit_load_coefficient(resistance: LateralResistance) -> float | None:

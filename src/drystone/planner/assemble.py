@@ -14,7 +14,7 @@ from drystone.model.site import Site
 from drystone.planner.build import Build, Candidate
 from drystone.planner.events import Stopped
 from drystone.planner.workshop import Workshop
-from drystone.statics.model import LateralResistance
+from drystone.statics.result import LateralResistance
 
 
 @dataclass(frozen=True)

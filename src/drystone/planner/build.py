@@ -6,7 +6,8 @@ from drystone.indices.values import Indices
 from drystone.model.placement import Side
 from drystone.model.wall import Wall
 from drystone.stabilise.stabilise import Stabilised
-from drystone.statics.model import LateralResistance, RigidBlockModel
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LateralResistance
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,7 +27,7 @@ from drystone.stabilise.memory import StabiliseMemory
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.blocks import model_with
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import LateralResistance
+from drystone.statics.result import LateralResistance
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ from drystone.planner.planner import Planner
 from drystone.planner.rework import rework
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import LateralResistance
+from drystone.statics.result import LateralResistance
 
 TYPICAL_STONE_PX = 40
 """Longer side of the median stone at the resolution that is chosen when none is given."""

@@ -10,7 +10,8 @@ from drystone.model.wall import Wall
 from drystone.plotting.mechanism import plot_mechanism
 from drystone.plotting.outlines import Loop
 from drystone.plotting.wall import plot_wall
-from drystone.statics.model import Direction, LateralResistance
+from drystone.statics.model import Direction
+from drystone.statics.result import LateralResistance
 
 PICTURE = "picture.png"
 MECHANISMS: dict[Direction, str] = {"left": "mechanism_left.png", "right": "mechanism_right.png"}

@@ -11,7 +11,8 @@ from drystone.model.wall import Labels
 from drystone.plotting.canvas import draw_block, draw_ground, fit_axes
 from drystone.plotting.outlines import Loop, Region, label_regions
 from drystone.plotting.palette import GREY, OUTLINE_COLOUR
-from drystone.statics.model import Direction, Mechanism
+from drystone.statics.model import Direction
+from drystone.statics.result import Mechanism
 
 LARGEST_SHARE = 0.12
 """Largest displacement in the picture over the height of the wall."""

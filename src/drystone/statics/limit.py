@@ -1,54 +1,42 @@
 """Limit analysis of rigid blocks by linear programming (§4.1, Eq. 23-24; DESIGN 4.8).
 
-Both directions are extremes of one program: alpha, positive towards +x, ranges over an interval
-[-alpha_left, alpha_right] of loads that the blocks can carry.  The blocks stand under their own
-weight exactly when 0 lies in it.  So one program is set up and solved upwards, and then
-downwards from the basis that the first solution ended with.
+Both directions are extremes of one program: alpha, positive along the live load, ranges over an
+interval of loads that the blocks can carry, [-alpha_left, alpha_right] on the tilting table.  The
+blocks stand under their dead load exactly when 0 lies in it.  So one program is set up and
+solved upwards, and then downwards from the basis that the first solution ended with.
+
+An answer counts only with a certificate that holds (:mod:`drystone.statics.certificate`); if it
+does not, the program is solved again from the start and by other algorithms.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Literal, Protocol
 
-import highspy
 import numpy as np
 
-from drystone.statics.model import (
-    Direction,
+from drystone.statics.certificate import certify, of_fall
+from drystone.statics.loads import Loads
+from drystone.statics.model import Direction, RigidBlockModel
+from drystone.statics.program import EquilibriumProgram, Floats, assemble
+from drystone.statics.result import (
+    Certificate,
     LateralResistance,
     LimitResult,
     LimitStatus,
+    LoadRange,
     Mechanism,
-    RigidBlockModel,
 )
-from drystone.statics.program import EquilibriumProgram, Floats, assemble
+from drystone.statics.solvers.highs import TOLERANCE, HighsSession
+from drystone.statics.solvers.solution import Solution
 
-TOLERANCE = 1e-9
-"""Of the solver, and for taking an alpha beside 0 as 0."""
+Solver = Literal["auto", "highs", "highs-ipm", "clarabel"]
 
-_COMMON: Mapping[str, Any] = {
-    "output_flag": False,
-    "primal_feasibility_tolerance": TOLERANCE,
-    "dual_feasibility_tolerance": TOLERANCE,
-}
-# Measured on coursed and irregular walls of 30 and 60 stones: dual simplex first, then primal
-# from its basis, without presolve and scaling, is the fastest of all pairs.
-_FIRST: Mapping[str, Any] = {
-    "threads": 1,
-    "solver": "simplex",
-    "presolve": "off",
-    "simplex_scale_strategy": 0,
-    "simplex_strategy": 1,
-}
-_FROM_BASIS: Mapping[str, Any] = {"simplex_strategy": 4}
-# Another algorithm for what the first one gives up on; it takes as many threads as there are.
-_AGAIN: Mapping[str, Any] = {"solver": "ipm", "run_crossover": "on", "presolve": "on"}
+MANY_BLOCKS = 50
+"""From here on "auto" asks the interior point method first, unless a mechanism is wanted."""
 
-_STATUS = {
-    highspy.HighsModelStatus.kOptimal: LimitStatus.OPTIMAL,
-    highspy.HighsModelStatus.kInfeasible: LimitStatus.UNSTABLE,
-    highspy.HighsModelStatus.kUnbounded: LimitStatus.UNBOUNDED,
-}
+MANY_BLOCKS_FOR_A_VERTEX = 300
+"""From here on it does so for a mechanism too, which may then blend several."""
 
 _MESSAGE = {
     LimitStatus.OPTIMAL: "The greatest load was found.",
@@ -57,20 +45,44 @@ _MESSAGE = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class _Extreme:
-    """One end of the interval of alpha; `duals` are those of the rows."""
+class Session(Protocol):
+    """One program in a solver."""
 
-    status: LimitStatus
-    alpha: float = 0.0
-    duals: Floats | None = None
-    message: str = ""
+    def minimise(self, costs: Floats) -> Solution:
+        """Minimise costs . x."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """A solution and its certificate."""
+
+    solution: Solution
+    certificate: Certificate | None
+
+    @property
+    def status(self) -> LimitStatus:
+        """FAILED unless the certificate holds."""
+        if self.certificate is None or not self.certificate.holds:
+            return LimitStatus.FAILED
+        return self.solution.status
+
+    @property
+    def alpha(self) -> float:
+        """Load multiplier of an optimal solution."""
+        assert self.solution.columns is not None  # noqa: S101 - asked for only when optimal
+        return float(self.solution.columns[0])
 
 
 def limit_load(
-    model: RigidBlockModel, direction: Direction, *, mechanism: bool = False
+    model: RigidBlockModel,
+    direction: Direction,
+    loads: Loads | None = None,
+    *,
+    mechanism: bool = False,
+    solver: Solver = "auto",
 ) -> LimitResult:
-    """Find the greatest horizontal load that the blocks carry (Eq. 23).
+    """Find the greatest load in one direction that the blocks carry (Eq. 23).
 
     Maximise alpha subject to equilibrium of every free block under its weight w downwards and
     alpha w sideways, both at its centroid, with n >= 0 and |t| <= mu n at every contact point.
@@ -80,37 +92,43 @@ def limit_load(
     model : RigidBlockModel
         Blocks and interfaces.
     direction : {"left", "right"}
-        The live load points to -x for "left".
+        The live load points to -x for "left"; for other loads "left" is against the live load.
+    loads : Loads, optional
+        Dead and live loads; the tilting table unless given.
     mechanism : bool
-        Also return how the blocks move at that load.
+        Also return how the blocks move at that load, and the forces between them.
+    solver : {"auto", "highs", "highs-ipm", "clarabel"}
+        "auto" chooses by the number of blocks and asks others when a certificate fails; any
+        other is asked alone.
 
     Returns
     -------
     LimitResult
         `status` "unstable" when the blocks do not stand under their own weight, even if some
         push would hold them up; "unbounded" when nothing limits the load, as for a model without
-        free blocks; "failed" when two algorithms gave up.  Never raises for a valid model.
+        free blocks; "failed" when no solver has an answer that can be certified.  Never raises
+        for a valid model.
 
     Examples
     --------
     >>> from drystone.statics.blocks import model_from_labels
     >>> wall = model_from_labels(np.ones((40, 20), np.uint32)).model
-    >>> round(limit_load(wall, "right").alpha, 6)
-    0.5
+    >>> result = limit_load(wall, "right")
+    >>> round(result.alpha, 6), result.certificate.holds
+    (0.5, True)
     """
-    both = lateral_resistance(model, mechanism=mechanism)
+    both = lateral_resistance(model, loads, mechanism=mechanism, solver=solver)
     return both.left if direction == "left" else both.right
 
 
-def lateral_resistance(model: RigidBlockModel, *, mechanism: bool = False) -> LateralResistance:
+def lateral_resistance(
+    model: RigidBlockModel,
+    loads: Loads | None = None,
+    *,
+    mechanism: bool = False,
+    solver: Solver = "auto",
+) -> LateralResistance:
     """Find the greatest loads in both directions (Eq. 28); see :func:`limit_load`.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and interfaces.
-    mechanism : bool
-        Also return how the blocks move at those loads.
 
     Returns
     -------
@@ -118,117 +136,235 @@ def lateral_resistance(model: RigidBlockModel, *, mechanism: bool = False) -> La
         Its `value` is F_LR: the lesser alpha over mu.
     """
     if all(block.fixed for block in model.blocks):
-        left, right = (
-            LimitResult(LimitStatus.UNBOUNDED, direction, message="There are no free blocks.")
-            for direction in ("left", "right")
-        )
-        return LateralResistance(left, right, model.mu)
-    program = assemble(model)
-    upper, lower = _extremes(program)
-    standing = _standing(upper, lower)
-    wanted = program if mechanism else None
+        return LateralResistance(_no_blocks("left"), _no_blocks("right"), model.mu)
+    program = assemble(model, loads)
+    least, greatest = _extremes(program, solver, mechanism=mechanism)
+    return resistance_between(program, least, greatest, model.mu, mechanism=mechanism)
+
+
+def load_range(
+    model: RigidBlockModel,
+    loads: Loads,
+    *,
+    mechanism: bool = False,
+    solver: Solver = "auto",
+) -> LoadRange:
+    """Find all alpha for which the blocks carry dead + alpha live.
+
+    Parameters
+    ----------
+    model, loads, mechanism, solver
+        As for :func:`limit_load`.
+
+    Returns
+    -------
+    LoadRange
+        Its ends; alpha = 0 need not lie between them.
+
+    Examples
+    --------
+    How light may a block be, 1 wide and 2 high, that is pushed at mid-height with .3?
+
+    >>> from drystone.statics.given import model_from_json
+    >>> from drystone.statics.loads import gravity_factor, point_load
+    >>> block = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
+    >>> push = point_load(block, 1, (0, 1), (0.3, 0))
+    >>> carried = load_range(block, gravity_factor(block, push))
+    >>> round(carried.least.alpha, 6), str(carried.greatest.status)
+    (0.3, 'unbounded')
+    """
+    if all(block.fixed for block in model.blocks):
+        return LoadRange(_no_blocks("left"), _no_blocks("right"))
+    program = assemble(model, loads)
+    least, greatest = _extremes(program, solver, mechanism=mechanism)
+    ends = zip(("left", "right"), (least, greatest), strict=True)
+    return LoadRange(*(_end(d, answer, program, mechanism) for d, answer in ends))  # type: ignore[arg-type]
+
+
+def resistance_between(
+    program: EquilibriumProgram,
+    least: Answer,
+    greatest: Answer,
+    mu: float,
+    *,
+    mechanism: bool = False,
+) -> LateralResistance:
+    """Tell both directions from the two ends of the interval of alpha."""
+    fall = _fall(program, least, greatest)
     return LateralResistance(
-        _result("left", lower, standing, wanted),
-        _result("right", upper, standing, wanted),
-        model.mu,
+        _direction("left", least, greatest, fall, program if mechanism else None),
+        _direction("right", greatest, least, fall, program if mechanism else None),
+        mu,
     )
 
 
-def _extremes(program: EquilibriumProgram) -> tuple[_Extreme, _Extreme]:
-    """Find the greatest and the least alpha."""
-    highs = _loaded(program, {**_COMMON, **_FIRST})
-    upper = _solved(highs, program, -1.0)
-    if upper.status is LimitStatus.UNSTABLE:
-        return upper, upper
-    _set_options(highs, _FROM_BASIS)
-    return upper, _solved(highs, program, 1.0)
+def _no_blocks(direction: Direction) -> LimitResult:
+    said = "There are no free blocks."
+    return LimitResult(LimitStatus.UNBOUNDED, direction, message=said)
 
 
-def _loaded(program: EquilibriumProgram, options: Mapping[str, Any]) -> highspy.Highs:
-    columns, rows = program.column_count, len(program.rhs)
-    lower = np.zeros(columns)
-    lower[0] = -highspy.kHighsInf
-    upper = np.full(columns, highspy.kHighsInf)
-    by_column, minimise, offset = 1, 1, 0.0
-    highs = highspy.Highs()  # type: ignore[no-untyped-call]  # its constructor has no types
-    _set_options(highs, options)
-    highs.passModel(
-        columns, rows, len(program.value), by_column, minimise, offset, np.zeros(columns), lower,
-        upper, program.rhs, program.rhs, program.start, program.index, program.value,
-        np.zeros(columns, np.int32),
-    )  # fmt: skip
-    return highs
+def _extremes(
+    program: EquilibriumProgram, solver: Solver, *, mechanism: bool
+) -> tuple[Answer, Answer]:
+    """Find the least and the greatest alpha, the second from the basis of the first."""
+    chain = _chain(program, solver, mechanism=mechanism)
+    greatest, session = _certified(program, _made(chain), 1.0)
+    if greatest.status is LimitStatus.UNSTABLE:
+        return greatest, greatest
+    least, _ = _certified(program, (session, *_made(chain)), -1.0)
+    return least, greatest
 
 
-def _set_options(highs: highspy.Highs, options: Mapping[str, Any]) -> None:
-    for name, value in options.items():
-        highs.setOptionValue(name, value)
+def _made(chain: Sequence[Callable[[], Session]]) -> Iterator[Session]:
+    return (make() for make in chain)
 
 
-def _solved(highs: highspy.Highs, program: EquilibriumProgram, cost: float) -> _Extreme:
-    """Minimise cost * alpha; when the solver gives up, once more with another algorithm."""
-    extreme = _run(highs, cost)
-    if extreme.status is LimitStatus.FAILED:
-        extreme = _run(_loaded(program, {**_COMMON, **_AGAIN}), cost)
-    return extreme
+def _certified(
+    program: EquilibriumProgram, sessions: Iterable[Session], sign: float
+) -> tuple[Answer, Session]:
+    """Return the first answer whose certificate holds, or the last one, and its session."""
+    for session in sessions:
+        answer = answered(program, session, sign)
+        if answer.status is not LimitStatus.FAILED:
+            break
+    return answer, session
 
 
-def _run(highs: highspy.Highs, cost: float) -> _Extreme:
-    highs.changeColCost(0, cost)
-    highs.run()
-    found = highs.getModelStatus()
-    status = _STATUS.get(found, LimitStatus.FAILED)
-    if status is not LimitStatus.OPTIMAL:
-        said = f"The solver gave up: {highs.modelStatusToString(found)}."
-        return _Extreme(status, message=_MESSAGE.get(status, said))
-    solution = highs.getSolution()
-    return _Extreme(status, solution.col_value[0], np.array(solution.row_dual), _MESSAGE[status])
+def _chain(
+    program: EquilibriumProgram, solver: Solver, *, mechanism: bool
+) -> list[Callable[[], Session]]:
+    """Return the sessions to ask, in this order."""
+
+    def clarabel() -> Session:
+        # Walls of a few stones never need it.
+        from drystone.statics.solvers.clarabel import ClarabelSession  # noqa: PLC0415
+
+        return ClarabelSession(program)
+
+    kinds: dict[str, Callable[[], Session]] = {
+        "highs": lambda: HighsSession(program),
+        "highs-ipm": lambda: HighsSession(program, "ipm"),
+        "clarabel": clarabel,
+    }
+    if solver != "auto":
+        return [kinds[solver]]
+    many = MANY_BLOCKS_FOR_A_VERTEX if mechanism else MANY_BLOCKS
+    if len(program.block_ids) < many:
+        return list(kinds.values())
+    return [kinds[name] for name in ("clarabel", "highs", "highs-ipm")]
 
 
-def _standing(upper: _Extreme, lower: _Extreme) -> bool | None:
-    """Whether alpha = 0 lies between the extremes; None when that is not known."""
-    for extreme, sign in ((upper, 1.0), (lower, -1.0)):
-        if extreme.status is LimitStatus.UNSTABLE:
-            return False
-        if extreme.status is LimitStatus.OPTIMAL and sign * extreme.alpha < -TOLERANCE:
-            return False
-    return None if LimitStatus.FAILED in (upper.status, lower.status) else True
+def answered(program: EquilibriumProgram, session: Session, sign: float) -> Answer:
+    """Find the greatest (sign 1) or least (-1) alpha and certify the answer."""
+    costs = np.zeros(program.column_count)
+    costs[0] = -sign
+    solution = session.minimise(costs)
+    return Answer(solution, certify(program, solution))
 
 
-def _result(
+def _fall(program: EquilibriumProgram, least: Answer, greatest: Answer) -> Answer | None:
+    """Return the answer whose mechanism brings the blocks down by themselves, if there is one."""
+    for answer, sign in ((greatest, 1.0), (least, -1.0)):
+        if answer.status is LimitStatus.UNSTABLE:
+            return answer
+        if answer.status is LimitStatus.OPTIMAL and sign * answer.alpha < -TOLERANCE:
+            assert answer.solution.duals is not None  # noqa: S101 - an optimal solution has them
+            return Answer(answer.solution, of_fall(program, -answer.solution.duals))
+    return None
+
+
+def _direction(
     direction: Direction,
-    extreme: _Extreme,
-    standing: bool | None,
-    program: EquilibriumProgram | None,
+    answer: Answer,
+    other: Answer,
+    fall: Answer | None,
+    wanted: EquilibriumProgram | None,
 ) -> LimitResult:
-    """Tell one direction; a mechanism is made when the program is given.
+    """Tell one direction; mechanism and forces are made when the program is given.
 
     Without the other extreme it is not known that the blocks stand by themselves.
     """
-    if standing is False:
-        return LimitResult(LimitStatus.UNSTABLE, direction, message=_MESSAGE[LimitStatus.UNSTABLE])
-    if standing is None:
-        failed = extreme.status is LimitStatus.FAILED
-        said = extreme.message if failed else "The solver gave up in the other direction."
+    if fall is not None:
+        return LimitResult(
+            LimitStatus.UNSTABLE,
+            direction,
+            mechanism=_mechanism(wanted, fall.solution) if wanted else None,
+            certificate=fall.certificate,
+            message=_MESSAGE[LimitStatus.UNSTABLE],
+            solver=fall.solution.solver,
+        )
+    if answer.status is LimitStatus.FAILED:
+        return _failed(direction, answer)
+    if other.status is LimitStatus.FAILED:
+        said = "The solver gave up in the other direction."
         return LimitResult(LimitStatus.FAILED, direction, message=said)
-    if extreme.duals is None:
-        return LimitResult(extreme.status, direction, message=extreme.message)
     sign = -1.0 if direction == "left" else 1.0
-    moves = _mechanism(program, extreme.duals) if program is not None else None
+    alpha = max(0.0, sign * answer.alpha) if answer.status is LimitStatus.OPTIMAL else None
+    return _told(direction, answer, alpha, wanted)
+
+
+def _end(
+    direction: Direction, answer: Answer, program: EquilibriumProgram, mechanism: bool
+) -> LimitResult:
+    """Tell one end of the range of alpha."""
+    if answer.status is LimitStatus.FAILED:
+        return _failed(direction, answer)
+    alpha = answer.alpha if answer.status is LimitStatus.OPTIMAL else None
+    return _told(direction, answer, alpha, program if mechanism else None)
+
+
+def _failed(direction: Direction, answer: Answer) -> LimitResult:
+    solution = answer.solution
+    claimed = solution.status is not LimitStatus.FAILED
+    doubt = ", but that could not be certified" if claimed else ""
+    said = f"The solver gave up: {solution.solver} says {solution.said}{doubt}."
     return LimitResult(
-        extreme.status, direction, max(0.0, sign * extreme.alpha), moves, extreme.message
+        LimitStatus.FAILED,
+        direction,
+        certificate=answer.certificate,
+        message=said,
+        solver=solution.solver,
     )
 
 
-def _mechanism(program: EquilibriumProgram, duals: Floats) -> Mechanism:
+def _told(
+    direction: Direction, answer: Answer, alpha: float | None, wanted: EquilibriumProgram | None
+) -> LimitResult:
+    solution = answer.solution
+    optimal = answer.status is LimitStatus.OPTIMAL
+    return LimitResult(
+        answer.status,
+        direction,
+        alpha,
+        _mechanism(wanted, solution) if wanted else None,
+        _forces(wanted, solution) if wanted and optimal else None,
+        answer.certificate,
+        _MESSAGE[answer.status],
+        solution.solver,
+    )
+
+
+def _mechanism(program: EquilibriumProgram, solution: Solution) -> Mechanism | None:
     """Turn row duals into velocities (§4.1).
 
     At the least of cost * alpha the duals y satisfy y . live = cost and y . g <= 0 for every
     edge g of a friction cone.  So -y opens or slides every contact (associated flow) and moves
     the blocks with the live load.
     """
-    velocity = -duals.reshape(-1, 3)
+    if solution.duals is None:
+        return None
+    velocity = np.zeros((len(program.rows), 3))
+    velocity[program.rows >= 0] = -solution.duals
     velocity[:, 2] /= program.length
-    return Mechanism(
-        program.block_ids, velocity / float(np.hypot(velocity[:, 0], velocity[:, 1]).max())
-    )
+    fastest = float(np.hypot(velocity[:, 0], velocity[:, 1]).max())
+    # Blocks that only turn about their centroids are told by their rate of turning.
+    largest = fastest or float(np.abs(velocity).max())
+    return Mechanism(program.block_ids, velocity / largest)
+
+
+def _forces(program: EquilibriumProgram, solution: Solution) -> Floats:
+    """Add up the two edges of the cone at every contact point: normal part, and part along mu t."""
+    assert solution.columns is not None  # noqa: S101 - asked for only when optimal
+    edges = program.weight * solution.columns[1:].reshape(-1, 2)
+    normal = edges.sum(axis=1)
+    return np.column_stack((normal, program.friction * (edges[:, 0] - edges[:, 1])))

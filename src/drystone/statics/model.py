@@ -13,6 +13,10 @@ GROUND = 0
 
 Direction = Literal["left", "right"]
 
+Freedom = Literal["x", "y", "turn"]
+FREEDOMS: tuple[Freedom, Freedom, Freedom] = ("x", "y", "turn")
+"""What a block may do: move to the right, move up, turn counter-clockwise."""
+
 
 class LimitStatus(StrEnum):
     """How a limit analysis ended; a status is never a number."""
@@ -41,6 +45,8 @@ class Block:
         Weight of a unit of area.
     fixed : bool
         A fixed block is part of the ground: it does not move and its weight does not matter.
+    held : tuple of {"x", "y", "turn"}
+        What a guide keeps the block from doing; a beam that stays level is held in "turn".
     """
 
     id: int
@@ -48,6 +54,7 @@ class Block:
     centroid: tuple[float, float]
     density: float = 1.0
     fixed: bool = False
+    held: tuple[Freedom, ...] = ()
 
     @property
     def weight(self) -> float:
@@ -70,12 +77,15 @@ class Interface:
         point.
     normal : (float, float)
         Unit vector, from `other` into `block`.
+    mu : float, optional
+        Coefficient of friction here; None for that of the model.
     """
 
     block: int
     other: int
     points: NDArray[np.float64]
     normal: tuple[float, float]
+    mu: float | None = None
 
     @cached_property
     def length(self) -> float:
@@ -94,98 +104,18 @@ class RigidBlockModel:
     interfaces : tuple of Interface
         Between blocks, or between a block and the ground.
     mu : float
-        Coefficient of friction, the same everywhere.
+        Coefficient of friction of the interfaces that have none of their own.
     """
 
     blocks: tuple[Block, ...]
     interfaces: tuple[Interface, ...]
     mu: float = 0.58
 
+    def friction(self, interface: Interface) -> float:
+        """Return the coefficient of friction of an interface."""
+        return self.mu if interface.mu is None else interface.mu
+
     @cached_property
     def contact_count(self) -> int:
         """Number of contact points."""
         return sum(len(interface.points) for interface in self.interfaces)
-
-
-@dataclass(frozen=True, eq=False)
-class Mechanism:
-    """How the wall fails: the velocity of each block, up to a common factor.
-
-    Parameters
-    ----------
-    block_ids : tuple of int
-        Free blocks in the order of the rows of `velocity`.
-    velocity : (n, 3) float array
-        Horizontal and vertical velocity of the centroid (wall frame) and rate of turning,
-        counter-clockwise, per block; the largest displacement of a centroid is 1.
-    """
-
-    block_ids: tuple[int, ...]
-    velocity: NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class LimitResult:
-    """Outcome of one limit analysis.
-
-    Parameters
-    ----------
-    status : LimitStatus
-        How it ended.
-    direction : {"left", "right"}
-        The live load points to -x for "left".
-    alpha : float or None
-        Load multiplier; None unless the status is "optimal".
-    mechanism : Mechanism or None
-        From the dual solution, when it was asked for and exists.
-    message : str
-        What the solver said, for people.
-    """
-
-    status: LimitStatus
-    direction: Direction
-    alpha: float | None = None
-    mechanism: Mechanism | None = None
-    message: str = ""
-
-    @property
-    def success(self) -> bool:
-        """True when the status is "optimal"."""
-        return self.status is LimitStatus.OPTIMAL
-
-
-@dataclass(frozen=True, eq=False)
-class LateralResistance:
-    """Both directions of the tilting table (Eq. 28).
-
-    Parameters
-    ----------
-    left, right : LimitResult
-        Live load towards -x and towards +x.
-    mu : float
-        Coefficient of friction.
-    """
-
-    left: LimitResult
-    right: LimitResult
-    mu: float
-
-    @property
-    def value(self) -> float | None:
-        """min(alpha_left, alpha_right) / mu (Eq. 11, Eq. 28).
-
-        None unless both are optimal, and without friction.
-        """
-        if self.left.alpha is None or self.right.alpha is None or self.mu == 0:
-            return None
-        return min(self.left.alpha, self.right.alpha) / self.mu
-
-    @property
-    def failed(self) -> bool:
-        """True when the solver gave up on either direction: nothing is known then."""
-        return LimitStatus.FAILED in (self.left.status, self.right.status)
-
-    @property
-    def stable(self) -> bool:
-        """True when the wall stands under its own weight, by both analyses."""
-        return self.left.success and self.right.success

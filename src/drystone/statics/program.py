@@ -1,11 +1,14 @@
 """The linear program of the limit analysis as arrays (Eq. 23-24), free of any solver."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csc_array
 
-from drystone.statics.model import GROUND, Block, RigidBlockModel
+from drystone.statics.loads import Loads, tilting_table
+from drystone.statics.model import FREEDOMS, GROUND, Block, RigidBlockModel
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -15,41 +18,56 @@ Ints = NDArray[np.int32]
 class EquilibriumProgram:
     """Equilibrium of the free blocks: alpha live + contact forces = -dead, contact forces >= 0.
 
-    Column 0 is alpha, positive towards +x and free; then come two columns for each contact
-    point, the forces along the two edges of its friction cone.  Rows 3 i, 3 i + 1, 3 i + 2 are
-    the horizontal and vertical forces on block i and their moment about its centroid.  The
-    matrix is stored by columns.
+    Column 0 is alpha and free; then come two columns for each contact point, the forces along the
+    two edges of its friction cone, normal + mu tangent and normal - mu tangent.  Each free block
+    has up to three rows, the horizontal and vertical forces on it and their moment about its
+    centroid; what it is held in has no row.  The matrix is stored by columns.
 
     Parameters
     ----------
     block_ids : (n,) tuple of int
-        Free blocks in the order of the rows.
-    start : (m + 2,) int array
+        Free blocks.
+    rows : (n, 3) int array
+        Row of each freedom of each free block; -1 for what is held.
+    start : (2 m + 2,) int array
         Where each column starts in `index` and `value`.
     index : int array
         Rows.
     value : float array
         Coefficients.
-    rhs : (3 n,) float array
+    rhs : float array
         Right-hand side.
+    friction : (m,) float array
+        Coefficient of friction at each contact point.
     length : float
         Characteristic length: moments are divided by it, so that all rows are of one size.
+    weight : float
+        Unit of force: mean weight of the free blocks.
     """
 
     block_ids: tuple[int, ...]
+    rows: Ints
     start: Ints
     index: Ints
     value: Floats
     rhs: Floats
+    friction: Floats
     length: float
+    weight: float
 
     @property
     def column_count(self) -> int:
         """Number of unknowns."""
         return len(self.start) - 1
 
+    @cached_property
+    def matrix(self) -> csc_array:
+        """The equations as a sparse matrix."""
+        shape = (len(self.rhs), self.column_count)
+        return csc_array((self.value, self.index, self.start), shape=shape)
 
-def assemble(model: RigidBlockModel) -> EquilibriumProgram:
+
+def assemble(model: RigidBlockModel, loads: Loads | None = None) -> EquilibriumProgram:
     """Set up Eq. 23-24 in scaled units: weights of mean 1, lengths over the root of the mean area.
 
     A force f at point p on block i, centroid c, enters its rows as (f, (p - c) x f); the block
@@ -60,41 +78,70 @@ def assemble(model: RigidBlockModel) -> EquilibriumProgram:
     ----------
     model : RigidBlockModel
         With at least one free block.
+    loads : Loads, optional
+        Dead and live loads; the tilting table unless given.
 
     Examples
     --------
-    >>> from drystone.statics.model import Block
     >>> assemble(RigidBlockModel((Block(1, 4.0, (1.0, 1.0)),), ())).column_count
     1
     """
-    free = [block for block in model.blocks if not block.fixed]
-    weight = np.array([block.weight for block in free])
-    weight = weight / weight.mean()
+    loads = tilting_table(model) if loads is None else loads
+    places = [i for i, block in enumerate(model.blocks) if not block.fixed]
+    free = [model.blocks[i] for i in places]
+    weight = float(np.mean([block.weight for block in free]))
     length = float(np.sqrt(np.mean([block.area for block in free])))
-    force, arm, blocks = _cone_edges(model, free)
+    unit = weight * np.array([1.0, 1.0, length])
+    rows = _rows(free)
+    moving = rows >= 0
+    friction = _friction(model)
+    force, arm, blocks = _cone_edges(model, free, friction)
 
     value = np.empty((len(force), 2, 3))
     value[:, :, :2] = np.array([[1.0], [-1.0]]) * force[:, None, :]
     arm = arm / length
     value[:, :, 2] = arm[:, :, 0] * value[:, :, 1] - arm[:, :, 1] * value[:, :, 0]
-    index = 3 * blocks[:, :, None] + np.arange(3)
-    moving = blocks >= 0
+    index = rows[blocks]
+    index[blocks < 0] = -1
+    kept = index >= 0
 
-    count = len(free)
-    entries = np.concatenate(([count], 3 * moving.sum(axis=1)))
-    rhs = np.zeros(3 * count)
-    rhs[1::3] = weight
+    live = (loads.live[places] / unit)[moving]
+    pushed = np.flatnonzero(live)
+    rhs = -(loads.dead[places] / unit)[moving]
+    entries = np.concatenate(([len(pushed)], kept.sum(axis=(1, 2))))
     return EquilibriumProgram(
         block_ids=tuple(block.id for block in free),
+        rows=rows,
         start=np.concatenate(([0], np.cumsum(entries))).astype(np.int32),
-        index=np.concatenate((3 * np.arange(count), index[moving].ravel())).astype(np.int32),
-        value=np.concatenate((weight, value[moving].ravel())),
+        index=np.concatenate((pushed, index[kept])).astype(np.int32),
+        value=np.concatenate((live[pushed], value[kept])),
         rhs=rhs,
+        friction=friction,
         length=length,
+        weight=weight,
     )
 
 
-def _cone_edges(model: RigidBlockModel, free: list[Block]) -> tuple[Floats, Floats, Ints]:
+def _rows(free: list[Block]) -> Ints:
+    """Give every freedom of the free blocks a row; -1 for what is held."""
+    if not any(block.held for block in free):
+        return np.arange(3 * len(free), dtype=np.int32).reshape(-1, 3)
+    moving = np.array([[freedom not in block.held for freedom in FREEDOMS] for block in free])
+    rows = np.full(moving.shape, -1, np.int32)
+    rows[moving] = np.arange(int(moving.sum()))
+    return rows
+
+
+def _friction(model: RigidBlockModel) -> Floats:
+    """Return the coefficient of friction at every contact point."""
+    each = [model.friction(interface) for interface in model.interfaces]
+    counts = [len(interface.points) for interface in model.interfaces]
+    return np.repeat(np.array(each, float), np.array(counts, np.int64))
+
+
+def _cone_edges(
+    model: RigidBlockModel, free: list[Block], friction: Floats
+) -> tuple[Floats, Floats, Ints]:
     """List the two edges of the friction cone at every contact point.
 
     Returns
@@ -118,6 +165,6 @@ def _cone_edges(model: RigidBlockModel, free: list[Block]) -> tuple[Floats, Floa
     normals = [interface.normal for interface in model.interfaces]
     normal = np.repeat(np.array(normals, float).reshape(-1, 2), repeats, axis=0)
     tangent = np.column_stack((normal[:, 1], -normal[:, 0]))
-    friction = np.tile([model.mu, -model.mu], len(at) // 2)
+    along = np.repeat(friction, 2) * np.tile([1.0, -1.0], len(friction))
     centroid = np.array([block.centroid for block in free])
-    return normal + friction[:, None] * tangent, at[:, None, :] - centroid[blocks], blocks
+    return normal + along[:, None] * tangent, at[:, None, :] - centroid[blocks], blocks

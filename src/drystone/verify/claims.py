@@ -15,7 +15,8 @@ from drystone.planner.stock import Stock
 from drystone.poses import PoseBook, orientation_step_deg
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import LateralResistance, RigidBlockModel
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LateralResistance
 from drystone.verify.replay import Replay, Stage
 from drystone.verify.report import Problem
 from drystone.verify.stability import ALPHA_TOLERANCE, differs

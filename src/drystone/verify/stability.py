@@ -7,7 +7,8 @@ from drystone.model.plan import StoneStep, WedgeStep
 from drystone.model.wall import Labels
 from drystone.statics.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import LateralResistance, RigidBlockModel
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LateralResistance
 from drystone.verify.replay import Stage
 from drystone.verify.report import PrefixAlpha, Problem
 

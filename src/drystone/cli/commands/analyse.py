@@ -9,7 +9,8 @@ from drystone.cli.output import number, prepare_files, print_json, print_table
 from drystone.cli.walls import GivenWall, read_wall, unsupported
 from drystone.errors import ExitCode
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import Direction, LateralResistance, LimitResult, RigidBlockModel
+from drystone.statics.model import Direction, RigidBlockModel
+from drystone.statics.result import LateralResistance, LimitResult
 
 _DIRECTIONS: tuple[Direction, Direction] = ("left", "right")
 

@@ -1,0 +1,213 @@
+"""Load cases of the limit analysis: dead + alpha live, as forces on the blocks (Eq. 23).
+
+The paper's tilting table is one of them.  Every case is made of forces at centroids, so cases
+add up: ``Loads(weight(model) + point_load(model, 7, (3, 2), (0, -5)), live)``.
+"""
+
+from dataclasses import dataclass, replace
+from math import cos, radians, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.errors import InputError
+from drystone.statics.model import Block, RigidBlockModel
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Loads:
+    """What acts on the blocks: dead + alpha live.
+
+    Parameters
+    ----------
+    dead, live : (n, 3) float array
+        Horizontal force, vertical force (up) and moment (counter-clockwise) about the centroid of
+        each block of the model, in its order.  Units: weights of the model; moments times its
+        unit of length.  What acts on fixed blocks does not matter.
+    name : str
+        For people.
+    """
+
+    dead: Floats
+    live: Floats
+    name: str = "loads"
+
+
+def weight(model: RigidBlockModel, angle_deg: float = 0.0) -> Floats:
+    """Return the weight of every block, turned with a base that is tilted.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Blocks.
+    angle_deg : float
+        Tilt of the base seen from the wall: gravity turns towards +x.
+
+    Returns
+    -------
+    (n, 3) float array
+
+    Examples
+    --------
+    >>> block = Block(1, 2.0, (0.5, 1.0))
+    >>> weight(RigidBlockModel((block,), ())).tolist()
+    [[0.0, -2.0, 0.0]]
+    """
+    angle = radians(angle_deg)
+    weights = np.array([block.weight for block in model.blocks])
+    return np.column_stack((sin(angle) * weights, -cos(angle) * weights, np.zeros(len(weights))))
+
+
+def tilting_table(model: RigidBlockModel, angle_deg: float = 0.0) -> Loads:
+    """Weight, and alpha times every weight towards +x (§4.1); the base tilted already by an angle.
+
+    On a table tilted by an angle the horizontal share of weight is its tangent, so the blocks
+    come down at atan(alpha_right).  With an angle, alpha is what they carry on top of it.
+    """
+    live = weight(model)[:, [1, 0, 2]] * np.array([-1.0, 1.0, 1.0])
+    name = f"tilting table at {angle_deg:g} degrees" if angle_deg else "tilting table"
+    return Loads(weight(model, angle_deg), live, name)
+
+
+def growing_with_height(model: RigidBlockModel) -> Loads:
+    """Weight, and a load towards +x that grows with the height above the ground.
+
+    Each block is pushed by alpha w y / y_mean, with y_mean the height of the common centre of
+    mass, so that alpha is the whole push over the whole weight, as for the tilting table.
+
+    Raises
+    ------
+    InputError
+        E307 when no free block lies above the ground.
+    """
+    dead = weight(model)
+    heights = np.array([block.centroid[1] for block in model.blocks])
+    free = np.array([not block.fixed for block in model.blocks], bool)
+    push = -dead[:, 1] * np.maximum(heights, 0.0)
+    if not push[free].sum() > 0:
+        raise InputError(
+            "E307",
+            "no free block lies above the ground, so no load can grow with height.",
+            where="load case",
+            cure="Use the tilting table.",
+        )
+    push *= -dead[free, 1].sum() / push[free].sum()
+    zeros = np.zeros(len(push))
+    return Loads(dead, np.column_stack((push, zeros, zeros)), "growing with height")
+
+
+def point_load(
+    model: RigidBlockModel, block: int, point: tuple[float, float], force: tuple[float, float]
+) -> Floats:
+    """Return a force on one block at a point, to add to dead or live loads.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Blocks.
+    block : int
+        Id of the block that takes the force.
+    point : (float, float)
+        Where it acts, wall frame.
+    force : (float, float)
+        To the right and up, in weights of the model (area times density).
+
+    Returns
+    -------
+    (n, 3) float array
+
+    Raises
+    ------
+    InputError
+        E306 for a block that the model does not have.
+
+    Examples
+    --------
+    >>> model = RigidBlockModel((Block(1, 2.0, (0.5, 1.0)),), ())
+    >>> point_load(model, 1, (0.0, 1.0), (0.0, -3.0)).tolist()
+    [[0.0, -3.0, 1.5]]
+    """
+    row, found = _block(model, block)
+    arm_x, arm_y = point[0] - found.centroid[0], point[1] - found.centroid[1]
+    forces = np.zeros((len(model.blocks), 3))
+    forces[row] = (*force, arm_x * force[1] - arm_y * force[0])
+    return forces
+
+
+def gravity_factor(model: RigidBlockModel, others: Floats) -> Loads:
+    """Other loads as dead load, and alpha times the weight.
+
+    The least alpha is the share of its weight with which the wall still carries the other loads:
+    1 / alpha is the safety against being too light.  The greatest one is mostly unbounded.
+    """
+    return Loads(others, weight(model), "gravity factor")
+
+
+def support_settlement(model: RigidBlockModel, block: int) -> tuple[RigidBlockModel, Loads]:
+    """Let a fixed block give way downwards, and find what holds it (settlement of a support).
+
+    The support becomes weightless and free to move up and down, and alpha times the weight of all
+    free blocks presses it up: a unit of alpha is that weight.  The least alpha is the reaction
+    below which the wall comes down with the settling support, and its mechanism is how; the
+    greatest is what lifts it.  (Kinematics of settlement as in limit analysis of masonry, with
+    the reaction of the moving support as the unknown.)
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        With the fixed block.
+    block : int
+        Its id.
+
+    Returns
+    -------
+    model : RigidBlockModel
+        With that block guided, free to move up and down only.  It no longer stands on the ground.
+    loads : Loads
+        For :func:`drystone.statics.limit.load_range`.
+
+    Raises
+    ------
+    InputError
+        E306 for a block that the model does not have, or that is not fixed.
+    """
+    row, found = _block(model, block)
+    if not found.fixed:
+        raise InputError(
+            "E306",
+            f"block {block} is not fixed, so it is no support that can settle.",
+            where="load case",
+            cure="Name a fixed block.",
+        )
+    guided = replace(found, fixed=False, held=("x", "turn"))
+    blocks = (*model.blocks[:row], guided, *model.blocks[row + 1 :])
+    others = {other.id for other in model.blocks if other.fixed and other.id != block} | {0}
+    kept = tuple(
+        interface
+        for interface in model.interfaces
+        if not (
+            block in (interface.block, interface.other)
+            and others & {interface.block, interface.other}
+        )
+    )
+    released = RigidBlockModel(blocks, kept, model.mu)
+    dead = weight(released)
+    dead[row] = 0.0
+    carried = sum(other.weight for other in model.blocks if not other.fixed)
+    live = np.zeros_like(dead)
+    live[row, 1] = carried
+    return released, Loads(dead, live, f"settlement of block {block}")
+
+
+def _block(model: RigidBlockModel, block: int) -> tuple[int, Block]:
+    for row, found in enumerate(model.blocks):
+        if found.id == block:
+            return row, found
+    raise InputError(
+        "E306",
+        f"there is no block {block}.",
+        where="load case",
+        cure=f"The model has {len(model.blocks)} blocks; `drystone analyse --json` names them.",
+    )

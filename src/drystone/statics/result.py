@@ -1,0 +1,187 @@
+"""What the limit analysis returns: load multipliers, how the wall fails, and their certificate."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.statics.model import Direction
+
+Floats = NDArray[np.float64]
+
+CERTIFIED = 1e-8
+"""Largest error of a certificate that holds, relative to the mean weight of a block."""
+
+
+class LimitStatus(StrEnum):
+    """How a limit analysis ended; a status is never a number."""
+
+    OPTIMAL = "optimal"
+    UNSTABLE = "unstable"
+    """The blocks do not stand under their dead load."""
+    UNBOUNDED = "unbounded"
+    FAILED = "failed"
+    """The solver gave up, or no answer of it could be certified."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """How the wall fails: the velocity of each block, up to a common factor.
+
+    Parameters
+    ----------
+    block_ids : tuple of int
+        Free blocks in the order of the rows of `velocity`.
+    velocity : (n, 3) float array
+        Horizontal and vertical velocity of the centroid (wall frame) and rate of turning,
+        counter-clockwise, per block; the largest displacement of a centroid is 1.
+    """
+
+    block_ids: tuple[int, ...]
+    velocity: Floats
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """Proof of an answer: a state of forces bounds alpha on one side, a mechanism on the other.
+
+    Forces in equilibrium and within friction show that the wall carries `lower`.  A mechanism
+    that closes no contact and dilates as the associated flow rule says shows that it carries no
+    more than `upper`, its balance of work.  The wall falls by itself when its dead load does work
+    on such a mechanism.  All errors are in mean weights of a block and relative to the largest
+    velocity.
+
+    Parameters
+    ----------
+    residual : float
+        Largest force or moment on a block that is not balanced.
+    violation : float
+        Largest force by which a contact point leaves its cone of friction.
+    inadmissible : float
+        Largest rate at which the mechanism closes a contact or slides without dilating.
+    lower, upper : float or None
+        Load multiplier of the forces and of the mechanism; infinite when a growing state of
+        self-stress carries any load.
+    fall_work : float or None
+        Work of the dead load on the mechanism, for walls that do not stand.
+    """
+
+    residual: float = 0.0
+    violation: float = 0.0
+    inadmissible: float = 0.0
+    lower: float | None = None
+    upper: float | None = None
+    fall_work: float | None = None
+
+    @property
+    def gap(self) -> float | None:
+        """|upper - lower| / max(1, |lower|); None unless there are both."""
+        if self.lower is None or self.upper is None:
+            return None
+        return abs(self.upper - self.lower) / max(1.0, abs(self.lower))
+
+    @property
+    def holds(self) -> bool:
+        """True when every error is at most `CERTIFIED`."""
+        if max(self.residual, self.violation, self.inadmissible) > CERTIFIED:
+            return False
+        if self.fall_work is not None:
+            return self.fall_work > self.inadmissible
+        if self.lower == np.inf:
+            return True
+        return self.gap is not None and self.gap <= CERTIFIED
+
+
+@dataclass(frozen=True, eq=False)
+class LimitResult:
+    """Outcome of one limit analysis.
+
+    Parameters
+    ----------
+    status : LimitStatus
+        How it ended.
+    direction : {"left", "right"}
+        "right" for a load along the live load (towards +x on the tilting table), "left" against.
+    alpha : float or None
+        Load multiplier; None unless the status is "optimal".
+    mechanism : Mechanism or None
+        How the blocks move at that load, or fall by themselves when the status is "unstable";
+        when it was asked for.
+    forces : (m, 2) float array or None
+        Normal and tangential force at every contact point, in the order of the interfaces and
+        their points, on the block that the normal points into; the tangent of a normal (x, y) is
+        (y, -x).  In weights of the model; when it was asked for.
+    certificate : Certificate or None
+        None when the solver gave up.
+    message : str
+        What the solver said, for people.
+    solver : str
+        Which one answered.
+    """
+
+    status: LimitStatus
+    direction: Direction
+    alpha: float | None = None
+    mechanism: Mechanism | None = None
+    forces: Floats | None = None
+    certificate: Certificate | None = None
+    message: str = ""
+    solver: str = ""
+
+    @property
+    def success(self) -> bool:
+        """True when the status is "optimal"."""
+        return self.status is LimitStatus.OPTIMAL
+
+
+@dataclass(frozen=True, eq=False)
+class LoadRange:
+    """All alpha for which dead + alpha live can be carried: an interval.
+
+    Parameters
+    ----------
+    least, greatest : LimitResult
+        Its ends, `alpha` of either sign along the live load.  Both are "unstable" when there is
+        no such alpha.
+    """
+
+    least: LimitResult
+    greatest: LimitResult
+
+
+@dataclass(frozen=True, eq=False)
+class LateralResistance:
+    """Both directions of the tilting table (Eq. 28).
+
+    Parameters
+    ----------
+    left, right : LimitResult
+        Live load towards -x and towards +x.
+    mu : float
+        Coefficient of friction.
+    """
+
+    left: LimitResult
+    right: LimitResult
+    mu: float
+
+    @property
+    def value(self) -> float | None:
+        """min(alpha_left, alpha_right) / mu (Eq. 11, Eq. 28).
+
+        None unless both are optimal, and without friction.
+        """
+        if self.left.alpha is None or self.right.alpha is None or self.mu == 0:
+            return None
+        return min(self.left.alpha, self.right.alpha) / self.mu
+
+    @property
+    def failed(self) -> bool:
+        """True when the solver gave up on either direction: nothing is known then."""
+        return LimitStatus.FAILED in (self.left.status, self.right.status)
+
+    @property
+    def stable(self) -> bool:
+        """True when the wall stands under its own weight, by both analyses."""
+        return self.left.success and self.right.success

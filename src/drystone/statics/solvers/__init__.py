@@ -1,0 +1,1 @@
+"""Linear programs in, solutions out: one module a library."""

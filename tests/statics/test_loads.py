@@ -1,0 +1,140 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from drystone.errors import InputError
+from drystone.statics.blocks import model_from_labels
+from drystone.statics.given import model_from_json
+from drystone.statics.limit import lateral_resistance, limit_load, load_range
+from drystone.statics.loads import (
+    Loads,
+    gravity_factor,
+    growing_with_height,
+    point_load,
+    support_settlement,
+    tilting_table,
+    weight,
+)
+from drystone.statics.model import GROUND
+from drystone.statics.result import LimitStatus
+from tests.statics.walls import coursed, stacked
+
+
+def tower(mu=0.9):
+    """Two blocks 1 x 2 on top of each other."""
+    return model_from_json({"blocks_xywh": [[0, 0, 1, 2], [0, 2, 1, 2]], "mu": mu})
+
+
+def test_the_tilting_table_is_the_default():
+    model = model_from_labels(coursed(3, 4, 90)).model
+    assert lateral_resistance(model, tilting_table(model)).value == lateral_resistance(model).value
+
+
+@pytest.mark.parametrize("angle_deg", [3.0, 9.0])
+def test_what_a_tilted_base_leaves_is_the_rest_of_the_angle(angle_deg):
+    """Block 1 x 4: it falls at tan = .25; gravity has the share cos of it left downwards."""
+    block = model_from_json({"blocks_xywh": [[0, 0, 1, 4]]})
+    left, right = (limit_load(block, d, tilting_table(block, angle_deg)) for d in ("left", "right"))
+    angle = math.radians(angle_deg)
+    assert right.alpha == pytest.approx(0.25 * math.cos(angle) - math.sin(angle))
+    assert left.alpha == pytest.approx(0.25 * math.cos(angle) + math.sin(angle))
+    beyond = limit_load(block, "right", tilting_table(block, 14.1))
+    assert beyond.status is LimitStatus.UNSTABLE  # atan .25 = 14.04 degrees
+
+
+def test_the_angle_at_which_a_wall_falls_is_that_of_its_load_multiplier():
+    model = model_from_labels(coursed(3, 4, 90)).model
+    alpha = limit_load(model, "right").alpha
+    angle = math.degrees(math.atan(alpha))
+    assert limit_load(model, "right", tilting_table(model, angle - 1e-6)).success
+    assert not limit_load(model, "right", tilting_table(model, angle + 1e-6)).success
+
+
+def test_a_load_that_grows_with_height_overturns_sooner():
+    """Forces w alpha y / 2 at heights 1 and 3: moment alpha w (1 + 9) / 2 against 2 w / 2."""
+    model = tower()
+    assert limit_load(model, "right").alpha == pytest.approx(0.25)
+    growing = limit_load(model, "right", growing_with_height(model))
+    assert growing.alpha == pytest.approx(1 / 5)
+    pushed = growing_with_height(model).live
+    assert pushed[:, 0].sum() == pytest.approx(sum(block.weight for block in model.blocks))
+
+
+def test_a_load_cannot_grow_with_height_where_nothing_stands():
+    fixed = tower()
+    fixed = replace(fixed, blocks=tuple(replace(b, fixed=True) for b in fixed.blocks))
+    with pytest.raises(InputError, match="E307"):
+        growing_with_height(fixed)
+
+
+def test_a_point_load_holds_the_block_down_it_acts_on():
+    """A weight P at the top centre: (W + P) b / 2 = alpha W h / 2."""
+    block = model_from_json({"blocks_xywh": [[0, 0, 1, 4]]})
+    table = tilting_table(block)
+    pressed = Loads(table.dead + point_load(block, 1, (0.5, 4), (0, -2)), table.live)
+    assert limit_load(block, "right", pressed).alpha == pytest.approx((4 + 2) * 0.5 / (4 * 2))
+
+
+def test_a_live_point_load_overturns_at_its_lever():
+    """Force alpha at height 3 against W b / 2."""
+    block = model_from_json({"blocks_xywh": [[0, 0, 1, 4]]})
+    pull = point_load(block, 1, (0, 3), (1, 0))
+    both = lateral_resistance(block, Loads(weight(block), pull))
+    assert both.right.alpha == pytest.approx(4 * 0.5 / 3)
+    assert both.left.alpha == pytest.approx(4 * 0.5 / 3)
+
+
+def test_the_gravity_factor_says_how_light_a_wall_may_be():
+    block = model_from_json({"blocks_xywh": [[0, 0, 1, 4]]})
+    loads = gravity_factor(block, point_load(block, 1, (0, 3), (0.5, 0)))
+    carried = load_range(block, loads, mechanism=True)
+    assert carried.least.alpha == pytest.approx(0.5 * 3 / (4 * 0.5))
+    assert carried.least.certificate.holds
+    assert carried.greatest.status is LimitStatus.UNBOUNDED
+    assert carried.greatest.certificate.holds
+
+
+def test_a_settling_support_is_held_up_by_its_share():
+    """A beam of weight 4 on two supports; the right one gives way below half of it."""
+    data = {
+        "blocks": [
+            {"id": 1, "polygon": [[0, 0], [1, 0], [1, 1], [0, 1]], "fixed": True},
+            {"id": 2, "polygon": [[3, 0], [4, 0], [4, 1], [3, 1]], "fixed": True},
+            {"id": 3, "polygon": [[0, 1], [4, 1], [4, 2], [0, 2]]},
+        ]
+    }
+    model, loads = support_settlement(model_from_json(data), 2)
+    assert not [i for i in model.interfaces if {i.block, i.other} == {2, GROUND}]
+    carried = load_range(model, loads, mechanism=True)
+    # The beam turns about the inner edge of the left support; the right one bears at x = 4.
+    assert carried.least.alpha == pytest.approx(1 / 3)
+    settling = carried.least.mechanism
+    down = settling.velocity[settling.block_ids.index(2)]
+    assert down[1] < 0
+    assert (down[0], down[2]) == (0, 0)
+    # Pressed up, the support lifts the beam about its far end, from its own inner edge on.
+    assert carried.greatest.alpha == pytest.approx(2 / 3)
+
+
+def test_only_a_fixed_block_can_settle():
+    with pytest.raises(InputError, match="E306"):
+        support_settlement(tower(), 1)
+    with pytest.raises(InputError, match="E306"):
+        point_load(tower(), 7, (0, 0), (1, 0))
+
+
+def test_no_alpha_may_hold_a_wall_up():
+    labels = stacked((20, 20, 0), (20, 20, 12))
+    model = model_from_labels(labels, 0.9).model
+    pull = np.zeros((2, 3))
+    pull[1] = (0, -1, 0)
+    carried = load_range(model, Loads(weight(model), pull), mechanism=True)
+    # Less weight does not hold it up before the stone is pulled off: it takes all of its weight.
+    assert carried.greatest.alpha == pytest.approx(-400)
+    sideways = np.zeros((2, 3))
+    sideways[0] = (1, 0, 0)
+    none = load_range(model, Loads(weight(model), sideways), mechanism=True)
+    assert none.least.status is none.greatest.status is LimitStatus.UNSTABLE
+    assert none.least.certificate.holds
