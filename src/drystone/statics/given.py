@@ -1,14 +1,23 @@
 """Block models given as rectangles or polygons (DESIGN §2): a dict in, a model out."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import shapely
 
 from drystone.errors import InputError
-from drystone.statics.blocks import check_mu
-from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
+from drystone.statics.given_parts import (
+    bad,
+    read_friction,
+    read_interfaces,
+    read_list,
+    read_mu,
+    read_numbers,
+)
+from drystone.statics.joints import with_head_friction, with_pair_friction
+from drystone.statics.model import FREEDOMS, GROUND, Block, Interface, RigidBlockModel
 from drystone.statics.touching import Points, touching_interfaces
 
 RELATIVE_TOLERANCE = 1e-6
@@ -23,9 +32,13 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
     data : mapping
         `{"blocks_xywh": [[x, y, w, h], ...], "mu": .65}`: rectangles by their lower left corner
         and size, numbered from 1; or `{"blocks": [{"id", "polygon": [[x, y], ...], "density",
-        "fixed"}, ...], "mu"}`, where density is 1 and fixed false unless given.  Any unit of
-        length, y up; what touches y = 0 stands on the ground.  `mu` is 0.58 unless given; other
-        keys are ignored.
+        "fixed", "held"}, ...], "mu"}`, where density is 1 and fixed false unless given, and held
+        lists what a guide keeps a block from: "x", "y", "turn".  Any unit of length, y up; what
+        touches y = 0 stands on the ground.  `mu` is 0.58 unless given, `"mu_head"` is that of head
+        joints, and `"friction": [{"between": [3, 1], "mu": 0.4}, ...]` that of all joints of a
+        pair (0 is the ground).  `"interfaces": [{"between": [3, 1], "points": [[x, y], ...],
+        "normal": [nx, ny], "mu"}, ...]` says where blocks touch, normals pointing into the first
+        block of a pair; without it that is found.  Other keys are ignored.
 
     Returns
     -------
@@ -36,8 +49,8 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
     Raises
     ------
     InputError
-        E302 for mu, E303 for what is no block, E304 for blocks that overlap or reach below the
-        ground.
+        E302 for mu, E303 for what is no block or interface, E304 for blocks that overlap or reach
+        below the ground.
 
     Examples
     --------
@@ -45,57 +58,54 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
     >>> [(i.block, i.other, i.length) for i in model.interfaces]
     [(1, 0, 4.0), (2, 1, 3.0)]
     """
-    mu = data.get("mu", 0.58)
-    if not isinstance(mu, int | float):
-        raise _bad(f"mu is {mu!r}.", "mu", "Give a number.")
-    check_mu(mu)
-    if "blocks_xywh" in data:
-        rows = enumerate(_list(data, "blocks_xywh"), start=1)
-        given = [(Block(i, 0.0, (0.0, 0.0)), _rectangle(i, row)) for i, row in rows]
-    elif "blocks" in data:
-        given = [_polygon_block(i, entry) for i, entry in enumerate(_list(data, "blocks"))]
-    else:
-        raise _bad("there is neither 'blocks_xywh' nor 'blocks'.", "block model", "Give one.")
+    given = _given_blocks(data)
     ids = [block.id for block, _ in given]
     if len(set(ids)) != len(ids):
-        raise _bad("two blocks have the same id.", "blocks", "Give every block its own id.")
+        raise bad("two blocks have the same id.", "blocks", "Give every block its own id.")
     corners = {block.id: polygon for block, polygon in given}
     blocks = tuple(_measured(block, polygon) for block, polygon in given)
-    return RigidBlockModel(blocks, _all_interfaces(corners), float(mu))
+    if "interfaces" in data:
+        interfaces = read_interfaces(read_list(data, "interfaces"), ids)
+    else:
+        interfaces = _all_interfaces(corners)
+    model = RigidBlockModel(blocks, interfaces, read_mu(data, "mu", 0.58))
+    if "mu_head" in data:
+        model = with_head_friction(model, read_mu(data, "mu_head", 0.0))
+    if "friction" in data:
+        model = with_pair_friction(model, read_friction(read_list(data, "friction"), ids))
+    return model
 
 
-def _bad(what: str, where: str, cure: str) -> InputError:
-    return InputError("E303", what, where=where, cure=cure)
+def polygons_from_json(data: Mapping[str, Any]) -> dict[int, Points]:
+    """Return the closed, counter-clockwise polygons of a block model file, by id.
+
+    Parameters
+    ----------
+    data : mapping
+        As for :func:`model_from_json`.
+
+    Raises
+    ------
+    InputError
+        E303 for what is no block.
+    """
+    return {block.id: polygon for block, polygon in _given_blocks(data)}
 
 
-def _list(data: Mapping[str, Any], key: str) -> Sequence[Any]:
-    value = data[key]
-    if not isinstance(value, list | tuple):
-        raise _bad(f"'{key}' is not a list.", "block model", "Give a list of blocks.")
-    return value
-
-
-def _numbers(value: Any, shape: tuple[int, ...], where: str) -> Points:
-    """Read finite numbers; -1 in `shape` stands for any length."""
-    try:
-        array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        array = np.empty(0)
-    fits = array.ndim == len(shape) and all(
-        n in (m, -1) for n, m in zip(shape, array.shape, strict=True)
-    )
-    if not fits or not np.isfinite(array).all():
-        raise _bad(
-            f"{value!r} is not made of finite numbers as it should be.", where, "Correct it."
-        )
-    return array
+def _given_blocks(data: Mapping[str, Any]) -> list[tuple[Block, Points]]:
+    if "blocks_xywh" in data:
+        rows = enumerate(read_list(data, "blocks_xywh"), start=1)
+        return [(Block(i, 0.0, (0.0, 0.0)), _rectangle(i, row)) for i, row in rows]
+    if "blocks" in data:
+        return [_polygon_block(i, entry) for i, entry in enumerate(read_list(data, "blocks"))]
+    raise bad("there is neither 'blocks_xywh' nor 'blocks'.", "block model", "Give one.")
 
 
 def _rectangle(number: int, row: Any) -> Points:
     where = f"blocks_xywh, block {number}"
-    x, y, width, height = _numbers(row, (4,), where)
+    x, y, width, height = read_numbers(row, (4,), where)
     if width <= 0 or height <= 0:
-        raise _bad(f"a block of {width} x {height}.", where, "Give a width and height above 0.")
+        raise bad(f"a block of {width} x {height}.", where, "Give a width and height above 0.")
     right, top = x + width, y + height
     return np.array([[x, y], [right, y], [right, top], [x, top], [x, y]])
 
@@ -103,21 +113,24 @@ def _rectangle(number: int, row: Any) -> Points:
 def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
     where = f"blocks, entry {place + 1}"
     if not isinstance(entry, Mapping) or "polygon" not in entry:
-        raise _bad("it has no 'polygon'.", where, "Give id and polygon.")
+        raise bad("it has no 'polygon'.", where, "Give id and polygon.")
     block_id, fixed, density = entry.get("id"), entry.get("fixed", False), entry.get("density", 1.0)
     if not isinstance(block_id, int) or isinstance(block_id, bool) or block_id <= GROUND:
-        raise _bad(f"its id is {block_id!r}.", where, "Give a whole number above 0.")
-    density = float(_numbers(density, (), where))
+        raise bad(f"its id is {block_id!r}.", where, "Give a whole number above 0.")
+    density = float(read_numbers(density, (), where))
     if density <= 0 or not isinstance(fixed, bool):
-        raise _bad("density must be above 0 and fixed true or false.", where, "Correct it.")
-    corners = _numbers(entry["polygon"], (-1, 2), where)
+        raise bad("density must be above 0 and fixed true or false.", where, "Correct it.")
+    held = entry.get("held", [])
+    if not isinstance(held, list | tuple) or not set(held) <= set(FREEDOMS):
+        raise bad(f"held is {held!r}.", where, 'List what is held: "x", "y", "turn".')
+    corners = read_numbers(entry["polygon"], (-1, 2), where)
     shape = shapely.Polygon(corners) if len(corners) >= 3 else shapely.Polygon()
     if shape.is_empty or not shape.is_valid or shape.area <= 0:
-        raise _bad("its polygon has no area or crosses itself.", where, "Correct its corners.")
+        raise bad("its polygon has no area or crosses itself.", where, "Correct its corners.")
     line = shapely.get_coordinates(shapely.remove_repeated_points(shape))
     if not shape.exterior.is_ccw:
         line = line[::-1].copy()
-    return Block(block_id, 0.0, (0.0, 0.0), density, fixed), line
+    return Block(block_id, 0.0, (0.0, 0.0), density, fixed, tuple(held)), line
 
 
 def _measured(block: Block, polygon: Points) -> Block:
@@ -128,7 +141,7 @@ def _measured(block: Block, polygon: Points) -> Block:
     area = float(cross.sum()) / 2.0
     cx = float((x[:-1] + x[1:]) @ cross) / (6.0 * area) + float(polygon[0, 0])
     cy = float((y[:-1] + y[1:]) @ cross) / (6.0 * area) + float(polygon[0, 1])
-    return Block(block.id, area, (cx, cy), block.density, block.fixed)
+    return replace(block, area=area, centroid=(cx, cy))
 
 
 def _all_interfaces(corners: dict[int, Points]) -> tuple[Interface, ...]:

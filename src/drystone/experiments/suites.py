@@ -1,0 +1,21 @@
+"""The suites of `drystone bench`, by name."""
+
+from importlib import import_module
+from typing import cast
+
+from drystone.experiments.table import BenchSettings, Table
+
+SUITES = {
+    "statics": ("published and closed-form cases of the limit analysis", "published"),
+    "pixels": ("the same cases from pixels, and tilted joints at 40 to 320 px", "pixels"),
+    "solvers": ("ms a candidate (both tilts) of every solver beside a fresh linprog", "solvers"),
+    "shear": ("shear tests of dry-joint walls, predicted over measured", "shear"),
+    "tilt": ("walls tilted in a rigid-body engine beside the limit analysis", "tilt"),
+}
+"""What each one is about, and the module of this package whose `run` does it."""
+
+
+def run_suite(name: str, settings: BenchSettings) -> tuple[Table, ...]:
+    """Run one suite; see `SUITES` for the names."""
+    module = import_module(f"drystone.experiments.{SUITES[name][1]}")
+    return cast("tuple[Table, ...]", module.run(settings))

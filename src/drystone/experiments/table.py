@@ -1,0 +1,104 @@
+"""What a suite of experiments gives back: tables, as text, Markdown, or records."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+Cell = str | int | float | bool | None
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows under named columns.
+
+    Parameters
+    ----------
+    title : str
+        What the rows show.
+    columns : tuple of str
+        Names, with units.
+    rows : tuple of tuples
+        A cell a column; None where there is no value.
+    notes : tuple of str
+        What a reader must know: sources, misses and their causes.
+    """
+
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    notes: tuple[str, ...] = ()
+
+    def records(self) -> list[dict[str, Cell]]:
+        """Return a dict a row."""
+        return [dict(zip(self.columns, row, strict=True)) for row in self.rows]
+
+    def text(self) -> str:
+        """Return the table for a terminal, numbers to the right.
+
+        Examples
+        --------
+        >>> print(Table("Blocks", ("name", "alpha"), (("tall", 0.25), ("flat", None))).text())
+        Blocks
+        name   alpha
+        tall  0.2500
+        flat       -
+        """
+        cells = [list(self.columns), *([_written(cell) for cell in row] for row in self.rows)]
+        widths = [max(len(row[k]) for row in cells) for k in range(len(self.columns))]
+        words = [_is_words([row[k] for row in self.rows]) for k in range(len(self.columns))]
+        lines = [_aligned(row, widths, words) for row in cells]
+        return "\n".join([self.title, *lines, *(f"* {note}" for note in self.notes)])
+
+    def markdown(self) -> str:
+        """Return the table in Markdown, without its title."""
+        lines = [self.columns, ["---"] * len(self.columns)]
+        lines += [[_written(cell) for cell in row] for row in self.rows]
+        return "\n".join(
+            ["| " + " | ".join(line) + " |" for line in lines]
+            + [""] * bool(self.notes)
+            + [f"* {note}" for note in self.notes]
+        )
+
+
+@dataclass(frozen=True)
+class BenchSettings:
+    """What every suite is run with.
+
+    Parameters
+    ----------
+    data : Path or None
+        Folder of the published data sets; rows that need it say so without it.
+    output : Path or None
+        Folder for pictures; None draws none.
+    seed : int
+        Of all random choices.
+    quick : bool
+        A smaller version, for tests.
+    """
+
+    data: Path | None = None
+    output: Path | None = None
+    seed: int = 0
+    quick: bool = False
+
+
+def _written(cell: Cell) -> str:
+    if cell is None:
+        return "-"
+    if isinstance(cell, bool):
+        return "yes" if cell else "no"
+    if isinstance(cell, float):
+        return f"{cell:.1e}" if 0 < abs(cell) < 1e-3 else f"{cell:.4f}"
+    return str(cell)
+
+
+def _is_words(cells: Sequence[Cell]) -> bool:
+    return all(isinstance(cell, str | bool) for cell in cells)
+
+
+def _aligned(row: Sequence[str], widths: Sequence[int], words: Sequence[bool]) -> str:
+    parts = [
+        cell.ljust(width) if left else cell.rjust(width)
+        for cell, width, left in zip(row, widths, words, strict=True)
+    ]
+    return "  ".join(parts).rstrip()
