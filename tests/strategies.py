@@ -1,6 +1,7 @@
 """Hypothesis strategies: random connected masks, stones, landscapes and small walls."""
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from drystone.model.placement import Placement
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import Stone
-from drystone.model.wall import Wall
+from drystone.model.wall import Labels, Wall
 from drystone.poses import PoseBook
 
 Draw = Callable[[st.SearchStrategy[Any]], Any]
@@ -121,3 +122,103 @@ def posed_on_walls(draw: Draw) -> tuple[Wall, PosedStone, int, int]:
             wall.site.height_px - 2, 0  # fmt: skip
     row, col = draw(st.sampled_from(places))
     return wall, posed, row, col
+
+
+def _picture(rows: list[list[int]]) -> Labels:
+    """Rows from the top as a label image."""
+    return np.array(rows, np.uint32)
+
+
+@st.composite
+def brick_labels(draw: Draw) -> Labels:
+    """Courses of bricks, some with gaps between them."""
+    width, rows, brick = draw(st.integers(2, 16)), [], 0
+    for _ in range(draw(st.integers(1, 5))):
+        row, left = [0] * width, draw(st.integers(0, 2))
+        while left < width:
+            brick += 1
+            right = min(width, left + draw(st.integers(1, 6)))
+            row[left:right] = [brick] * (right - left)
+            left = right + draw(st.sampled_from([0, 0, 0, 1, 2]))
+        rows = [row] * draw(st.integers(1, 4)) + rows
+    return _picture(rows)
+
+
+@st.composite
+def stacked_labels(draw: Draw) -> Labels:
+    """One block on another, from one pixel wide, often just balanced or just not."""
+    width, left, rows = draw(st.integers(1, 8)), 30, []
+    for number in range(1, draw(st.integers(2, 8))):
+        row = [0] * 72
+        row[left : left + width] = [number] * width
+        rows = [row] * draw(st.integers(1, 5)) + rows
+        left += draw(st.integers(-((width + 1) // 2), (width + 1) // 2))
+        left, width = max(0, min(left, 60)), draw(st.integers(1, 8))
+    return _picture(rows)
+
+
+@st.composite
+def dust_labels(draw: Draw) -> Labels:
+    """Pixels of any id: single ones, diagonal touches, ids in many pieces, large ids."""
+    height, width = draw(st.integers(1, 7)), draw(st.integers(1, 7))
+    ids = draw(st.integers(1, 7))
+    cells = draw(st.binary(min_size=height * width, max_size=height * width))
+    labels = np.frombuffer(cells, np.uint8).reshape(height, width) % (ids + 1)
+    return labels.astype(np.uint32) * np.uint32(draw(st.sampled_from([1, 0x1FFFFFFF])))
+
+
+def _boxes(height: int, width: int) -> st.SearchStrategy[tuple[int, int, int, int]]:
+    """Of pixels: top, left, bottom, right."""
+    tops, lefts = st.integers(0, height - 1), st.integers(0, width - 1)
+    sizes = st.integers(1, 8)
+    return st.tuples(tops, lefts, sizes, sizes).map(lambda b: (*b[:2], b[0] + b[2], b[1] + b[3]))
+
+
+@st.composite
+def holed_labels(draw: Draw) -> Labels:
+    """Stones painted over each other, rings among them, empty or with loose stones inside."""
+    height, width = draw(st.integers(3, 14)), draw(st.integers(3, 14))
+    labels = np.zeros((height, width), np.uint32)
+    for number in range(1, draw(st.integers(2, 9))):
+        top, left, bottom, right = draw(_boxes(height, width))
+        labels[top:bottom, left:right] = number
+        if draw(st.booleans()):
+            labels[top + 1 : bottom - 1, left + 1 : right - 1] = draw(st.sampled_from([0, 50]))
+    return labels
+
+
+@st.composite
+def hanging_labels(draw: Draw) -> Labels:
+    """Two pillars, and stones between them that stand on nothing."""
+    height, gap = draw(st.integers(3, 10)), draw(st.integers(1, 8))
+    left, right = draw(st.integers(1, 6)), draw(st.integers(1, 6))
+    labels = np.zeros((height, left + gap + right), np.uint32)
+    labels[:, :left], labels[:, left + gap :] = 1, 2
+    between = labels[: draw(st.integers(1, height - 1)), left : left + gap]
+    edges = sorted({0, gap, *draw(st.lists(st.integers(0, gap), max_size=3))})
+    for number, (start, stop) in enumerate(pairwise(edges), 3):
+        between[:, start:stop] = number
+    return labels
+
+
+@st.composite
+def floating_labels(draw: Draw) -> Labels:
+    """A wall, and a stone in the air above or beside it."""
+    below = draw(st.one_of(brick_labels(), stacked_labels(), holed_labels()))
+    height, width = below.shape
+    tall, wide = draw(st.integers(1, 4)), draw(st.integers(1, 4))
+    labels = np.zeros((height + tall + 1, width + wide + 1), np.uint32)
+    labels[tall + 1 :, :width] = below
+    lift = draw(st.integers(0, height)) if draw(st.booleans()) else 0
+    left = width + 1 if lift else draw(st.integers(0, width))
+    labels[lift : lift + tall, left : left + wide] = 99
+    if not below[-1].any():  # an empty row below is cropped: the stone could come to the ground
+        labels[-1, 0] = 98
+    return labels
+
+
+def label_images() -> st.SearchStrategy[Labels]:
+    """A small label image of any of these kinds but the last: most are walls that stand."""
+    return st.one_of(
+        brick_labels(), stacked_labels(), dust_labels(), holed_labels(), hanging_labels()
+    )

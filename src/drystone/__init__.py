@@ -31,7 +31,11 @@ if TYPE_CHECKING:
     from drystone.planner.settings import PlannerSettings as PlannerSettings
     from drystone.planner.settings import method_settings as method_settings
     from drystone.statics.blocks import model_from_labels as model_from_labels
+    from drystone.statics.given import model_from_json as model_from_json
     from drystone.statics.limit import lateral_resistance as lateral_resistance
+    from drystone.statics.nonassociative import (
+        nonassociative_resistance as nonassociative_resistance,
+    )
 
 # Names are loaded on first use: `drystone --help` must not wait for NumPy and SciPy.
 _HOMES = {
@@ -51,7 +55,9 @@ _HOMES = {
     "PlannerSettings": "drystone.planner.settings",
     "method_settings": "drystone.planner.settings",
     "model_from_labels": "drystone.statics.blocks",
+    "model_from_json": "drystone.statics.given",
     "lateral_resistance": "drystone.statics.limit",
+    "nonassociative_resistance": "drystone.statics.nonassociative",
 }
 
 __all__ = ["generate", *_HOMES]  # noqa: PLE0604 - the keys are strings

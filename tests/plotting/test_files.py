@@ -5,7 +5,8 @@ import matplotlib as mpl
 import pytest
 from PIL import Image
 
-from drystone.plotting import plot_mechanism, plot_wall, save, write_pictures
+from drystone.plotting import files, plot_mechanism, plot_wall, save, write_pictures
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.plotting import examples
 
 
@@ -45,6 +46,20 @@ def test_pictures_are_written_where_a_mechanism_exists(tmp_path):
 def test_without_statics_there_is_only_the_picture(tmp_path):
     (path,) = write_pictures(tmp_path, examples.wall(), dpi=50)
     assert path == tmp_path / "picture.png"
+
+
+def test_the_fall_of_a_wall_is_not_drawn_as_a_live_load(tmp_path, monkeypatch):
+    drawn = []
+
+    def noted(labels, mechanism, direction, alpha):
+        drawn.append((direction, alpha))
+        return plot_mechanism(labels, mechanism, direction, alpha)
+
+    monkeypatch.setattr(files, "plot_mechanism", noted)
+    falls = LimitResult(LimitStatus.UNSTABLE, "right", mechanism=examples.mechanism())
+    both = LateralResistance(examples.resistance().left, falls, 0.58)
+    write_pictures(tmp_path, examples.wall(), resistance=both, dpi=20)
+    assert drawn == [("left", 0.41), (None, None)]
 
 
 def test_nothing_global_changes(tmp_path):

@@ -10,7 +10,14 @@ from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall
-from drystone.plotting.outlines import label_regions, pixel_loops, wall_outlines
+from drystone.plotting.outlines import (
+    label_regions,
+    pixel_loops,
+    polygon_regions,
+    stands_on_ground,
+    wall_outlines,
+    wall_regions,
+)
 from tests.naive import plotting as naive
 from tests.plotting import examples
 
@@ -86,3 +93,27 @@ def test_wall_outlines_turn_counter_clockwise_and_scale():
     # The lone pixel of `lean` is at the lower right; half a turn takes it to the upper left.
     top = outline[outline[:, 1] > outline[:, 1].max() - 0.1]
     assert top[:, 0].max() < outline[:, 0].mean()
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e6])
+def test_regions_of_polygons_have_their_centroid_and_area(offset):
+    corners = np.array([[0, 0], [3, 0], [3, 1], [1, 1], [1, 3], [0, 3]], float) + offset
+    for polygon in (corners, corners[::-1], np.vstack([corners, corners[:1]])):
+        (region,) = polygon_regions({9: polygon})
+        assert region.id == 9
+        assert region.area_px == pytest.approx(5.0)
+        # Two rectangles: 3 x 1 and 1 x 2.
+        assert np.array(region.centroid) - offset == pytest.approx((1.1, 1.1))
+        assert len(region.loops[0]) == 6
+        assert naive.signed_area(region.loops[0] - offset) == pytest.approx(5.0)
+
+
+def test_regions_of_a_wall_stand_on_its_lowest_stone():
+    labels = np.array([[0, 5], [3, 5], [0, 0], [0, 0]], np.uint32)
+    regions = wall_regions(labels)
+    assert [region.centroid for region in regions] == [(0.5, 0.5), (1.5, 1.0)]
+    assert stands_on_ground(regions)
+    assert wall_regions(np.zeros((3, 3), np.uint32)) == ()
+    polygons = {5: np.array([[0, 2], [1, 2], [1, 3.0]]), 3: np.array([[4, 2], [5, 2], [5, 3.0]])}
+    assert [region.id for region in wall_regions(polygons)] == [3, 5]
+    assert not stands_on_ground(wall_regions(polygons))

@@ -6,44 +6,9 @@ were computed independently of this project.  The thickness is given to five dig
 must fall, one more stand.
 """
 
-import math
-from dataclasses import replace
-from itertools import pairwise
-
-import numpy as np
 import pytest
 
-from drystone.statics.given import model_from_json
-from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import RigidBlockModel
-
-
-def arch(count, thickness, mu):
-    """Voussoirs as annular sectors: joints from the corners, area and centroid of the sector."""
-    inner, outer = 1 - thickness / 2, 1 + thickness / 2
-    angles = np.linspace(0, math.pi, count + 1)
-    blocks = []
-    for number, (first, last) in enumerate(pairwise(angles.tolist()), start=1):
-        polar = ((inner, first), (outer, first), (outer, last), (inner, last))
-        corners = [[r * math.cos(t), max(0.0, r * math.sin(t))] for r, t in polar]
-        blocks.append({"id": number, "polygon": corners})
-    model = model_from_json({"blocks": blocks, "mu": mu})
-    half = math.pi / count / 2
-    area = half * (outer**2 - inner**2)
-    radius = 2 / 3 * math.sin(half) / half * (outer**3 - inner**3) / (outer**2 - inner**2)
-    sectors = tuple(
-        replace(
-            block,
-            area=area,
-            centroid=(radius * math.cos(middle), radius * math.sin(middle)),
-        )
-        for block, middle in zip(model.blocks, angles[:-1] + half, strict=True)
-    )
-    return RigidBlockModel(sectors, model.interfaces, mu)
-
-
-def stands(count, thickness, mu):
-    return lateral_resistance(arch(count, thickness, mu)).stable
+from drystone.experiments.arches import stands
 
 
 @pytest.mark.parametrize(

@@ -7,14 +7,20 @@ what the linear program's own tolerance of 1e-9 leaves.
 
 import pytest
 
-from drystone.statics.given import model_from_json
+from drystone.experiments.cases import (
+    closed_forms,
+    offset_stack,
+    running_bond,
+    single_block,
+    two_equal_blocks,
+)
 from drystone.statics.limit import lateral_resistance
 
 TOLERANCE = 1e-8
 
 
-def alphas(rectangles, mu):
-    both = lateral_resistance(model_from_json({"blocks_xywh": rectangles, "mu": mu}))
+def alphas(case):
+    both = lateral_resistance(case.model)
     return both.left.alpha, both.right.alpha
 
 
@@ -32,15 +38,16 @@ def alphas(rectangles, mu):
 )
 def test_single_block(width, height, mu, expected):
     """min(mu, b/h)."""
-    assert alphas([[0, 0, width, height]], mu) == pytest.approx((expected, expected), abs=TOLERANCE)
+    found = alphas(single_block(width, height, mu))
+    assert found == pytest.approx((expected, expected), abs=TOLERANCE)
 
 
 @pytest.mark.parametrize(("width", "height", "mu"), [(1, 1, 0.65), (2, 1, 0.65), (3, 0.5, 0.9)])
 def test_two_equal_blocks(width, height, mu):
     """min(mu, b/(2h)): both overturn as one."""
     expected = min(mu, width / (2 * height))
-    rows = [[0, 0, width, height], [0, height, width, height]]
-    assert alphas(rows, mu) == pytest.approx((expected, expected), abs=TOLERANCE)
+    found = alphas(two_equal_blocks(width, height, mu))
+    assert found == pytest.approx((expected, expected), abs=TOLERANCE)
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.1, 0.2, 0.4, 0.5])
@@ -54,8 +61,8 @@ def test_offset_stack(shift, mu):
     """
     right = min(mu, (0.5 - shift) / 0.5, (1.0 - shift) / 2.0)
     left = min(mu, 1.0, (1.0 + shift) / 2.0)
-    rows = [[0, 0, 1, 1], [shift, 1, 1, 1]]
-    assert alphas(rows, mu) == pytest.approx((left, right), abs=TOLERANCE)
+    found = alphas(offset_stack(shift, mu))
+    assert found == pytest.approx((left, right), abs=TOLERANCE)
 
 
 def test_running_bond_of_four_courses_slides():
@@ -63,11 +70,10 @@ def test_running_bond_of_four_courses_slides():
 
     No closed form; the value that a public program for block assemblies prints for this wall.
     """
-    whole = [[x, 0, 2, 1] for x in (0, 2)]
-    halves = [[0, 0, 1, 1], [1, 0, 2, 1], [3, 0, 1, 1]]
-    rows = [
-        [x, course, width, height]
-        for course in range(4)
-        for x, _, width, height in (whole, halves)[course % 2]
-    ]
-    assert alphas(rows, 0.58) == pytest.approx((0.58, 0.58), abs=TOLERANCE)
+    assert len(running_bond().rectangles) == 10
+    assert alphas(running_bond()) == pytest.approx((0.58, 0.58), abs=TOLERANCE)
+
+
+@pytest.mark.parametrize("case", closed_forms(), ids=lambda case: f"{case.name}, mu {case.mu}")
+def test_what_the_cases_expect(case):
+    assert alphas(case) == pytest.approx((case.left, case.right), abs=TOLERANCE)

@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable
 from typing import NoReturn
 
+from drystone.cli.analyse_options import add_loads, add_model, add_scatter
 from drystone.cli.reading import add_reading
 from drystone.errors import UsageError
 
@@ -169,13 +170,31 @@ def _wall_input(command: argparse.ArgumentParser) -> None:
         "wall_path", metavar="WALL", help="label image, plan.json, or block model (JSON)"
     )
     command.add_argument("--json", action="store_true", help="print as JSON")
-    command.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
     command.add_argument("-o", "--output", metavar="DIR", help="draw pictures into a folder")
     _overwriting(command, "replace pictures of the same names")
 
 
+def _analyse(command: argparse.ArgumentParser) -> None:
+    _wall_input(command)
+    add_model(command)
+    add_loads(command)
+    add_scatter(command)
+
+
+def _bench(command: argparse.ArgumentParser) -> None:
+    command.add_argument("suite", metavar="SUITE", nargs="?", help="see --list")
+    command.add_argument("--list", action="store_true", help="name the suites, one a line")
+    command.add_argument("--data", metavar="DIR", help="published data (default: $DRYSTONE_DATA)")
+    command.add_argument("-o", "--output", metavar="DIR", help="draw pictures into a folder")
+    command.add_argument("--seed", type=_seed, default=0)
+    command.add_argument("--quick", action="store_true", help="a smaller version")
+    command.add_argument("--json", action="store_true", help="print as JSON")
+    command.add_argument("--markdown", action="store_true", help="print as Markdown")
+
+
 def _measure(command: argparse.ArgumentParser) -> None:
     _wall_input(command)
+    command.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
     command.add_argument("--wall", metavar="WxH", help="wall that was to be built, px of the image")
     command.add_argument(
         "--scale", type=_share, default=1.0, metavar="S", help="reduce the image by S first"
@@ -204,8 +223,9 @@ _COMMANDS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "plan": ("Plan a wall from an image of stones.", _plan),
     "demo": ("Plan a generated stone set; no arguments needed, works offline.", _demo),
     "stones": ("Say what is read from an image of stones.", _stones),
-    "analyse": ("Limit analysis of a wall: load multipliers and mechanism.", _wall_input),
+    "analyse": ("Limit analysis of a wall: load multipliers and mechanism.", _analyse),
     "measure": ("Measure filling, arrangement and lateral resistance of a wall.", _measure),
     "check": ("Re-derive a wall from stones and plan and verify every claim.", _check),
+    "bench": ("Show how good the numbers are: published cases, solvers, tests.", _bench),
     "generate": ("Make a synthetic stone set.", _generate),
 }

@@ -1,6 +1,6 @@
 """A progress bar on stderr that follows the planner's steps."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
@@ -60,7 +60,24 @@ def step_bar(stones: int, *, quiet: bool) -> Iterator[Callbacks]:
     if quiet or not console.is_terminal:
         yield Callbacks()
         return
-    bar = Progress(
+    with _progress(console) as bar:
+        yield _Bar(bar, stones)
+
+
+@contextmanager
+def counting_bar(name: str, total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
+    """Show how many of a number are done; yields what is to be told that number."""
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield lambda _: None
+        return
+    with _progress(console) as bar:
+        task = bar.add_task(name, total=total)
+        yield lambda done: bar.update(task, completed=done)
+
+
+def _progress(console: Console) -> Progress:
+    return Progress(
         TextColumn("{task.description}"),
         MofNCompleteColumn(),
         BarColumn(bar_width=24),
@@ -70,5 +87,3 @@ def step_bar(stones: int, *, quiet: bool) -> Iterator[Callbacks]:
         console=console,
         transient=True,
     )
-    with bar:
-        yield _Bar(bar, stones)

@@ -12,9 +12,9 @@ from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
 from drystone.model.plan import Plan
 from drystone.model.wall import Labels
-from drystone.statics.blocks import model_from_labels
 from drystone.statics.given import model_from_json
-from drystone.statics.model import GROUND, RigidBlockModel
+from drystone.statics.joints import loose_blocks
+from drystone.statics.model import RigidBlockModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,16 +40,12 @@ class GivenWall:
         """Labels that are wedges."""
         return frozenset(step.id for step in self.plan.wedge_steps) if self.plan else frozenset()
 
-    def model(self, mu: float | None) -> tuple[RigidBlockModel, tuple[Notice, ...]]:
-        """Return the rigid block model; `mu` None: that of the plan or block model, or .58."""
+    @property
+    def mu(self) -> float:
+        """Coefficient of friction of the block model or the plan, or .58."""
         if self.blocks is not None:
-            given = self.blocks if mu is None else {**self.blocks, "mu": mu}
-            return model_from_json(given), ()
-        if mu is None:
-            mu = float(self.plan.settings.get("mu", 0.58)) if self.plan else 0.58
-        assert self.labels is not None  # noqa: S101 - a wall without blocks has an image
-        image = model_from_labels(self.labels, mu)
-        return image.model, image.notices
+            return model_from_json(self.blocks).mu
+        return float(self.plan.settings.get("mu", 0.58)) if self.plan else 0.58
 
 
 def read_wall(path: Path) -> GivenWall:
@@ -93,16 +89,7 @@ def read_image_of(plan: Plan, folder: Path) -> Labels | None:
 
 def unsupported(model: RigidBlockModel) -> Notice | None:
     """Name the blocks that no chain of contacts connects with the ground (W302)."""
-    touching: dict[int, set[int]] = {}
-    for interface in model.interfaces:
-        touching.setdefault(interface.block, set()).add(interface.other)
-        touching.setdefault(interface.other, set()).add(interface.block)
-    supports = {GROUND} | {block.id for block in model.blocks if block.fixed}
-    new = set(supports)
-    while new:
-        new = set().union(*(touching.get(block, set()) for block in new)) - supports
-        supports |= new
-    loose = [block.id for block in model.blocks if block.id not in supports]
+    loose = loose_blocks(model)
     if not loose:
         return None
     named = ", ".join(map(str, loose[:8])) + (", …" if len(loose) > 8 else "")

@@ -39,9 +39,9 @@ class Table:
         --------
         >>> print(Table("Blocks", ("name", "alpha"), (("tall", 0.25), ("flat", None))).text())
         Blocks
-        name   alpha
-        tall  0.2500
-        flat       -
+        name  alpha
+        tall   0.25
+        flat      -
         """
         cells = [list(self.columns), *([_written(cell) for cell in row] for row in self.rows)]
         widths = [max(len(row[k]) for row in cells) for k in range(len(self.columns))]
@@ -50,11 +50,12 @@ class Table:
         return "\n".join([self.title, *lines, *(f"* {note}" for note in self.notes)])
 
     def markdown(self) -> str:
-        """Return the table in Markdown, without its title."""
+        """Return the table in Markdown, its title above."""
         lines = [self.columns, ["---"] * len(self.columns)]
         lines += [[_written(cell) for cell in row] for row in self.rows]
         return "\n".join(
-            ["| " + " | ".join(line) + " |" for line in lines]
+            [f"**{self.title}**", ""]
+            + ["| " + " | ".join(line) + " |" for line in lines]
             + [""] * bool(self.notes)
             + [f"* {note}" for note in self.notes]
         )
@@ -88,7 +89,7 @@ def _written(cell: Cell) -> str:
     if isinstance(cell, bool):
         return "yes" if cell else "no"
     if isinstance(cell, float):
-        return f"{cell:.1e}" if 0 < abs(cell) < 1e-3 else f"{cell:.4f}"
+        return f"{cell:.1e}" if 0 < abs(cell) < 1e-3 else f"{cell:.5g}"
     return str(cell)
 
 

@@ -11,7 +11,7 @@ from drystone.plotting.mechanism import plot_mechanism
 from drystone.plotting.outlines import Loop
 from drystone.plotting.wall import plot_wall
 from drystone.statics.model import Direction
-from drystone.statics.result import LateralResistance
+from drystone.statics.result import LateralResistance, LimitStatus
 
 PICTURE = "picture.png"
 MECHANISMS: dict[Direction, str] = {"left": "mechanism_left.png", "right": "mechanism_right.png"}
@@ -106,7 +106,8 @@ def write_pictures(
         if result is None or result.mechanism is None:
             path.unlink(missing_ok=True)
             continue
-        ax = plot_mechanism(wall.labels, result.mechanism, result.direction, result.alpha)
+        side = None if result.status is LimitStatus.UNSTABLE else result.direction
+        ax = plot_mechanism(wall.labels, result.mechanism, side, result.alpha)
         save(ax.figure, path, dpi)
         written.append(path)
     return tuple(written)

@@ -1,6 +1,6 @@
 """Polygons to draw: along the pixel edges of label images, or the stones' own outlines."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,24 +17,24 @@ clockwise around holes."""
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """What a label covers.
+    """What a label or a polygon covers.
 
     Parameters
     ----------
     id : int
         The label.
     loops : tuple of (n, 2) float arrays
-        Its boundary on pixel edges, wall frame, px.
+        Its boundary in the wall frame: on pixel edges, px, or as the polygon was given.
     centroid : (float, float)
-        Of its pixel squares.
-    area_px : int
-        Number of its pixels.
+        Of its pixel squares, or of the polygon.
+    area_px : float
+        Number of its pixels; of a polygon its area in squares of its unit.
     """
 
     id: int
     loops: tuple[Loop, ...]
     centroid: tuple[float, float]
-    area_px: int
+    area_px: float
 
 
 def label_regions(labels: Labels) -> tuple[Region, ...]:
@@ -59,6 +59,70 @@ def label_regions(labels: Labels) -> tuple[Region, ...]:
         _region(label, ranks[window] == rank, window, labels.shape[0])
         for rank, (label, window) in enumerate(zip(present, windows, strict=True), 1)
     )
+
+
+def polygon_regions(polygons: Mapping[int, Loop]) -> tuple[Region, ...]:
+    """Return the regions of polygons in the order of their ids.
+
+    Parameters
+    ----------
+    polygons : mapping of int to (n, 2) float array
+        Corners, either way round, closed or not; for example from
+        :func:`drystone.statics.given.polygons_from_json`.
+
+    Examples
+    --------
+    >>> polygon_regions({7: np.array([[0, 0], [0, 1], [2, 1], [2, 0]])})[0].centroid
+    (1.0, 0.5)
+    """
+    return tuple(_of_polygon(block, polygons[block]) for block in sorted(polygons))
+
+
+def _of_polygon(block: int, corners: Loop) -> Region:
+    loop = np.asarray(corners, float)
+    if (loop[0] == loop[-1]).all():
+        loop = loop[:-1]
+    # About a corner, so that a polygon far from the origin loses no digits.
+    x, y = (loop - loop[0]).T
+    cross = x * np.roll(y, -1) - np.roll(x, -1) * y
+    area = float(cross.sum()) / 2.0
+    middle = np.array([(x + np.roll(x, -1)) @ cross, (y + np.roll(y, -1)) @ cross]) / (6.0 * area)
+    cx, cy = (loop[0] + middle).tolist()
+    return Region(block, (loop if area > 0 else loop[::-1],), (cx, cy), abs(area))
+
+
+def wall_regions(wall: Labels | Mapping[int, Loop]) -> tuple[Region, ...]:
+    """Return the regions of a wall in the frame of its rigid block model.
+
+    Parameters
+    ----------
+    wall : (h, w) integer array, or mapping of int to (n, 2) float array
+        A label image, which stands on its lowest stone pixel as
+        :func:`drystone.statics.blocks.model_from_labels` lets it, or polygons.
+
+    Examples
+    --------
+    >>> [region.centroid for region in wall_regions(np.array([[7, 7], [0, 0]], np.uint32))]
+    [(1.0, 0.5)]
+    """
+    if isinstance(wall, Mapping):
+        return polygon_regions(wall)
+    filled = np.flatnonzero((wall > 0).any(axis=1))
+    return label_regions(wall[: int(filled[-1]) + 1]) if filled.size else ()
+
+
+def regions_box(*walls: Iterable[Iterable[Loop]]) -> tuple[float, float, float, float]:
+    """Return x0, y0, x1, y1 of the loops of regions; a unit square when there are none."""
+    loops = [loop for wall in walls for loops in wall for loop in loops]
+    points = np.concatenate(loops) if loops else np.array([[0.0, 0.0], [1.0, 1.0]])
+    (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    return x0, y0, x1, y1
+
+
+def stands_on_ground(regions: Iterable[Region]) -> bool:
+    """Whether the lowest corner of a wall is at y = 0, where the ground is."""
+    _, y0, x1, y1 = box = regions_box(region.loops for region in regions)
+    return abs(y0) <= 1e-6 * max(x1 - box[0], y1 - y0)
 
 
 def _region(label: int, mask: Mask, window: tuple[slice, slice], height: int) -> Region:

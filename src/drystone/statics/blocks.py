@@ -15,6 +15,7 @@ from drystone.statics.interfaces import (
     still_open,
 )
 from drystone.statics.model import Block, RigidBlockModel
+from drystone.statics.pieces import notice_of_pieces
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +30,8 @@ class ImageModel:
         The ground is the upper edge of this image row, or the image's lower edge; y of the wall
         frame is `ground_row` minus the row coordinate.
     notices : tuple of Notice
-        W301 when empty rows below the stones were left out.
+        W301 when empty rows below the stones were left out, W304 when pixels of a stone lie
+        apart from it.
     """
 
     model: RigidBlockModel
@@ -82,7 +84,7 @@ def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
         )
     standing = labels[:height]
     model = RigidBlockModel(_all_blocks(standing), find_interfaces(standing), mu)
-    return ImageModel(model, height, tuple(notices))
+    return ImageModel(model, height, (*notices, *notice_of_pieces(standing)))
 
 
 def model_with(

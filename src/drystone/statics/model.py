@@ -1,7 +1,6 @@
-"""Rigid blocks, the interfaces between them, and what the limit analysis returns (§4.1)."""
+"""Rigid blocks and the interfaces between them (§4.1)."""
 
 from dataclasses import dataclass
-from enum import StrEnum
 from functools import cached_property
 from typing import Literal
 
@@ -16,17 +15,6 @@ Direction = Literal["left", "right"]
 Freedom = Literal["x", "y", "turn"]
 FREEDOMS: tuple[Freedom, Freedom, Freedom] = ("x", "y", "turn")
 """What a block may do: move to the right, move up, turn counter-clockwise."""
-
-
-class LimitStatus(StrEnum):
-    """How a limit analysis ended; a status is never a number."""
-
-    OPTIMAL = "optimal"
-    UNSTABLE = "unstable"
-    """The blocks do not stand under their own weight."""
-    UNBOUNDED = "unbounded"
-    FAILED = "failed"
-    """The solver gave up."""
 
 
 @dataclass(frozen=True)

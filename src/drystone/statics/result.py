@@ -61,7 +61,8 @@ class Certificate:
     inadmissible : float
         Largest rate at which the mechanism closes a contact or slides without dilating.
     lower, upper : float or None
-        Load multiplier of the forces and of the mechanism; infinite when a growing state of
+        Load multiplier of the forces and of the mechanism, signed along the live load (below 0
+        for the direction "left"); infinite when a growing state of
         self-stress carries any load.
     fall_work : float or None
         Work of the dead load on the mechanism, for walls that do not stand.

@@ -1,107 +1,131 @@
 """`drystone analyse`: limit analysis of any wall."""
 
 import argparse
+import hashlib
 import sys
+from collections.abc import Mapping
+from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
-from drystone.cli.output import number, prepare_files, print_json, print_table
-from drystone.cli.walls import GivenWall, read_wall, unsupported
+from drystone.cli.analyse_pictures import draw, prepare
+from drystone.cli.analyse_scatter import scatter_of, wants_scatter
+from drystone.cli.card import Card, range_report, range_rows
+from drystone.cli.loads import is_range, load_case
+from drystone.cli.modelling import Modelled, modelled
+from drystone.cli.output import print_json, print_table
+from drystone.cli.walls import read_wall, unsupported
 from drystone.errors import ExitCode
-from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import Direction, RigidBlockModel
-from drystone.statics.result import LateralResistance, LimitResult
-
-_DIRECTIONS: tuple[Direction, Direction] = ("left", "right")
+from drystone.statics.failure import save_program
+from drystone.statics.limit import lateral_resistance, load_range
+from drystone.statics.loads import Loads
+from drystone.statics.mechanism import Failure, describe_mechanism
+from drystone.statics.nonassociative import nonassociative_resistance
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
+from drystone.statics.sensitivity import friction_sensitivity
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
-    """Print load multipliers and mechanism; draw the mechanisms when asked."""
-    wall = read_wall(Path(arguments.wall_path))
-    model, notices = wall.model(arguments.mu)
-    for notice in notices:
+    """Print load multipliers and mechanisms; draw contacts, forces and mechanisms when asked."""
+    path = Path(arguments.wall_path)
+    wall = modelled(read_wall(path), arguments)
+    for notice in wall.notices:
         print(f"drystone: {notice}", file=sys.stderr)
-    resistance = lateral_resistance(model, mechanism=True)
+    folder = None if arguments.output is None else Path(arguments.output)
+    pictures = [] if folder is None else prepare(folder, arguments)
+    if is_range(arguments):
+        return _print_range(wall, arguments)
+    model, loads = load_case(arguments, wall.model)
+    resistance = lateral_resistance(model, loads, mechanism=True, solver=arguments.solver)
     loose = None if resistance.stable else unsupported(model)
     if loose is not None:
         print(f"drystone: {loose}", file=sys.stderr)
-    if arguments.output is not None:
-        _draw(wall, resistance, Path(arguments.output), overwrite=arguments.overwrite)
+    if folder is not None:
+        draw(pictures, wall, loads, resistance)
+    card = _card(path, wall, loads, resistance, arguments)
+    scatter = scatter_of(wall, arguments, folder) if wants_scatter(arguments) else None
     if arguments.json:
-        print_json(_report(model, resistance))
-        return ExitCode.DONE
-    print_table(
-        f"{arguments.wall_path}: {len(model.blocks)} blocks, {model.contact_count} contact points",
-        [
-            ("load to the left", _words(resistance.left)),
-            ("load to the right", _words(resistance.right)),
-            ("F_LR", f"{number(resistance.value)}  min(alpha) / mu, mu = {model.mu:g}"),
-            ("assumptions", "2D, rigid, no tension, Coulomb friction with associated flow"),
-        ],
+        report = card.report()
+        print_json(report if scatter is None else {**report, "scatter": scatter.report()})
+    else:
+        title = f"{path}: {len(model.blocks)} blocks, {model.contact_count} contact points"
+        print_table(title, card.rows() + ([] if scatter is None else scatter.rows()))
+    return _keep_failure(wall, loads, resistance, folder)
+
+
+def _card(
+    path: Path,
+    wall: Modelled,
+    loads: Loads,
+    resistance: LateralResistance,
+    arguments: argparse.Namespace,
+) -> Card:
+    both = (resistance.left, resistance.right)
+    sensitivity: dict[str, float] = {
+        result.direction: friction_sensitivity(wall.model, result, loads).total
+        for result in both
+        if result.success
+    }
+    without = None
+    if not arguments.associative_only:
+        without = nonassociative_resistance(wall.model, loads=loads)
+    return Card(
+        model=wall.model,
+        load_case=loads.name,
+        resistance=resistance,
+        nonassociative=without,
+        failures=_failures(wall, both),
+        sensitivity=sensitivity,
+        sha256=hashlib.sha256(_file(path).read_bytes()).hexdigest(),
+        version=version("drystone"),
+        remarks=wall.remarks,
     )
+
+
+def _file(path: Path) -> Path:
+    return path / "plan.json" if path.is_dir() else path
+
+
+def _failures(wall: Modelled, results: tuple[LimitResult, ...]) -> Mapping[str, Failure]:
+    return {
+        result.direction: describe_mechanism(
+            wall.model,
+            result.mechanism,
+            falls=result.status is LimitStatus.UNSTABLE,
+            noun=wall.noun,
+            wedges=wall.wedge_ids,
+        )
+        for result in results
+        if result.mechanism is not None
+    }
+
+
+def _print_range(wall: Modelled, arguments: argparse.Namespace) -> ExitCode:
+    model, loads = load_case(arguments, wall.model)
+    found = load_range(model, loads, mechanism=True, solver=arguments.solver)
+    if arguments.json:
+        print_json(range_report(found, loads.name))
+    else:
+        rows = range_rows(found, loads.name)
+        if found.least.mechanism is not None:
+            told = describe_mechanism(
+                model, found.least.mechanism, noun=wall.noun, wedges=wall.wedge_ids
+            )
+            rows.insert(2, ("  mechanism", told.words))
+        print_table(f"{arguments.wall_path}: {len(model.blocks)} blocks", rows)
     return ExitCode.DONE
 
 
-def _results(resistance: LateralResistance) -> tuple[LimitResult, LimitResult]:
-    return resistance.left, resistance.right
-
-
-def _words(result: LimitResult) -> str:
-    if result.alpha is None:
-        return f"{result.status}: {result.message}"
-    moving = _moving(result)
-    blocks = ", ".join(map(str, moving[:8])) + (" …" if len(moving) > 8 else "")
-    return f"alpha = {result.alpha:.4f} (load multiplier, adequacy factor); moving: {blocks}"
-
-
-def _moving(result: LimitResult) -> list[int]:
-    """Return the blocks that move in the mechanism, the fastest first."""
-    if result.mechanism is None:
-        return []
-    speed = abs(result.mechanism.velocity).max(axis=1)
-    order = sorted(range(len(speed)), key=lambda k: (-round(float(speed[k]), 9), k))
-    return [result.mechanism.block_ids[k] for k in order if speed[k] > 1e-6]
-
-
-def _report(model: RigidBlockModel, resistance: LateralResistance) -> dict[str, Any]:
-    mechanisms = {
-        direction: {
-            str(block): [float(v) for v in velocity]
-            for block, velocity in zip(
-                result.mechanism.block_ids, result.mechanism.velocity, strict=True
-            )
-        }
-        for direction, result in zip(_DIRECTIONS, _results(resistance), strict=True)
-        if result.mechanism is not None
-    }
-    return {
-        "status_left": str(resistance.left.status),
-        "status_right": str(resistance.right.status),
-        "alpha_left": resistance.left.alpha,
-        "alpha_right": resistance.right.alpha,
-        "F_LR": resistance.value,
-        "mu": model.mu,
-        "blocks": len(model.blocks),
-        "contacts": model.contact_count,
-        "mechanism": mechanisms,
-    }
-
-
-def _draw(wall: GivenWall, resistance: LateralResistance, folder: Path, *, overwrite: bool) -> None:
-    if wall.labels is None:
-        print("drystone: a block model has no image to draw", file=sys.stderr)
-        return
-    from drystone.plotting import plot_labels, plot_mechanism, save  # noqa: PLC0415 - slow import
-    from drystone.plotting.files import MECHANISMS  # noqa: PLC0415
-
-    picture = folder / "wall_picture.png"
-    mechanisms = [folder / MECHANISMS[direction] for direction in _DIRECTIONS]
-    prepare_files([picture, *mechanisms], overwrite=overwrite)
-    save(plot_labels(wall.labels).figure, picture)
-    for path, result in zip(mechanisms, _results(resistance), strict=True):
-        if result.mechanism is not None:
-            axes = plot_mechanism(wall.labels, result.mechanism, result.direction, result.alpha)
-            save(axes.figure, path)
-        else:
-            # One that an earlier run left would belong to another wall.
-            path.unlink(missing_ok=True)
+def _keep_failure(
+    wall: Modelled, loads: Loads, resistance: LateralResistance, folder: Path | None
+) -> ExitCode:
+    """Save the program that no solver could solve (E140)."""
+    if not resistance.failed:
+        return ExitCode.DONE
+    path = (folder or Path()) / "drystone-failed.npz"
+    save_program(wall.model, loads, path)
+    print(
+        "drystone: E140 no solver found an answer that can be certified. The linear program was"
+        f" saved as {path}: please report it.",
+        file=sys.stderr,
+    )
+    return ExitCode.CHECK_FAILED

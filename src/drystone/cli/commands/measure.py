@@ -12,6 +12,7 @@ from drystone.errors import ExitCode, UsageError
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
+from drystone.statics.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
 
 
@@ -55,7 +56,8 @@ def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) ->
         wall_px = (wall.plan.width * to_px, wall.plan.height * to_px)
         # The pixels of reduced stones are off by a little; the plan knows their real area.
         stone_area_px = wall.plan.metrics.F_SF * wall_px[0] * wall_px[1]
-    model, _ = wall.model(arguments.mu)
+    mu = wall.mu if arguments.mu is None else arguments.mu
+    model = model_from_labels(labels, mu).model
     resistance = lateral_resistance(model)
     loose = None if resistance.stable else unsupported(model)
     if loose is not None:

@@ -1,0 +1,106 @@
+"""The scatter of the load multiplier in `drystone analyse`."""
+
+import argparse
+from collections.abc import Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from drystone.cli.modelling import Modelled
+from drystone.cli.output import prepare_files
+from drystone.cli.progress import counting_bar
+from drystone.statics.result import LimitStatus
+from drystone.statics.scatter import Quantiles, Scatter, scatter
+from drystone.statics.shaking import ScatterSettings
+
+SAMPLES = 200
+
+
+@dataclass(frozen=True, eq=False)
+class ScatterCard:
+    """What the shaken walls carry."""
+
+    scatter: Scatter
+
+    def rows(self) -> list[tuple[str, str]]:
+        """Return names and values, one a line."""
+        counts = self.scatter.counts
+        rows = [("scatter", self._shaken())]
+        for name, quantiles in self._quantiles():
+            if quantiles is not None:
+                low, median, high = quantiles
+                rows.append((f"  {name}", f"{median:.3f} (5 % to 95 %: {low:.3f} to {high:.3f})"))
+        share = self.scatter.falling_share
+        if share is not None:
+            said = f"{counts[LimitStatus.UNSTABLE]} walls, {100 * share:.0f} %"
+            rows.append(("  do not stand", f"{said}; the figures above are of those that stand"))
+        if counts[LimitStatus.FAILED]:
+            rows.append(("  not solved", f"{counts[LimitStatus.FAILED]}"))
+        return rows
+
+    def report(self) -> dict[str, Any]:
+        """Return the same as JSON, with every sample."""
+        found = self.scatter
+        value = found.value
+        return {
+            "samples": found.settings.samples,
+            "seed": found.seed,
+            "mu": found.mu.tolist(),
+            "status": [str(status) for status in found.status],
+            "alpha_left": found.alpha_left.tolist(),
+            "alpha_right": found.alpha_right.tolist(),
+            "F_LR": None if value is None else value.tolist(),
+            **{f"{name}_5_50_95": quantiles for name, quantiles in self._quantiles()},
+        }
+
+    def _quantiles(self) -> list[tuple[str, Quantiles | None]]:
+        found = self.scatter
+        return [("min alpha", found.alpha_quantiles), ("F_LR", found.value_quantiles)]
+
+    def _shaken(self) -> str:
+        made = self.scatter.settings
+        parts = [f"{made.samples} walls, seed {self.scatter.seed}"]
+        if made.mu is not None:
+            parts.append(f"mu {made.mu[0]:g} to {made.mu[1]:g}")
+        if made.outline_noise:
+            parts.append(f"outlines +- {made.outline_noise:g}")
+        if made.placement_noise:
+            parts.append(f"placement +- {made.placement_noise:g}")
+        return ", ".join(parts)
+
+
+def wants_scatter(arguments: argparse.Namespace) -> bool:
+    """Whether an option of the scatter was given."""
+    is_varied = arguments.mu is not None and arguments.mu[0] < arguments.mu[1]
+    noisy = arguments.outline_noise > 0 or arguments.placement_noise > 0
+    return is_varied or noisy or arguments.scatter is not None
+
+
+def scatter_of(wall: Modelled, arguments: argparse.Namespace, folder: Path | None) -> ScatterCard:
+    """Shake the wall and analyse it each time; draw the distribution into the folder."""
+    settings = ScatterSettings(
+        samples=SAMPLES if arguments.scatter is None else arguments.scatter,
+        mu=arguments.mu,
+        outline_noise=arguments.outline_noise,
+        placement_noise=arguments.placement_noise,
+    )
+    if folder is not None:
+        prepare_files([folder / "scatter.png"], overwrite=arguments.overwrite)
+    bar = counting_bar("walls", settings.samples, quiet=arguments.json)
+    with bar as on_sample, _workers(arguments.jobs) as executor:
+        found = scatter(
+            wall.model, settings, seed=arguments.seed, executor=executor, on_sample=on_sample
+        )
+    if folder is not None:
+        from drystone.plotting import plot_scatter, save  # noqa: PLC0415 - slow import
+
+        save(plot_scatter(found).figure, folder / "scatter.png")
+    return ScatterCard(found)
+
+
+@contextmanager
+def _workers(jobs: int) -> Iterator[Executor | None]:
+    with ThreadPoolExecutor(jobs) if jobs > 1 else nullcontext() as executor:
+        yield executor

@@ -1,0 +1,211 @@
+"""What `drystone analyse` says: a card that an engineer can quote, or JSON."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import atan, degrees
+from typing import Any
+
+from drystone.cli.output import number
+from drystone.statics.mechanism import Failure
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.nonassociative import NonassociativeResistance, NonassociativeResult
+from drystone.statics.result import LateralResistance, LimitResult, LoadRange
+
+ASSUMPTIONS = (
+    "2D, rigid blocks, no tension, no crushing, Coulomb friction at the ends of every contact"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Card:
+    """Everything that was found out about a wall.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Blocks and contacts.
+    load_case : str
+        In words.
+    resistance : LateralResistance
+        With associated flow.
+    nonassociative : NonassociativeResistance or None
+        Without dilatancy; None when it was not asked for.
+    failures : mapping of {"left", "right"} to Failure
+        How it fails, where that is known.
+    sensitivity : mapping of {"left", "right"} to float
+        d alpha / d mu, where that is known.
+    sha256 : str
+        Of the input file.
+    version : str
+        Of this package.
+    remarks : mapping
+        Further lines, such as what closing gaps changes.
+    """
+
+    model: RigidBlockModel
+    load_case: str
+    resistance: LateralResistance
+    nonassociative: NonassociativeResistance | None
+    failures: Mapping[str, Failure]
+    sensitivity: Mapping[str, float]
+    sha256: str
+    version: str
+    remarks: Mapping[str, str]
+
+    def rows(self) -> list[tuple[str, str]]:
+        """Return names and values, one a line."""
+        both = self.resistance
+        rows = [
+            ("load case", self.load_case),
+            ("load to the left", _alpha(both.left)),
+            *self._further("left"),
+            ("load to the right", _alpha(both.right)),
+            *self._further("right"),
+            ("F_LR", self._ratio()),
+        ]
+        least = _least(both)
+        if least is not None and self.load_case == "tilting table":
+            rows.append(("falls on a table", f"tilted by {degrees(atan(least)):.1f} degrees"))
+        rows += list(self.remarks.items())
+        rows.append(("certificate", _certified(both)))
+        rows.append(("assumptions", ASSUMPTIONS))
+        rows.append(("input", f"sha256 {self.sha256[:16]}, drystone {self.version}"))
+        return rows
+
+    def report(self) -> dict[str, Any]:
+        """Return the same as what `--json` prints (DESIGN 2)."""
+        both = self.resistance
+        return {
+            **_alphas(both.left, both.right),
+            "F_LR": both.value,
+            "mu": self.model.mu,
+            "blocks": len(self.model.blocks),
+            "contacts": self.model.contact_count,
+            "nonassociative": None if self.nonassociative is None else self._without_dilatancy(),
+            "certificate": _certificate(both),
+            "sensitivity": dict(self.sensitivity),
+            "load_case": self.load_case,
+            "mechanism": {
+                result.direction: {
+                    str(block): [float(v) for v in velocity]
+                    for block, velocity in zip(
+                        result.mechanism.block_ids, result.mechanism.velocity, strict=True
+                    )
+                }
+                for result in (both.left, both.right)
+                if result.mechanism is not None
+            },
+            "words": {direction: failure.words for direction, failure in self.failures.items()},
+            "remarks": dict(self.remarks),
+            "sha256": self.sha256,
+            "version": self.version,
+        }
+
+    def _further(self, direction: str) -> list[tuple[str, str]]:
+        """Tell what belongs to one direction, under it."""
+        rows = []
+        if self.nonassociative is not None:
+            result = getattr(self.nonassociative, direction)
+            rows.append(("  without dilatancy", _without(result)))
+        if direction in self.failures:
+            rows.append(("  mechanism", self.failures[direction].words))
+        if direction in self.sensitivity:
+            rows.append(("  sensitivity", f"d alpha / d mu = {self.sensitivity[direction]:.3f}"))
+        return rows
+
+    def _ratio(self) -> str:
+        said = f"{number(self.resistance.value)}  min(alpha) / mu, mu = {self.model.mu:g}"
+        if self.nonassociative is not None and self.nonassociative.value is not None:
+            said += f"; without dilatancy {self.nonassociative.value:.3f}"
+        return said
+
+    def _without_dilatancy(self) -> dict[str, Any]:
+        assert self.nonassociative is not None  # noqa: S101 - asked for only then
+        left, right = self.nonassociative.left, self.nonassociative.right
+        return {
+            **_alphas(left, right),
+            "message_left": left.message,
+            "message_right": right.message,
+            "answers_left": list(left.answers),
+            "answers_right": list(right.answers),
+        }
+
+
+def range_rows(found: LoadRange, case: str) -> list[tuple[str, str]]:
+    """Return the lines for a case whose answer is a range of alpha."""
+    return [
+        ("load case", case),
+        ("least alpha", _alpha(found.least)),
+        ("greatest alpha", _alpha(found.greatest)),
+        ("assumptions", ASSUMPTIONS),
+    ]
+
+
+def range_report(found: LoadRange, case: str) -> dict[str, Any]:
+    """Return a range of alpha as JSON."""
+    return {
+        "load_case": case,
+        "status_least": str(found.least.status),
+        "status_greatest": str(found.greatest.status),
+        "alpha_least": found.least.alpha,
+        "alpha_greatest": found.greatest.alpha,
+    }
+
+
+def _alphas(
+    left: LimitResult | NonassociativeResult, right: LimitResult | NonassociativeResult
+) -> dict[str, Any]:
+    return {
+        "status_left": str(left.status),
+        "status_right": str(right.status),
+        "alpha_left": left.alpha,
+        "alpha_right": right.alpha,
+    }
+
+
+def _alpha(result: LimitResult) -> str:
+    if result.alpha is None:
+        return f"{result.status}: {result.message}"
+    return f"alpha = {result.alpha:.4f}  load multiplier, adequacy factor"
+
+
+def _without(result: NonassociativeResult) -> str:
+    if result.alpha is None:
+        return f"{result.status}: {result.message}"
+    return f"alpha = {result.alpha:.4f}  {_lower_first(result.message)}"
+
+
+def _lower_first(text: str) -> str:
+    return text[:1].lower() + text[1:].rstrip(".")
+
+
+def _least(both: LateralResistance) -> float | None:
+    alphas = [result.alpha for result in (both.left, both.right) if result.alpha is not None]
+    return min(alphas) if both.stable else None
+
+
+def _certificate(both: LateralResistance) -> dict[str, float | None]:
+    left, right = both.left.certificate, both.right.certificate
+    known = [c for c in (left, right) if c is not None]
+    return {
+        "gap_left": left.gap if left else None,
+        "gap_right": right.gap if right else None,
+        "residual": max((c.residual for c in known), default=None),
+        "violation": max((c.violation for c in known), default=None),
+        "inadmissible": max((c.inadmissible for c in known), default=None),
+    }
+
+
+def _certified(both: LateralResistance) -> str:
+    """Say how well the answers are proved."""
+    known = [r.certificate for r in (both.left, both.right) if r.certificate is not None]
+    if len(known) < 2:
+        return "none"
+    solvers = " and ".join(dict.fromkeys(r.solver for r in (both.left, both.right)))
+    falls = [c.fall_work for c in known if c.fall_work is not None]
+    if falls:
+        return f"a mechanism on which the weight does work, by {solvers}"
+    residual = max(c.residual for c in known)
+    gaps = [c.gap for c in known if c.gap is not None]
+    gap = f", forces and mechanism give the same alpha to {max(gaps):.0e}" if gaps else ""
+    return f"equilibrium to {residual:.0e}{gap}, by {solvers}"

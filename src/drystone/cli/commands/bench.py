@@ -1,0 +1,54 @@
+"""`drystone bench`: how good the numbers are."""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from drystone.cli.output import print_json
+from drystone.errors import ExitCode, UsageError
+from drystone.experiments.suites import SUITES, run_suite
+from drystone.experiments.table import BenchSettings
+
+
+def run(arguments: argparse.Namespace) -> ExitCode:
+    """Run a suite and print its tables."""
+    if arguments.list:
+        for name, (text, _) in SUITES.items():
+            print(f"{name}: {text}")
+        return ExitCode.DONE
+    if arguments.suite not in SUITES:
+        raise UsageError(
+            "E138",
+            f"there is no suite {arguments.suite!r}." if arguments.suite else "no suite is named.",
+            where="bench",
+            cure=f"Name one of {', '.join(SUITES)}; `drystone bench --list` explains them.",
+        )
+    output = None if arguments.output is None else Path(arguments.output)
+    if output is not None:
+        output.mkdir(parents=True, exist_ok=True)
+    tables = run_suite(
+        arguments.suite,
+        BenchSettings(_data(arguments.data), output, arguments.seed, arguments.quick),
+    )
+    if arguments.json:
+        print_json({table.title: table.records() for table in tables})
+        return ExitCode.DONE
+    for table in tables:
+        print(table.markdown() if arguments.markdown else table.text())
+        print()
+    return ExitCode.DONE
+
+
+def _data(given: str | None) -> Path | None:
+    """Return the folder of published data: the option, DRYSTONE_DATA, or none."""
+    named = given or os.environ.get("DRYSTONE_DATA")
+    if named is None:
+        return None
+    folder = Path(named)
+    if not folder.is_dir():
+        print(
+            f"drystone: there is no folder {named}; rows that need it are left out", file=sys.stderr
+        )
+        return None
+    return folder

@@ -1,0 +1,142 @@
+"""From a wall file to the rigid block model that `drystone analyse` looks at."""
+
+import argparse
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.cli.walls import GivenWall
+from drystone.errors import Notice, UsageError
+from drystone.model.wall import Labels
+from drystone.statics.blocks import ImageModel, model_from_labels
+from drystone.statics.gap_spread import closed_gap_spread
+from drystone.statics.gaps import model_with_closed_gaps, settle_gaps
+from drystone.statics.given import model_from_json, polygons_from_json
+from drystone.statics.joints import with_head_friction
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.outlines import model_from_outlines, outlines_of_labels
+from drystone.statics.wording import Noun
+
+Shapes = Labels | Mapping[int, NDArray[np.float64]]
+
+
+@dataclass(frozen=True, eq=False)
+class Modelled:
+    """A wall as blocks and contacts, and what it looks like.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Blocks and contacts.
+    shapes : label image or polygons by id
+        To draw.
+    noun : {"stone", "block"}
+        What a block is called.
+    wedge_ids : frozenset of int
+        Blocks that are wedges.
+    notices : tuple of Notice
+        What the user should know.
+    remarks : mapping
+        Lines for the card, such as what closing gaps changes.
+    """
+
+    model: RigidBlockModel
+    shapes: Shapes
+    noun: Noun
+    wedge_ids: frozenset[int] = frozenset()
+    notices: tuple[Notice, ...] = ()
+    remarks: Mapping[str, str] = field(default_factory=dict)
+
+
+def modelled(wall: GivenWall, arguments: argparse.Namespace) -> Modelled:
+    """Make the model that the options ask for."""
+    mu = _mu(wall, arguments)
+    if wall.blocks is not None:
+        found = _given(wall.blocks, mu, arguments)
+    else:
+        assert wall.labels is not None  # noqa: S101 - a wall without blocks has an image
+        found = _drawn(wall, wall.labels, mu, arguments)
+    if arguments.mu_head is not None:
+        found = replace(found, model=with_head_friction(found.model, arguments.mu_head))
+        said = f"friction {arguments.mu_head:g}"
+        found = replace(found, remarks={**found.remarks, "head joints": said})
+    return found
+
+
+def _mu(wall: GivenWall, arguments: argparse.Namespace) -> float:
+    """Return the friction of the options, the middle of their range, or that of the wall."""
+    if arguments.mu is not None:
+        low, high = arguments.mu
+        return float(low + high) / 2.0
+    return wall.mu
+
+
+def _given(blocks: dict[str, Any], mu: float, arguments: argparse.Namespace) -> Modelled:
+    if arguments.close_gaps is not None or arguments.contacts != "pixels":
+        raise UsageError(
+            "E138",
+            "a block model has no pixels to take contacts from.",
+            cure="Leave --close-gaps and --contacts out.",
+        )
+    if arguments.mu is not None:
+        blocks = {**blocks, "mu": mu}
+    return Modelled(model_from_json(blocks), polygons_from_json(blocks), "block")
+
+
+def _drawn(wall: GivenWall, labels: Labels, mu: float, arguments: argparse.Namespace) -> Modelled:
+    if arguments.close_gaps is not None:
+        return _with_closed_gaps(wall, labels, mu, arguments)
+    picture = model_from_labels(labels, mu)
+    if arguments.contacts == "pixels":
+        return Modelled(picture.model, labels, "stone", wall.wedge_ids, picture.notices)
+    outlines = outlines_of_labels(labels[: picture.ground_row])
+    return Modelled(
+        model_from_outlines(outlines, mu),
+        outlines,
+        "stone",
+        wall.wedge_ids,
+        picture.notices,
+        {"contacts": "from sub-pixel outlines"},
+    )
+
+
+def _with_closed_gaps(
+    wall: GivenWall, labels: Labels, mu: float, arguments: argparse.Namespace
+) -> Modelled:
+    if arguments.contacts != "pixels":
+        raise UsageError("E138", "--close-gaps goes with --contacts pixels only.")
+    reach = _reach(arguments.close_gaps)
+    picture: ImageModel
+    if reach is None:
+        labels, moved = settle_gaps(labels)
+        picture = model_from_labels(labels, mu)
+        farthest = max((max(abs(dx), abs(dy)) for dx, dy in moved.values()), default=0)
+        done = f"{len(moved)} stones lowered by up to {farthest} px"
+    else:
+        picture = model_with_closed_gaps(labels, reach, mu)
+        done = f"closed up to {reach:g} px"
+    spread = closed_gap_spread(labels if reach is not None else _labels(wall), reach, mu)
+    remarks = {"gaps": f"{done}; F_LR {spread.words()}"}
+    return Modelled(picture.model, labels, "stone", wall.wedge_ids, picture.notices, remarks)
+
+
+def _labels(wall: GivenWall) -> Labels:
+    assert wall.labels is not None  # noqa: S101 - only walls with an image come here
+    return wall.labels
+
+
+def _reach(text: str) -> float | None:
+    """Read `--close-gaps`; None to settle."""
+    if text == "settle":
+        return None
+    try:
+        reach = float(text)
+    except ValueError:
+        reach = math.nan
+    if not 0 < reach < math.inf:
+        raise UsageError("E138", f"{text!r} is no width in px, nor 'settle'.", where="--close-gaps")
+    return reach

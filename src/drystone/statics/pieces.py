@@ -1,0 +1,68 @@
+"""Ids of a label image whose pixels lie apart."""
+
+import numpy as np
+from scipy import ndimage
+
+from drystone.errors import Notice
+from drystone.model.wall import Labels
+
+NAMED = 5
+"""A notice names this many stones."""
+
+
+def pieces_apart(labels: Labels) -> tuple[tuple[int, int], ...]:
+    """Find the ids whose pixels are not in one piece.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        0 where nothing is, otherwise the id of a stone.
+
+    Returns
+    -------
+    tuple of (id, pixels)
+        By id: how many of its pixels lie apart from its largest piece.  Pixels that touch at a
+        corner are in one piece.
+
+    Examples
+    --------
+    >>> pieces_apart(np.array([[7, 7, 0, 7], [7, 0, 0, 0], [0, 7, 0, 2]]))
+    ((7, 1),)
+    """
+    ids, place = np.unique(labels, return_inverse=True)
+    numbers = place.reshape(labels.shape) + 1
+    apart = []
+    for block, window in zip(ids.tolist(), ndimage.find_objects(numbers), strict=True):
+        if block == 0:
+            continue
+        pieces, count = ndimage.label(labels[window] == block, np.ones((3, 3)))
+        if count > 1:
+            sizes = np.bincount(pieces.ravel())[1:]
+            apart.append((block, int(sizes.sum() - sizes.max())))
+    return tuple(apart)
+
+
+def notice_of_pieces(labels: Labels) -> tuple[Notice, ...]:
+    """Say in a notice (W304) which stones have pixels that lie apart; none when none have.
+
+    Examples
+    --------
+    >>> print(notice_of_pieces(np.array([[7, 7, 0, 7]]))[0])
+    W304 1 pixel of stone 7 lies apart from it; all pixels of an id are one rigid block. Give \
+every piece an id of its own, or clean the picture.
+    """
+    apart = pieces_apart(labels)
+    if not apart:
+        return ()
+    told = [f"{px} pixel{'s' * (px > 1)} of stone {block}" for block, px in apart[:NAMED]]
+    if len(apart) > NAMED:
+        told.append(f"pixels of {len(apart) - NAMED} more")
+    one = len(apart) == 1
+    verb, them = "lies" if one and apart[0][1] == 1 else "lie", "it" if one else "them"
+    return (
+        Notice(
+            "W304",
+            f"{', '.join(told)} {verb} apart from {them}; all pixels of an id are one rigid block.",
+            "Give every piece an id of its own, or clean the picture.",
+        ),
+    )

@@ -1,0 +1,94 @@
+"""How much the load multiplier changes with friction, from one solution (envelope theorem)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from drystone.statics.kinematics import Floats, kinematics
+from drystone.statics.loads import Loads, tilting_table
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LimitResult
+
+NO_TOLERANCE = 0.0
+"""Every velocity counts: small ones add little."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionSensitivity:
+    """Derivatives of a load multiplier by coefficients of friction; never below 0 but by rounding.
+
+    Parameters
+    ----------
+    per_interface : (k,) float array
+        By the coefficient of each interface of the model alone, in its order.
+    """
+
+    per_interface: Floats
+
+    @property
+    def total(self) -> float:
+        """By all coefficients at once: d alpha / d mu, when all grow by the same amount."""
+        return float(self.per_interface.sum())
+
+
+def friction_sensitivity(
+    model: RigidBlockModel, result: LimitResult, loads: Loads | None = None
+) -> FrictionSensitivity:
+    """Find d alpha / d mu of an associative load multiplier, without another analysis.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        The wall.
+    result : LimitResult
+        Of this model and these loads, "optimal", with mechanism and forces.
+    loads : Loads, optional
+        Those of the analysis; the tilting table unless given.
+
+    Returns
+    -------
+    FrictionSensitivity
+        0 in all for pure rocking, 1 in total for all blocks sliding on the ground.
+
+    Raises
+    ------
+    ValueError
+        When the result has no mechanism and forces: it is not optimal, or they were not asked
+        for.
+
+    Notes
+    -----
+    Friction enters the program only in the edges of the cones, normal +- mu tangent.  By the
+    envelope theorem the optimum changes by the work of the duals (the velocities of the blocks) on
+    the change of these columns, weighed by the forces along them.  A contact point that slips at
+    u_t carries a force along one edge only, so its share is n |u_t|, and
+
+        d alpha / d mu = sum n |u_t| / power of the live load:
+
+    the power lost in sliding, for a coefficient of friction of 1, over that of a unit load.
+
+    Where the optimum is degenerate, the derivative is one-sided.  When two mechanisms need the same
+    load, as where sliding gives way to rocking, alpha has a kink: the value told is that of the
+    mechanism of `result`, the derivative to one side (or, for a mechanism that blends two, between
+    both).  When several states of forces carry the load, as under several blocks that slide
+    together, the shares of single interfaces depend on which one was found.
+
+    Examples
+    --------
+    >>> from drystone.statics.given import model_from_json
+    >>> from drystone.statics.limit import limit_load
+    >>> flat = model_from_json({"blocks_xywh": [[0, 0, 4, 2]]})
+    >>> round(friction_sensitivity(flat, limit_load(flat, "right", mechanism=True)).total, 6)
+    1.0
+    """
+    if result.mechanism is None or result.forces is None:
+        raise ValueError("the sensitivity needs an optimal result with mechanism and forces")
+    motion = kinematics(model, result.mechanism, NO_TOLERANCE)
+    lost = result.forces[:, 0] * np.abs(motion.relative[:, 1])
+    counts = [len(interface.points) for interface in model.interfaces]
+    which = np.repeat(np.arange(len(counts)), counts)
+    per_interface = np.bincount(which, lost, len(counts))
+    live = (tilting_table(model) if loads is None else loads).live
+    free = [not block.fixed for block in model.blocks]
+    power = float((live * motion.velocity[:-1])[free].sum())
+    return FrictionSensitivity(per_interface / abs(power))

@@ -1,0 +1,214 @@
+"""Walls as they might be: friction, outlines and places of stones shaken at random.
+
+**Friction.**  Uniform in a range; one value for the wall, or one for each interface.  Interfaces
+with a coefficient of their own (frictionless head joints) keep it.
+
+**Outline.**  An outline is known to `outline_noise` (standard deviation).  So every stone may end
+a bit earlier or later at each end of an interface, and the direction of an interface is known to
+the noise over its length: it turns about its middle, contact points and normal together.  No
+piece of an outline shorter than `RESOLVED` times the noise shows a direction, so short interfaces
+and contacts at a point turn as one of that length.  Interfaces turn independently: a bed on
+several stones becomes rough, and a rough bed may lock, so a shaken wall can carry more than the
+wall itself.
+
+**Placement.**  Stones are laid `placement_noise` off in each direction, by chance: the centroid
+moves, and so do the stone's ends of its interfaces.  Across the interface the joint stays between
+the two stones: it moves by the mean of both, and not at all when one of them cannot move.
+
+An interface reaches as far as both stones do: at each end the stone that ends first decides.  A
+model does not know which of two stones that is, so both ends are moved and the nearer one
+counts, which is exact where the stones are flush and on the safe side elsewhere (by .56 standard
+deviations on average).  The ground has no ends.  When nothing is left of an interface its ends
+meet in a point: stones that touch go on touching, and no stone gains a neighbour.  The area is
+not shaken: errors of an outline average out in it.
+"""
+
+from dataclasses import dataclass, replace
+from math import isfinite
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.errors import InputError
+from drystone.statics.model import GROUND, Interface, RigidBlockModel
+from drystone.statics.program import Floats
+
+RESOLVED = 3.0
+"""Shortest length, in standard deviations of the outline, over which its direction is known."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScatterSettings:
+    """What is not known exactly.
+
+    Parameters
+    ----------
+    samples : int
+        Walls to analyse, at least 1.
+    mu : (float, float) or None
+        Least and greatest coefficient of friction, >= 0; None for that of the model.
+    mu_per_interface : bool
+        Every interface has a friction of its own, independent of the others; False for one
+        value for the whole wall.
+    outline_noise : float
+        Standard deviation of outlines, in lengths of the model, >= 0.
+    placement_noise : float
+        Standard deviation of the place of a stone in each direction, in lengths of the model,
+        >= 0.
+
+    Raises
+    ------
+    InputError
+        E302 for a range of friction that makes no sense, E318 for the others.
+    """
+
+    samples: int = 500
+    mu: tuple[float, float] | None = None
+    mu_per_interface: bool = False
+    outline_noise: float = 0.0
+    placement_noise: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.mu is not None and not 0 <= self.mu[0] <= self.mu[1] < np.inf:
+            raise InputError(
+                "E302",
+                f"friction between {self.mu[0]} and {self.mu[1]} makes no sense.",
+                where="mu",
+                cure="Give two numbers >= 0, the least first; dry stone has about 0.4 to 0.8.",
+            )
+        if self.samples < 1:
+            raise _nonsense("samples", self.samples, "1 or more")
+        for name in ("outline_noise", "placement_noise"):
+            noise = getattr(self, name)
+            if not (isfinite(noise) and noise >= 0):
+                raise _nonsense(name, noise, "a standard deviation >= 0, in lengths of the model")
+
+
+def shaken(
+    model: RigidBlockModel, settings: ScatterSettings, rng: np.random.Generator
+) -> RigidBlockModel:
+    """Return the wall as it might be.
+
+    The same numbers are drawn whatever the settings, so twice the noise moves things twice as far.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        The wall as it was read.
+    settings : ScatterSettings
+        What is shaken.
+    rng : numpy.random.Generator
+        Random numbers.
+    """
+    rubbed = _with_friction(model, settings, rng)
+    steps = settings.placement_noise * rng.standard_normal((len(model.blocks), 2))
+    errors = settings.outline_noise * rng.standard_normal((len(model.interfaces), 2, 2))
+    turns = rng.standard_normal(len(model.interfaces))
+    steps[np.array([block.fixed for block in model.blocks], bool)] = 0.0
+    centroids = np.array([block.centroid for block in model.blocks]).reshape(-1, 2) + steps
+    blocks = tuple(
+        replace(block, centroid=(x, y))
+        for block, (x, y) in zip(model.blocks, centroids.tolist(), strict=True)
+    )
+    interfaces = _shaken_interfaces(rubbed, settings, steps, errors, turns)
+    return RigidBlockModel(blocks, interfaces, rubbed.mu)
+
+
+def _with_friction(
+    model: RigidBlockModel, settings: ScatterSettings, rng: np.random.Generator
+) -> RigidBlockModel:
+    low, high = settings.mu or (model.mu, model.mu)
+    drawn = rng.uniform(low, high, 1 + len(model.interfaces)).tolist()
+    if not settings.mu_per_interface:
+        return replace(model, mu=drawn[0])
+    pairs = list(zip(model.interfaces, drawn[1:], strict=True))
+    own = [mu for interface, mu in pairs if interface.mu is None]
+    interfaces = tuple(
+        replace(interface, mu=mu) if interface.mu is None else interface for interface, mu in pairs
+    )
+    return replace(model, interfaces=interfaces, mu=float(np.mean(own)) if own else drawn[0])
+
+
+def _shaken_interfaces(
+    model: RigidBlockModel,
+    settings: ScatterSettings,
+    steps: Floats,
+    errors: Floats,
+    turns: Floats,
+) -> tuple[Interface, ...]:
+    """Move the ends of all interfaces with their stones, and turn them.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Its k interfaces are shaken.
+    settings : ScatterSettings
+        For the noise of outlines.
+    steps : (n, 2) float array
+        Of the blocks, in their order.
+    errors : (k, 2, 2) float array
+        Along the interface, of both stones (first axis after k) at both ends (second).
+    turns : (k,) float array
+        In standard deviations.
+    """
+    if not model.interfaces:
+        return ()
+    ends = np.array([(i.points[0], i.points[-1]) for i in model.interfaces])
+    normal = np.array([i.normal for i in model.interfaces])
+    length = np.array([i.length for i in model.interfaces])
+    is_line = length > 0
+    along = np.column_stack((normal[:, 1], -normal[:, 0]))
+    along[is_line] = (ends[is_line, 1] - ends[is_line, 0]) / length[is_line, None]
+    step, stays, endless = _of_both_stones(model, steps)
+
+    reach = np.einsum("kij,kj->ki", step, along)[:, :, None] + errors
+    reach[endless] = (-np.inf, np.inf)
+    low, high = reach[:, :, 0].max(axis=1), length + reach[:, :, 1].min(axis=1)
+    half = np.where(is_line, np.maximum(high - low, 0.0), 0.0) / 2
+    across = np.where(stays, 0.0, np.einsum("kij,kj->k", step, normal) / 2)
+    middle = ends[:, 0] + along * ((low + high) / 2)[:, None] + normal * across[:, None]
+
+    noise = settings.outline_noise
+    angle = turns * noise / np.maximum(length, RESOLVED * noise) if noise else 0.0 * turns
+    along, normal = _turned(along, angle), _turned(normal, angle)
+    first, last = middle - along * half[:, None], middle + along * half[:, None]
+    points = np.stack((first, last), axis=1)
+    return tuple(
+        replace(interface, points=points[k, : len(interface.points)], normal=(nx, ny))
+        for k, (interface, (nx, ny)) in enumerate(
+            zip(model.interfaces, normal.tolist(), strict=True)
+        )
+    )
+
+
+def _of_both_stones(
+    model: RigidBlockModel, steps: Floats
+) -> tuple[Floats, NDArray[np.bool_], NDArray[np.bool_]]:
+    """Tell of the stones at every interface how they move.
+
+    Returns
+    -------
+    step : (k, 2, 2) float array
+        Of the stone that the normal points into, and of the other one.
+    stays : (k,) bool array
+        One of them cannot move.
+    endless : (k, 2) bool array
+        It is the ground.
+    """
+    place = {block.id: row for row, block in enumerate(model.blocks)} | {GROUND: -1}
+    pairs = np.array([(place[i.block], place[i.other]) for i in model.interfaces])
+    endless = pairs < 0
+    fixed = np.array([*(block.fixed for block in model.blocks), True])
+    return np.append(steps, [(0.0, 0.0)], axis=0)[pairs], fixed[pairs].any(axis=1), endless
+
+
+def _turned(vectors: Floats, angle: Floats) -> Floats:
+    """Turn each vector counter-clockwise."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    x, y = vectors.T
+    return np.column_stack((cos * x - sin * y, sin * x + cos * y))
+
+
+def _nonsense(name: str, given: float, wanted: str) -> InputError:
+    what = f"{name} of {given} makes no sense for the scatter."
+    return InputError("E318", what, where=name, cure=f"Give {wanted}.")

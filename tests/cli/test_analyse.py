@@ -1,0 +1,178 @@
+"""`drystone analyse`: the card, loads, contacts, gaps, scatter, failures."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from drystone.cli.commands import analyse
+from drystone.io.wall_image import write_labels
+from drystone.statics.failure import load_program
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
+from tests.cli.conftest import Run
+from tests.statics.walls import coursed
+
+
+@pytest.fixture
+def tower(tmp_path: Path) -> Path:
+    """A block 1 x 4, mu .58: it rocks at .25."""
+    return written(tmp_path / "tower.json", [{"id": 1, "polygon": box(0, 0, 1, 4)}])
+
+
+@pytest.fixture
+def bridge(tmp_path: Path) -> Path:
+    """A beam on two fixed supports."""
+    supports = [{"id": i, "polygon": box(x, 0, 1, 1), "fixed": True} for i, x in ((1, 0), (2, 3))]
+    return written(tmp_path / "bridge.json", [*supports, {"id": 3, "polygon": box(0, 1, 4, 1)}])
+
+
+def box(x, y, width, height):
+    return [[x, y], [x + width, y], [x + width, y + height], [x, y + height]]
+
+
+def written(path, blocks):
+    path.write_text(json.dumps({"blocks": blocks, "mu": 0.58}), encoding="utf-8")
+    return path
+
+
+def test_the_card_says_what_an_engineer_quotes(tower: Path, run: Run) -> None:
+    said = run("analyse", tower).out
+    for words in (
+        "load to the left", "alpha = 0.2500", "without dilatancy", "adequacy factor",
+        "Rocking of block 1 about its right toe.", "d alpha / d mu = 0.000",
+        "tilted by 14.0 degrees", "no tension", "equilibrium to", "HiGHS simplex",
+        hashlib.sha256(tower.read_bytes()).hexdigest()[:16],
+    ):  # fmt: skip
+        assert words in said
+
+
+def test_json_keeps_the_contract(tower: Path, run: Run) -> None:
+    report = run("analyse", tower, "--json").json()
+    assert report["nonassociative"]["alpha_left"] == pytest.approx(0.25)
+    assert report["nonassociative"]["status_right"] == "optimal"
+    assert set(report["certificate"]) >= {"gap_left", "gap_right", "residual"}
+    assert report["certificate"]["gap_left"] <= 1e-8
+    assert report["sensitivity"] == pytest.approx({"left": 0, "right": 0}, abs=1e-9)
+    assert "Rocking" in report["words"]["left"]
+    left_out = run("analyse", tower, "--json", "--associative-only").json()
+    assert left_out["nonassociative"] is None
+
+
+@pytest.mark.parametrize("solver", ["highs", "highs-ipm", "clarabel"])
+def test_any_solver_can_be_asked(tower: Path, run: Run, solver: str) -> None:
+    assert run("analyse", tower, "--json", "--solver", solver).json()["alpha_left"] == (
+        pytest.approx(0.25)
+    )
+
+
+def test_loads(tower: Path, run: Run) -> None:
+    def alphas(*options: str) -> tuple[float, float]:
+        report = run("analyse", tower, "--json", "--associative-only", *options).json()
+        return report["alpha_left"], report["alpha_right"]
+
+    angle = np.radians(5)
+    rest = 0.25 * np.cos(angle)
+    assert alphas("--tilt", "5") == pytest.approx((rest + np.sin(angle), rest - np.sin(angle)))
+    assert alphas("--load", "height") == pytest.approx((0.25, 0.25))
+    assert alphas("--dead", "1@0.5,4:0,-2") == pytest.approx((0.375, 0.375))
+    pull = ("--load", "points", "--live", "1@0,3:1,0")
+    assert alphas(*pull) == pytest.approx((2 / 3, 2 / 3))
+
+
+def test_cases_that_are_ranges(tower: Path, bridge: Path, run: Run) -> None:
+    report = run("analyse", bridge, "--json", "--settle", "2").json()
+    assert report["alpha_least"] == pytest.approx(1 / 3)
+    assert "settlement of block 2" in run("analyse", bridge, "--settle", "2").out
+    light = run("analyse", tower, "--json", "--load", "gravity", "--dead", "1@0,3:.5,0").json()
+    assert light["alpha_least"] == pytest.approx(0.75)
+    assert (light["alpha_greatest"], light["status_greatest"]) == (None, "unbounded")
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [
+        (["--dead", "1:0,0"], "E138"),
+        (["--load", "points"], "E138"),
+        (["--load", "gravity", "--tilt", "3"], "E138"),
+        (["--dead", "9@0,0:1,0"], "E306"),
+        (["--settle", "1"], "E306"),
+        (["--mu", ".8:.4"], "E138"),
+        (["--mu-head", "-1"], "E138"),
+        (["--close-gaps", "3"], "E138"),
+        (["--contacts", "outlines"], "E138"),
+        (["--scatter", "0"], "E318"),
+    ],
+)
+def test_options_that_make_no_sense(tower: Path, run: Run, options: list[str], code: str) -> None:
+    ran = run("analyse", tower, *options)
+    assert ran.code in (2, 3)
+    assert code in ran.err
+
+
+def gapped(path: Path) -> Path:
+    """Two courses of three stones 20 x 10 px, with joints of 2 px."""
+    labels = np.zeros((22, 64), np.uint32)
+    for course, lefts in enumerate(((0, 22, 44), (11, 33))):
+        for left in lefts:
+            row = 12 * (1 - course)
+            labels[row : row + 10, left : left + 20] = labels.max() + 1
+    write_labels(labels, path)
+    return path
+
+
+def test_gaps_are_closed_and_that_is_said(tmp_path: Path, run: Run) -> None:
+    wall = gapped(tmp_path / "gapped.png")
+    assert run("analyse", wall, "--json").json()["status_left"] == "unstable"
+    closed = run("analyse", wall, "--json", "--close-gaps", "2").json()
+    assert closed["F_LR"] > 0.5
+    assert "closed up to 2 px" in closed["remarks"]["gaps"]
+    settled = run("analyse", wall, "--close-gaps", "settle")
+    assert "lowered by up to 2 px" in settled.out
+    assert "E138" in run("analyse", wall, "--close-gaps", "wide").err
+
+
+def test_contacts_from_outlines(tmp_path: Path, run: Run) -> None:
+    write_labels(coursed(3, 4, 90), tmp_path / "wall.png")
+    pixels = run("analyse", tmp_path / "wall.png", "--json").json()
+    outlines = run("analyse", tmp_path / "wall.png", "--json", "--contacts", "outlines").json()
+    assert outlines["F_LR"] == pytest.approx(pixels["F_LR"], rel=0.02)
+    assert outlines["remarks"] == {"contacts": "from sub-pixel outlines"}
+
+
+def test_head_joints_without_friction(tmp_path: Path, run: Run) -> None:
+    write_labels(coursed(3, 6, 90), tmp_path / "wall.png")
+    rough = run("analyse", tmp_path / "wall.png", "--json").json()
+    smooth = run("analyse", tmp_path / "wall.png", "--json", "--mu-head", "0").json()
+    assert smooth["F_LR"] < rough["F_LR"]
+    assert smooth["remarks"] == {"head joints": "friction 0"}
+
+
+def test_scatter_is_the_same_for_any_number_of_jobs(tmp_path: Path, run: Run) -> None:
+    write_labels(coursed(3, 3, 60), tmp_path / "wall.png")
+    options = ("--mu", ".4:.8", "--scatter", "12", "--outline-noise", ".2", "--json")
+    reports = [
+        run("analyse", tmp_path / "wall.png", *options, "--jobs", jobs).json()["scatter"]
+        for jobs in ("1", "2")
+    ]
+    assert reports[0] == reports[1]
+    assert len(reports[0]["status"]) == 12
+    assert all(0.4 <= mu <= 0.8 for mu in reports[0]["mu"])
+    ran = run("analyse", tmp_path / "wall.png", *options[:4], "-o", tmp_path / "out")
+    assert "12 walls, seed 0, mu 0.4 to 0.8" in ran.out
+    assert (tmp_path / "out" / "scatter.png").exists()
+
+
+def test_a_failed_solve_is_saved_for_a_report(
+    tower: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def failing(model, *_, **__):
+        left, right = (LimitResult(LimitStatus.FAILED, d) for d in ("left", "right"))
+        return LateralResistance(left, right, model.mu)
+
+    monkeypatch.setattr(analyse, "lateral_resistance", failing)
+    ran = run("analyse", tower, "--associative-only", "-o", tmp_path / "out")
+    assert ran.code == 5
+    assert "E140" in ran.err
+    assert load_program(tmp_path / "out" / "drystone-failed.npz").block_ids == (1,)

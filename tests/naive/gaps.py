@@ -1,0 +1,39 @@
+"""Slow, obvious twins of drystone.statics.gaps."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+Pixels = list[tuple[int, int]]
+
+
+def distance(labels: NDArray[np.uint32], one: int, other: int) -> float:
+    """Between the edges of two stones, pixel by pixel."""
+    first: Pixels = np.argwhere(labels == one).tolist()
+    second: Pixels = np.argwhere(labels == other).tolist()
+    return min(
+        math.hypot(max(abs(r - s) - 1, 0), max(abs(c - d) - 1, 0))
+        for r, c in first
+        for s, d in second
+    )
+
+
+def lies_between(labels: NDArray[np.uint32], row: int, col: int) -> bool:
+    """Whether a way to a side and the opposite way end at two blocks, or a stone and the ground.
+
+    Slantwise ways count as well, since joints meet at corners.
+    """
+    height, width = labels.shape
+
+    def first_in(down: int, right: int) -> int:
+        r, c = row, col
+        while 0 <= r < height and 0 <= c < width:
+            if labels[r, c]:
+                return int(labels[r, c])
+            r, c = r + down, c + right
+        return -1 if r == height else 0
+
+    ways = ((0, 1), (1, 0), (1, 1), (1, -1))
+    ends = [(first_in(down, right), first_in(-down, -right)) for down, right in ways]
+    return any(a and b and a != b for a, b in ends)

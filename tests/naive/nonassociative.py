@@ -1,0 +1,161 @@
+"""Slow, obvious twin of drystone.statics.nonassociative: every set of contact states is tried."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import highspy
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array
+
+from drystone.statics.model import GROUND, Direction, RigidBlockModel
+
+Floats = NDArray[np.float64]
+
+STATES = ("open", "stick", "slide+", "slide-")
+"""Of a contact point; "slide+" along its tangent."""
+
+INF = highspy.kHighsInf
+ANSWERS = (highspy.HighsModelStatus.kOptimal, highspy.HighsModelStatus.kInfeasible)
+
+MOTION = {
+    "open": ((0.0, INF), (-INF, INF)),
+    "stick": ((0.0, 0.0), (0.0, 0.0)),
+    "slide+": ((0.0, 0.0), (0.0, INF)),
+    "slide-": ((0.0, 0.0), (-INF, 0.0)),
+}
+"""Bounds of the rates of opening and slip."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Load multipliers of all solutions with the same states of the contact points."""
+
+    least: float
+    greatest: float
+
+
+@dataclass(frozen=True)
+class _Wall:
+    """Contact (rows, m) matrices, not scaled: a force in column k acts on the blocks so."""
+
+    normal: Floats
+    tangent: Floats
+    dead: Floats
+    live: Floats
+    mu: float
+
+
+def all_limits(model: RigidBlockModel, direction: Direction) -> list[Limits]:
+    """Enumerate the solutions of the non-associative problem for a handful of blocks.
+
+    States are given to one contact point after another; a branch ends where no forces or no
+    motion are left, whatever the other points do.
+    """
+    wall = _wall(model, 1.0 if direction == "right" else -1.0)
+    return list(_branch(wall, _motions(wall), _forces(wall), []))
+
+
+def _branch(
+    wall: _Wall, motions: highspy.Highs, forces: highspy.Highs, states: list[str]
+) -> Iterator[Limits]:
+    if _least(motions, 0, 0.0) is None:
+        return
+    least = _least(forces, 0, 1.0)
+    if least is None:
+        return
+    k, count = len(states), wall.normal.shape[1]
+    if k == count:
+        greatest = _least(forces, 0, -1.0)
+        assert greatest is not None
+        yield Limits(least, -greatest)
+        return
+    normal, up, down = 1 + 2 * k, len(wall.dead) + 2 * k, len(wall.dead) + 2 * k + 1
+    for state in STATES:
+        opens, slips = MOTION[state]
+        motions.changeRowBounds(k, *opens)
+        motions.changeRowBounds(count + k, *slips)
+        forces.changeColBounds(normal, 0.0, 0.0 if state == "open" else INF)
+        # Full friction against the slip: t = -mu n along the tangent, t = mu n against it.
+        forces.changeRowBounds(up, 0.0 if state == "slide-" else -INF, 0.0)
+        forces.changeRowBounds(down, 0.0 if state == "slide+" else -INF, 0.0)
+        yield from _branch(wall, motions, forces, [*states, state])
+    motions.changeRowBounds(k, 0.0, INF)
+    motions.changeRowBounds(count + k, -INF, INF)
+    forces.changeColBounds(normal, 0.0, INF)
+    forces.changeRowBounds(up, -INF, 0.0)
+    forces.changeRowBounds(down, -INF, 0.0)
+
+
+def _motions(wall: _Wall) -> highspy.Highs:
+    """Rates of opening, rates of slip, and the power of the live load by velocities of blocks."""
+    count = wall.normal.shape[1]
+    rows = np.vstack((wall.normal.T, wall.tangent.T, wall.live))
+    least = np.concatenate((np.zeros(count), np.full(count, -INF), [1.0]))
+    greatest = np.concatenate((np.full(2 * count, INF), [1.0]))
+    free = np.full(len(wall.live), INF)
+    return _program(rows, least, greatest, -free, free)
+
+
+def _forces(wall: _Wall) -> highspy.Highs:
+    """Equilibrium, and t - mu n and -t - mu n at each point, by alpha and all n and t."""
+    size, count = wall.normal.shape
+    rows = np.zeros((size + 2 * count, 1 + 2 * count))
+    rows[:size, 0], rows[:size, 1::2], rows[:size, 2::2] = wall.live, wall.normal, wall.tangent
+    for k in range(count):
+        rows[size + 2 * k, 1 + 2 * k : 3 + 2 * k] = (-wall.mu, 1.0)
+        rows[size + 2 * k + 1, 1 + 2 * k : 3 + 2 * k] = (-wall.mu, -1.0)
+    least = np.concatenate((-wall.dead, np.full(2 * count, -INF)))
+    greatest = np.concatenate((-wall.dead, np.zeros(2 * count)))
+    lowest = np.full(1 + 2 * count, -INF)
+    lowest[1::2] = 0.0
+    return _program(rows, least, greatest, lowest, np.full(1 + 2 * count, INF))
+
+
+def _least(highs: highspy.Highs, column: int, cost: float) -> float | None:
+    """Least of cost times one unknown, or None when nothing is feasible."""
+    highs.changeColCost(column, cost)
+    highs.run()
+    if highs.getModelStatus() not in ANSWERS:
+        highs.clearSolver()  # a warm start that went wrong
+        highs.run()
+    status = highs.getModelStatus()
+    assert status in ANSWERS
+    feasible = status == highspy.HighsModelStatus.kOptimal
+    return cost * highs.getSolution().col_value[column] if feasible else None
+
+
+def _program(
+    rows: Floats, least: Floats, greatest: Floats, lowest: Floats, highest: Floats
+) -> highspy.Highs:
+    highs = highspy.Highs()
+    for name, value in (("output_flag", False), ("presolve", "off"), ("threads", 1)):
+        highs.setOptionValue(name, value)
+    table = csc_array(rows)
+    count, columns = rows.shape
+    highs.passModel(
+        columns, count, table.nnz, 1, 1, 0.0, np.zeros(columns), lowest, highest, least, greatest,
+        table.indptr.astype(np.int32), table.indices.astype(np.int32), table.data,
+        np.zeros(columns, np.int32),
+    )  # fmt: skip
+    return highs
+
+
+def _wall(model: RigidBlockModel, sign: float) -> _Wall:
+    rows = {block.id: 3 * i for i, block in enumerate(model.blocks)}
+    centroid = {block.id: block.centroid for block in model.blocks}
+    contacts = [(i, p) for i in model.interfaces for p in i.points]
+    shape = (3 * len(model.blocks), len(contacts))
+    normal, tangent = np.zeros(shape), np.zeros(shape)
+    for k, (interface, (px, py)) in enumerate(contacts):
+        nx, ny = interface.normal
+        for matrix, (fx, fy) in ((normal, (nx, ny)), (tangent, (ny, -nx))):
+            for block, side in ((interface.block, 1.0), (interface.other, -1.0)):
+                if block != GROUND:
+                    cx, cy = centroid[block]
+                    moment = (px - cx) * fy - (py - cy) * fx
+                    matrix[rows[block] : rows[block] + 3, k] = side * np.array([fx, fy, moment])
+    weights = np.array([block.weight for block in model.blocks])
+    dead, live = np.zeros((2, len(weights), 3))
+    dead[:, 1], live[:, 0] = -weights, sign * weights
+    return _Wall(normal, tangent, dead.ravel(), live.ravel(), model.mu)

@@ -1,0 +1,237 @@
+"""A thousand random walls: no crash, no false "optimal", lower bound <= upper bound.
+
+Every answer is proved again from the blocks and interfaces alone: forces in equilibrium and within
+friction for both directions show that a wall stands (and, by convexity, that it stands under its
+own weight); a mechanism bounds what it carries, or falls.
+"""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import ndimage
+
+from drystone.statics.blocks import model_from_labels
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import GROUND
+from drystone.statics.nonassociative import nonassociative_resistance
+from drystone.statics.result import LimitStatus
+from tests.naive.statics import limit_alphas
+from tests.strategies import (
+    brick_labels,
+    dust_labels,
+    floating_labels,
+    hanging_labels,
+    holed_labels,
+    label_images,
+    repeatable,
+    stacked_labels,
+)
+
+FRICTIONS = st.sampled_from([0.58, 0.3, 0.1, 0.0, 0.9, 1.0, 50.0])
+ALLOWED = 1e-7
+"""Of an unbalanced force, in mean weights, or of a closing contact, in the largest velocity."""
+
+
+def picture(*rows):
+    """Rows from the top as a label image."""
+    return np.array(rows, np.uint32)
+
+
+def hangs_in_the_air(labels):
+    """Whether some stones are joined to the ground by no chain of touching stones."""
+    filled = np.flatnonzero(labels.any(axis=1))
+    standing = labels[: filled[-1] + 1] if filled.size else labels
+    pieces, count = ndimage.label(standing, np.ones((3, 3)))
+    reached = {0, *pieces[-1:].ravel().tolist()}
+    while True:  # another piece of an id that stands is carried by it
+        ids = standing[np.isin(pieces, list(reached))]
+        more = reached | set(pieces[np.isin(standing, ids)].tolist())
+        if more == reached:
+            return len(reached) < count + 1
+        reached = more
+
+
+def unbalanced(model, result, sign):
+    """Largest force or moment on a block that is not balanced, in mean weights."""
+    push = {b.id: np.array([sign * result.alpha, -1, 0]) * b.weight for b in model.blocks}
+    centroid = {block.id: block.centroid for block in model.blocks}
+    forces = iter(result.forces)
+    for interface in model.interfaces:
+        nx, ny = interface.normal
+        for x, y in interface.points:
+            normal, along = next(forces)
+            assert abs(along) <= model.mu * normal + ALLOWED * mean_weight(model)
+            fx, fy = normal * nx + along * ny, normal * ny - along * nx
+            for block, side in ((interface.block, 1), (interface.other, -1)):
+                if block != GROUND:
+                    cx, cy = centroid[block]
+                    moment = (x - cx) * fy - (y - cy) * fx
+                    push[block] += side * np.array([fx, fy, moment / mean_length(model)])
+    assert next(forces, None) is None
+    return max(np.abs(left).max() for left in push.values()) / mean_weight(model)
+
+
+def mean_weight(model):
+    return np.mean([block.weight for block in model.blocks])
+
+
+def mean_length(model):
+    return np.sqrt(np.mean([block.area for block in model.blocks]))
+
+
+def work_of_weight(model, mechanism, sign):
+    """Of the weight as it lies and as it pushes, in mean weights; the mechanism is admissible."""
+    velocity = dict(zip(mechanism.block_ids, mechanism.velocity, strict=True))
+    centroid = {block.id: block.centroid for block in model.blocks}
+    turning = np.abs(mechanism.velocity[:, 2]).max() * mean_length(model)
+    for interface in model.interfaces:
+        nx, ny = interface.normal
+        for x, y in interface.points:
+            apart = np.zeros(2)
+            for block, side in ((interface.block, 1), (interface.other, -1)):
+                if block != GROUND:
+                    (cx, cy), (vx, vy, turn) = centroid[block], velocity[block]
+                    apart += side * np.array([vx - turn * (y - cy), vy + turn * (x - cx)])
+            opening, slip = apart @ (nx, ny), abs(apart @ (ny, -nx))
+            assert opening >= model.mu * slip - ALLOWED * max(1.0, turning) * (1 + model.mu)
+    down, along = 0.0, 0.0
+    for block in model.blocks:
+        down -= block.weight * velocity[block.id][1] / mean_weight(model)
+        along += sign * block.weight * velocity[block.id][0] / mean_weight(model)
+    return down, along
+
+
+def assert_proved(labels, mu):
+    """Analyse a wall and prove the answer again."""
+    model = model_from_labels(labels, mu).model
+    ids, pixels = np.unique(labels[labels > 0], return_counts=True)
+    assert [(b.id, b.area) for b in model.blocks] == list(zip(ids, pixels, strict=True))
+    both = lateral_resistance(model, mechanism=True)
+    if not model.blocks:
+        assert both.left.status is both.right.status is LimitStatus.UNBOUNDED
+        return both
+    assert both.left.status is both.right.status
+    for result, sign in ((both.left, -1.0), (both.right, 1.0)):
+        assert result.status in (LimitStatus.OPTIMAL, LimitStatus.UNSTABLE)
+        assert result.certificate.holds
+        down, along = work_of_weight(model, result.mechanism, sign)
+        if result.status is LimitStatus.UNSTABLE:
+            assert result.alpha is None
+            assert down > ALLOWED
+            continue
+        bounds = sign * result.certificate.lower, sign * result.certificate.upper
+        assert bounds[0] <= bounds[1] + 1e-8 * max(1.0, bounds[1])
+        assert unbalanced(model, result, sign) <= ALLOWED
+        assert along > 0
+        assert -down / along == pytest.approx(result.alpha, abs=1e-6)
+    if both.stable:
+        assert not hangs_in_the_air(labels)
+    return both
+
+
+@given(brick_labels(), FRICTIONS)
+@repeatable(200)
+def test_brick_walls(labels, mu):
+    assert_proved(labels, mu)
+
+
+@given(stacked_labels(), FRICTIONS)
+@repeatable(200)
+def test_degenerate_stacks(labels, mu):
+    assert_proved(labels, mu)
+
+
+@given(dust_labels(), FRICTIONS)
+@repeatable(200)
+def test_single_pixels_and_ids_in_pieces(labels, mu):
+    assert_proved(labels, mu)
+
+
+@given(holed_labels(), FRICTIONS)
+@repeatable(150)
+def test_walls_with_holes(labels, mu):
+    assert_proved(labels, mu)
+
+
+@given(hanging_labels(), FRICTIONS)
+@repeatable(100)
+def test_stones_that_hang_between_pillars(labels, mu):
+    assert_proved(labels, mu)
+
+
+@given(floating_labels(), FRICTIONS)
+@repeatable(100)
+def test_a_floating_stone_is_never_optimal(labels, mu):
+    assert hangs_in_the_air(labels)
+    assert assert_proved(labels, mu).right.status is LimitStatus.UNSTABLE
+
+
+@given(label_images(), st.sampled_from([0.58, 0.3, 0.9]))
+@repeatable(100)
+def test_random_walls_equal_their_twin(labels, mu):
+    model = model_from_labels(labels, mu).model
+    both = lateral_resistance(model)
+    expected = limit_alphas(model) if model.blocks else None
+    assert both.stable == (expected is not None)
+    if expected:
+        assert (both.left.alpha, both.right.alpha) == pytest.approx(expected, abs=1e-6)
+
+
+@given(label_images(), FRICTIONS)
+@repeatable(50)
+def test_without_dilatancy_random_walls_carry_no_more(labels, mu):
+    model = model_from_labels(labels, mu).model
+    associative, both = lateral_resistance(model), nonassociative_resistance(model)
+    pairs = ((associative.left, both.left, -1.0), (associative.right, both.right, 1.0))
+    for upper, result, sign in pairs:
+        if not upper.success:
+            assert result.status is upper.status
+            assert result.alpha is None
+        elif result.success:
+            assert 0 <= result.alpha <= upper.alpha + 1e-9
+            assert unbalanced(model, result, sign) <= ALLOWED
+        else:
+            assert result.status in (LimitStatus.UNSTABLE, LimitStatus.FAILED)
+
+
+RING = picture([7, 7, 7, 7], [7, 0, 0, 7], [7, 0, 0, 7], [7, 7, 7, 7])
+LOOSE = picture([7] * 5, [7, 0, 0, 0, 7], [7, 0, 3, 0, 7], [7, 0, 0, 0, 7], [7] * 5)
+HELD = picture([7] * 5, [7, 0, 0, 0, 7], [7, 0, 0, 0, 7], [7, 0, 3, 0, 7], [7] * 5)
+PIECES = picture([5, 5, 0], [0, 0, 0], [5, 0, 0])
+
+
+@pytest.mark.parametrize(
+    ("labels", "mu", "left", "right"),
+    [
+        (picture([1]), 0.58, 0.58, 0.58),  # one pixel slides, or turns about its edge
+        (picture([1]), 50.0, 1.0, 1.0),
+        (picture(*[[1]] * 9), 0.58, 1 / 9, 1 / 9),  # one pixel wide: a needle
+        (picture([3], [2], [1]), 0.58, 1 / 3, 1 / 3),
+        (picture([1] * 9), 50.0, 9.0, 9.0),
+        (picture([1, 2, 3]), 0.58, 0.58, 0.58),
+        (picture([1, 2, 3]), 0.0, 0.0, 0.0),
+        (picture(*[[2**32 - 1] * 2] * 4), 0.9, 0.5, 0.5),
+        (RING, 0.58, 0.58, 0.58),
+        (RING, 50.0, 1.0, 1.0),
+        (HELD, 0.3, 0.3, 0.3),
+        (PIECES, 50.0, 5 / 11, 1 / 11),  # the piece in the air is a part of the other
+    ],
+)
+def test_walls_that_stand(labels, mu, left, right):
+    both = assert_proved(labels, mu)
+    assert (both.left.alpha, both.right.alpha) == pytest.approx((left, right), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("labels", "mu"),
+    [
+        (picture([1], [0], [2]), 50.0),
+        (picture([2, 1, 3], [2, 0, 3]), 0.0),  # hangs between pillars, without friction
+        (picture([2, 1, 0], [2, 0, 0]), 50.0),  # sticks to the side of one
+        (picture([0, 1], [2, 0]), 50.0),  # corner on corner
+        (LOOSE, 50.0),  # in the air of a hole
+    ],
+)
+def test_walls_that_fall(labels, mu):
+    assert not assert_proved(labels, mu).stable

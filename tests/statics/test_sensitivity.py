@@ -1,0 +1,134 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from drystone.statics.blocks import model_from_labels
+from drystone.statics.given import model_from_json
+from drystone.statics.limit import limit_load
+from drystone.statics.loads import Loads, growing_with_height, weight
+from drystone.statics.sensitivity import friction_sensitivity
+from tests.statics.walls import brick_model, coursed, irregular, stacked
+from tests.strategies import repeatable
+
+STEP = 1e-5
+
+
+def sensitivity(model, direction, loads=None):
+    return friction_sensitivity(model, limit_load(model, direction, loads, mechanism=True), loads)
+
+
+def slopes(model, direction, changed, loads=None):
+    """Difference quotients of alpha to both sides, for a change of friction by a step."""
+    low, mid, high = (
+        limit_load(changed(model, step), direction, loads).alpha for step in (-STEP, 0, STEP)
+    )
+    return (mid - low) / STEP, (high - mid) / STEP
+
+
+def everywhere(model, step):
+    interfaces = tuple(replace(i, mu=model.friction(i) + step) for i in model.interfaces)
+    return replace(model, interfaces=interfaces)
+
+
+def at(number):
+    def changed(model, step):
+        interfaces = list(model.interfaces)
+        mu = model.friction(interfaces[number]) + step
+        interfaces[number] = replace(interfaces[number], mu=mu)
+        return replace(model, interfaces=tuple(interfaces))
+
+    return changed
+
+
+def assert_slope(found, model, direction, changed, loads=None):
+    """Equal to the slope at a regular point; at a kink between those of both sides."""
+    low, high = sorted(slopes(model, direction, changed, loads))
+    assert low - 1e-3 <= found <= high + 1e-3
+
+
+@pytest.mark.parametrize("direction", ["left", "right"])
+@pytest.mark.parametrize(("width", "total"), [(40, 1.0), (10, 0.0)])
+def test_sliding_follows_friction_and_rocking_does_not(direction, width, total):
+    model = model_from_labels(stacked((width, 20, 0), (width, 20, 0))).model
+    found = sensitivity(model, direction)
+    assert found.total == pytest.approx(total, abs=1e-9)
+    assert found.per_interface.shape == (len(model.interfaces),)
+
+
+def test_the_joint_that_slides_is_named():
+    model = model_from_labels(stacked((40, 10, 0), (40, 10, 0), (40, 10, 0))).model
+    slippery = tuple(replace(i, mu=0.2) if i.block == 3 else i for i in model.interfaces)
+    model = replace(model, interfaces=slippery)
+    shares = {i.block: 0.0 for i in model.interfaces} | {3: 1.0}
+    found = sensitivity(model, "right").per_interface
+    assert found == pytest.approx([shares[i.block] for i in model.interfaces], abs=1e-9)
+
+
+@given(
+    seed=st.integers(0, 10**6),
+    direction=st.sampled_from(["left", "right"]),
+    mu=st.sampled_from([0.3, 0.47, 0.61]),
+    tilted=st.booleans(),
+)
+@repeatable(30)
+def test_it_is_the_slope_of_alpha(seed, direction, mu, tilted):
+    labels = irregular(seed, 9, 90, 50) if tilted else coursed(seed, 3, 70)
+    model = model_from_labels(labels, mu).model
+    assume(limit_load(everywhere(model, -STEP), direction).success)
+    assert_slope(sensitivity(model, direction).total, model, direction, everywhere)
+
+
+@pytest.mark.parametrize("number", range(9))
+def test_of_every_interface_it_is_the_slope_for_friction_there(number):
+    model = brick_model(2, 2, 1.3, 0.43)
+    model = replace(
+        model,
+        interfaces=tuple(replace(i, mu=0.35 + 0.04 * k) for k, i in enumerate(model.interfaces)),
+    )
+    found = sensitivity(model, "right").per_interface
+    assert len(found) == 9
+    assert_slope(found[number], model, "right", at(number))
+
+
+@pytest.mark.parametrize("direction", ["left", "right"])
+def test_other_loads_than_the_tilting_table(direction):
+    model = brick_model(3, 3, 0.5, 0.4)
+    for loads in (
+        growing_with_height(model),
+        Loads(weight(model), 3.0 * weight(model)[:, [1, 0, 2]]),
+    ):
+        found = sensitivity(model, direction, loads).total
+        assert found > 0.1
+        assert_slope(found, model, direction, everywhere, loads)
+
+
+def test_without_friction_it_is_the_slope_of_the_first_friction():
+    model = model_from_labels(stacked((40, 10, 0)), 0.0).model
+    assert sensitivity(model, "right").total == pytest.approx(1.0)
+
+
+def test_what_does_not_move_counts_for_nothing():
+    ground = [[0, 0], [4, 0], [4, 1], [0, 1]]
+    block = [[0, 1], [4, 1], [4, 2], [0, 2]]
+    blocks = [{"id": 1, "polygon": ground, "fixed": True}, {"id": 2, "polygon": block}]
+    model = model_from_json({"blocks": blocks})
+    assert sensitivity(model, "left").total == pytest.approx(1.0)
+
+
+def test_a_result_without_mechanism_has_no_sensitivity():
+    model = brick_model(2, 2, 1.0, 0.5)
+    with pytest.raises(ValueError, match="mechanism and forces"):
+        friction_sensitivity(model, limit_load(model, "right"))
+    falls = model_from_labels(stacked((20, 20, 0), (20, 20, 12))).model
+    with pytest.raises(ValueError, match="optimal"):
+        friction_sensitivity(falls, limit_load(falls, "right", mechanism=True))
+
+
+def test_no_share_is_negative():
+    model = model_from_labels(irregular(8, 20, 90, 50)).model
+    found = sensitivity(model, "right").per_interface
+    assert (found >= -1e-9).all()
+    assert np.count_nonzero(found > 1e-3) > 1
