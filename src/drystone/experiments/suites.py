@@ -8,6 +8,7 @@ from drystone.experiments.table import BenchSettings, Table
 SUITES = {
     "statics": ("published and closed-form cases of the limit analysis", "published"),
     "pixels": ("the same cases from pixels, and tilted joints at 40 to 320 px", "pixels"),
+    "walls": ("planned walls: agreement of solvers and certificates at every step", "agreement"),
     "solvers": ("ms a candidate (both tilts) of every solver beside a fresh linprog", "solvers"),
     "shear": ("shear tests of dry-joint walls, predicted over measured", "shear"),
     "tilt": ("walls tilted in a rigid-body engine beside the limit analysis", "tilt"),

@@ -11,6 +11,7 @@ does not, the program is solved again from the start and by other algorithms.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, Protocol
 
 import numpy as np
@@ -60,7 +61,7 @@ class Answer:
     solution: Solution
     certificate: Certificate | None
 
-    @property
+    @cached_property
     def status(self) -> LimitStatus:
         """FAILED unless the certificate holds."""
         if self.certificate is None or not self.certificate.holds:

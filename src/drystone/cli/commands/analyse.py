@@ -14,7 +14,7 @@ from drystone.cli.loads import is_range, load_case
 from drystone.cli.modelling import Modelled, modelled
 from drystone.cli.output import print_json, print_table
 from drystone.cli.walls import read_wall, unsupported
-from drystone.errors import ExitCode
+from drystone.errors import ExitCode, Notice
 from drystone.statics.failure import save_program
 from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import Loads
@@ -123,9 +123,10 @@ def _keep_failure(
         return ExitCode.DONE
     path = (folder or Path()) / "drystone-failed.npz"
     save_program(wall.model, loads, path)
-    print(
-        "drystone: E140 no solver found an answer that can be certified. The linear program was"
-        f" saved as {path}: please report it.",
-        file=sys.stderr,
+    said = Notice(
+        "E140",
+        "no solver found an answer that can be certified.",
+        f"Please report it with {path}, the linear program.",
     )
+    print(f"drystone: {said}", file=sys.stderr)
     return ExitCode.CHECK_FAILED
