@@ -127,7 +127,7 @@ def test_gaps_are_closed_and_that_is_said(tmp_path: Path, run: Run) -> None:
     assert run("analyse", wall, "--json").json()["status_left"] == "unstable"
     closed = run("analyse", wall, "--json", "--close-gaps", "2").json()
     assert closed["F_LR"] > 0.5
-    assert "closed up to 2 px" in closed["remarks"]["gaps"]
+    assert "gaps up to 2 px closed" in closed["remarks"]["gaps"]
     settled = run("analyse", wall, "--close-gaps", "settle")
     assert "lowered by up to 2 px" in settled.out
     assert "E138" in run("analyse", wall, "--close-gaps", "wide").err

@@ -115,12 +115,12 @@ def _with_closed_gaps(
         labels, moved = settle_gaps(labels)
         picture = model_from_labels(labels, mu)
         farthest = max((max(abs(dx), abs(dy)) for dx, dy in moved.values()), default=0)
-        done = f"{len(moved)} stones lowered by up to {farthest} px"
+        done = f"{len(moved)} stones lowered by up to {farthest} px; "
     else:
         picture = model_with_closed_gaps(labels, reach, mu)
-        done = f"closed up to {reach:g} px"
+        done = ""
     spread = closed_gap_spread(labels if reach is not None else _labels(wall), reach, mu)
-    remarks = {"gaps": f"{done}; F_LR {spread.words()}"}
+    remarks = {"gaps": f"{done}{spread.words()}"}
     return Modelled(picture.model, labels, "stone", wall.wedge_ids, picture.notices, remarks)
 
 
