@@ -11,11 +11,12 @@ from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame, plan_metrics, plan_steps
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import action_indices
-from drystone.planner.plan_wall import plan_wall
+from drystone.planner.plan_wall import PlanResult, plan_wall
 from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.blocks import model_with
+from drystone.statics.growing import Grown, WarmGrowth
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
@@ -41,7 +42,7 @@ def wedged_build() -> tuple[Build, Frame]:
     indices, course = action_indices(Landscape.of(empty), stabilised, resistance, (), 4.0)
     proposal = Proposal(stabilised, 0.0)
     action = Candidate(proposal, indices, course, model, resistance)
-    return Build(empty, RigidBlockModel((), ())).add(action), Frame(60.0, 40.0, site)
+    return Build.empty(site, model.mu, 80.0).add(action), Frame(60.0, 40.0, site)
 
 
 def test_areas_are_in_square_metres_when_a_scale_is_known() -> None:
@@ -110,17 +111,45 @@ def test_candidates_on_which_the_solver_gave_up_are_counted_and_said(
     assert plan_wall(stones, 60, 10, scale=1.0, method="paper").notices == ()
     calls = iter(range(1000))
 
-    def fails_first(model: RigidBlockModel, *, mechanism: bool = False) -> LateralResistance:
+    def fails_first(analysis: WarmGrowth, model: RigidBlockModel) -> Grown:
         if next(calls) > 0:
-            return lateral_resistance(model, mechanism=mechanism)
+            return analyse(analysis, model)
         gave_up = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
-        return LateralResistance(gave_up[0], gave_up[1], model.mu)
+        return Grown(LateralResistance(gave_up[0], gave_up[1], model.mu), solved_cold=True)
 
-    monkeypatch.setattr("drystone.planner.evaluate.lateral_resistance", fails_first)
+    analyse = WarmGrowth.resistance_with
+    monkeypatch.setattr(WarmGrowth, "resistance_with", fails_first)
     result = plan_wall(stones, 60, 10, scale=1.0, method="paper")
-    (notice,) = result.notices
+    assert [notice.code for notice in result.notices] == ["W303", "W303"]
+    passed_over, solved_again = (notice.message for notice in result.notices)
+    assert "gave up on 1 candidates" in passed_over
+    assert "no certificate for 1 candidates at first" in solved_again
+
+
+@pytest.mark.parametrize("rounds", [0, 2])
+def test_candidates_that_were_solved_again_are_counted_and_change_nothing(
+    rounds: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings = method_settings("best").updated({"rework": {"rounds": rounds}})
+    stones = rubble(seed=1)
+
+    def planned() -> PlanResult:
+        return plan_wall(stones, 100, 36, scale=1.0, seed=1, settings=settings)
+
+    plain = planned()
+    assert plain.notices == ()
+    asked: list[RigidBlockModel] = []
+
+    def from_the_start(_: WarmGrowth, model: RigidBlockModel) -> Grown:
+        asked.append(model)
+        return Grown(lateral_resistance(model), solved_cold=True)
+
+    monkeypatch.setattr(WarmGrowth, "resistance_with", from_the_start)
+    again = planned()
+    (notice,) = again.notices
     assert notice.code == "W303"
-    assert "gave up on 1 candidates" in notice.message
+    assert f"no certificate for {len(asked)} candidates at first" in notice.message
+    assert again.wall.labels.tobytes() == plain.wall.labels.tobytes()
 
 
 def test_a_wall_in_which_nothing_can_be_placed_is_an_incomplete_plan() -> None:

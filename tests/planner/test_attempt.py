@@ -7,11 +7,13 @@ import pytest
 
 from drystone.model.landscape import Landscape
 from drystone.model.site import Site
+from drystone.model.wall import Wall
 from drystone.planner.attempt import Attempt
 from drystone.planner.build import Build, Proposal
 from drystone.planner.evaluate import Evaluator, Trial
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
+from drystone.statics.growing import GrowingAnalysis
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
 
 Key = tuple[int, float, str]
@@ -30,9 +32,11 @@ class _Calls:
             self.proposed[posed.stone.id, posed.angle_deg, trial.landscape.side] += 1
             return propose(this, build, trial)
 
-        def judge_once(this: Evaluator, build: Build, proposal: Proposal) -> object:
+        def judge_once(
+            this: Evaluator, wall: Wall, analysis: GrowingAnalysis, proposal: Proposal
+        ) -> object:
             self.judged[proposal.stone_id, proposal.trial_angle_deg, proposal.side] += 1
-            return judge(this, build, proposal)
+            return judge(this, wall, analysis, proposal)
 
         monkeypatch.setattr(Evaluator, "propose", propose_once)
         monkeypatch.setattr(Evaluator, "judge", judge_once)

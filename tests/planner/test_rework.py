@@ -1,6 +1,7 @@
 """Rework: the wall never gets worse."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import fields, replace
 from itertools import islice, pairwise
 from types import SimpleNamespace
@@ -9,6 +10,7 @@ from typing import Any
 import pytest
 
 from drystone.model.site import Site
+from drystone.planner.build import Build
 from drystone.planner.events import Callbacks, Round, Step
 from drystone.planner.plan_wall import plan_wall, run_to_end
 from drystone.planner.planner import Planner
@@ -33,8 +35,9 @@ def test_the_merit_never_falls(seed: int) -> None:
     assert all(one.merit <= other.merit for one, other in pairwise(incumbents))
     for incumbent in incumbents:
         assert incumbent.merit == wall_merit(incumbent.planner)
-        assert incumbent.states[-1].actions == incumbent.planner.build.actions
-        assert len(incumbent.states) == len(incumbent.planner.build.actions) + 1
+        states = incumbent.planner.build.states()
+        assert [len(state.actions) for state in states] == list(range(len(states)))
+        assert states[-1] is incumbent.planner.build
         assert all(a.resistance.stable for a in incumbent.planner.build.actions)
     assert order(planner) == before
 
@@ -155,3 +158,24 @@ def test_rounds_vary_every_craft_weight_and_nothing_else(monkeypatch: pytest.Mon
     assert all(getattr(old, name) != getattr(new, name) for name in weights)
     assert old.analysed == new.analysed
     assert replace(varied.settings, score=old) == planner.settings
+
+
+def test_rounds_go_back_some_steps_of_the_best_wall(monkeypatch: pytest.MonkeyPatch) -> None:
+    planner = finish(_planner(8))
+    starts: list[Build] = []
+    steps = Planner.steps
+
+    def spy(self: Planner) -> Iterator[Step]:
+        starts.append(self.build)
+        return steps(self)
+
+    monkeypatch.setattr(Planner, "steps", spy)
+    incumbents = list(rework(planner))
+    back = []
+    for best, start in zip(incumbents, starts, strict=False):
+        states = best.planner.build.states()
+        assert any(state is start for state in states)
+        back.append(len(states) - 1 - len(start.actions))
+        assert 1 <= back[-1] <= math.ceil(0.6 * (len(states) - 1))
+    assert len(back) == 8
+    assert len(set(back)) > 1

@@ -13,7 +13,7 @@ from drystone.model.placement import Placement
 from drystone.model.plan import StoneStep
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
-from drystone.planner.build import Build
+from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import Evaluator, Trial
 from drystone.planner.plan_wall import mean_top, plan_wall, working_scale
 from drystone.planner.planner import Planner
@@ -81,6 +81,10 @@ def _scene(
     return planner, Evaluator(settings, workshop.memory, workshop.stock)
 
 
+def _judged(evaluator: Evaluator, build: Build, proposal: Proposal) -> Candidate:
+    return evaluator.judge(build.wall, build.analysis, proposal)
+
+
 def _trial(planner: Planner, stone_id: int) -> Trial:
     workshop, build = planner.workshop, planner.build
     return Trial(workshop.poses[stone_id], Landscape.of(build.wall), workshop.rest(build))
@@ -95,7 +99,7 @@ def test_a_stone_bridges_two_pillars_without_a_wedge(settings: PlannerSettings) 
     placement = proposal.stabilised.placement
     assert (placement.row, placement.col, placement.rotation_moves) == (12, 0, 0)
     assert proposal.stabilised.wedges == ()
-    candidate = evaluator.judge(planner.build, proposal)
+    candidate = _judged(evaluator, planner.build, proposal)
     assert candidate.resistance.stable
     assert candidate.resistance.value is not None
     assert candidate.resistance.value > 0.3
@@ -109,7 +113,7 @@ def _half_supported(ids: tuple[int, int, int]) -> Build:
     planner, evaluator = _scene(sizes, {high: (0, 0), low: (40, 0)}, settings)
     proposal = evaluator.propose(planner.build, _trial(planner, slab))
     assert proposal is not None
-    return planner.build.add(evaluator.judge(planner.build, proposal))
+    return planner.build.add(_judged(evaluator, planner.build, proposal))
 
 
 @pytest.mark.parametrize("ids", [(3, 5, 7), (7, 300, 5), (70_000, 300, 5), (300, 1, 70_000)])
@@ -133,7 +137,7 @@ def test_two_wedges_get_two_ids() -> None:
         planner.build = build
         proposal = evaluator.propose(build, _trial(planner, slab))
         assert proposal is not None
-        build = build.add(evaluator.judge(build, proposal))
+        build = build.add(_judged(evaluator, build, proposal))
     assert [wedge.id for wedge in build.wall.wedges] == [7, 8]
 
 

@@ -50,6 +50,7 @@ class Attempt:
         self.build = build
         self.candidates = 0
         self.failed_solves = 0
+        self.cold_solves = 0
         self._workshop = workshop
         self._settings = settings
         self._executor = executor
@@ -112,12 +113,14 @@ class Attempt:
     def _judge(self, proposals: Sequence[Proposal]) -> list[Candidate]:
         keys = [(p.stone_id, p.trial_angle_deg, p.side) for p in proposals]
         new = [k for k, key in enumerate(keys) if key not in self._judged]
+        wall, analysis = self.build.wall, self.build.analysis
         results = self._map(
-            lambda proposal: self._evaluator.judge(self.build, proposal),
+            lambda proposal: self._evaluator.judge(wall, analysis, proposal),
             [proposals[k] for k in new],
         )
         self._judged.update(zip([keys[k] for k in new], results, strict=True))
         self.failed_solves += sum(result.resistance.failed for result in results)
+        self.cold_solves += sum(result.solved_cold for result in results)
         # NHR depends on the other candidates, which differ between the folds.
         return [
             self._evaluator.compared(self.build, proposal, self._judged[key])

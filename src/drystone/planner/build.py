@@ -1,11 +1,15 @@
 """The state of construction: what is built, and what it carries."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from drystone.indices.values import Indices
 from drystone.model.placement import Side
+from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone.stabilise.stabilise import Stabilised
+from drystone.statics.appending import Units
+from drystone.statics.growing import GrowingAnalysis, growing
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 
@@ -58,6 +62,9 @@ class Candidate:
         Of the wall with the action done.
     resistance : LateralResistance
         Of that model.
+    solved_cold : bool
+        True when an answer found from the bases of the wall had no certificate, and the model was
+        solved from the start.
     """
 
     proposal: Proposal
@@ -65,6 +72,7 @@ class Candidate:
     course_height_px: float | None
     model: RigidBlockModel
     resistance: LateralResistance
+    solved_cold: bool = False
 
     @property
     def stabilised(self) -> Stabilised:
@@ -94,16 +102,65 @@ class Build:
         Of the wall.
     actions : tuple of Candidate
         The chosen actions, in order.
+    grown_from : GrowingAnalysis or None
+        Of the wall before the last action; None when nothing will be built on the wall.
+    before : Build or None
+        The state before the last action, if it was kept.
     """
 
     wall: Wall
     model: RigidBlockModel
     actions: tuple[Candidate, ...] = ()
+    grown_from: GrowingAnalysis | None = None
+    before: "Build | None" = None
 
-    def add(self, action: Candidate) -> "Build":
-        """Return the state after one more action (Eq. 1)."""
+    @classmethod
+    def empty(cls, site: Site, mu: float, stone_area_px: float) -> "Build":
+        """Return the state before the first stone.
+
+        Parameters
+        ----------
+        site : Site
+            Where.
+        mu : float
+            Coefficient of friction.
+        stone_area_px : float
+            Mean area of the stones of the set, working px: the unit of weight of the limit
+            analysis, whatever is built.
+        """
+        model = RigidBlockModel((), (), mu)
+        analysis = growing(model, Units(stone_area_px**0.5, stone_area_px))
+        return cls(Wall.empty(site), model, grown_from=analysis)
+
+    @cached_property
+    def analysis(self) -> GrowingAnalysis:
+        """Limit analysis of the wall, ready for one more stone.
+
+        It depends on the models of the actions, one after the other, and on nothing else.
+        """
+        assert self.grown_from is not None  # noqa: S101 - a wall that is built on began empty
+        return self.grown_from.extended(self.model)
+
+    def add(self, action: Candidate, *, keep: bool = False) -> "Build":
+        """Return the state after one more action (Eq. 1).
+
+        Parameters
+        ----------
+        action : Candidate
+            What is done.
+        keep : bool
+            Whether the new state knows this one, to go back to it.
+        """
         wall = self.wall.add(action.stabilised.placement, action.stabilised.wedges)
-        return Build(wall, action.model, (*self.actions, action))
+        before = self if keep else None
+        return Build(wall, action.model, (*self.actions, action), self.analysis, before)
+
+    def states(self) -> "tuple[Build, ...]":
+        """Return the states of construction that were kept, in order, and this one."""
+        states = [self]
+        while (before := states[-1].before) is not None:
+            states.append(before)
+        return tuple(reversed(states))
 
     def count(self, side: Side) -> int:
         """How many stones were placed from a side."""

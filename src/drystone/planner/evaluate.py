@@ -16,6 +16,7 @@ from drystone.indices.values import Indices
 from drystone.model.landscape import Landscape, view_box
 from drystone.model.placement import Placement
 from drystone.model.pose import PosedStone
+from drystone.model.wall import Wall
 from drystone.placement.best import best_spots
 from drystone.placement.feasible import can_be_lowered
 from drystone.planner.build import Build, Candidate, Proposal
@@ -26,7 +27,7 @@ from drystone.selection.scored import craft_cost
 from drystone.stabilise.memory import StabiliseMemory
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.blocks import model_with
-from drystone.statics.limit import lateral_resistance
+from drystone.statics.growing import GrowingAnalysis
 from drystone.statics.result import LateralResistance
 
 
@@ -102,16 +103,32 @@ class Evaluator:
         posed, col = placement.posed, landscape.view_col(placement.posed, placement.col)
         return can_be_lowered(landscape, landscape.view(posed), placement.row, col)
 
-    def judge(self, build: Build, proposal: Proposal) -> Candidate:
-        """Return the candidate of a proposal: all indices, with the wall's resistance after it."""
+    def judge(self, wall: Wall, analysis: GrowingAnalysis, proposal: Proposal) -> Candidate:
+        """Return the candidate of a proposal: all indices, with the wall's resistance after it.
+
+        Parameters
+        ----------
+        wall : Wall
+            Before the action.
+        analysis : GrowingAnalysis
+            Of that wall.
+        proposal : Proposal
+            The action.
+        """
         stabilised = proposal.stabilised
-        model = model_with(build.model, build.wall.labels, stabilised.placement, stabilised.wedges)
-        resistance = lateral_resistance(model)
-        landscape = Landscape.of(build.wall, proposal.side)
+        model = model_with(analysis.model, wall.labels, stabilised.placement, stabilised.wedges)
+        grown = analysis.resistance_with(model)
+        landscape = Landscape.of(wall, proposal.side)
         indices, course_height = action_indices(
-            landscape, stabilised, resistance, proposal.other_heights_px, self.stock.narrowest_px
+            landscape,
+            stabilised,
+            grown.resistance,
+            proposal.other_heights_px,
+            self.stock.narrowest_px,
         )
-        return Candidate(proposal, indices, course_height, model, resistance)
+        return Candidate(
+            proposal, indices, course_height, model, grown.resistance, grown.solved_cold
+        )
 
     def compared(self, build: Build, proposal: Proposal, judged: Candidate) -> Candidate:
         """Return a candidate that was judged before, compared with other candidates (Eq. 8)."""

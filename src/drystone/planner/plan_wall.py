@@ -59,7 +59,8 @@ class PlanResult:
     seconds : float
         From the stones to the last step.
     notices : tuple of Notice
-        W303 when the solver gave up on some candidates, which were then passed over.
+        W303 when the solver gave up on some candidates, which were then passed over, and when
+        it had to solve some from the start, which costs time alone.
     """
 
     success: bool
@@ -168,14 +169,22 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         "settings": settings.as_dict(),
     }
     result = finish(planner, frame, stopped, provenance, seconds)
-    return replace(result, notices=_notices(first.failed_solves))
+    return replace(result, notices=_notices(first))
 
 
-def _notices(failed_solves: int) -> tuple[Notice, ...]:
-    if not failed_solves:
-        return ()
-    text = f"the solver gave up on {failed_solves} candidates, which were passed over."
-    return (Notice("W303", text, "Please report this with the stones and the settings."),)
+def _notices(planner: Planner) -> tuple[Notice, ...]:
+    said = []
+    if planner.failed_solves:
+        said.append(
+            f"the solver gave up on {planner.failed_solves} candidates, which were passed over."
+        )
+    if planner.cold_solves:
+        said.append(
+            f"the solver had no certificate for {planner.cold_solves} candidates at first, which "
+            "were solved again from the start."
+        )
+    cure = "Please report this with the stones and the settings."
+    return tuple(Notice("W303", text, cure) for text in said)
 
 
 def run_to_end(planner: Planner) -> tuple[Planner, Stopped]:

@@ -9,13 +9,12 @@ from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.attempt import Attempt
-from drystone.planner.build import Build, Proposal
+from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.events import Callbacks, Step, Stopped
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.stabilise.stabilise import Stabilised
-from drystone.statics.model import RigidBlockModel
 
 
 class Planner:
@@ -65,9 +64,10 @@ class Planner:
         self.settings = settings or PlannerSettings()
         self.workshop = workshop or Workshop.prepare(stones, site, self.settings)
         self.executor = executor
-        self.build = Build(Wall.empty(site), RigidBlockModel((), (), self.settings.mu))
+        self.build = self._empty()
         self.stopped: Stopped | None = None
         self.failed_solves = 0
+        self.cold_solves = 0
         self.callbacks = callbacks or Callbacks()
 
     def steps(self) -> Iterator[Step]:
@@ -85,17 +85,28 @@ class Planner:
             if action is None:
                 failures += 1  # lines 23-26: resample
                 continue
-            self.failed_solves += attempt.failed_solves
-            self.build = self.build.add(action)  # lines 18-22
+            self._count_solves(attempt)
+            self.build = self._added(self.build, action)  # lines 18-22
             step = Step(len(self.build.actions), action, self.build, attempt.candidates)
             attempt, failures = self._attempt(), 0
             self.callbacks.on_step(step)
             yield step
-        self.failed_solves += attempt.failed_solves
+        self._count_solves(attempt)
         self.stopped = stopped
 
     def _attempt(self) -> Attempt:
         return Attempt(self.workshop, self.settings, self.build, self.executor)
+
+    def _count_solves(self, attempt: Attempt) -> None:
+        self.failed_solves += attempt.failed_solves
+        self.cold_solves += attempt.cold_solves
+
+    def _empty(self) -> Build:
+        return Build.empty(self.workshop.site, self.settings.mu, self.workshop.stock.mean_area_px)
+
+    def _added(self, build: Build, action: Candidate) -> Build:
+        """Return the state after an action; rework goes back to the one before."""
+        return build.add(action, keep=self.settings.rework.rounds > 0)
 
     def _why_stop(self, failures: int) -> Stopped | None:
         """Say why construction ends here; None when it goes on."""
@@ -121,7 +132,7 @@ class Planner:
             For stones that began a course: the height that Eq. 8 compared with.
         """
         evaluator = Evaluator(self.settings, self.workshop.memory, self.workshop.stock)
-        build = Build(Wall.empty(wall.site), RigidBlockModel((), (), self.settings.mu))
+        build = self._empty()
         for group in wall.groups:
             placement = group.placement
             height = course_heights_px.get(placement.stone_id)
@@ -130,5 +141,6 @@ class Planner:
                 placement.posed.angle_deg,
                 other_heights_px=() if height is None else (height,),
             )
-            build = build.add(evaluator.judge(build, proposal))
+            action = evaluator.judge(build.wall, build.analysis, proposal)
+            build = self._added(build, action)
         self.build = build

@@ -12,11 +12,9 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from drystone.metrics.measure import measure_labels
-from drystone.planner.build import Build
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.selection.scored import ScoreSettings
-from drystone.statics.model import RigidBlockModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,14 +25,11 @@ class Incumbent:
     ----------
     planner : Planner
         Its :attr:`~Planner.build` is the wall.
-    states : tuple of Build
-        States of construction, from the empty wall to the finished one.
     merit : float
         Of the finished wall.
     """
 
     planner: Planner
-    states: tuple[Build, ...]
     merit: float
 
 
@@ -55,11 +50,12 @@ def rework(planner: Planner) -> Iterator[Incumbent]:
         The best wall after each round; the first is the wall as it was.
     """
     settings = planner.settings.rework
-    best = Incumbent(planner, _states(planner.build), wall_merit(planner))
+    best = Incumbent(planner, wall_merit(planner))
     yield best
     for number in range(1, settings.rounds + 1):
         rng = np.random.default_rng([planner.seed, 1_000_000 + number])
-        deepest = max(1, math.ceil(settings.deepest * (len(best.states) - 1)))
+        states = best.planner.build.states()
+        deepest = max(1, math.ceil(settings.deepest * (len(states) - 1)))
         back = int(rng.integers(1, deepest + 1))
         varied = Planner(
             planner.workshop.stones,
@@ -69,13 +65,14 @@ def rework(planner: Planner) -> Iterator[Incumbent]:
             executor=planner.executor,
             workshop=planner.workshop,
         )
-        start = max(0, len(best.states) - 1 - back)
-        varied.build = best.states[start]
-        states = (*best.states[: start + 1], *(step.build for step in varied.steps()))
+        varied.build = states[max(0, len(states) - 1 - back)]
+        for _ in varied.steps():
+            pass
         merit = wall_merit(varied)
         planner.failed_solves += varied.failed_solves
+        planner.cold_solves += varied.cold_solves
         if merit > best.merit + 1e-12:
-            best = Incumbent(varied, states, merit)
+            best = Incumbent(varied, merit)
         yield best
 
 
@@ -102,15 +99,6 @@ def wall_merit(planner: Planner) -> float:
             -weights.flush * measured.E_FLUSH,
         ]
     )
-
-
-def _states(build: Build) -> tuple[Build, ...]:
-    """Return all states of construction that led to one."""
-    site, mu = build.wall.site, build.model.mu
-    states = [Build(type(build.wall).empty(site), RigidBlockModel((), (), mu))]
-    for action in build.actions:
-        states.append(states[-1].add(action))
-    return tuple(states)
 
 
 def _varied(settings: PlannerSettings, rng: np.random.Generator) -> PlannerSettings:

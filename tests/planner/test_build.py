@@ -1,0 +1,130 @@
+"""The state of construction, and the analysis that grows with it."""
+
+from collections import Counter
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from drystone.model.site import Site
+from drystone.model.wall import Wall
+from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.evaluate import Evaluator
+from drystone.planner.planner import Planner
+from drystone.planner.rework import rework
+from drystone.planner.settings import PlannerSettings
+from drystone.statics.growing import GrowingAnalysis, Grown, WarmGrowth
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LateralResistance
+from drystone.statics.solvers.warm import NAME
+from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
+
+SETTINGS = [PlannerSettings(sampling="full", two_sided=True), greedy()]
+
+
+def _alphas(resistance: LateralResistance) -> tuple[float | None, float | None]:
+    return resistance.left.alpha, resistance.right.alpha
+
+
+@pytest.mark.parametrize("settings", SETTINGS, ids=["paper", "best"])
+def test_every_candidate_is_as_strong_as_its_model_analysed_whole(
+    settings: PlannerSettings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    judged: list[Candidate] = []
+    judge = Evaluator.judge
+
+    def watched(
+        this: Evaluator, wall: Wall, analysis: GrowingAnalysis, proposal: Proposal
+    ) -> Candidate:
+        judged.append(judge(this, wall, analysis, proposal))
+        return judged[-1]
+
+    monkeypatch.setattr(Evaluator, "judge", watched)
+    planner = finish(Planner(rubble(), RUBBLE_SITE, settings=settings))
+    assert len(judged) > len(planner.build.actions) > 4
+    unlike = 0
+    for candidate in judged:
+        whole = lateral_resistance(candidate.model)
+        for found, sought in (
+            (candidate.resistance.left, whole.left),
+            (candidate.resistance.right, whole.right),
+        ):
+            assert found.status is sought.status
+            assert found.alpha == pytest.approx(sought.alpha, abs=1e-9)
+            assert found.certificate is not None
+            assert found.certificate.holds
+            assert found.solver == NAME  # from the bases of the wall, not from the start
+        assert not candidate.solved_cold
+        unlike += _alphas(candidate.resistance) != _alphas(judged[0].resistance)
+    assert unlike > 4
+
+
+@pytest.mark.parametrize("settings", SETTINGS, ids=["paper", "best"])
+def test_the_analysis_of_a_state_gives_what_its_last_action_was_judged_by(
+    settings: PlannerSettings,
+) -> None:
+    for step in Planner(rubble(seed=1), RUBBLE_SITE, seed=1, settings=settings).steps():
+        analysis = step.build.analysis
+        assert analysis.model is step.build.model is step.action.model
+        assert _alphas(analysis.grown.resistance) == _alphas(step.action.resistance)
+
+
+def test_no_state_is_analysed_twice_not_even_by_rework(monkeypatch: pytest.MonkeyPatch) -> None:
+    models: list[RigidBlockModel] = []
+    extended = WarmGrowth.extended
+
+    def watched(analysis: WarmGrowth, model: RigidBlockModel) -> WarmGrowth:
+        models.append(model)
+        return extended(analysis, model)
+
+    monkeypatch.setattr(WarmGrowth, "extended", watched)
+    settings = greedy({"rework": {"rounds": 3}})
+    planner = finish(Planner(rubble(seed=1), RUBBLE_SITE, seed=1, settings=settings))
+    list(rework(planner))
+    # `models` keeps them alive, so an id is one model.
+    assert max(Counter(id(model) for model in models if model.blocks).values()) == 1
+    assert len(models) > len(planner.build.actions)
+
+
+def test_states_are_kept_only_to_go_back_to_them() -> None:
+    for rounds in (0, 1):
+        settings = greedy({"rework": {"rounds": rounds}})
+        planner = Planner(rubble(), RUBBLE_SITE, settings=settings)
+        begun = planner.build
+        builds = [begun, *(step.build for step in planner.steps())]
+        assert planner.build.states() == (tuple(builds) if rounds else (planner.build,))
+        again = Planner(rubble(), RUBBLE_SITE, settings=settings)
+        again.restore(planner.build.wall, {})
+        states = again.build.states()
+        assert len(states) == (len(builds) if rounds else 1)
+        for state, build in zip(states, builds[-len(states) :], strict=True):
+            assert state.wall.labels.tobytes() == build.wall.labels.tobytes()
+        assert all(one is other.before for one, other in pairwise(states))
+
+
+def test_the_unit_of_weight_is_a_stone_of_the_set(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Certificates must not depend on which stones were placed, as in a resumed plan."""
+    units: set[tuple[float, float]] = set()
+    resistance_with = WarmGrowth.resistance_with
+
+    def watched(analysis: WarmGrowth, model: RigidBlockModel) -> Grown:
+        program = analysis.open_program.program
+        units.add((program.length, program.weight))
+        return resistance_with(analysis, model)
+
+    monkeypatch.setattr(WarmGrowth, "resistance_with", watched)
+    planner = Planner(rubble(), RUBBLE_SITE, settings=greedy({"rework": {"rounds": 1}}))
+    list(rework(finish(planner)))
+    again = Planner(rubble(), RUBBLE_SITE, settings=greedy())
+    again.restore(planner.build.wall, {})
+    area = planner.workshop.stock.mean_area_px
+    assert units == {(np.sqrt(area), area)}
+
+
+def test_nothing_is_built_yet() -> None:
+    build = Build.empty(Site(20, 10), 0.4, 100.0)
+    assert (build.actions, build.model.blocks, build.model.mu) == ((), (), 0.4)
+    assert build.wall.labels.shape == (10, 20)
+    assert build.states() == (build,)
+    assert build.analysis.model is build.model
