@@ -1,0 +1,185 @@
+"""Tilt tests repeated with variations that should not matter: the scatter of the simulation."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+from typing import Literal
+
+import numpy as np
+
+from drystone.physics.scene import EngineSettings, Scene
+from drystone.physics.tilt import TiltSettings, TiltTrial, tilt_once
+from drystone.statics.model import Direction
+
+Event = Literal["fall", "first motion"]
+"""Blocks come down; or some block moves noticeably, which often finds a new rest."""
+
+
+@dataclass(frozen=True)
+class Variation:
+    """One way to run the same test.
+
+    Parameters
+    ----------
+    name : str
+        What differs.
+    engine : EngineSettings
+        How the engine is driven.
+    tilt : TiltSettings
+        How the table is tilted.
+    shuffled : bool
+        Blocks are given to the engine in a random order.
+    placement_noise, outline_noise : float
+        Greatest shift of every block, and of every corner, along either axis, in mean block sizes.
+    """
+
+    name: str
+    engine: EngineSettings
+    tilt: TiltSettings
+    shuffled: bool = False
+    placement_noise: float = 0.0
+    outline_noise: float = 0.0
+
+    def of(self, scene: Scene, rng: np.random.Generator) -> Scene:
+        """Return the scene with this variation's order and noise."""
+        blocks = list(scene.outlines)
+        if self.shuffled:
+            blocks = [blocks[i] for i in rng.permutation(len(blocks)).tolist()]
+        outlines = {}
+        for block in blocks:
+            corners = np.asarray(scene.shapes[block].exterior.coords)[:-1]
+            shift = rng.uniform(-1, 1, 2) * self.placement_noise
+            moves = rng.uniform(-1, 1, corners.shape) * self.outline_noise
+            outlines[block] = corners + (shift + moves) * scene.length
+        return replace(scene, outlines=outlines)
+
+
+def usual_variations(
+    engine: EngineSettings | None = None, tilt: TiltSettings | None = None
+) -> tuple[Variation, ...]:
+    """Return the variations of a tilt test: none, of the engine, of the scene, of the tilting.
+
+    Noise stays at the depth to which blocks may overlap, far below a contact tolerance.
+
+    Examples
+    --------
+    >>> [variation.name for variation in usual_variations()][:3]
+    ['as given', 'another order', 'three times the iterations']
+    """
+    engine, tilt = engine or EngineSettings(), tilt or TiltSettings()
+    thorough = replace(engine, iterations=3 * engine.iterations)
+    return (
+        Variation("as given", engine, tilt),
+        Variation("another order", engine, tilt, shuffled=True),
+        Variation("three times the iterations", thorough, tilt),
+        Variation("half the time step", replace(engine, time_step=engine.time_step / 2), tilt),
+        Variation("half the overlap", replace(engine, slop=engine.slop / 2), tilt),
+        Variation("rounded corners", replace(engine, corner_radius=2e-3), tilt),
+        Variation("blocks shifted", engine, tilt, placement_noise=engine.slop),
+        Variation("corners shifted", engine, tilt, outline_noise=engine.slop),
+        Variation("every tilt at once", engine, replace(tilt, from_level=True)),
+    )
+
+
+@dataclass(frozen=True)
+class TiltResult:
+    """Outcome of repeated tilt tests in one direction.
+
+    Parameters
+    ----------
+    direction : {"left", "right"}
+        Where gravity turns to.
+    trials : tuple of TiltTrial
+        In the order of `names`.
+    names : tuple of str
+        What differed.
+    """
+
+    direction: Direction
+    trials: tuple[TiltTrial, ...]
+    names: tuple[str, ...]
+
+    @property
+    def alphas(self) -> tuple[float, ...]:
+        """Of the trials in which blocks came down on the tilted table."""
+        return tuple(trial.alpha for trial in self.trials if trial.alpha is not None)
+
+    @property
+    def first_motions(self) -> tuple[float, ...]:
+        """Alphas at which some block first moved noticeably."""
+        return tuple(t.first_motion for t in self.trials if t.first_motion is not None)
+
+    @property
+    def alpha(self) -> float | None:
+        """Median; None when no trial has one."""
+        return median(self.alphas) if self.alphas else None
+
+    @property
+    def low(self) -> float | None:
+        """Greatest tilt that the weakest trial stood; None when no trial has an alpha."""
+        return None if (found := self.interval("fall")) is None else found[0]
+
+    @property
+    def high(self) -> float | None:
+        """Least tilt that brought the strongest trial down; None when no trial has an alpha."""
+        return None if (found := self.interval("fall")) is None else found[1]
+
+    def interval(self, event: Event) -> tuple[float, float] | None:
+        """Return the scatter of an event, resolution included; None when it never happened."""
+        alphas = self.alphas if event == "fall" else self.first_motions
+        if not alphas:
+            return None
+        resolution = max(trial.resolution for trial in self.trials)
+        return min(alphas) - resolution, max(alphas) + resolution
+
+    @property
+    def moved(self) -> tuple[int, ...]:
+        """Blocks that moved in the fall of the first trial."""
+        return self.trials[0].moved
+
+    @property
+    def settled_shift(self) -> float:
+        """Largest way of any block while a wall settled on the level table, unit of the scene."""
+        return max(trial.settled_shift for trial in self.trials)
+
+    @property
+    def fell_at_rest(self) -> bool:
+        """In some trial blocks came down on the level table."""
+        return any(trial.fell_at_rest for trial in self.trials)
+
+
+def tilt_test(
+    scene: Scene,
+    direction: Direction,
+    rng: np.random.Generator,
+    variations: Sequence[Variation] | None = None,
+) -> TiltResult:
+    """Tilt a wall again and again, with variations that should not matter.
+
+    Parameters
+    ----------
+    scene : Scene
+        The wall.
+    direction : {"left", "right"}
+        The horizontal share of gravity points to -x for "left".
+    rng : numpy.random.Generator
+        Of order and noise.
+    variations : sequence of Variation, optional
+        :func:`usual_variations` unless given.
+
+    Returns
+    -------
+    TiltResult
+        One trial a variation.
+
+    Raises
+    ------
+    UsageError
+        E305 when pymunk is not installed.
+    """
+    variations = usual_variations() if variations is None else variations
+    trials = tuple(
+        tilt_once(variation.of(scene, rng), direction, variation.engine, variation.tilt)
+        for variation in variations
+    )
+    return TiltResult(direction, trials, tuple(variation.name for variation in variations))

@@ -1,0 +1,113 @@
+"""What is put on the tilting table: blocks by their outlines, and how the engine is driven."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import isfinite
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from drystone.errors import InputError
+from drystone.statics.blocks import check_mu
+
+Points = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Blocks that stand on a level ground, without gaps or overlaps worth speaking of.
+
+    Parameters
+    ----------
+    outlines : mapping of int to (n, 2) float array
+        By id: corners in the wall frame, y up, either way round, closed or not; any unit of
+        length.  Concave stones are welcome.
+    mu : float
+        Coefficient of friction of every pair, and of the ground.
+    densities : mapping of int to float
+        Weight of a unit of area where it is not 1.
+    fixed : frozenset of int
+        Blocks that are part of the ground.
+    ground_y : float
+        Where the ground is.
+
+    Raises
+    ------
+    InputError
+        E302 for mu, E303 for an outline that is none or a density that is not above 0.
+
+    Examples
+    --------
+    >>> scene = Scene({1: np.array([[0, 0], [1, 0], [1, 4], [0, 4]])}, 0.6)
+    >>> scene.length, scene.shapes[1].area
+    (2.0, 4.0)
+    """
+
+    outlines: Mapping[int, Points]
+    mu: float = 0.58
+    densities: Mapping[int, float] = field(default_factory=dict)
+    fixed: frozenset[int] = frozenset()
+    ground_y: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_mu(self.mu)
+        for block, shape in self.shapes.items():
+            density = self.density(block)
+            if shape.is_empty or not shape.is_valid or not (isfinite(density) and density > 0):
+                raise InputError(
+                    "E303",
+                    "its outline has no area or crosses itself, or its density is not above 0.",
+                    where=f"block {block}",
+                    cure="Correct its corners or its density.",
+                )
+        if not set(self.shapes) - self.fixed:
+            raise InputError(
+                "E303", "there is no free block.", where="scene", cure="Give one to tilt."
+            )
+
+    @cached_property
+    def shapes(self) -> dict[int, shapely.Polygon]:
+        """The outlines as counter-clockwise polygons."""
+        return {
+            block: shapely.orient_polygons(
+                shapely.Polygon(outline) if len(outline) >= 3 else shapely.Polygon()
+            )
+            for block, outline in self.outlines.items()
+        }
+
+    @cached_property
+    def length(self) -> float:
+        """Mean square root of the areas of the free blocks: the unit of length of the engine."""
+        free = [shape.area for block, shape in self.shapes.items() if block not in self.fixed]
+        return float(np.sqrt(free).mean())
+
+    def density(self, block: int) -> float:
+        """Weight of a unit of area of a block."""
+        return self.densities.get(block, 1.0)
+
+
+@dataclass(frozen=True)
+class EngineSettings:
+    """How the engine is driven; lengths in mean block sizes L, times in sqrt(L / g).
+
+    Parameters
+    ----------
+    time_step : float
+        Of the engine.
+    iterations : int
+        Passes over all contacts in a step.
+    slop : float
+        Depth to which blocks may overlap, so that contacts do not flicker.
+    overlap_left : float
+        Share of deeper overlap that is left after a unit of time.
+    corner_radius : float
+        Corners of blocks are rounded by this, faces stay where they are.
+    """
+
+    time_step: float = 0.01
+    iterations: int = 100
+    slop: float = 1e-3
+    overlap_left: float = 1.8e-3
+    corner_radius: float = 0.0

@@ -1,0 +1,140 @@
+"""A tilting table in a rigid-body engine (pymunk): blocks on a ground, gravity that turns."""
+
+from importlib import import_module
+from math import atan, cos, sin, sqrt
+from typing import Any, Self
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from drystone.errors import UsageError
+from drystone.physics.convex import Points, convex_parts
+from drystone.physics.scene import EngineSettings, Scene
+
+Floats = NDArray[np.float64]
+
+GROUND_THICKNESS = 2.0
+"""In mean block sizes; thick enough that nothing gets through."""
+
+
+class TiltingTable:
+    """Blocks on a table; lengths in mean block sizes L, times in sqrt(L / g).
+
+    Turning gravity is the same as turning the table, seen from the table.
+
+    Parameters
+    ----------
+    scene : Scene
+        The blocks; their order is that of the engine.
+    settings : EngineSettings
+        How the engine is driven.
+
+    Raises
+    ------
+    UsageError
+        E305 when pymunk is not installed.
+    """
+
+    def __init__(self, scene: Scene, settings: EngineSettings) -> None:
+        engine = load_engine()
+        self.ids = tuple(block for block in scene.shapes if block not in scene.fixed)
+        self._settings = settings
+        self._space = engine.Space()
+        self._space.iterations = settings.iterations
+        self._space.collision_slop = settings.slop
+        self._space.collision_bias = settings.overlap_left
+        reaches = []
+        for block, shape in scene.shapes.items():
+            centre = np.array(shape.centroid.coords[0])
+            corners = (shapely.get_coordinates(shape)[:-1] - centre) / scene.length
+            if block in scene.fixed:
+                body = engine.Body(body_type=engine.Body.STATIC)
+            else:
+                mass = shape.area / scene.length**2 * scene.density(block)
+                body = engine.Body(mass, engine.moment_for_poly(mass, corners.tolist()))
+                reaches.append(float(np.hypot(*corners.T).max()))
+            body.position = tuple(((centre - (0.0, scene.ground_y)) / scene.length).tolist())
+            self._space.add(body)
+            for part in convex_parts(corners):
+                self._add_shape(body, part, scene.mu)
+        self._reaches = np.array(reaches)
+        self._add_ground(scene)
+
+    def _add_shape(self, body: Any, corners: Points, mu: float) -> None:
+        inner = shapely.Polygon(corners).buffer(-self._settings.corner_radius, join_style="mitre")
+        # A part too thin to be rounded keeps its corners.
+        rounded = self._settings.corner_radius > 0 and isinstance(inner, shapely.Polygon)
+        rounded = rounded and not inner.is_empty
+        outline = shapely.get_coordinates(inner)[:-1] if rounded else corners
+        radius = self._settings.corner_radius if rounded else 0.0
+        shape = load_engine().Poly(body, outline.tolist(), radius=radius)
+        # The friction of a pair is the product of both.
+        shape.friction = sqrt(mu)
+        shape.elasticity = 0.0
+        self._space.add(shape)
+
+    def _add_ground(self, scene: Scene) -> None:
+        left, _, right, _ = shapely.GeometryCollection(list(scene.shapes.values())).bounds
+        left, right = (2 * left - right) / scene.length, (2 * right - left) / scene.length
+        ground = np.array(
+            [[left, -GROUND_THICKNESS], [right, -GROUND_THICKNESS], [right, 0.0], [left, 0.0]]
+        )
+        self._add_shape(self._space.static_body, ground, scene.mu)
+
+    def tilt(self, alpha: float) -> None:
+        """Turn gravity so that its horizontal share (towards +x) is alpha times the vertical."""
+        angle = atan(alpha)
+        self._space.gravity = (sin(angle), -cos(angle))
+
+    def advance(self, duration: float) -> None:
+        """Let time pass."""
+        for _ in range(round(duration / self._settings.time_step)):
+            self._space.step(self._settings.time_step)
+
+    def copy(self) -> Self:
+        """Return the same state, which goes its own way."""
+        twin = object.__new__(type(self))
+        twin.ids, twin._settings, twin._reaches = self.ids, self._settings, self._reaches
+        twin._space = self._space.copy()
+        return twin
+
+    def poses(self) -> Floats:
+        """Return x, y of the centroid and angle of every free block, (n, 3)."""
+        return np.array([(*body.position, body.angle) for body in self._free()])
+
+    def speeds(self) -> Floats:
+        """Return the largest speed of any point of every free block, (n,)."""
+        rates = [(body.velocity.length, abs(body.angular_velocity)) for body in self._free()]
+        return np.array(
+            [speed + turn * r for (speed, turn), r in zip(rates, self._reaches, strict=True)]
+        )
+
+    def shifts(self, before: Floats) -> Floats:
+        """Return how far any point of every free block has come since some poses, (n,)."""
+        change = self.poses() - before
+        turns = np.minimum(np.abs(change[:, 2]), np.pi)
+        return np.asarray(np.hypot(change[:, 0], change[:, 1]) + turns * self._reaches)
+
+    def _free(self) -> list[Any]:
+        dynamic = load_engine().Body.DYNAMIC
+        return [body for body in self._space.bodies if body.body_type == dynamic]
+
+
+def load_engine() -> Any:
+    """Return pymunk; it is an extra, so it is loaded only when it is needed.
+
+    Raises
+    ------
+    UsageError
+        E305 when it is not installed.
+    """
+    try:
+        return import_module("pymunk")
+    except ImportError as error:
+        raise UsageError(
+            "E305",
+            "pymunk is not installed, and the tilt test runs in it.",
+            where="tilt test",
+            cure="Install it with `pip install drystone[physics]`.",
+        ) from error

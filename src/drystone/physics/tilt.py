@@ -1,0 +1,191 @@
+"""One tilt test: the table is tilted in small steps until the blocks come down."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.physics.scene import EngineSettings, Scene
+from drystone.physics.table import TiltingTable
+from drystone.statics.model import Direction
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TiltSettings:
+    """How the table is tilted; lengths in mean block sizes L, times in sqrt(L / g).
+
+    Parameters
+    ----------
+    coarse, fine : float
+        Steps of alpha.  When blocks come down, or first move, they are set back by a step, and it
+        is halved until it is at most the fine one.
+    greatest : float
+        Largest alpha that is tried.
+    fallen : float
+        A block that has come so far since the wall stood at rest has fallen.
+    noticeable : float
+        A block that has come so far has moved.
+    resting_speed : float
+        The blocks rest when no point of any is faster.
+    from_level : bool
+        Every tilt is reached at once from the settled wall instead of from the tilt before.
+    shortest_hold, longest_hold : float
+        Time at every tilt.  Blocks that still move after the longest count as fallen.
+    """
+
+    coarse: float = 0.032
+    fine: float = 0.002
+    greatest: float = 1.5
+    fallen: float = 0.5
+    noticeable: float = 0.02
+    resting_speed: float = 1e-4
+    shortest_hold: float = 1.0
+    longest_hold: float = 40.0
+    from_level: bool = False
+
+
+@dataclass(frozen=True)
+class TiltTrial:
+    """Outcome of one tilt test.
+
+    Parameters
+    ----------
+    direction : {"left", "right"}
+        Where gravity turns to.
+    alpha : float or None
+        Tangent of the angle at which blocks come down; None when they fell at rest or never.
+    first_motion : float or None
+        Alpha at which some block first moved noticeably, even if it came to rest again.
+    moved : tuple of int
+        Blocks that moved noticeably at the last tilt, those that moved most first.
+    settled_shift : float
+        Largest way of any point of a block while the wall settled on the level table, in the
+        unit of the scene.
+    resolution : float
+        Of `alpha` and `first_motion`: the blocks stood at `alpha` minus it and fell at `alpha` plus
+        it.  Half a fine step or less.
+    fell_at_rest : bool
+        Blocks came down on the level table.
+    """
+
+    direction: Direction
+    alpha: float | None
+    first_motion: float | None
+    moved: tuple[int, ...]
+    settled_shift: float
+    resolution: float
+    fell_at_rest: bool = False
+
+
+def tilt_once(
+    scene: Scene,
+    direction: Direction,
+    engine: EngineSettings | None = None,
+    settings: TiltSettings | None = None,
+) -> TiltTrial:
+    """Tilt the table under a wall, step by step, each from the state before.
+
+    Parameters
+    ----------
+    scene : Scene
+        The wall.
+    direction : {"left", "right"}
+        The horizontal share of gravity points to -x for "left".
+    engine : EngineSettings, optional
+        How the engine is driven.
+    settings : TiltSettings, optional
+        How the table is tilted.
+
+    Returns
+    -------
+    TiltTrial
+        Same input, same result.
+
+    Raises
+    ------
+    UsageError
+        E305 when pymunk is not installed.
+    """
+    settings = settings or TiltSettings()
+    table = TiltingTable(scene, engine or EngineSettings())
+    given = table.poses()
+    stands = hold(table, 0.0, given, settings)
+    shifts = table.shifts(given)
+    settled_shift = float(shifts.max()) * scene.length
+    if not stands:
+        fallen = _moved(table.ids, shifts, settings)
+        return TiltTrial(direction, None, None, fallen, settled_shift, 0.0, fell_at_rest=True)
+    fall = _raised(table, -1.0 if direction == "left" else 1.0, settings)
+    return TiltTrial(
+        direction, fall.alpha, fall.first_motion, fall.moved, settled_shift, fall.step / 2
+    )
+
+
+@dataclass(frozen=True)
+class _Fall:
+    alpha: float | None
+    first_motion: float | None
+    moved: tuple[int, ...]
+    step: float
+
+
+def _raised(level: TiltingTable, sign: float, settings: TiltSettings) -> _Fall:
+    """Raise the table until blocks come down."""
+    settled, standing = level.poses(), level
+    low, step, suspect = 0.0, settings.coarse, 0.0
+    first_motion: float | None = None
+    while low < settings.greatest:
+        table = (level if settings.from_level else standing).copy()
+        stands = hold(table, sign * (low + step), settled, settings)
+        still = stands and table.shifts(settled).max() <= settings.noticeable
+        first = first_motion is None and not still
+        if (first or not stands) and step > settings.fine:
+            suspect, step = low + step, step / 2
+            continue
+        if first:
+            first_motion = low + step / 2
+        if not stands:
+            moved = _moved(table.ids, table.shifts(standing.poses()), settings)
+            return _Fall(low + step / 2, first_motion, moved, step)
+        low, standing = low + step, table
+        # Smaller steps may have led past what a larger one set off.
+        step = settings.coarse if first or low >= suspect else step
+    return _Fall(None, first_motion, (), min(step, settings.fine))
+
+
+def hold(table: TiltingTable, alpha: float, settled: Floats, settings: TiltSettings) -> bool:
+    """Hold a tilt until the blocks rest or have fallen.
+
+    Parameters
+    ----------
+    table : TiltingTable
+        Changed: it is left in the state reached.
+    alpha : float
+        Tangent of the tilt, positive when gravity turns towards +x.
+    settled : (n, 3) float array
+        Poses that falling is measured from.
+    settings : TiltSettings
+        When blocks rest, and when they have fallen.
+
+    Returns
+    -------
+    bool
+        Whether they rest.
+    """
+    table.tilt(alpha)
+    chunk, held = settings.shortest_hold / 4, 0.0
+    while held < settings.longest_hold:
+        table.advance(chunk)
+        held += chunk
+        if table.shifts(settled).max() > settings.fallen:
+            return False
+        if held >= settings.shortest_hold and table.speeds().max() <= settings.resting_speed:
+            return True
+    return False
+
+
+def _moved(ids: tuple[int, ...], shifts: Floats, settings: TiltSettings) -> tuple[int, ...]:
+    order = np.argsort(-shifts, kind="stable")
+    return tuple(ids[i] for i in order.tolist() if shifts[i] > settings.noticeable)

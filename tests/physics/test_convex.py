@@ -1,0 +1,111 @@
+"""Convex parts: they cover the boundary from inside, and no seam ends at a corner."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels.outline import pixel_polygon
+from drystone.physics.convex import convex_parts
+from tests.strategies import masks, repeatable, whole
+
+COMB = np.array(
+    [
+        [0, 0],
+        [5, 0],
+        [5, 3],
+        [4, 3],
+        [4, 1],
+        [3, 1],
+        [3, 3],
+        [2, 3],
+        [2, 1],
+        [1, 1],
+        [1, 3],
+        [0, 3],
+    ],
+    float,
+)
+NOSE = np.array(
+    [[0, 0], [2.8, 0], [2.8, 0.2], [3, 0.2], [3, 0.6], [2.6, 3], [0.5, 2.8], [0, 3]], float
+)
+
+
+@st.composite
+def stars(draw: st.DrawFn) -> np.ndarray:
+    """Star-shaped outlines, most of them concave."""
+    count = draw(st.integers(3, 24))
+    reach = np.array(draw(st.lists(st.floats(0.3, 3.0), min_size=count, max_size=count)))
+    angle = np.arange(count) * 2.0 * np.pi / count
+    return np.column_stack((reach * np.cos(angle), reach * np.sin(angle)))
+
+
+def check(outline: np.ndarray) -> list[shapely.Polygon]:
+    """Check the parts of an outline, and return them."""
+    parts = [shapely.Polygon(part) for part in convex_parts(outline)]
+    whole = shapely.Polygon(outline)
+    covered = shapely.union_all(parts)
+    assert covered.difference(whole).area < 1e-9 * whole.area
+    # Of the boundary nothing is left open, nor just below it.
+    assert whole.exterior.difference(covered.buffer(1e-6)).length == 0.0
+    skin = whole.difference(whole.buffer(-1e-3, join_style="mitre"))
+    assert skin.difference(covered).area < 1e-6 * whole.area
+    for part in parts:
+        assert part.exterior.is_ccw
+        assert part.convex_hull.area == pytest.approx(part.area, rel=1e-7)
+    return parts
+
+
+def directions(ring: np.ndarray, at: int) -> tuple[np.ndarray, np.ndarray]:
+    """Unit vectors of the edges that come to and leave a corner."""
+    ahead = np.roll(ring, -1, axis=0)[at] - ring[at]
+    behind = ring[at] - np.roll(ring, 1, axis=0)[at]
+    return behind / np.hypot(*behind), ahead / np.hypot(*ahead)
+
+
+def check_seams(outline: np.ndarray) -> None:
+    """At a corner of the outline a part has both faces of it, or passes straight through."""
+    for part in convex_parts(outline):
+        for i, corner in enumerate(part):
+            for j in np.flatnonzero(np.hypot(*(outline - corner).T) < 1e-9).tolist():
+                arriving, leaving = directions(part, i)
+                straight = np.allclose(arriving, leaving, atol=1e-6)
+                faces = directions(outline, j)
+                assert straight or np.allclose((arriving, leaving), faces, atol=1e-6)
+
+
+@repeatable()
+@given(stars())
+def test_parts_cover_the_boundary(outline: np.ndarray) -> None:
+    check(outline)
+
+
+@repeatable(30)
+@given(masks())
+def test_pixel_outlines(mask: np.ndarray) -> None:
+    outline = pixel_polygon(whole(mask))
+    if shapely.Polygon(outline).is_valid:
+        check(outline)
+
+
+@pytest.mark.parametrize("outline", [COMB, NOSE], ids=["comb", "nose"])
+def test_seams_end_away_from_corners(outline: np.ndarray) -> None:
+    check(outline)
+    check_seams(outline)
+
+
+def test_parts_are_few() -> None:
+    assert len(check(COMB)) <= 12
+
+
+@repeatable(30)
+@given(stars())
+def test_seams_of_any_outline(outline: np.ndarray) -> None:
+    check_seams(outline)
+
+
+def test_a_convex_outline_stays_whole() -> None:
+    square = np.array([[0, 0], [1, 0], [2, 0], [2, 2], [0, 2]], float)
+    (part,) = convex_parts(square)
+    assert part.tolist() == square.tolist()

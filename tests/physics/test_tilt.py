@@ -1,0 +1,185 @@
+"""The tilt test against closed forms and published walls."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from drystone.errors import InputError, UsageError
+from drystone.physics.scatter import Variation, tilt_test
+from drystone.physics.scene import EngineSettings, Scene
+from drystone.physics.table import TiltingTable
+from drystone.physics.tilt import TiltSettings, tilt_once
+
+NO_ENGINE = "pymunk is not installed (extra `physics`)"
+
+Rectangle = tuple[float, float, float, float]
+
+
+def scene_of(*rectangles: Rectangle, mu: float, fixed: tuple[int, ...] = ()) -> Scene:
+    """Rectangles x, y, width, height, numbered from 1."""
+    corners = {
+        number: np.array([[x, y], [x + w, y], [x + w, y + h], [x, y + h]])
+        for number, (x, y, w, h) in enumerate(rectangles, 1)
+    }
+    return Scene(corners, mu, fixed=frozenset(fixed))
+
+
+COLUMN = scene_of(*((0.0, float(i), 1.0, 1.0) for i in range(6)), mu=0.7)
+OFFSET = ((0.0, 0.0, 1.0, 1.0), (0.4, 1.0, 1.0, 1.0))
+BOND = tuple(
+    (left, float(course), width, 1.0)
+    for course, ranges in enumerate(
+        [[(0.0, 2.0), (2.0, 2.0)], [(0.0, 1.0), (1.0, 2.0), (3.0, 1.0)]] * 2
+    )
+    for left, width in ranges
+)
+HOOK = np.array([[0, 0], [4, 0], [4, 3], [3, 3], [3, 1], [1, 1], [1, 3], [0, 3]], float)
+
+
+@pytest.mark.parametrize(
+    ("scene", "direction", "expected"),
+    [
+        pytest.param(scene_of((0, 0, 1, 2), mu=0.7), "right", 0.5, id="tall block topples"),
+        pytest.param(scene_of((0, 0, 2, 1), mu=0.58), "left", 0.58, id="flat block slides"),
+        pytest.param(scene_of((0, 0, 20, 10), mu=0.3), "left", 0.3, id="any unit of length"),
+        pytest.param(COLUMN, "left", 1 / 6, id="column of six"),
+        pytest.param(scene_of(*OFFSET, mu=0.9), "right", 0.2, id="offset stack, over its edge"),
+        pytest.param(scene_of(*OFFSET, mu=0.9), "left", 0.7, id="offset stack, the other way"),
+        pytest.param(scene_of(*BOND, mu=0.4), "right", 0.4, id="running bond slides"),
+        pytest.param(
+            scene_of((0, 0, 3, 1), (1, 1, 1, 2), mu=0.7, fixed=(1,)),
+            "right",
+            0.5,
+            id="on a support",
+        ),
+    ],
+)
+def test_closed_forms(scene: Scene, direction: str, expected: float) -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    trial = tilt_once(scene, direction)
+    assert trial.alpha == pytest.approx(expected, rel=0.012)
+    assert trial.first_motion == trial.alpha
+    assert trial.settled_shift < 0.002 * scene.length
+    assert trial.moved
+
+
+def test_density_weighs() -> None:
+    """A heavy foot and a light head: 5.5 b / (2 x 5 x .5 + ...) by moments about the toe."""
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    column = scene_of((0, 0, 1, 1), (0, 1, 1, 1), mu=0.9)
+    # Both topple about the toe of the lower one unless the upper one goes first, at 1.
+    heavy_head = Scene(column.outlines, 0.9, densities={2: 4.0})
+    expected = (1 + 4) * 0.5 / (1 * 0.5 + 4 * 1.5)
+    assert tilt_once(heavy_head, "right").alpha == pytest.approx(expected, rel=0.012)
+
+
+def test_concave_stones_keep_their_hollow() -> None:
+    """A block in the hollow of a hook stands on its floor, and the hook weighs what it weighs."""
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    block = np.array([[1.5, 1], [2.5, 1], [2.5, 2.5], [1.5, 2.5]])
+    trial = tilt_once(Scene({1: HOOK, 2: block}, 0.9), "right")
+    assert not trial.fell_at_rest
+    assert trial.settled_shift < 0.01
+    # The block leans against the wall of the hook at 1 / 1.5 and comes to rest there.
+    assert trial.first_motion == pytest.approx(1 / 1.5, rel=0.012)
+    assert trial.alpha is not None
+    assert trial.alpha > 0.7
+
+
+def test_what_does_not_stand_is_said() -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    trial = tilt_once(scene_of((0, 0, 1, 1), (0.6, 1, 1, 1), mu=0.6), "left")
+    assert trial.fell_at_rest
+    assert trial.alpha is None
+    assert trial.first_motion is None
+    assert trial.moved[0] == 2
+
+
+def test_what_never_falls_has_no_alpha() -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    settings = TiltSettings(greatest=0.3)
+    trial = tilt_once(scene_of((0, 0, 2, 1), mu=0.58), "right", None, settings)
+    assert trial.alpha is None
+    assert not trial.fell_at_rest
+    assert trial.moved == ()
+
+
+def test_same_input_same_result() -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    scene = scene_of(*OFFSET, mu=0.9)
+    plain = Variation("plain", EngineSettings(), TiltSettings())
+    noisy = Variation(
+        "noisy",
+        EngineSettings(corner_radius=2e-3),
+        TiltSettings(from_level=True),
+        shuffled=True,
+        placement_noise=1e-3,
+        outline_noise=1e-3,
+    )
+    results = [
+        tilt_test(scene, "right", np.random.default_rng(5), (plain, noisy)) for _ in range(2)
+    ]
+    assert results[0] == results[1]
+    result = results[0]
+    assert result.low <= min(result.alphas) <= result.alpha <= max(result.alphas) <= result.high
+    assert result.high - result.low < 0.03
+    assert result.alphas[1] == pytest.approx(0.2, abs=0.01)
+
+
+def test_noise_stays_within_its_size() -> None:
+    scene = scene_of((0, 0, 4, 4), (5, 0, 4, 4), mu=0.6)
+    noisy = Variation("", EngineSettings(), TiltSettings(), True, 1e-3, 2e-3)
+    moved = noisy.of(scene, np.random.default_rng(1))
+    assert set(moved.outlines) == {1, 2}
+    for block, corners in moved.outlines.items():
+        change = np.abs(corners - np.asarray(scene.shapes[block].exterior.coords)[:-1])
+        assert 0.0 < change.max() <= 3e-3 * scene.length
+
+
+def test_rounded_corners_keep_faces_where_they_are() -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    scene = scene_of((0, 0, 1, 1), (0, 1, 1, 1), mu=0.6)
+    table = TiltingTable(scene, EngineSettings(corner_radius=0.01))
+    table.tilt(0.0)
+    given = table.poses()
+    table.advance(5.0)
+    assert table.shifts(given).max() < 2e-3
+
+
+def test_copies_go_their_own_way() -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    table = TiltingTable(scene_of((0, 0, 1, 1), mu=0.2), EngineSettings())
+    before = table.poses()
+    twin = table.copy()
+    twin.tilt(0.5)
+    twin.advance(2.0)
+    assert twin.shifts(before)[0] > 0.2
+    assert table.shifts(before)[0] == 0.0
+    # Downhill is towards +x.
+    assert twin.poses()[0, 0] > before[0, 0]
+
+
+def test_without_the_engine(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pymunk", None)
+    with pytest.raises(UsageError) as caught:
+        tilt_once(scene_of((0, 0, 1, 1), mu=0.6), "left")
+    assert caught.value.code == "E305"
+    assert "drystone[physics]" in caught.value.cure
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        ({"outlines": {1: np.zeros((2, 2))}}, "E303"),
+        ({"outlines": {1: np.array([[0, 0], [1, 1], [1, 0], [0, 1]])}}, "E303"),
+        ({"densities": {1: 0.0}}, "E303"),
+        ({"fixed": frozenset({1})}, "E303"),
+        ({"mu": -1.0}, "E302"),
+    ],
+)
+def test_bad_scenes(change: dict, code: str) -> None:
+    square = {"outlines": {1: np.array([[0, 0], [1, 0], [1, 1], [0, 1]])}, "mu": 0.6}
+    with pytest.raises(InputError) as caught:
+        Scene(**(square | change))
+    assert caught.value.code == code
