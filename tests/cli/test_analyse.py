@@ -102,13 +102,49 @@ def test_cases_that_are_ranges(tower: Path, bridge: Path, run: Run) -> None:
         (["--mu-head", "-1"], "E138"),
         (["--close-gaps", "3"], "E138"),
         (["--contacts", "outlines"], "E138"),
-        (["--scatter", "0"], "E318"),
+        (["--scatter", "0"], "E138"),
+        (["--scatter", "9", "--tilt", "3"], "E138"),
+        (["--mu", ".4:.8", "--load", "height"], "E138"),
+        (["--live", "1@0,0:1,0"], "E138"),
+        (["--settle", "1", "--load", "height"], "E138"),
+        (["--tilt", "inf"], "E138"),
+        (["--dead", "1@0,0:1e999,0"], "E138"),
+        (["--seed", "-1", "--scatter", "3"], "E138"),
+        (["--jobs", "0"], "E138"),
     ],
 )
 def test_options_that_make_no_sense(tower: Path, run: Run, options: list[str], code: str) -> None:
     ran = run("analyse", tower, *options)
     assert ran.code in (2, 3)
     assert code in ran.err
+
+
+def test_a_range_is_certified_described_and_drawn(bridge: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("analyse", bridge, "--settle", "2", "-o", tmp_path / "out")
+    assert "Rocking of" in ran.out
+    assert "forces and mechanism give the same alpha" in ran.out
+    assert (tmp_path / "out" / "mechanism_left.png").exists()
+    report = run("analyse", bridge, "--settle", "2", "--json").json()
+    assert report["certificate"]["gap_least"] <= 1e-8
+    assert report["sha256"] == hashlib.sha256(bridge.read_bytes()).hexdigest()
+
+
+def test_the_spread_of_closed_gaps_is_that_of_the_same_loads(tmp_path: Path, run: Run) -> None:
+    wall = gapped(tmp_path / "gapped.png")
+    options = ("--json", "--close-gaps", "2", "--load", "height", "--mu-head", "0")
+    report = run("analyse", wall, *options).json()
+    said = f"F_LR {report['F_LR']:.3f}".replace("0.", ".")
+    assert report["remarks"]["gaps"].startswith(said)
+
+
+def test_the_sensitivity_is_that_to_the_friction_of_the_model(tmp_path: Path, run: Run) -> None:
+    data = {"blocks_xywh": [[0, 0, 4, 1], [0, 1, 4, 1]], "mu": 0.5}
+    path = tmp_path / "pair.json"
+    path.write_text(json.dumps(data), encoding="utf-8")
+    assert run("analyse", path, "--json").json()["sensitivity"]["left"] == pytest.approx(1)
+    data["friction"] = [{"between": [2, 1], "mu": 0.3}]
+    path.write_text(json.dumps(data), encoding="utf-8")
+    assert run("analyse", path, "--json").json()["sensitivity"]["left"] == pytest.approx(0)
 
 
 def gapped(path: Path) -> Path:

@@ -197,3 +197,13 @@ def test_pixels_that_lie_apart_are_counted_and_said():
     assert notice.code == "W304"
     assert notice.message.startswith("2 pixels of stone 7 lie apart from it;")
     assert notice_of_pieces(np.ones((2, 2), int)) == ()
+
+
+def test_no_toe_grows_beyond_its_stone():
+    labels = np.zeros((23, 60), np.uint32)
+    labels[:20, 10:20], labels[3:, 22:40] = 1, 2
+    for interface in model_with_closed_gaps(labels, 4).model.interfaces:
+        if interface.other == 0:
+            cols = np.flatnonzero((labels == interface.block).any(axis=0))
+            assert interface.points[:, 0].min() >= cols[0]
+            assert interface.points[:, 0].max() <= cols[-1] + 1

@@ -79,6 +79,9 @@ def test_polygons_of_a_file():
         {"friction": [{"between": [1, 9], "mu": 0.3}]},
         {"friction": [{"between": [1, 1], "mu": 0.3}]},
         {"friction": [7]},
+        {"friction": [{"between": [[1], 0], "mu": 0.3}]},
+        {"friction": [{"between": [1, 2], "mu": True}]},
+        {"mu": True},
         {"interfaces": [{"between": [0, 1], "points": [[0, 0]], "normal": [0, 1]}]},
         {"interfaces": [{"between": [1, 0], "points": [], "normal": [0, 1]}]},
         {"interfaces": [{"between": [1, 0], "points": [[0, 0]], "normal": [0, 0]}]},
@@ -90,10 +93,25 @@ def test_what_is_no_joint_is_refused(extra):
         model_from_json({"blocks_xywh": PAIR, **extra})
 
 
-def test_what_cannot_be_held_is_refused():
-    block = {"id": 1, "polygon": [[0, 0], [1, 0], [1, 4]], "held": ["up"]}
+@pytest.mark.parametrize("held", [["up"], [["x"]], "x, y", 3])
+def test_what_cannot_be_held_is_refused(held):
+    block = {"id": 1, "polygon": [[0, 0], [1, 0], [1, 4]], "held": held}
     with pytest.raises(InputError, match="held"):
         model_from_json({"blocks": [block]})
+
+
+def test_weights_that_no_solver_tells_from_rounding_are_refused():
+    heavy = [{"id": i, "polygon": [[x, 0], [x + 1, 0], [x + 1, 1]]} for i, x in ((1, 0), (2, 5))]
+    heavy[1]["density"] = 1e7
+    with pytest.raises(InputError, match="E303"):
+        model_from_json({"blocks": heavy})
+    heavy[1]["fixed"] = True
+    assert len(model_from_json({"blocks": heavy}).blocks) == 2
+
+
+def test_what_is_too_small_to_have_an_area_is_refused():
+    with pytest.raises(InputError, match="E303"):
+        model_from_json({"blocks_xywh": [[0, 0, 1e-200, 1e-200]]})
 
 
 def test_blocks_that_nothing_carries():

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.statics import limit
+from drystone.statics import asking
 from drystone.statics.blocks import model_from_labels
 from drystone.statics.given import model_from_json
 from drystone.statics.limit import lateral_resistance, limit_load
@@ -276,13 +276,13 @@ def test_one_failed_direction_leaves_the_other_unknown(monkeypatch):
     monkeypatch.setattr(highs, "_FROM_BASIS", {"simplex_iteration_limit": 0})
     both = lateral_resistance(model, solver="highs")
     assert both.left.status is LimitStatus.OPTIMAL  # a cold solve came to help
-    only_upwards = limit.answered
+    only_upwards = asking.answered
 
     def stuck(program, session, sign):
         answer = only_upwards(program, session, sign)
         return answer if sign > 0 else replace(answer, certificate=None)
 
-    monkeypatch.setattr(limit, "answered", stuck)
+    monkeypatch.setattr(asking, "answered", stuck)
     both = lateral_resistance(model)
     assert statuses(both) == (LimitStatus.FAILED, LimitStatus.FAILED)
     assert "other direction" in both.right.message
@@ -386,7 +386,7 @@ def test_a_guide_keeps_a_block_from_turning(held, alpha):
 def test_many_blocks_are_solved_by_the_interior_point_method(monkeypatch):
     model = model_from_labels(coursed(5, 4, 90)).model
     expected = lateral_resistance(model)
-    monkeypatch.setattr(limit, "MANY_BLOCKS", 3)
+    monkeypatch.setattr(asking, "MANY_BLOCKS", 3)
     found = lateral_resistance(model)
     assert found.left.solver == "Clarabel"
     assert found.value == pytest.approx(expected.value, abs=1e-9)

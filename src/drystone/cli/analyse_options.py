@@ -2,6 +2,7 @@
 
 import argparse
 import math
+from collections.abc import Callable
 
 Friction = tuple[float, float]
 
@@ -26,6 +27,29 @@ def _not_negative(text: str) -> float:
     if not 0 <= value < math.inf:
         raise argparse.ArgumentTypeError(f"{text!r} is no number from 0 on")
     return value
+
+
+def _finite(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is no finite number")
+    return value
+
+
+def _from(least: int) -> Callable[[str], int]:
+    def read(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = least - 1
+        if value < least:
+            raise argparse.ArgumentTypeError(f"{text!r} is no whole number from {least} on")
+        return value
+
+    return read
 
 
 def add_model(command: argparse.ArgumentParser) -> None:
@@ -58,7 +82,7 @@ def add_model(command: argparse.ArgumentParser) -> None:
 def add_scatter(command: argparse.ArgumentParser) -> None:
     """Add the options of the scatter of F_LR."""
     group = command.add_argument_group("scatter of the load multiplier (Monte Carlo)")
-    group.add_argument("--scatter", type=int, metavar="N", help="samples (default 200)")
+    group.add_argument("--scatter", type=_from(1), metavar="N", help="samples (default 200)")
     group.add_argument(
         "--outline-noise", type=_not_negative, default=0.0, metavar="PX",
         help="standard deviation of the outlines",
@@ -67,8 +91,10 @@ def add_scatter(command: argparse.ArgumentParser) -> None:
         "--placement-noise", type=_not_negative, default=0.0, metavar="PX",
         help="standard deviation of where stones lie",
     )  # fmt: skip
-    group.add_argument("--seed", type=int, default=0)
-    group.add_argument("--jobs", type=int, default=1, metavar="N", help="workers; never the result")
+    group.add_argument("--seed", type=_from(0), default=0)
+    group.add_argument(
+        "--jobs", type=_from(1), default=1, metavar="N", help="workers; never the result"
+    )
 
 
 def add_loads(command: argparse.ArgumentParser) -> None:
@@ -80,7 +106,7 @@ def add_loads(command: argparse.ArgumentParser) -> None:
         " forces, or the weight itself with the --dead forces held",
     )  # fmt: skip
     group.add_argument(
-        "--tilt", type=float, default=0.0, metavar="DEG",
+        "--tilt", type=_finite, default=0.0, metavar="DEG",
         help="gravity is turned by this towards the right already",
     )  # fmt: skip
     for name, text in (("--dead", "force that acts always"), ("--live", "force times alpha")):

@@ -6,7 +6,7 @@ from pathlib import Path
 from drystone.cli.modelling import Modelled
 from drystone.cli.output import prepare_files
 from drystone.statics.loads import Loads
-from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, LoadRange
 
 _DIRECTIONS = ("left", "right")
 
@@ -57,3 +57,14 @@ def _draw_direction(files: list[Path], wall: Modelled, loads: Loads, result: Lim
     # The card names blocks by their ids.
     save(plot_mechanism(*moving, load=load, numbers=True).figure, mechanism)
     save_mechanism_animation(motion, *moving, load=load, numbers=True)
+
+
+def draw_range(folder: Path, wall: Modelled, loads: Loads, found: LoadRange) -> None:
+    """Draw the contacts, and forces and mechanism at both ends of a range of alpha."""
+    from drystone.plotting import plot_contacts, save  # noqa: PLC0415 - slow import
+
+    save(plot_contacts(wall.shapes, wall.model).figure, folder / "contacts.png")
+    for end in (found.least, found.greatest):
+        names = [f"mechanism_{end.direction}.png", f"forces_{end.direction}.png"]
+        names.append(f"mechanism_{end.direction}.gif")
+        _draw_direction([folder / name for name in names], wall, loads, end)

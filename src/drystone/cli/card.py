@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import atan, degrees
+from math import atan, degrees, isfinite
 from typing import Any
 
 from drystone.cli.output import number
@@ -67,7 +67,7 @@ class Card:
         if least is not None and self.load_case == "tilting table":
             rows.append(("falls on a table", f"tilted by {degrees(atan(least)):.1f} degrees"))
         rows += list(self.remarks.items())
-        rows.append(("certificate", _certified(both)))
+        rows.append(("certificate", _certified(both.left, both.right)))
         rows.append(("assumptions", ASSUMPTIONS))
         rows.append(("input", f"sha256 {self.sha256[:16]}, drystone {self.version}"))
         return rows
@@ -82,7 +82,7 @@ class Card:
             "blocks": len(self.model.blocks),
             "contacts": self.model.contact_count,
             "nonassociative": None if self.nonassociative is None else self._without_dilatancy(),
-            "certificate": _certificate(both),
+            "certificate": _certificate(both.left, both.right),
             "sensitivity": dict(self.sensitivity),
             "load_case": self.load_case,
             "mechanism": {
@@ -131,25 +131,46 @@ class Card:
         }
 
 
-def range_rows(found: LoadRange, case: str) -> list[tuple[str, str]]:
-    """Return the lines for a case whose answer is a range of alpha."""
-    return [
-        ("load case", case),
-        ("least alpha", _alpha(found.least)),
-        ("greatest alpha", _alpha(found.greatest)),
-        ("assumptions", ASSUMPTIONS),
-    ]
+@dataclass(frozen=True, eq=False)
+class RangeCard:
+    """A case whose answer is a range of alpha; parameters as for :class:`Card`."""
 
+    found: LoadRange
+    load_case: str
+    failures: Mapping[str, Failure]
+    sha256: str
+    version: str
 
-def range_report(found: LoadRange, case: str) -> dict[str, Any]:
-    """Return a range of alpha as JSON."""
-    return {
-        "load_case": case,
-        "status_least": str(found.least.status),
-        "status_greatest": str(found.greatest.status),
-        "alpha_least": found.least.alpha,
-        "alpha_greatest": found.greatest.alpha,
-    }
+    def rows(self) -> list[tuple[str, str]]:
+        """Return names and values, one a line."""
+        rows = [("load case", self.load_case)]
+        for name, end in (("least", self.found.least), ("greatest", self.found.greatest)):
+            rows.append((f"{name} alpha", _alpha(end)))
+            if end.direction in self.failures:
+                rows.append(("  mechanism", self.failures[end.direction].words))
+        rows.append(("certificate", _certified(self.found.least, self.found.greatest)))
+        rows.append(("assumptions", ASSUMPTIONS))
+        rows.append(("input", f"sha256 {self.sha256[:16]}, drystone {self.version}"))
+        return rows
+
+    def report(self) -> dict[str, Any]:
+        """Return the same as what `--json` prints."""
+        least, greatest = self.found.least, self.found.greatest
+        return {
+            "load_case": self.load_case,
+            "status_least": str(least.status),
+            "status_greatest": str(greatest.status),
+            "alpha_least": least.alpha,
+            "alpha_greatest": greatest.alpha,
+            "certificate": _certificate(least, greatest, ("least", "greatest")),
+            "words": {
+                name: self.failures[end.direction].words
+                for name, end in (("least", least), ("greatest", greatest))
+                if end.direction in self.failures
+            },
+            "sha256": self.sha256,
+            "version": self.version,
+        }
 
 
 def _alphas(
@@ -184,28 +205,31 @@ def _least(both: LateralResistance) -> float | None:
     return min(alphas) if both.stable else None
 
 
-def _certificate(both: LateralResistance) -> dict[str, float | None]:
-    left, right = both.left.certificate, both.right.certificate
-    known = [c for c in (left, right) if c is not None]
+def _certificate(
+    one: LimitResult, other: LimitResult, names: tuple[str, str] = ("left", "right")
+) -> dict[str, float | None]:
+    ends = (one.certificate, other.certificate)
+    known = [c for c in ends if c is not None]
+    gaps = [None if c is None else c.gap for c in ends]
     return {
-        "gap_left": left.gap if left else None,
-        "gap_right": right.gap if right else None,
+        f"gap_{names[0]}": gaps[0],
+        f"gap_{names[1]}": gaps[1],
         "residual": max((c.residual for c in known), default=None),
         "violation": max((c.violation for c in known), default=None),
         "inadmissible": max((c.inadmissible for c in known), default=None),
+        "slack": max((c.slack for c in known if c.slack is not None), default=None),
     }
 
 
-def _certified(both: LateralResistance) -> str:
+def _certified(one: LimitResult, other: LimitResult) -> str:
     """Say how well the answers are proved."""
-    known = [r.certificate for r in (both.left, both.right) if r.certificate is not None]
+    known = [r.certificate for r in (one, other) if r.certificate is not None]
     if len(known) < 2:
         return "none"
-    solvers = " and ".join(dict.fromkeys(r.solver for r in (both.left, both.right)))
-    falls = [c.fall_work for c in known if c.fall_work is not None]
-    if falls:
-        return f"a mechanism on which the weight does work, by {solvers}"
+    solvers = " and ".join(dict.fromkeys(r.solver for r in (one, other)))
+    if any(c.fall_work is not None for c in known):
+        return f"a mechanism on which the dead load does work, by {solvers}"
     residual = max(c.residual for c in known)
-    gaps = [c.gap for c in known if c.gap is not None]
+    gaps = [c.gap for c in known if c.gap is not None and isfinite(c.gap)]
     gap = f", forces and mechanism give the same alpha to {max(gaps):.0e}" if gaps else ""
     return f"equilibrium to {residual:.0e}{gap}, by {solvers}"

@@ -3,6 +3,7 @@
 import argparse
 import re
 from dataclasses import replace
+from math import isfinite
 
 from drystone.errors import UsageError
 from drystone.statics.loads import (
@@ -24,8 +25,7 @@ def load_case(
     arguments: argparse.Namespace, model: RigidBlockModel
 ) -> tuple[RigidBlockModel, Loads]:
     """Return the loads that the options describe, and the model for them."""
-    if arguments.tilt and is_range(arguments):
-        raise UsageError("E138", "--tilt goes with loads on a standing wall only.", where="--tilt")
+    _check(arguments)
     if arguments.settle is not None:
         model, loads = support_settlement(model, arguments.settle)
     elif arguments.load == "height":
@@ -45,6 +45,25 @@ def load_case(
     for text in arguments.dead:
         loads = replace(loads, dead=loads.dead + point_load(model, *_parsed(text, "--dead")))
     return model, loads
+
+
+def is_plain(arguments: argparse.Namespace) -> bool:
+    """Whether the case is the tilting table, and nothing else acts."""
+    extra = arguments.tilt or arguments.dead or arguments.settle is not None
+    return arguments.load == "tilting" and not extra
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    """Refuse options that would be left unheard."""
+    unheard = ""
+    if is_range(arguments) and arguments.tilt:
+        unheard = "--tilt goes with loads on a standing wall only."
+    elif arguments.settle is not None and arguments.load != "tilting":
+        unheard = "--settle is a load case of its own; leave --load out."
+    elif arguments.live and arguments.load != "points":
+        unheard = "--live goes with --load points only."
+    if unheard:
+        raise UsageError("E138", unheard, where="loads")
 
 
 def is_range(arguments: argparse.Namespace) -> bool:
@@ -73,4 +92,6 @@ def _parsed(text: str, option: str) -> tuple[int, tuple[float, float], tuple[flo
             cure="Write ID@X,Y:FX,FY, as in 7@120,85:0,-200.",
         )
     x, y, fx, fy = (float(part) for part in found.groups()[1:])
+    if not all(isfinite(number) for number in (x, y, fx, fy)):
+        raise UsageError("E138", f"{text!r} is not finite.", where=option)
     return int(found.group(1)), (x, y), (fx, fy)

@@ -4,11 +4,13 @@ import argparse
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.cli.loads import is_range, load_case
 from drystone.cli.walls import GivenWall
 from drystone.errors import Notice, UsageError
 from drystone.model.wall import Labels
@@ -17,8 +19,10 @@ from drystone.statics.gap_spread import closed_gap_spread
 from drystone.statics.gaps import model_with_closed_gaps, settle_gaps
 from drystone.statics.given import model_from_json, polygons_from_json
 from drystone.statics.joints import with_head_friction
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.outlines import model_from_outlines, outlines_of_labels
+from drystone.statics.result import LateralResistance
 from drystone.statics.wording import Noun
 
 Shapes = Labels | Mapping[int, NDArray[np.float64]]
@@ -94,8 +98,10 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, arguments: argparse.Names
     if arguments.contacts == "pixels":
         return Modelled(picture.model, labels, "stone", wall.wedge_ids, picture.notices)
     outlines = outlines_of_labels(labels[: picture.ground_row])
+    # What a picture weighs it weighs by its pixels, not by what smoothing made of them.
+    weighed = replace(model_from_outlines(outlines, mu), blocks=picture.model.blocks)
     return Modelled(
-        model_from_outlines(outlines, mu),
+        weighed,
         outlines,
         "stone",
         wall.wedge_ids,
@@ -119,9 +125,20 @@ def _with_closed_gaps(
     else:
         picture = model_with_closed_gaps(labels, reach, mu)
         done = ""
-    spread = closed_gap_spread(labels if reach is not None else _labels(wall), reach, mu)
+    drawn = labels if reach is not None else _labels(wall)
+    spread = closed_gap_spread(drawn, reach, mu, partial(_resistance, arguments))
     remarks = {"gaps": f"{done}{spread.words()}"}
     return Modelled(picture.model, labels, "stone", wall.wedge_ids, picture.notices, remarks)
+
+
+def _resistance(arguments: argparse.Namespace, model: RigidBlockModel) -> LateralResistance:
+    """Analyse a variant under the loads and the friction of the options."""
+    if arguments.mu_head is not None:
+        model = with_head_friction(model, arguments.mu_head)
+    if is_range(arguments):  # its answer is no resistance: the spread is that of the tilting table
+        return lateral_resistance(model)
+    model, loads = load_case(arguments, model)
+    return lateral_resistance(model, loads)
 
 
 def _labels(wall: GivenWall) -> Labels:

@@ -13,9 +13,10 @@ from drystone.experiments.benchmark_walls import coursed_labels, irregular_label
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.model.wall import Labels
 from drystone.statics.appending import units_of
+from drystone.statics.asking import Solver
 from drystone.statics.blocks import model_from_labels
 from drystone.statics.growing import GrowingAnalysis, growing
-from drystone.statics.limit import Solver, lateral_resistance
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Block, RigidBlockModel
 from drystone.statics.program import assemble
 from drystone.statics.result import LateralResistance

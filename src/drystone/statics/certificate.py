@@ -9,7 +9,7 @@ from drystone.statics.result import Certificate, LimitStatus
 from drystone.statics.solvers.solution import Solution
 
 
-def certify(program: EquilibriumProgram, solution: Solution) -> Certificate | None:
+def certify(program: EquilibriumProgram, solution: Solution, sign: float) -> Certificate | None:
     """Check the forces and the mechanism of a solution for the extreme of alpha.
 
     Parameters
@@ -18,6 +18,9 @@ def certify(program: EquilibriumProgram, solution: Solution) -> Certificate | No
         The equations.
     solution : Solution
         For costs of 1 or -1 on alpha and 0 on all forces.
+    sign : float
+        1 when the greatest alpha was asked for, -1 for the least.  The mechanism of the other end
+        is no proof.
 
     Returns
     -------
@@ -35,11 +38,11 @@ def certify(program: EquilibriumProgram, solution: Solution) -> Certificate | No
     if solution.status is LimitStatus.OPTIMAL:
         assert solution.columns is not None  # noqa: S101 - an optimal solution has both
         assert solution.duals is not None  # noqa: S101
-        return _of_optimum(program, solution.columns, -solution.duals)
+        return _of_optimum(program, solution.columns, -solution.duals, sign)
     if solution.status is LimitStatus.UNSTABLE and solution.duals is not None:
         return _of_no_alpha(program, -solution.duals)
     if solution.status is LimitStatus.UNBOUNDED and solution.columns is not None:
-        return _of_growth(program, solution.columns)
+        return _of_growth(program, solution.columns, sign)
     return None
 
 
@@ -69,28 +72,36 @@ def _of_no_alpha(program: EquilibriumProgram, velocity: Floats) -> Certificate:
     return replace(fall, inadmissible=max(fall.inadmissible, live))
 
 
-def _of_optimum(program: EquilibriumProgram, columns: Floats, velocity: Floats) -> Certificate:
+def _of_optimum(
+    program: EquilibriumProgram, columns: Floats, velocity: Floats, sign: float
+) -> Certificate:
     powers = program.matrix.T @ velocity
-    largest = max(1.0, _largest(velocity))
-    upper = float(program.rhs @ velocity) / float(powers[0]) if powers[0] else None
+    # Of the live load; along the end that was asked for.
+    power = sign * float(powers[0])
+    inadmissible = _inadmissible(powers)
+    upper = slack = None
+    if power > 0.0:
+        upper = sign * float(program.rhs @ velocity) / power
+        slack = inadmissible * float(np.abs(columns[1:]).sum()) / power
     return Certificate(
         residual=_largest(program.matrix @ columns - program.rhs),
         violation=max(0.0, -float(columns[1:].min(initial=0.0))),
-        inadmissible=_inadmissible(powers) / largest,
+        inadmissible=inadmissible / max(1.0, _largest(velocity)),
         lower=float(columns[0]),
         upper=upper,
+        slack=slack,
     )
 
 
-def _of_growth(program: EquilibriumProgram, ray: Floats) -> Certificate | None:
+def _of_growth(program: EquilibriumProgram, ray: Floats, sign: float) -> Certificate | None:
     """Certify a state of self-stress that carries any live load."""
-    if ray[0] == 0.0:
+    if not sign * ray[0] > 0.0:
         return None
     ray = ray / abs(ray[0])
     return Certificate(
         residual=_largest(program.matrix @ ray),
         violation=max(0.0, -float(ray[1:].min(initial=0.0))),
-        lower=np.inf,
+        lower=sign * np.inf,
     )
 
 

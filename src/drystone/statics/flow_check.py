@@ -26,6 +26,8 @@ class FlowCheck:
         Largest tension, or tangential force above mu n, over the mean weight.
     closing : float
         Largest rate at which a contact closes, over the largest velocity.
+    held : float
+        Largest velocity of what is fixed or held, over the largest velocity.
     dilatancy : float
         Power of the normal forces, the sum of |n u_n|, over the power of the live load: contacts
         open that carry a force, or dilate as they slide.
@@ -37,19 +39,33 @@ class FlowCheck:
     equilibrium: float
     friction: float
     closing: float
+    held: float
     dilatancy: float
     dissipation: float
 
     @property
     def largest(self) -> float:
         """The largest error."""
-        errors = (self.equilibrium, self.friction, self.closing, self.dilatancy, self.dissipation)
-        return max(errors)
+        return max(self._errors)
 
     @property
     def holds(self) -> bool:
-        """True when every error is at most `HOLDS`; the last two are errors of alpha."""
-        return self.largest <= HOLDS
+        """True when every error is at most `HOLDS`; never for what is no number.
+
+        The last two are errors of alpha.
+        """
+        return all(error <= HOLDS for error in self._errors)
+
+    @property
+    def _errors(self) -> tuple[float, ...]:
+        return (
+            self.equilibrium,
+            self.friction,
+            self.closing,
+            self.held,
+            self.dilatancy,
+            self.dissipation,
+        )
 
 
 def check_flow(
@@ -134,6 +150,19 @@ def check_flow(
         equilibrium=float(residual / weight),
         friction=float(friction / weight),
         closing=float(closing / fastest),
+        held=float(_held_velocity(model, velocity, length) / fastest),
         dilatancy=float(dilatancy / power) if power > 0 else np.inf,
         dissipation=float(dissipation / power) if power > 0 else np.inf,
     )
+
+
+def _held_velocity(model: RigidBlockModel, velocity: dict[int, Floats], length: float) -> float:
+    units = (1.0, 1.0, length)
+    moving = [
+        abs(velocity[block.id][k]) * units[k]
+        for block in model.blocks
+        if block.id in velocity
+        for k, freedom in enumerate(FREEDOMS)
+        if block.fixed or freedom in block.held
+    ]
+    return float(max(moving, default=0.0))

@@ -1,11 +1,14 @@
 """What closing the gaps of a picture does to the lateral load (DESIGN 4.8)."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from drystone.model.wall import Labels
-from drystone.statics.blocks import ImageModel, model_from_labels
+from drystone.statics.blocks import model_from_labels
 from drystone.statics.gaps import model_with_closed_gaps, settle_gaps
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LateralResistance
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,15 @@ class GapSpread:
         return f"F_LR {_said(self.chosen)} with {self.chosen.name} ({others})"
 
 
-def closed_gap_spread(labels: Labels, reach_px: float | None, mu: float = 0.58) -> GapSpread:
+Analyse = Callable[[RigidBlockModel], LateralResistance]
+
+
+def closed_gap_spread(
+    labels: Labels,
+    reach_px: float | None,
+    mu: float = 0.58,
+    analyse: Analyse = lateral_resistance,
+) -> GapSpread:
     """Compute F_LR with gaps closed at a reach, at half and twice of it, or settled.
 
     Parameters
@@ -60,6 +71,8 @@ def closed_gap_spread(labels: Labels, reach_px: float | None, mu: float = 0.58) 
         stones that are pushed to either side as well.
     mu : float
         Coefficient of friction.
+    analyse : callable
+        From a model to its resistance; the tilting table unless given.
 
     Examples
     --------
@@ -69,21 +82,21 @@ def closed_gap_spread(labels: Labels, reach_px: float | None, mu: float = 0.58) 
     GapVariant(name='gaps up to 1 px closed', f_lr=None, status='unstable')
     """
     if reach_px is None:
-        variants = [
-            _variant("stones settled", model_from_labels(settle_gaps(labels)[0], mu)),
-            _variant("stones pushed left", model_from_labels(settle_gaps(labels, "left")[0], mu)),
-            _variant("stones pushed right", model_from_labels(settle_gaps(labels, "right")[0], mu)),
-        ]
+        pictures = {
+            "stones settled": model_from_labels(settle_gaps(labels)[0], mu),
+            "stones pushed left": model_from_labels(settle_gaps(labels, "left")[0], mu),
+            "stones pushed right": model_from_labels(settle_gaps(labels, "right")[0], mu),
+        }
     else:
-        variants = [
-            _variant(f"gaps up to {reach:g} px closed", model_with_closed_gaps(labels, reach, mu))
+        pictures = {
+            f"gaps up to {reach:g} px closed": model_with_closed_gaps(labels, reach, mu)
             for reach in (reach_px, reach_px / 2.0, 2.0 * reach_px)
-        ]
-    return GapSpread(variants[0], tuple(variants[1:]))
+        }
+    chosen, *others = (_variant(name, analyse(p.model)) for name, p in pictures.items())
+    return GapSpread(chosen, tuple(others))
 
 
-def _variant(name: str, picture: ImageModel) -> GapVariant:
-    both = lateral_resistance(picture.model)
+def _variant(name: str, both: LateralResistance) -> GapVariant:
     told = next((r for r in (both.left, both.right) if r.alpha is None), both.left)
     return GapVariant(name, both.value, str(told.status))
 

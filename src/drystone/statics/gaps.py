@@ -12,6 +12,7 @@ from drystone.kernels.raster import Mask
 from drystone.kernels.runs import narrow_gaps
 from drystone.model.wall import Labels
 from drystone.statics.blocks import ImageModel, model_from_labels
+from drystone.statics.model import GROUND, Interface
 
 TIE_BREAK = (-1e-4, -3e-5)
 """Added to (row, col): of two stones at one distance the upper or left one is the nearer."""
@@ -80,7 +81,8 @@ def model_with_closed_gaps(labels: Labels, reach_px: float, mu: float = 0.58) ->
     -------
     ImageModel
         Weights and centroids are those of the pixels of the stones; contact points lie in the
-        middle of the gaps.
+        middle of the gaps.  Between stones a contact may reach into the gaps beside it, as far as
+        these are closed.
 
     Examples
     --------
@@ -90,7 +92,18 @@ def model_with_closed_gaps(labels: Labels, reach_px: float, mu: float = 0.58) ->
     """
     picture = model_from_labels(labels, mu)
     closed = model_from_labels(close_gaps(labels, reach_px), mu)
-    return replace(picture, model=replace(picture.model, interfaces=closed.model.interfaces))
+    interfaces = tuple(_on_own_foot(i, labels) for i in closed.model.interfaces)
+    return replace(picture, model=replace(picture.model, interfaces=interfaces))
+
+
+def _on_own_foot(interface: Interface, labels: Labels) -> Interface:
+    """Keep a contact with the ground within the columns of its stone: toes do not grow."""
+    if interface.other != GROUND:
+        return interface
+    cols = np.flatnonzero((labels == interface.block).any(axis=0))
+    points = interface.points.copy()
+    points[:, 0] = np.clip(points[:, 0], cols[0], cols[-1] + 1)
+    return replace(interface, points=points)
 
 
 def settle_gaps(

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,9 @@ from drystone.statics.given_parts import (
 from drystone.statics.joints import with_head_friction, with_pair_friction
 from drystone.statics.model import FREEDOMS, GROUND, Block, Interface, RigidBlockModel
 from drystone.statics.touching import Points, touching_interfaces
+
+LARGEST_RATIO = 1e6
+"""Of weights; errors of an answer are relative to the mean weight, up to 1e-8 of it."""
 
 RELATIVE_TOLERANCE = 1e-6
 """Gaps up to this share of the model's extent count as contact."""
@@ -64,6 +68,7 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
         raise bad("two blocks have the same id.", "blocks", "Give every block its own id.")
     corners = {block.id: polygon for block, polygon in given}
     blocks = tuple(_measured(block, polygon) for block, polygon in given)
+    _check_weights(blocks)
     if "interfaces" in data:
         interfaces = read_interfaces(read_list(data, "interfaces"), ids)
     else:
@@ -74,6 +79,17 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
     if "friction" in data:
         model = with_pair_friction(model, read_friction(read_list(data, "friction"), ids))
     return model
+
+
+def _check_weights(blocks: tuple[Block, ...]) -> None:
+    """Refuse weights that no solver can tell from rounding beside the others."""
+    weights = [block.weight for block in blocks if not block.fixed]
+    if weights and max(weights) > LARGEST_RATIO * min(weights):
+        raise bad(
+            f"the heaviest block weighs more than {LARGEST_RATIO:g} times the lightest.",
+            "blocks",
+            "What has no weight of its own is a load: see --dead. What does not move is fixed.",
+        )
 
 
 def polygons_from_json(data: Mapping[str, Any]) -> dict[int, Points]:
@@ -115,13 +131,17 @@ def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
     if not isinstance(entry, Mapping) or "polygon" not in entry:
         raise bad("it has no 'polygon'.", where, "Give id and polygon.")
     block_id, fixed, density = entry.get("id"), entry.get("fixed", False), entry.get("density", 1.0)
-    if not isinstance(block_id, int) or isinstance(block_id, bool) or block_id <= GROUND:
-        raise bad(f"its id is {block_id!r}.", where, "Give a whole number above 0.")
+    if (
+        not isinstance(block_id, int)
+        or isinstance(block_id, bool)
+        or not (GROUND < block_id < 2**32)
+    ):
+        raise bad(f"its id is {block_id!r}.", where, "Give a whole number from 1 to 4294967295.")
     density = float(read_numbers(density, (), where))
     if density <= 0 or not isinstance(fixed, bool):
         raise bad("density must be above 0 and fixed true or false.", where, "Correct it.")
     held = entry.get("held", [])
-    if not isinstance(held, list | tuple) or not set(held) <= set(FREEDOMS):
+    if not isinstance(held, list | tuple) or not all(one in FREEDOMS for one in held):
         raise bad(f"held is {held!r}.", where, 'List what is held: "x", "y", "turn".')
     corners = read_numbers(entry["polygon"], (-1, 2), where)
     shape = shapely.Polygon(corners) if len(corners) >= 3 else shapely.Polygon()
@@ -139,6 +159,9 @@ def _measured(block: Block, polygon: Points) -> Block:
     x, y = (polygon - polygon[0]).T
     cross = x[:-1] * y[1:] - x[1:] * y[:-1]
     area = float(cross.sum()) / 2.0
+    if not 0.0 < area < inf:
+        what = "it is too small or too large to have an area."
+        raise bad(what, f"block {block.id}", "Use another unit of length.")
     cx = float((x[:-1] + x[1:]) @ cross) / (6.0 * area) + float(polygon[0, 0])
     cy = float((y[:-1] + y[1:]) @ cross) / (6.0 * area) + float(polygon[0, 1])
     return replace(block, area=area, centroid=(cx, cy))

@@ -43,7 +43,7 @@ def read_numbers(value: Any, shape: tuple[int, ...], where: str) -> Points:
 def read_mu(data: Mapping[str, Any], key: str, default: float) -> float:
     """Read a coefficient of friction."""
     mu = data.get(key, default)
-    if not isinstance(mu, int | float):
+    if not isinstance(mu, int | float) or isinstance(mu, bool):
         raise bad(f"{key} is {mu!r}.", key, "Give a number.")
     check_mu(mu)
     return float(mu)
@@ -80,8 +80,12 @@ def read_interfaces(entries: Sequence[Any], ids: Collection[int]) -> tuple[Inter
 
 def _between(entry: Any, ids: Collection[int], where: str) -> tuple[int, int]:
     pair = entry.get("between") if isinstance(entry, Mapping) else None
-    known = {GROUND, *ids}
-    if not isinstance(pair, list | tuple) or len(pair) != 2 or not set(pair) <= known:
+    known = [GROUND, *ids]
+    if (
+        not isinstance(pair, list | tuple)
+        or len(pair) != 2
+        or not all(isinstance(one, int) and one in known for one in pair)
+    ):
         raise bad(f"it is between {pair!r}.", where, 'Give "between": two ids; 0 is the ground.')
     if pair[0] == pair[1]:
         raise bad(f"it is between {pair[0]} and itself.", where, "Name two blocks.")

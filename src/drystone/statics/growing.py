@@ -16,7 +16,8 @@ import numpy as np
 from highspy import HighsBasis
 
 from drystone.statics.appending import OpenProgram, Units, columns_of
-from drystone.statics.limit import Answer, answered, lateral_resistance, resistance_between
+from drystone.statics.asking import Answer, answered
+from drystone.statics.limit import lateral_resistance, resistance_between
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.program import EquilibriumProgram
 from drystone.statics.result import LateralResistance, LimitStatus

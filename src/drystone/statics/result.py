@@ -64,6 +64,9 @@ class Certificate:
         Load multiplier of the forces and of the mechanism, signed along the live load (below 0
         for the direction "left"); infinite when a growing state of
         self-stress carries any load.
+    slack : float or None
+        How far alpha could lie beyond `upper` because the mechanism closes contacts by
+        `inadmissible`, with forces as large in sum as those found.  `holds` does not look at it.
     fall_work : float or None
         Work of the dead load on the mechanism, for walls that do not stand.
     """
@@ -73,6 +76,7 @@ class Certificate:
     inadmissible: float = 0.0
     lower: float | None = None
     upper: float | None = None
+    slack: float | None = None
     fall_work: float | None = None
 
     @property
@@ -84,12 +88,13 @@ class Certificate:
 
     @property
     def holds(self) -> bool:
-        """True when every error is at most `CERTIFIED`."""
-        if max(self.residual, self.violation, self.inadmissible) > CERTIFIED:
+        """True when every error is at most `CERTIFIED`; never for what is no number."""
+        errors = (self.residual, self.violation, self.inadmissible)
+        if not all(error <= CERTIFIED for error in errors):
             return False
         if self.fall_work is not None:
             return self.fall_work > self.inadmissible
-        if self.lower == np.inf:
+        if self.lower is not None and np.isinf(self.lower):
             return True
         return self.gap is not None and self.gap <= CERTIFIED
 

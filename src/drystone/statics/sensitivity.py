@@ -30,6 +30,11 @@ class FrictionSensitivity:
         """By all coefficients at once: d alpha / d mu, when all grow by the same amount."""
         return float(self.per_interface.sum())
 
+    def of_model(self, model: RigidBlockModel) -> float:
+        """By the model's coefficient: that of all interfaces that have none of their own."""
+        common = [interface.mu is None for interface in model.interfaces]
+        return float(self.per_interface[common].sum())
+
 
 def friction_sensitivity(
     model: RigidBlockModel, result: LimitResult, loads: Loads | None = None

@@ -4,21 +4,23 @@ import argparse
 import hashlib
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
-from drystone.cli.analyse_pictures import draw, prepare
+from drystone.cli.analyse_pictures import draw, draw_range, prepare
 from drystone.cli.analyse_scatter import scatter_of, wants_scatter
-from drystone.cli.card import Card, range_report, range_rows
-from drystone.cli.loads import is_range, load_case
+from drystone.cli.card import Card, RangeCard
+from drystone.cli.loads import is_plain, is_range, load_case
 from drystone.cli.modelling import Modelled, modelled
 from drystone.cli.output import print_json, print_table
 from drystone.cli.walls import read_wall, unsupported
-from drystone.errors import ExitCode, Notice
+from drystone.errors import ExitCode, Notice, UsageError
 from drystone.statics.failure import save_program
 from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import Loads
 from drystone.statics.mechanism import Failure, describe_mechanism
+from drystone.statics.model import RigidBlockModel
 from drystone.statics.nonassociative import nonassociative_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.sensitivity import friction_sensitivity
@@ -26,6 +28,8 @@ from drystone.statics.sensitivity import friction_sensitivity
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print load multipliers and mechanisms; draw contacts, forces and mechanisms when asked."""
+    if wants_scatter(arguments) and not is_plain(arguments):
+        raise UsageError("E138", "the scatter is that of the tilting table; leave loads out.")
     path = Path(arguments.wall_path)
     wall = modelled(read_wall(path), arguments)
     for notice in wall.notices:
@@ -33,7 +37,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     folder = None if arguments.output is None else Path(arguments.output)
     pictures = [] if folder is None else prepare(folder, arguments)
     if is_range(arguments):
-        return _print_range(wall, arguments)
+        return _print_range(wall, arguments, folder)
     model, loads = load_case(arguments, wall.model)
     resistance = lateral_resistance(model, loads, mechanism=True, solver=arguments.solver)
     loose = None if resistance.stable else unsupported(model)
@@ -41,7 +45,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         print(f"drystone: {loose}", file=sys.stderr)
     if folder is not None:
         draw(pictures, wall, loads, resistance)
-    card = _card(path, wall, loads, resistance, arguments)
+    card = _card(wall, loads, resistance, arguments)
     scatter = scatter_of(wall, arguments, folder) if wants_scatter(arguments) else None
     if arguments.json:
         report = card.report()
@@ -49,11 +53,10 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     else:
         title = f"{path}: {len(model.blocks)} blocks, {model.contact_count} contact points"
         print_table(title, card.rows() + ([] if scatter is None else scatter.rows()))
-    return _keep_failure(wall, loads, resistance, folder)
+    return _keep_failure(model, loads, folder) if resistance.failed else ExitCode.DONE
 
 
 def _card(
-    path: Path,
     wall: Modelled,
     loads: Loads,
     resistance: LateralResistance,
@@ -61,7 +64,7 @@ def _card(
 ) -> Card:
     both = (resistance.left, resistance.right)
     sensitivity: dict[str, float] = {
-        result.direction: friction_sensitivity(wall.model, result, loads).total
+        result.direction: friction_sensitivity(wall.model, result, loads).of_model(wall.model)
         for result in both
         if result.success
     }
@@ -75,14 +78,16 @@ def _card(
         nonassociative=without,
         failures=_failures(wall, both),
         sensitivity=sensitivity,
-        sha256=hashlib.sha256(_file(path).read_bytes()).hexdigest(),
+        sha256=_sha256(arguments),
         version=version("drystone"),
         remarks=wall.remarks,
     )
 
 
-def _file(path: Path) -> Path:
-    return path / "plan.json" if path.is_dir() else path
+def _sha256(arguments: argparse.Namespace) -> str:
+    path = Path(arguments.wall_path)
+    file = path / "plan.json" if path.is_dir() else path
+    return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 def _failures(wall: Modelled, results: tuple[LimitResult, ...]) -> Mapping[str, Failure]:
@@ -99,30 +104,26 @@ def _failures(wall: Modelled, results: tuple[LimitResult, ...]) -> Mapping[str, 
     }
 
 
-def _print_range(wall: Modelled, arguments: argparse.Namespace) -> ExitCode:
+def _print_range(wall: Modelled, arguments: argparse.Namespace, folder: Path | None) -> ExitCode:
     model, loads = load_case(arguments, wall.model)
     found = load_range(model, loads, mechanism=True, solver=arguments.solver)
+    ends = (found.least, found.greatest)
+    failures = _failures(replace(wall, model=model), ends)
+    card = RangeCard(found, loads.name, failures, _sha256(arguments), version("drystone"))
+    if folder is not None:
+        draw_range(folder, replace(wall, model=model), loads, found)
     if arguments.json:
-        print_json(range_report(found, loads.name))
+        print_json(card.report())
     else:
-        rows = range_rows(found, loads.name)
-        if found.least.mechanism is not None:
-            told = describe_mechanism(
-                model, found.least.mechanism, noun=wall.noun, wedges=wall.wedge_ids
-            )
-            rows.insert(2, ("  mechanism", told.words))
-        print_table(f"{arguments.wall_path}: {len(model.blocks)} blocks", rows)
-    return ExitCode.DONE
+        print_table(f"{arguments.wall_path}: {len(model.blocks)} blocks", card.rows())
+    failed = any(end.status is LimitStatus.FAILED for end in ends)
+    return _keep_failure(model, loads, folder) if failed else ExitCode.DONE
 
 
-def _keep_failure(
-    wall: Modelled, loads: Loads, resistance: LateralResistance, folder: Path | None
-) -> ExitCode:
+def _keep_failure(model: RigidBlockModel, loads: Loads, folder: Path | None) -> ExitCode:
     """Save the program that no solver could solve (E140)."""
-    if not resistance.failed:
-        return ExitCode.DONE
     path = (folder or Path()) / "drystone-failed.npz"
-    save_program(wall.model, loads, path)
+    save_program(model, loads, path)
     said = Notice(
         "E140",
         "no solver found an answer that can be certified.",

@@ -1,0 +1,147 @@
+"""Certificates find out every single thing that can be wrong with an answer."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import nnls
+
+from drystone.statics.asking import Answer, answered
+from drystone.statics.blocks import model_from_labels
+from drystone.statics.certificate import certify
+from drystone.statics.given import model_from_json
+from drystone.statics.limit import resistance_between
+from drystone.statics.program import assemble
+from drystone.statics.result import CERTIFIED, Certificate, LimitStatus
+from drystone.statics.solvers.highs import HighsSession
+from tests.statics.walls import coursed, stacked
+
+MODEL = model_from_labels(coursed(5, 4, 90)).model
+PROGRAM = assemble(MODEL)
+
+
+def solution(sign=1.0, program=PROGRAM):
+    return answered(program, HighsSession(program), sign).solution
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_right_answer_is_certified(sign):
+    certificate = certify(PROGRAM, solution(sign), sign)
+    assert certificate.holds
+    assert certificate.lower == pytest.approx(certificate.upper, abs=1e-12)
+    assert 0 <= certificate.slack < 1e-6
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_other_end_is_no_proof(sign):
+    """A warm solver that returns its last optimum is found out."""
+    assert not certify(PROGRAM, solution(sign), -sign).holds
+
+
+def test_forces_that_leave_their_cone():
+    right = solution()
+    columns = right.columns.copy()
+    null = np.linalg.svd(PROGRAM.matrix.toarray()[:, 1:])[2][-1]  # a state of self-stress
+    columns[1:] -= 1e3 * null * np.sign(null[np.abs(null).argmax()])
+    spoilt = certify(PROGRAM, replace(right, columns=columns), 1.0)
+    assert spoilt.residual < CERTIFIED
+    assert spoilt.violation > CERTIFIED
+    assert not spoilt.holds
+
+
+def test_forces_out_of_balance():
+    right = solution()
+    columns = right.columns.copy()
+    columns[np.argmax(columns)] += 1e-5
+    spoilt = certify(PROGRAM, replace(right, columns=columns), 1.0)
+    assert spoilt.residual > CERTIFIED
+    assert not spoilt.holds
+
+
+def test_a_mechanism_that_closes_a_contact():
+    flat = assemble(model_from_labels(stacked((40, 20, 0))).model)
+    right = solution(1.0, flat)
+    duals = right.duals.copy()
+    duals[2] += 1e-4  # it turns into the ground, and no load does work on that
+    spoilt = certify(flat, replace(right, duals=duals), 1.0)
+    assert spoilt.gap < CERTIFIED
+    assert spoilt.inadmissible > CERTIFIED
+    assert spoilt.slack > CERTIFIED
+    assert not spoilt.holds
+
+
+def test_forces_below_the_best():
+    flat = assemble(model_from_labels(stacked((40, 20, 0))).model)
+    right = solution(1.0, flat)
+    less = right.columns.copy()
+    less[0] -= 0.1
+    matrix = flat.matrix.toarray()
+    less[1:], _ = nnls(matrix[:, 1:], flat.rhs - matrix[:, 0] * less[0])
+    weak = certify(flat, replace(right, columns=less), 1.0)
+    assert weak.residual < CERTIFIED
+    assert weak.gap == pytest.approx(0.1)
+    assert not weak.holds
+
+
+@pytest.mark.parametrize("part", ["residual", "violation", "inadmissible"])
+def test_no_number_is_no_proof(part):
+    assert Certificate(lower=1.0, upper=1.0).holds
+    assert not Certificate(lower=1.0, upper=1.0, **{part: float("nan")}).holds
+    assert not Certificate(lower=1.0, upper=float("nan")).holds
+    assert not Certificate(fall_work=float("nan")).holds
+
+
+FALLING = model_from_labels(stacked((20, 20, 0), (20, 20, 12)), 0.9).model
+
+
+def test_a_fall_needs_work_of_the_dead_load():
+    assert Certificate(fall_work=0.1).holds
+    assert not Certificate(fall_work=-0.1).holds
+    assert not Certificate(fall_work=1e-12, inadmissible=1e-11).holds
+
+
+def test_a_wall_is_not_called_unstable_on_a_false_proof():
+    """The end asked for comes back with the mechanism of the other end."""
+    stands = model_from_labels(stacked((20, 40, 0))).model
+    program = assemble(stands)
+    least, greatest = (answered(program, HighsSession(program), sign) for sign in (-1.0, 1.0))
+    stale = replace(greatest.solution, columns=-greatest.solution.columns)
+    false = Answer(stale, replace(greatest.certificate, lower=-0.5, upper=-0.5))
+    both = resistance_between(program, least, false, 0.58)
+    assert both.right.status is LimitStatus.FAILED
+    assert both.left.status is LimitStatus.FAILED
+
+
+def test_no_alpha_needs_a_mechanism_that_no_live_load_holds():
+    """A stone in the air falls whatever the push; an overhanging one does not."""
+    air = {"blocks_xywh": [[0, 0, 1, 1], [3, 5, 1, 1]]}
+    floating = assemble(model_from_json(air))
+    found = solution(1.0, floating)
+    assert found.status is LimitStatus.UNSTABLE
+    assert certify(floating, found, 1.0).holds
+    overhanging = assemble(FALLING)
+    end = answered(overhanging, HighsSession(overhanging), 1.0)
+    assert end.alpha < 0
+    claimed = replace(end.solution, status=LimitStatus.UNSTABLE)
+    assert not certify(overhanging, claimed, 1.0).holds
+
+
+def test_self_stress_must_balance_press_and_grow_to_the_right_side():
+    wedged = {
+        "blocks": [
+            {"id": 1, "polygon": [[0, 0], [1, 0], [1, 2], [0, 2]], "fixed": True},
+            {"id": 2, "polygon": [[1, 0], [2, 0], [2, 1], [1, 1]]},
+        ]
+    }
+    program = assemble(model_from_json(wedged))
+    found = solution(-1.0, program)
+    assert found.status is LimitStatus.UNBOUNDED
+    assert certify(program, found, -1.0).holds
+    assert certify(program, found, -1.0).lower == -np.inf
+    assert certify(program, found, 1.0) is None
+    ray = found.columns.copy()
+    ray[1:] += 0.1
+    assert not certify(program, replace(found, columns=ray), -1.0).holds
+    ray = found.columns.copy()
+    ray[1] = -1.0
+    assert certify(program, replace(found, columns=ray), -1.0).violation > 0.1
