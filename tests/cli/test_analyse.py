@@ -60,6 +60,30 @@ def test_json_keeps_the_contract(tower: Path, run: Run) -> None:
     assert left_out["nonassociative"] is None
 
 
+def test_each_direction_has_its_own_lines(tmp_path: Path, run: Run) -> None:
+    """An upper block shifted to the right falls there first."""
+    path = tmp_path / "shifted.json"
+    data = {"blocks_xywh": [[0, 0, 1, 1], [0.2, 1, 1, 1]], "mu": 0.9}
+    path.write_text(json.dumps(data), encoding="utf-8")
+    said = run("analyse", path).out
+    assert "tilted by 21.8 degrees" in said  # atan .4, of the weaker side
+    assert "tilted by" not in run("analyse", path, "--load", "height").out
+    lines = said.splitlines()
+    left = next(i for i, line in enumerate(lines) if line.startswith("load to the left"))
+    right = next(i for i, line in enumerate(lines) if line.startswith("load to the right"))
+    assert "0.6000" in lines[left]
+    assert "0.4000" in lines[right]
+    assert "left toe" in "".join(lines[left:right])
+    assert "right toe" in "".join(lines[right : right + 4])
+    ranged = run("analyse", path, "--mu", ".2:.4", "--scatter", "3", "--json").json()
+    assert ranged["mu"] == pytest.approx(0.3)  # the middle of the range
+
+
+def test_several_forces_add_up(tower: Path, run: Run) -> None:
+    pull = ("--load", "points", "--live", "1@0,3:.5,0", "--live", "1@0,3:.5,0")
+    assert run("analyse", tower, "--json", *pull).json()["alpha_right"] == pytest.approx(2 / 3)
+
+
 @pytest.mark.parametrize("solver", ["highs", "highs-ipm", "clarabel"])
 def test_any_solver_can_be_asked(tower: Path, run: Run, solver: str) -> None:
     assert run("analyse", tower, "--json", "--solver", solver).json()["alpha_left"] == (

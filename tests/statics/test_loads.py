@@ -62,6 +62,14 @@ def test_a_load_that_grows_with_height_overturns_sooner():
     assert pushed[:, 0].sum() == pytest.approx(sum(block.weight for block in model.blocks))
 
 
+def test_fixed_blocks_do_not_count_in_a_load_that_grows_with_height():
+    model = tower()
+    fixed = replace(model, blocks=(replace(model.blocks[0], fixed=True), model.blocks[1]))
+    pushed = growing_with_height(fixed).live
+    assert pushed[1, 0] == pytest.approx(model.blocks[1].weight)
+    assert limit_load(fixed, "right", growing_with_height(fixed)).alpha == pytest.approx(0.5)
+
+
 def test_a_load_cannot_grow_with_height_where_nothing_stands():
     fixed = tower()
     fixed = replace(fixed, blocks=tuple(replace(b, fixed=True) for b in fixed.blocks))

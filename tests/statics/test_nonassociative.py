@@ -1,12 +1,13 @@
 """Load multipliers without dilatancy: closed forms, the slow twin, statuses, and the check."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
+from drystone.statics import nonassociative
 from drystone.statics.blocks import model_from_labels
-from drystone.statics.flow_check import check_flow
+from drystone.statics.flow_check import FlowCheck, check_flow
 from drystone.statics.flow_search import NonassociativeSettings
 from drystone.statics.given import model_from_json
 from drystone.statics.limit import lateral_resistance
@@ -200,3 +201,42 @@ def test_the_check_names_what_is_wrong(changed, error, size):
     check = cube_check(**changed)
     assert not check.holds
     assert getattr(check, error) == pytest.approx(size)
+
+
+def fabricated(alpha, error=0.0, method=""):
+    mechanism = Mechanism((1,), np.array([[1.0, 0.0, 0.0]]))
+    check = FlowCheck(error, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return nonassociative._Answer(alpha, mechanism, np.zeros((2, 2)), check, method)
+
+
+def test_the_least_verified_answer_is_told():
+    answers = [fabricated(0.5), fabricated(0.3, method="second"), fabricated(0.1, error=1e-3)]
+    told = nonassociative._told("right", 0.6, 9, answers)
+    assert (told.alpha, told.method, told.answers) == (0.3, "second", (0.3, 0.5))
+    assert told.status is LimitStatus.OPTIMAL
+
+
+def test_a_motion_against_the_load_is_no_number():
+    told = nonassociative._told("right", 0.6, 9, [fabricated(0.5), fabricated(-0.1)])
+    assert (told.status, told.alpha) == (LimitStatus.UNSTABLE, None)
+    assert told.answers == (-0.1, 0.5)
+    assert "even against a load of 0.1000" in told.message
+
+
+@pytest.mark.parametrize("part", [f.name for f in fields(FlowCheck)])
+def test_a_check_that_is_no_number_does_not_hold(part):
+    right = FlowCheck(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    assert right.holds
+    assert not replace(right, **{part: float("nan")}).holds
+    assert not replace(right, **{part: 1e-6}).holds
+
+
+def test_what_is_held_must_not_move():
+    model = model_from_json({"blocks_xywh": [[0, 0, 1, 1]], "mu": 0.3})
+    slides = Mechanism((1,), np.array([[1.0, 0.0, 0.0]]))
+    forces = np.array([[0.35, -0.105], [0.65, -0.195]])
+    if model.interfaces[0].points[0, 0] != 0:
+        forces = forces[::-1]
+    assert check_flow(model, None, "right", 0.3, slides, forces).holds
+    guided = replace(model, blocks=(replace(model.blocks[0], held=("x",)),))
+    assert check_flow(guided, None, "right", 0.3, slides, forces).held == 1.0

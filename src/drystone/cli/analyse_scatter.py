@@ -36,8 +36,9 @@ class ScatterCard:
         if share is not None:
             said = f"{counts[LimitStatus.UNSTABLE]} walls, {100 * share:.0f} %"
             rows.append(("  do not stand", f"{said}; the figures above are of those that stand"))
-        if counts[LimitStatus.FAILED]:
-            rows.append(("  not solved", f"{counts[LimitStatus.FAILED]}"))
+        for status, name in ((LimitStatus.UNBOUNDED, "unbounded"), (LimitStatus.FAILED, "failed")):
+            if counts[status]:
+                rows.append((f"  {name}", f"{counts[status]} walls, without a number"))
         return rows
 
     def report(self) -> dict[str, Any]:
@@ -52,7 +53,8 @@ class ScatterCard:
             "alpha_left": found.alpha_left.tolist(),
             "alpha_right": found.alpha_right.tolist(),
             "F_LR": None if value is None else value.tolist(),
-            **{f"{name}_5_50_95": quantiles for name, quantiles in self._quantiles()},
+            "alpha_5_50_95": found.alpha_quantiles,
+            "F_LR_5_50_95": found.value_quantiles,
         }
 
     def _quantiles(self) -> list[tuple[str, Quantiles | None]]:

@@ -12,7 +12,7 @@ from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
 from drystone.model.plan import Plan
 from drystone.model.wall import Labels
-from drystone.statics.given import model_from_json
+from drystone.statics.given_parts import read_mu
 from drystone.statics.joints import loose_blocks
 from drystone.statics.model import RigidBlockModel
 
@@ -44,7 +44,7 @@ class GivenWall:
     def mu(self) -> float:
         """Coefficient of friction of the block model or the plan, or .58."""
         if self.blocks is not None:
-            return model_from_json(self.blocks).mu
+            return read_mu(self.blocks, "mu", 0.58)
         return float(self.plan.settings.get("mu", 0.58)) if self.plan else 0.58
 
 

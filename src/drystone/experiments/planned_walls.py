@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 from drystone.experiments.table import BenchSettings
 from drystone.io.read_stones import read_stones
@@ -61,8 +60,9 @@ def planned_walls(
     seeds : int
         Walls of each set and method, from the seed of the settings on.
     """
-    if settings.data is None:
+    if missing_data(settings):
         return
+    assert settings.data is not None  # noqa: S101 - nothing is missing
     for name, scale, width, height in SETS[:1] if settings.quick else SETS:
         stones = read_stones(settings.data / "almeida" / f"{name}.png")
         for method in methods[:1] if settings.quick else methods:
@@ -73,6 +73,6 @@ def planned_walls(
 
 def missing_data(settings: BenchSettings) -> tuple[str, ...]:
     """Say in a note that rows are missing for want of data."""
-    if settings.data is not None and (Path(settings.data) / "almeida").is_dir():
+    if settings.data is not None and (settings.data / "almeida").is_dir():
         return ()
     return ("Rows need the published stone sets: name their folder with --data.",)

@@ -5,7 +5,7 @@ import os
 import sys
 from pathlib import Path
 
-from drystone.cli.output import print_json
+from drystone.cli.output import prepare_files, print_json
 from drystone.errors import ExitCode, UsageError
 from drystone.experiments.suites import SUITES, run_suite
 from drystone.experiments.table import BenchSettings
@@ -26,18 +26,18 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         )
     output = None if arguments.output is None else Path(arguments.output)
     if output is not None:
-        output.mkdir(parents=True, exist_ok=True)
+        prepare_files([output / "table.txt"], overwrite=True)
     tables = run_suite(
         arguments.suite,
         BenchSettings(_data(arguments.data), output, arguments.seed, arguments.quick),
     )
     if arguments.json:
         print_json({table.title: table.records() for table in tables})
-        return ExitCode.DONE
-    for table in tables:
-        print(table.markdown() if arguments.markdown else table.text())
-        print()
-    return ExitCode.DONE
+    else:
+        for table in tables:
+            print(table.markdown() if arguments.markdown else table.text(), end="\n\n")
+    missed = any("miss" in row for table in tables for row in table.rows)
+    return ExitCode.CHECK_FAILED if missed else ExitCode.DONE
 
 
 def _data(given: str | None) -> Path | None:

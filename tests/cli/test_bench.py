@@ -1,0 +1,52 @@
+"""`drystone bench`."""
+
+from pathlib import Path
+
+import pytest
+
+from drystone.cli.commands import bench
+from drystone.experiments.suites import SUITES
+from drystone.experiments.table import Table
+from tests.cli.conftest import Run
+
+
+def test_suites_are_named_one_a_line(run: Run) -> None:
+    lines = run("bench", "--list").out.splitlines()
+    assert [line.split(":")[0] for line in lines] == list(SUITES)
+
+
+@pytest.mark.parametrize("suite", [(), ("speed",)])
+def test_a_suite_that_is_none(suite: tuple[str, ...], run: Run) -> None:
+    ran = run("bench", *suite)
+    assert ran.code == 2
+    assert "E138" in ran.err
+
+
+def test_a_suite_is_printed_and_has_a_folder_for_pictures(tmp_path: Path, run: Run) -> None:
+    ran = run("bench", "shear", "--quick", "-o", tmp_path / "new")
+    assert ran.code == 0
+    assert "predicted over measured" in ran.out
+    assert (tmp_path / "new").is_dir()
+    assert "E129" in run("bench", "shear", "--quick", "-o", __file__).err
+
+
+def test_walls_say_that_data_is_missing(tmp_path: Path, run: Run) -> None:
+    for options in ((), ("--data", tmp_path), ("--data", tmp_path / "none")):
+        ran = run("bench", "walls", *options)
+        assert ran.code == 0
+        assert "Rows need the published stone sets" in ran.out
+
+
+def test_planned_walls_are_solved_alike(data_dir: Path, run: Run) -> None:
+    ran = run("bench", "walls", "--quick", "--data", data_dir, "--json")
+    (rows,) = ran.json().values()
+    assert [row["verdict"] for row in rows] == ["pass"]
+    assert rows[0]["certified"] == rows[0]["answers"] == 2 * rows[0]["steps"] > 50
+    assert rows[0]["largest difference"] <= 1e-8
+
+
+def test_a_miss_is_a_failed_check(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    table = Table("Cases", ("case", "verdict"), (("one", "pass"), ("other", "miss")))
+    monkeypatch.setattr(bench, "run_suite", lambda *_: (table,))
+    assert run("bench", "statics").code == 5
+    assert run("bench", "statics", "--markdown").out.startswith("**Cases**")
