@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from drystone.planner.planner import Planner as Planner
     from drystone.planner.settings import PlannerSettings as PlannerSettings
     from drystone.planner.settings import method_settings as method_settings
-    from drystone.statics.blocks import model_from_labels as model_from_labels
-    from drystone.statics.given import model_from_json as model_from_json
-    from drystone.statics.limit import lateral_resistance as lateral_resistance
-    from drystone.statics.nonassociative import (
+    from drystone.statics.contacts.blocks import model_from_labels as model_from_labels
+    from drystone.statics.contacts.given import model_from_json as model_from_json
+    from drystone.statics.flow.nonassociative import (
         nonassociative_resistance as nonassociative_resistance,
     )
+    from drystone.statics.limit import lateral_resistance as lateral_resistance
 
 # Names are loaded on first use: `drystone --help` must not wait for NumPy and SciPy.
 _HOMES = {
@@ -54,10 +54,10 @@ _HOMES = {
     "Planner": "drystone.planner.planner",
     "PlannerSettings": "drystone.planner.settings",
     "method_settings": "drystone.planner.settings",
-    "model_from_labels": "drystone.statics.blocks",
-    "model_from_json": "drystone.statics.given",
+    "model_from_labels": "drystone.statics.contacts.blocks",
+    "model_from_json": "drystone.statics.contacts.given",
     "lateral_resistance": "drystone.statics.limit",
-    "nonassociative_resistance": "drystone.statics.nonassociative",
+    "nonassociative_resistance": "drystone.statics.flow.nonassociative",
 }
 
 __all__ = ["generate", *_HOMES]  # noqa: PLE0604 - the keys are strings

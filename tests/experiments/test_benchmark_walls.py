@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from drystone.experiments.benchmark_walls import coursed_labels, irregular_labels
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
 
 MAKERS = [coursed_labels, irregular_labels]
 

@@ -7,8 +7,8 @@ from drystone.experiments import arches, published
 from drystone.experiments.cases import closed_forms
 from drystone.experiments.published import run
 from drystone.experiments.table import BenchSettings
+from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.nonassociative import nonassociative_resistance
 from drystone.statics.result import LimitStatus
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "validation.md"

@@ -7,8 +7,8 @@ from drystone.experiments import shear
 from drystone.experiments.shear import Predicted, run
 from drystone.experiments.shear_walls import GRAVITY, SERIES, shear_wall
 from drystone.experiments.table import BenchSettings
+from drystone.statics.flow.nonassociative import NonassociativeResult
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.nonassociative import NonassociativeResult
 from drystone.statics.result import LimitStatus
 
 WITHOUT = "without dilatancy"

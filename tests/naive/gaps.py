@@ -1,4 +1,4 @@
-"""Slow, obvious twins of drystone.statics.gaps."""
+"""Slow, obvious twins of drystone.statics.contacts.gaps."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Slow, obvious twin of drystone.statics.nonassociative: every set of contact states is tried."""
+"""Slow, obvious twin of drystone.statics.flow.nonassociative: all sets of contact states."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

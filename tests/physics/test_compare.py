@@ -8,7 +8,7 @@ from drystone.physics.compare import TiltComparison, compare_with_tilt
 from drystone.physics.scatter import TiltResult, Variation
 from drystone.physics.scene import EngineSettings, Scene
 from drystone.physics.tilt import TiltSettings, TiltTrial
-from drystone.statics.outlines import model_from_outlines
+from drystone.statics.contacts.outlines import model_from_outlines
 
 ONCE = (Variation("as given", EngineSettings(), TiltSettings()),)
 QUICK = (Variation("few iterations", EngineSettings(iterations=50), TiltSettings(coarse=0.064)),)

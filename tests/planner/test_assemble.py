@@ -15,7 +15,7 @@ from drystone.planner.plan_wall import PlanResult, plan_wall
 from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
 from drystone.stabilise.stabilise import Stabilised
-from drystone.statics.blocks import model_with
+from drystone.statics.contacts.blocks import model_with
 from drystone.statics.growing import Grown, WarmGrowth
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel

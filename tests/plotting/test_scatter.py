@@ -6,10 +6,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from drystone.plotting.scatter import plot_scatter
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.result import LimitStatus
-from drystone.statics.scatter import scatter
-from drystone.statics.shaking import ScatterSettings
+from drystone.statics.scatter.scatter import scatter
+from drystone.statics.scatter.shaking import ScatterSettings
 from tests.statics.walls import coursed, stacked
 
 

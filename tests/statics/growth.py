@@ -1,7 +1,7 @@
 """Walls that grow stone by stone, for tests of the growing analysis."""
 
 from drystone.statics.appending import Units
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.growing import growing
 from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.solvers.warm import WarmSession

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from drystone.statics.appending import OpenProgram, Units, units_of
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.model import Block, RigidBlockModel
 from drystone.statics.program import assemble
 from tests.statics.walls import coursed, irregular, stacked

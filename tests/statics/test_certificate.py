@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import nnls
 
 from drystone.statics.asking import Answer, answered
-from drystone.statics.blocks import model_from_labels
 from drystone.statics.certificate import certify
-from drystone.statics.given import model_from_json
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import resistance_between
 from drystone.statics.program import assemble
 from drystone.statics.result import CERTIFIED, Certificate, LimitStatus

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from drystone.statics.asking import answered
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.failure import load_program, save_program
 from drystone.statics.limit import limit_load
 from drystone.statics.loads import growing_with_height

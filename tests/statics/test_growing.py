@@ -7,8 +7,8 @@ from hypothesis import given
 
 from drystone.statics import growing as module
 from drystone.statics.appending import Units, units_of
-from drystone.statics.blocks import model_from_labels, model_with
-from drystone.statics.given import model_from_json
+from drystone.statics.contacts.blocks import model_from_labels, model_with
+from drystone.statics.contacts.given import model_from_json
 from drystone.statics.growing import growing
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel

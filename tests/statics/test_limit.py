@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.statics import asking
-from drystone.statics.blocks import model_from_labels
-from drystone.statics.given import model_from_json
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance, limit_load
 from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LimitStatus

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from drystone.errors import InputError
-from drystone.statics.blocks import model_from_labels
-from drystone.statics.given import model_from_json
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance, limit_load, load_range
 from drystone.statics.loads import (
     Loads,

@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import ndimage
 
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
-from drystone.statics.nonassociative import nonassociative_resistance
 from drystone.statics.result import LimitStatus
 from tests.naive.statics import limit_alphas
 from tests.strategies import (

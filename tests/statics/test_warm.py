@@ -1,7 +1,7 @@
 from dataclasses import replace
 from functools import partial
 
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.growing import growing
 from drystone.statics.program import assemble
 from drystone.statics.solvers.warm import WarmSession, read_basis

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.statics.given import model_from_json
+from drystone.statics.contacts.given import model_from_json
 from drystone.statics.model import RigidBlockModel
 
 Labels = NDArray[np.uint32]

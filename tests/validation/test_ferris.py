@@ -12,7 +12,7 @@ import json
 import pytest
 
 from drystone.experiments.walls_of_ferris import WALLS
-from drystone.statics.given import model_from_json
+from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 
 PUBLISHED = {

@@ -10,10 +10,10 @@ from dataclasses import replace
 import pytest
 
 from drystone.experiments.walls_of_ferris import WALLS
-from drystone.statics.blocks import model_from_labels
-from drystone.statics.flow_search import NonassociativeSettings
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.flow.flow_search import NonassociativeSettings
+from drystone.statics.flow.nonassociative import nonassociative_load, nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.nonassociative import nonassociative_load, nonassociative_resistance
 from drystone.statics.result import LimitStatus
 from tests.statics.walls import brick_model, irregular
 

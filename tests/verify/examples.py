@@ -18,7 +18,7 @@ from drystone.planner.evaluate import action_indices
 from drystone.planner.settings import PlannerSettings
 from drystone.poses import PoseBook
 from drystone.stabilise.stabilise import Stabilised
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
 
 SETTINGS = PlannerSettings(orientations="quarter", two_sided=True)

@@ -12,8 +12,8 @@ from drystone.cli.modelling import Modelled
 from drystone.cli.output import prepare_files
 from drystone.cli.progress import counting_bar
 from drystone.statics.result import LimitStatus
-from drystone.statics.scatter import Quantiles, Scatter, scatter
-from drystone.statics.shaking import ScatterSettings
+from drystone.statics.scatter.scatter import Quantiles, Scatter, scatter
+from drystone.statics.scatter.shaking import ScatterSettings
 
 SAMPLES = 200
 

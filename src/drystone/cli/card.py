@@ -6,9 +6,9 @@ from math import atan, degrees, isfinite
 from typing import Any
 
 from drystone.cli.output import number
-from drystone.statics.mechanism import Failure
+from drystone.statics.failing.mechanism import Failure
+from drystone.statics.flow.nonassociative import NonassociativeResistance, NonassociativeResult
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.nonassociative import NonassociativeResistance, NonassociativeResult
 from drystone.statics.result import LateralResistance, LimitResult, LoadRange
 
 ASSUMPTIONS = (

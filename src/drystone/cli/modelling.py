@@ -14,16 +14,16 @@ from drystone.cli.loads import is_range, load_case
 from drystone.cli.walls import GivenWall
 from drystone.errors import Notice, UsageError
 from drystone.model.wall import Labels
-from drystone.statics.blocks import ImageModel, model_from_labels
-from drystone.statics.gap_spread import closed_gap_spread
-from drystone.statics.gaps import model_with_closed_gaps, settle_gaps
-from drystone.statics.given import model_from_json, polygons_from_json
-from drystone.statics.joints import with_head_friction
+from drystone.statics.contacts.blocks import ImageModel, model_from_labels
+from drystone.statics.contacts.gaps import model_with_closed_gaps, settle_gaps
+from drystone.statics.contacts.given import model_from_json, polygons_from_json
+from drystone.statics.contacts.joints import with_head_friction
+from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.statics.failing.wording import Noun
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.outlines import model_from_outlines, outlines_of_labels
 from drystone.statics.result import LateralResistance
-from drystone.statics.wording import Noun
+from drystone.statics.scatter.gap_spread import closed_gap_spread
 
 Shapes = Labels | Mapping[int, NDArray[np.float64]]
 

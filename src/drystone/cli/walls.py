@@ -12,8 +12,8 @@ from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
 from drystone.model.plan import Plan
 from drystone.model.wall import Labels
-from drystone.statics.given_parts import read_mu
-from drystone.statics.joints import loose_blocks
+from drystone.statics.contacts.given_parts import read_mu
+from drystone.statics.contacts.joints import loose_blocks
 from drystone.statics.model import RigidBlockModel
 
 

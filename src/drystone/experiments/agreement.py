@@ -5,9 +5,9 @@ import numpy as np
 from drystone.experiments.planned_walls import PlannedWall, missing_data, planned_walls
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.statics.asking import Solver
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.nonassociative import nonassociative_resistance
 from drystone.statics.result import LateralResistance
 
 SOLVERS: tuple[Solver, ...] = ("highs", "highs-ipm", "clarabel")

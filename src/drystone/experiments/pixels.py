@@ -9,10 +9,10 @@ from drystone.experiments.refinement import RefinementStudy, refinement_study
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.experiments.walls_of_ferris import HEIGHT, MU, WALLS
 from drystone.model.wall import Labels
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.outlines import model_from_outlines, outlines_of_labels
 
 BRICK_PX = 20
 """Height of a brick."""

@@ -15,9 +15,9 @@ from drystone.experiments.arches import (
 from drystone.experiments.cases import closed_forms
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.experiments.walls_of_ferris import WALLS
+from drystone.statics.flow.nonassociative import NonassociativeResult, nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.nonassociative import NonassociativeResult, nonassociative_resistance
 from drystone.statics.result import LimitResult
 
 CLOSED_FORM_TOLERANCE = 1e-6

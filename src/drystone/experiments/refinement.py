@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from drystone.experiments.tilted_walls import tilted_wall
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.outlines import model_from_outlines, outlines_of_labels
 from drystone.statics.result import LimitResult, LimitStatus
 
 COURSES = (3, 4, 5)

@@ -11,8 +11,8 @@ from statistics import fmean, stdev
 
 from drystone.experiments.shear_walls import SERIES, ShearSeries, ShearTest, shear_wall
 from drystone.experiments.table import BenchSettings, Cell, Table
+from drystone.statics.flow.nonassociative import nonassociative_load
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.nonassociative import nonassociative_load
 
 FRICTION = 0.62
 """Of sawn stone on stone, and of the beam on it; assumed for both stones."""

@@ -14,7 +14,7 @@ from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.model.wall import Labels
 from drystone.statics.appending import units_of
 from drystone.statics.asking import Solver
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.growing import GrowingAnalysis, growing
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Block, RigidBlockModel

@@ -7,9 +7,9 @@ from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.physics.compare import TiltComparison, compare_with_tilt
 from drystone.physics.scatter import usual_variations
 from drystone.physics.scene import Scene
+from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.statics.flow.nonassociative import nonassociative_load
 from drystone.statics.model import Direction, RigidBlockModel
-from drystone.statics.nonassociative import nonassociative_load
-from drystone.statics.outlines import model_from_outlines, outlines_of_labels
 
 SEEDS = 3
 """Walls of each stone set."""

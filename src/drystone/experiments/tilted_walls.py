@@ -13,7 +13,7 @@ from shapely.ops import split
 
 from drystone.kernels.outline import rasterise_polygon
 from drystone.model.wall import Labels
-from drystone.statics.given import model_from_json
+from drystone.statics.contacts.given import model_from_json
 from drystone.statics.model import RigidBlockModel
 
 Points = NDArray[np.float64]

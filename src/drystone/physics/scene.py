@@ -10,7 +10,7 @@ import shapely
 from numpy.typing import NDArray
 
 from drystone.errors import InputError
-from drystone.statics.blocks import check_mu
+from drystone.statics.contacts.blocks import check_mu
 
 Points = NDArray[np.float64]
 

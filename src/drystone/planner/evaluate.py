@@ -26,7 +26,7 @@ from drystone.planner.stock import Rest, Stock
 from drystone.selection.scored import craft_cost
 from drystone.stabilise.memory import StabiliseMemory
 from drystone.stabilise.stabilise import Stabilised
-from drystone.statics.blocks import model_with
+from drystone.statics.contacts.blocks import model_with
 from drystone.statics.growing import GrowingAnalysis
 from drystone.statics.result import LateralResistance
 

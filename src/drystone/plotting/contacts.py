@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from drystone.model.wall import Labels
 from drystone.plotting.outlines import Loop, wall_regions
 from drystone.plotting.scene import legend_below, pale_wall, wall_size
-from drystone.statics.kinematics import ContactKind
+from drystone.statics.failing.kinematics import ContactKind
 from drystone.statics.model import Interface, RigidBlockModel
 
 Floats = NDArray[np.float64]
@@ -51,7 +51,7 @@ def plot_contacts(
         Where to draw; None makes a figure.
     kinds : sequence of {"closed", "opening", "sliding", "opening and sliding"}, optional
         What a mechanism does at every contact point
-        (:attr:`drystone.statics.mechanism.Failure.contact_kinds`); colours the points.
+        (:attr:`drystone.statics.failing.mechanism.Failure.contact_kinds`); colours the points.
 
     Returns
     -------

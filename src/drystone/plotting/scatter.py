@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from drystone.plotting.palette import CLUSTER_COLOURS, GREY, OUTLINE_COLOUR, WEDGE_COLOUR
 from drystone.statics.result import LimitStatus
-from drystone.statics.scatter import Quantiles, Scatter
+from drystone.statics.scatter.scatter import Quantiles, Scatter
 
 Floats = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def plot_scatter(scatter: Scatter, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     scatter : Scatter
-        From :func:`drystone.statics.scatter.scatter`.
+        From :func:`drystone.statics.scatter.scatter.scatter`.
     ax : Axes, optional
         Where to draw: the panels become its children; None makes a figure.
 

@@ -69,8 +69,8 @@ class GrowingAnalysis(Protocol):
         model : RigidBlockModel
             The blocks of this wall and then new ones (a stone and its wedges); those of its
             interfaces that stay, the same objects, and then new ones, as
-            :func:`drystone.statics.blocks.model_with` makes it.  Any other model is answered
-            too, without the gain in time.
+            :func:`drystone.statics.contacts.blocks.model_with` makes it.  Any other model is
+            answered too, without the gain in time.
         """
         ...
 
@@ -159,7 +159,7 @@ def growing(model: RigidBlockModel, units: Units) -> GrowingAnalysis:
     A stone on a stone, half as wide as high; the pile is as stable as a block of twice its height.
 
     >>> from drystone.statics.appending import units_of
-    >>> from drystone.statics.given import model_from_json
+    >>> from drystone.statics.contacts.given import model_from_json
     >>> pile = model_from_json({"blocks_xywh": [[0, 0, 1, 2], [0, 2, 1, 2]], "mu": 0.58})
     >>> first = RigidBlockModel(pile.blocks[:1], pile.interfaces[:1], pile.mu)
     >>> wall = growing(first, units_of(first))

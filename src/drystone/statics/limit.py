@@ -70,7 +70,7 @@ def limit_load(
 
     Examples
     --------
-    >>> from drystone.statics.blocks import model_from_labels
+    >>> from drystone.statics.contacts.blocks import model_from_labels
     >>> wall = model_from_labels(np.ones((40, 20), np.uint32)).model
     >>> result = limit_load(wall, "right")
     >>> round(result.alpha, 6), result.certificate.holds
@@ -124,7 +124,7 @@ def load_range(
     --------
     How light may a block be, 1 wide and 2 high, that is pushed at mid-height with .3?
 
-    >>> from drystone.statics.given import model_from_json
+    >>> from drystone.statics.contacts.given import model_from_json
     >>> from drystone.statics.loads import gravity_factor, point_load
     >>> block = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
     >>> push = point_load(block, 1, (0, 1), (0.3, 0))

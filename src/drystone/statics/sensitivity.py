@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drystone.statics.kinematics import Floats, kinematics
+from drystone.statics.failing.kinematics import Floats, kinematics
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult
@@ -80,7 +80,7 @@ def friction_sensitivity(
 
     Examples
     --------
-    >>> from drystone.statics.given import model_from_json
+    >>> from drystone.statics.contacts.given import model_from_json
     >>> from drystone.statics.limit import limit_load
     >>> flat = model_from_json({"blocks_xywh": [[0, 0, 4, 2]]})
     >>> round(friction_sensitivity(flat, limit_load(flat, "right", mechanism=True)).total, 6)

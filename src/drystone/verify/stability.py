@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from drystone.model.plan import StoneStep, WedgeStep
 from drystone.model.wall import Labels
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance

@@ -16,12 +16,12 @@ from drystone.cli.modelling import Modelled, modelled
 from drystone.cli.output import print_json, print_table
 from drystone.cli.walls import read_wall, unsupported
 from drystone.errors import ExitCode, Notice, UsageError
+from drystone.statics.failing.mechanism import Failure, describe_mechanism
 from drystone.statics.failure import save_program
+from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import Loads
-from drystone.statics.mechanism import Failure, describe_mechanism
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.nonassociative import nonassociative_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.sensitivity import friction_sensitivity
 

@@ -12,7 +12,7 @@ from drystone.errors import ExitCode, UsageError
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
-from drystone.statics.blocks import model_from_labels
+from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
 
 

@@ -1,0 +1,69 @@
+"""Friction of some interfaces only, and blocks that nothing carries."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from drystone.statics.model import GROUND, Interface, RigidBlockModel
+
+Pair = tuple[int, int]
+
+
+def is_head_joint(interface: Interface) -> bool:
+    """Whether an interface is nearer to upright than to level: its normal lies flatter than 45°."""
+    x, y = interface.normal
+    return abs(x) > abs(y)
+
+
+def with_head_friction(model: RigidBlockModel, mu: float) -> RigidBlockModel:
+    """Give the head joints a coefficient of friction of their own; 0 for open, dirty or wet ones.
+
+    Examples
+    --------
+    >>> from drystone.statics.contacts.given import model_from_json
+    >>> pair = model_from_json({"blocks_xywh": [[0, 0, 1, 1], [1, 0, 1, 1]]})
+    >>> [interface.mu for interface in with_head_friction(pair, 0.0).interfaces]
+    [None, None, 0.0]
+    """
+    return replace(
+        model,
+        interfaces=tuple(
+            replace(interface, mu=mu) if is_head_joint(interface) else interface
+            for interface in model.interfaces
+        ),
+    )
+
+
+def with_pair_friction(model: RigidBlockModel, friction: Mapping[Pair, float]) -> RigidBlockModel:
+    """Give all interfaces of some pairs of blocks a coefficient of friction of their own.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Blocks and interfaces.
+    friction : mapping of (id, id) to float
+        In either order; GROUND is 0.
+    """
+    known = {frozenset(pair): mu for pair, mu in friction.items()}
+    return replace(
+        model,
+        interfaces=tuple(
+            replace(interface, mu=known.get(frozenset((interface.block, interface.other))))
+            if frozenset((interface.block, interface.other)) in known
+            else interface
+            for interface in model.interfaces
+        ),
+    )
+
+
+def loose_blocks(model: RigidBlockModel) -> tuple[int, ...]:
+    """Return the blocks that no chain of contacts connects with the ground or a fixed block."""
+    touching: dict[int, set[int]] = {}
+    for interface in model.interfaces:
+        touching.setdefault(interface.block, set()).add(interface.other)
+        touching.setdefault(interface.other, set()).add(interface.block)
+    reached = {GROUND} | {block.id for block in model.blocks if block.fixed}
+    new: Iterable[int] = set(reached)
+    while new:
+        new = set().union(*(touching.get(block, set()) for block in new)) - reached
+        reached |= new
+    return tuple(block.id for block in model.blocks if block.id not in reached)

@@ -1,0 +1,1 @@
+"""How a wall fails, told from its mechanism."""

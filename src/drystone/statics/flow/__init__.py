@@ -1,0 +1,1 @@
+"""Coulomb friction without dilatancy: search for load multipliers, and the check of each."""

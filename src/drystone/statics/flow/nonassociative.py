@@ -1,0 +1,287 @@
+"""Load multipliers for Coulomb friction without dilatancy (non-associative flow).
+
+The blocks fail at a load multiplier alpha when there are forces in equilibrium, within friction,
+and a motion with live . v = 1 that obeys the flow rule of :mod:`drystone.statics.flow.flow_rule`.
+That is a mixed complementarity problem, and it has several solutions; the forces of each are
+admissible in the associative problem, so none lies above that one's alpha.
+
+**Rounds.**  With the change of variable of De Saxcé the problem is a fixed point (Acary, Cadoux,
+Lemaréchal, Malick: A formulation of the linear discrete Coulomb friction problem via convex
+optimization, ZAMM 91 (2011) 155-175).  For given slip rates s_i >= 0 solve
+
+    maximise  alpha - sum_i mu_i s_i n_i   subject to equilibrium and the cones of friction;
+
+its dual is a motion with live . v = 1 and u_n,i + mu s_i >= mu |u_t,i|.  Where s_i = |u_t,i| all
+conditions hold.  Only costs change from round to round, so the program stays feasible, and
+s = 0 is the associative problem.  The slip rates move a fixed part of the way to those of the
+last motion.
+
+**Closing.**  The rounds converge slowly or run away.  But the forces of a round settle early, and
+the motions that go with given forces are the solutions of a linear program, so each round asks it
+for one: mostly within ten rounds there is one, and the answer is exact.
+
+**Descent.**  From a solution, forces and motion are improved in turn: the least alpha whose
+forces go with the motion, then, of the motions that go with these forces, the one that gets least
+into the way of the forces which would lower alpha further (their reduced costs weigh them).
+
+What is heuristic: nothing says that rounds find a solution (they run away towards motions in which
+the live load does no work), or that descent ends at the least one.  So there are several starts
+in a fixed order, the least of all solutions found is told, and every answer is checked from the
+blocks themselves.  Starts with fast slip ask for small normal forces, everywhere or in the head
+joints, and lead to the lower solutions.  On walls 1 to 5 of Ferris and Tin-Loi (2001) the answers
+are the least ones that a nonlinear solver found.
+
+**Jammed contacts.**  The least alpha may be negative although the blocks can carry their dead load:
+when a stone is held only by friction in contacts that are pressed together by nothing but
+themselves.  Such a wall is called unstable here, with the motion that shows it.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from drystone.statics.flow.flow_check import FlowCheck, check_flow
+from drystone.statics.flow.flow_rule import State
+from drystone.statics.flow.flow_search import NonassociativeSettings, Search
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.loads import Loads
+from drystone.statics.model import Direction, RigidBlockModel
+from drystone.statics.program import EquilibriumProgram, Floats, assemble
+from drystone.statics.result import LimitResult, LimitStatus, Mechanism
+
+STANDING = 1e-9
+"""A load multiplier down to minus this is one of 0."""
+
+
+@dataclass(frozen=True, eq=False)
+class NonassociativeResult:
+    """Outcome of one non-associative limit analysis.
+
+    Parameters
+    ----------
+    status : LimitStatus
+        OPTIMAL only for an answer whose check holds.
+    direction : {"left", "right"}
+        "right" for a load along the live load, "left" against.
+    alpha : float or None
+        Load multiplier; None unless the status is "optimal".
+    mechanism : Mechanism or None
+        How the blocks move.
+    forces : (m, 2) float array or None
+        Normal and tangential force at every contact point, in the order of the interfaces and
+        their points, on the block that the normal points into; the tangent of a normal (x, y) is
+        (y, -x).  In weights of the model.
+    rounds : int
+        Linear programs of the rounds, all starts together.
+    method : str
+        The start that found the answer.
+    check : FlowCheck or None
+        Of mechanism and forces.
+    answers : tuple of float
+        Load multipliers of all verified answers, the least first: which of them a wall fails at
+        depends on the forces that are locked in it.
+    message : str
+        For people.
+    """
+
+    status: LimitStatus
+    direction: Direction
+    alpha: float | None = None
+    mechanism: Mechanism | None = None
+    forces: Floats | None = None
+    rounds: int = 0
+    method: str = ""
+    check: FlowCheck | None = None
+    answers: tuple[float, ...] = ()
+    message: str = ""
+
+    @property
+    def success(self) -> bool:
+        """True when the status is "optimal"."""
+        return self.status is LimitStatus.OPTIMAL
+
+
+@dataclass(frozen=True, eq=False)
+class NonassociativeResistance:
+    """Both directions.
+
+    Parameters
+    ----------
+    left, right : NonassociativeResult
+        Against and along the live load.
+    mu : float
+        Coefficient of friction.
+    """
+
+    left: NonassociativeResult
+    right: NonassociativeResult
+    mu: float
+
+    @property
+    def value(self) -> float | None:
+        """min(alpha_left, alpha_right) / mu; None unless both are optimal, and without friction."""
+        if self.left.alpha is None or self.right.alpha is None or self.mu == 0:
+            return None
+        return min(self.left.alpha, self.right.alpha) / self.mu
+
+
+def nonassociative_load(
+    model: RigidBlockModel,
+    direction: Direction,
+    *,
+    loads: Loads | None = None,
+    settings: NonassociativeSettings | None = None,
+) -> NonassociativeResult:
+    """Find the least load at which the blocks can move by Coulomb's law without dilatancy.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Blocks and interfaces.
+    direction : {"left", "right"}
+        The live load points to -x for "left"; for other loads "left" is against the live load.
+    loads : Loads, optional
+        Dead and live loads; the tilting table unless given.
+    settings : NonassociativeSettings, optional
+        How much is tried.
+
+    Returns
+    -------
+    NonassociativeResult
+        "optimal" when forces and motion were found whose check holds: the least alpha of those
+        found, in bounded effort, an upper estimate of the least there is.  "unstable" when the
+        blocks do not stand under their dead load, or only without certainty: a motion that needs
+        less than no load was found.  "unbounded" when the associative problem is.  "failed" when
+        nothing was found.
+
+    Examples
+    --------
+    >>> from drystone.statics.contacts.given import model_from_json
+    >>> wall = model_from_json({"blocks_xywh": [[0, 0, 1, 2]], "mu": 0.7})
+    >>> result = nonassociative_load(wall, "right")
+    >>> round(result.alpha, 6), result.check.holds
+    (0.5, True)
+    """
+    both = lateral_resistance(model, loads)
+    associative = both.left if direction == "left" else both.right
+    return _nonassociative(model, loads, associative, settings or NonassociativeSettings())
+
+
+def nonassociative_resistance(
+    model: RigidBlockModel,
+    *,
+    loads: Loads | None = None,
+    settings: NonassociativeSettings | None = None,
+) -> NonassociativeResistance:
+    """Find the loads in both directions; see :func:`nonassociative_load`.
+
+    Returns
+    -------
+    NonassociativeResistance
+        Its `value` is to F_LR what the flow rule without dilatancy makes of it.
+    """
+    both = lateral_resistance(model, loads)
+    chosen = settings or NonassociativeSettings()
+    left, right = (_nonassociative(model, loads, end, chosen) for end in (both.left, both.right))
+    return NonassociativeResistance(left, right, model.mu)
+
+
+def _nonassociative(
+    model: RigidBlockModel,
+    loads: Loads | None,
+    associative: LimitResult,
+    settings: NonassociativeSettings,
+) -> NonassociativeResult:
+    direction = associative.direction
+    if associative.alpha is None:
+        return NonassociativeResult(associative.status, direction, message=associative.message)
+    program = assemble(model, loads)
+    rounds, answers = 0, []
+    sign = -1.0 if direction == "left" else 1.0
+    for found in Search(program, sign, _upright(model), settings).attempts():
+        rounds += found.rounds
+        if found.state is not None:
+            state = replace(found.state, alpha=_without_noise(found.state.alpha, associative.alpha))
+            answers.append(_answer(model, loads, direction, program, state, found.method))
+    return _told(direction, associative.alpha, rounds, answers)
+
+
+def _without_noise(alpha: float, associative: float) -> float:
+    """Take off what can only be rounding, at 0 and at the associative load; it is checked after.
+
+    The forces are admissible in the associative problem, so alpha cannot be greater.
+    """
+    return min(0.0 if -STANDING <= alpha < 0.0 else alpha, associative)
+
+
+def _upright(model: RigidBlockModel) -> Floats:
+    """Return the vertical part of the normal at every contact point."""
+    parts = [abs(interface.normal[1]) for interface in model.interfaces]
+    return np.repeat(parts, [len(interface.points) for interface in model.interfaces])
+
+
+@dataclass(frozen=True, eq=False)
+class _Answer:
+    """A solution in the units of the model."""
+
+    alpha: float
+    mechanism: Mechanism
+    forces: Floats
+    check: FlowCheck
+    method: str
+
+
+def _answer(
+    model: RigidBlockModel,
+    loads: Loads | None,
+    direction: Direction,
+    program: EquilibriumProgram,
+    state: State,
+    method: str,
+) -> _Answer:
+    velocity = np.zeros((len(program.rows), 3))
+    velocity[program.rows >= 0] = state.velocity
+    velocity[:, 2] /= program.length
+    fastest = float(np.hypot(velocity[:, 0], velocity[:, 1]).max())
+    # Blocks that only turn about their centroids are told by their rate of turning.
+    mechanism = Mechanism(program.block_ids, velocity / (fastest or float(np.abs(velocity).max())))
+    first, second = program.weight * state.edges.T
+    forces = np.column_stack((first + second, program.friction * (first - second)))
+    check = check_flow(model, loads, direction, state.alpha, mechanism, forces)
+    return _Answer(state.alpha, mechanism, forces, check, method)
+
+
+def _told(
+    direction: Direction, associative: float, rounds: int, answers: list[_Answer]
+) -> NonassociativeResult:
+    """Choose the least of the verified answers."""
+    verified = [answer for answer in answers if answer.check.holds]
+    if not verified:
+        said = (
+            f"The search did not converge in {rounds} rounds; the load multiplier lies at or"
+            f" below the associative one, {associative:.5g}."
+        )
+        return NonassociativeResult(LimitStatus.FAILED, direction, rounds=rounds, message=said)
+    # Of equal ones the first.
+    best = min(verified, key=lambda answer: round(answer.alpha, 9))
+    alphas = tuple(sorted(answer.alpha for answer in verified))
+    standing = best.alpha >= 0.0
+    said = (
+        f"The least of {len(verified)} verified answers, which reach up to {alphas[-1]:.4f}."
+        if standing
+        else "Without dilatancy the blocks can move this way under their dead load alone, and even"
+        f" against a load of {-best.alpha:.4f}, although other forces would hold them;"
+        f" {len(verified)} verified answers reach up to {alphas[-1]:.4f}."
+    )
+    return NonassociativeResult(
+        status=LimitStatus.OPTIMAL if standing else LimitStatus.UNSTABLE,
+        direction=direction,
+        alpha=best.alpha if standing else None,
+        mechanism=best.mechanism,
+        forces=best.forces,
+        rounds=rounds,
+        method=best.method,
+        check=best.check,
+        answers=alphas,
+        message=said,
+    )

@@ -1,0 +1,184 @@
+"""Scatter of the load multiplier: walls shaken at random, and each one analysed (Monte Carlo)."""
+
+from collections import Counter
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.program import Floats
+from drystone.statics.result import LateralResistance, LimitStatus
+from drystone.statics.scatter.shaking import ScatterSettings, shaken
+
+
+class Quantiles(NamedTuple):
+    """Of a figure, over the walls that stand."""
+
+    low: float
+    """Of 5 %."""
+    median: float
+    high: float
+    """Of 95 %."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scatter:
+    """What the shaken walls carry; a wall that does not stand is a result too, without numbers.
+
+    Parameters
+    ----------
+    settings : ScatterSettings
+        What was shaken.
+    seed : int
+        Of the random numbers.
+    unshaken : LateralResistance
+        Of the model as it was given, with its own friction.
+    status : (n,) tuple of LimitStatus
+        Of every sample: "optimal" when both directions are.
+    mu : (n,) float array
+        Coefficient of friction of every sample; the mean over the interfaces that draw one when
+        each has its own.
+    alpha_left, alpha_right : (number of optimal samples,) float array
+        Load multipliers of the walls that stand, in the order of the samples.
+    """
+
+    settings: ScatterSettings
+    seed: int
+    unshaken: LateralResistance
+    status: tuple[LimitStatus, ...]
+    mu: Floats
+    alpha_left: Floats
+    alpha_right: Floats
+
+    @property
+    def counts(self) -> dict[LimitStatus, int]:
+        """How many samples ended how."""
+        counted = Counter(self.status)
+        return {status: counted[status] for status in LimitStatus}
+
+    @property
+    def falling_share(self) -> float | None:
+        """Share of the walls that do not stand, in [0, 1]; None when no analysis told.
+
+        Samples on which the solver gave up tell neither, and do not count.
+        """
+        counts = self.counts
+        known = counts[LimitStatus.OPTIMAL] + counts[LimitStatus.UNSTABLE]
+        return counts[LimitStatus.UNSTABLE] / known if known else None
+
+    @property
+    def standing_mu(self) -> Floats:
+        """Friction of the walls that stand, in the order of `alpha_left` and `alpha_right`."""
+        return self.mu[[status is LimitStatus.OPTIMAL for status in self.status]]
+
+    @property
+    def alpha(self) -> Floats:
+        """The lesser of both directions, of the walls that stand.
+
+        This is the figure that compares: in `value` a slippery wall that slides looks as strong
+        as a rough one.
+        """
+        return np.minimum(self.alpha_left, self.alpha_right)
+
+    @property
+    def value(self) -> Floats | None:
+        """F_LR, the lesser alpha over the mu of its own sample; None when some mu is 0."""
+        mu = self.standing_mu
+        return self.alpha / mu if mu.all() else None
+
+    @property
+    def alpha_quantiles(self) -> Quantiles | None:
+        """Of `alpha`; None when no wall stands."""
+        return _quantiles(self.alpha)
+
+    @property
+    def value_quantiles(self) -> Quantiles | None:
+        """Of `value`; None when there is none."""
+        value = self.value
+        return None if value is None else _quantiles(value)
+
+
+def scatter(
+    model: RigidBlockModel,
+    settings: ScatterSettings,
+    *,
+    seed: int = 0,
+    executor: Executor | None = None,
+    on_sample: Callable[[int], None] | None = None,
+) -> Scatter:
+    """Shake a wall many times and find what it carries each time, to both sides.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        The wall.
+    settings : ScatterSettings
+        What is shaken, and how often.
+    seed : int
+        >= 0.  Each sample has random numbers of its own, from the seed and its number.
+    executor : concurrent.futures.Executor, optional
+        Threads or processes; never changes the result.
+    on_sample : callable, optional
+        Told how many samples are done, after each one.
+
+    Returns
+    -------
+    Scatter
+
+    Examples
+    --------
+    >>> from drystone.statics.contacts.given import model_from_json
+    >>> block = model_from_json({"blocks_xywh": [[0, 0, 4, 2]]})
+    >>> found = scatter(block, ScatterSettings(samples=20, mu=(0.4, 0.8)))
+    >>> bool(np.allclose(found.alpha, found.mu)), found.falling_share
+    (True, 0.0)
+    """
+    analyse = partial(_analysed, model, settings, seed)
+    numbers = range(settings.samples)
+    # Enough for each worker to be busy, few enough to see progress.
+    chunk = max(1, min(8, settings.samples // 32))
+    found = executor.map(analyse, numbers, chunksize=chunk) if executor else map(analyse, numbers)
+    samples = []
+    for done, sample in enumerate(found, start=1):
+        samples.append(sample)
+        if on_sample is not None:
+            on_sample(done)
+    standing = [sample.alphas for sample in samples if sample.alphas is not None]
+    alphas = np.array(standing, float).reshape(-1, 2)
+    return Scatter(
+        settings=settings,
+        seed=seed,
+        unshaken=lateral_resistance(model),
+        status=tuple(sample.status for sample in samples),
+        mu=np.array([sample.mu for sample in samples]),
+        alpha_left=alphas[:, 0],
+        alpha_right=alphas[:, 1],
+    )
+
+
+class _Sample(NamedTuple):
+    mu: float
+    status: LimitStatus
+    alphas: tuple[float, float] | None
+
+
+def _analysed(model: RigidBlockModel, settings: ScatterSettings, seed: int, number: int) -> _Sample:
+    rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(number,)))
+    wall = shaken(model, settings, rng)
+    both = lateral_resistance(wall)
+    if both.left.alpha is not None and both.right.alpha is not None:
+        return _Sample(wall.mu, LimitStatus.OPTIMAL, (both.left.alpha, both.right.alpha))
+    ends = (both.left.status, both.right.status)
+    worst = (LimitStatus.FAILED, LimitStatus.UNSTABLE, LimitStatus.UNBOUNDED)
+    return _Sample(wall.mu, next(status for status in worst if status in ends), None)
+
+
+def _quantiles(values: Floats) -> Quantiles | None:
+    if not len(values):
+        return None
+    return Quantiles(*np.quantile(values, (0.05, 0.5, 0.95)).tolist())

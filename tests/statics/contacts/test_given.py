@@ -1,0 +1,153 @@
+import math
+
+import pytest
+
+from drystone.errors import InputError
+from drystone.statics.contacts.given import model_from_json
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import GROUND
+
+
+def told(model):
+    return [
+        (i.block, i.other, [tuple(p) for p in i.points.round(9).tolist()], i.normal)
+        for i in model.interfaces
+    ]
+
+
+def square(x, y, size=2.0):
+    return [[x, y], [x + size, y], [x + size, y + size], [x, y + size]]
+
+
+def test_rectangles_touch_along_bed_and_head_joints():
+    model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [2, 0, 2, 1], [1, 1, 2, 1]], "mu": 0.65})
+    assert model.mu == 0.65
+    assert [(b.id, b.area, b.centroid) for b in model.blocks] == [
+        (1, 2, (1, 0.5)),
+        (2, 2, (3, 0.5)),
+        (3, 2, (2, 1.5)),
+    ]
+    assert told(model) == [
+        (1, GROUND, [(0, 0), (2, 0)], (0, 1)),
+        (2, GROUND, [(2, 0), (4, 0)], (0, 1)),
+        (2, 1, [(2, 1), (2, 0)], (1, 0)),
+        (3, 1, [(1, 1), (2, 1)], (0, 1)),
+        (3, 2, [(2, 1), (3, 1)], (0, 1)),
+    ]
+
+
+def test_corners_that_meet_only_at_a_corner_are_no_contact():
+    model = model_from_json({"blocks_xywh": [[0, 0, 1, 1], [1, 1, 1, 1]]})
+    assert told(model) == [(1, GROUND, [(0, 0), (1, 0)], (0, 1))]
+
+
+def test_polygons_in_either_sense_with_density_and_fixed():
+    data = {
+        "blocks": [
+            {"id": 7, "polygon": square(0, 0), "fixed": True},
+            {"id": 3, "polygon": square(0, 2)[::-1], "density": 2.5},
+        ]
+    }
+    model = model_from_json(data)
+    assert model.mu == 0.58
+    assert [(b.id, b.weight, b.fixed) for b in model.blocks] == [(7, 4, True), (3, 10, False)]
+    assert told(model) == [
+        (7, GROUND, [(0, 0), (2, 0)], (0, 1)),
+        (7, 3, [(2, 2), (0, 2)], (0, -1)),
+    ]
+
+
+def test_a_tilted_joint_has_its_own_normal():
+    lower, upper = [[0, 0], [4, 0], [4, 3], [0, 1]], [[0, 1], [4, 3], [4, 6], [0, 6]]
+    model = model_from_json(
+        {"blocks": [{"id": i, "polygon": p} for i, p in ((1, lower), (2, upper))]}
+    )
+    assert model.interfaces[-1].normal == pytest.approx((-1 / 5**0.5, 2 / 5**0.5))
+
+
+def test_a_corner_that_stands_on_an_edge_is_a_contact_at_a_point():
+    roof = [[0, 0], [4, 0], [2, 2]]
+    beam = [[0, 2], [4, 2], [4, 3], [0, 3]]
+    for ids in ((1, 2), (2, 1)):
+        model = model_from_json(
+            {"blocks": [{"id": i, "polygon": p} for i, p in zip(ids, (roof, beam), strict=True)]}
+        )
+        (contact,) = (i for i in model.interfaces if i.other != GROUND)
+        assert contact.points.tolist() == [[2, 2]]
+        assert contact.normal == (0, 1 if contact.block == ids[1] else -1)
+
+
+def test_a_block_on_its_corner_touches_the_ground_at_a_point():
+    diamond = [[0, 0], [1, 1], [0, 2], [-1, 1]]
+    model = model_from_json({"blocks": [{"id": 1, "polygon": diamond}]})
+    assert told(model) == [(1, GROUND, [(0, 0)], (0, 1))]
+
+
+def test_the_density_is_the_weight():
+    """A heavy cap moves the common centre of mass: b/h of the whole, not of the blocks."""
+    blocks = [{"id": 1, "polygon": square(0, 0)}, {"id": 2, "polygon": square(0, 2), "density": 3}]
+    both = lateral_resistance(model_from_json({"blocks": blocks, "mu": 2.0}))
+    centre = (1 * 1 + 3 * 3) / 4
+    assert both.right.alpha == pytest.approx(1 / centre)
+
+
+def test_gaps_within_the_tolerance_are_contacts_and_wider_ones_are_not():
+    for gap, count in ((1e-7, 2), (1e-4, 1)):
+        model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [0, 1 + gap, 2, 1]]})
+        assert len(model.interfaces) == count
+
+
+def test_a_gap_that_opens_along_an_edge_leaves_a_contact_at_a_point():
+    lower = {"id": 1, "polygon": [[0, 0], [2, 0], [2, 1], [0, 1]]}
+    upper = {"id": 2, "polygon": [[0.5, 1], [1.5, 1.0005], [1.5, 2], [0.5, 2]]}
+    model = model_from_json({"blocks": [lower, upper]})
+    assert told(model)[1:] == [(2, 1, [(0.5, 1)], (0, 1))]
+
+
+def test_a_closed_polygon_and_repeated_corners_are_read():
+    polygon = [*square(0, 0), [0, 0]]
+    polygon.insert(1, polygon[1])
+    model = model_from_json({"blocks": [{"id": 1, "polygon": polygon}]})
+    assert told(model) == [(1, GROUND, [(0, 0), (2, 0)], (0, 1))]
+
+
+def test_no_blocks_is_a_model():
+    assert model_from_json({"blocks_xywh": []}).blocks == ()
+
+
+def test_blocks_far_from_the_origin_lose_no_digits():
+    model = model_from_json({"blocks_xywh": [[1e8, 0, 1, 2]]})
+    assert model.blocks[0].centroid == (1e8 + 0.5, 1.0)
+    assert lateral_resistance(model).right.alpha == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("data", "code"),
+    [
+        ({}, "E303"),
+        ({"blocks_xywh": 3}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1]]}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1, "wide"]]}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1, math.nan]]}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1, 0]]}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1, 1]], "mu": "rough"}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1, 1]], "mu": -1}, "E302"),
+        ({"blocks_xywh": [[0, -1, 1, 3]]}, "E304"),
+        ({"blocks_xywh": [[0, 0, 2, 2], [1, 1, 2, 2]]}, "E304"),
+        ({"blocks": [{"id": 1}]}, "E303"),
+        ({"blocks": [7]}, "E303"),
+        ({"blocks": [{"polygon": square(0, 0)}]}, "E303"),
+        ({"blocks": [{"id": 0, "polygon": square(0, 0)}]}, "E303"),
+        ({"blocks": [{"id": True, "polygon": square(0, 0)}]}, "E303"),
+        ({"blocks": [{"id": 1, "polygon": square(0, 0)[:2]}]}, "E303"),
+        ({"blocks": [{"id": 1, "polygon": [[0, 0], [2, 2], [2, 0], [0, 2]]}]}, "E303"),
+        ({"blocks": [{"id": 1, "polygon": square(0, 0), "density": 0}]}, "E303"),
+        ({"blocks": [{"id": 1, "polygon": square(0, 0), "fixed": "yes"}]}, "E303"),
+        ({"blocks": [{"id": 1, "polygon": square(x, 0)} for x in (0, 2)]}, "E303"),
+    ],
+)
+def test_what_is_no_block_model_is_refused(data, code):
+    with pytest.raises(InputError, match=code) as refused:
+        model_from_json(data)
+    assert refused.value.cure
+    assert refused.value.where

@@ -1,0 +1,242 @@
+"""Load multipliers without dilatancy: closed forms, the slow twin, statuses, and the check."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.given import model_from_json
+from drystone.statics.flow import nonassociative
+from drystone.statics.flow.flow_check import FlowCheck, check_flow
+from drystone.statics.flow.flow_search import NonassociativeSettings
+from drystone.statics.flow.nonassociative import nonassociative_load, nonassociative_resistance
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.loads import Loads, tilting_table
+from drystone.statics.result import LimitStatus, Mechanism
+from tests.naive.nonassociative import all_limits
+from tests.statics.walls import coursed, irregular
+
+DIRECTIONS = ("left", "right")
+FEW = NonassociativeSettings(random_starts=0)
+
+
+def block(width: float, height: float, mu: float):
+    return model_from_json({"blocks_xywh": [[0, 0, width, height]], "mu": mu})
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "mu"), [(1, 1, 0.3), (1, 2, 0.7), (1, 4, 0.65), (2, 1, 0.65)]
+)
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_single_blocks_slide_or_rock(width, height, mu, direction):
+    result = nonassociative_load(block(width, height, mu), direction)
+    assert result.success
+    assert result.check.holds
+    assert result.alpha == pytest.approx(min(mu, width / height), abs=1e-9)
+
+
+def test_a_stack_rocks_where_its_lines_of_thrust_leave_it():
+    rows = [[0, 0, 1, 1], [0.2, 1, 1, 1]]
+    both = nonassociative_resistance(model_from_json({"blocks_xywh": rows, "mu": 0.9}))
+    assert (both.right.alpha, both.left.alpha) == pytest.approx((0.4, 0.6), abs=1e-9)
+    assert both.value == pytest.approx(0.4 / 0.9, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("seed", "count", "mu"),
+    [(4, 2, 0.7), (7, 2, 0.7), (8, 2, 0.4), (13, 2, 0.7), (0, 3, 0.7), (3, 3, 0.7)],
+)
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_the_least_of_all_sets_of_contact_states(seed, count, mu, direction):
+    model = model_from_labels(irregular(seed, count, 24, 18), mu).model
+    result = nonassociative_load(model, direction)
+    if result.status is LimitStatus.UNSTABLE:
+        assert lateral_resistance(model).left.status is LimitStatus.UNSTABLE
+        return
+    limits = all_limits(model, direction)
+    assert result.alpha == pytest.approx(min(limit.least for limit in limits), abs=1e-7)
+
+
+def test_the_twin_knows_walls_below_their_associative_load():
+    model = model_from_labels(irregular(7, 2, 24, 18), 0.7).model
+    (least,) = {round(limit.least, 6) for limit in all_limits(model, "right")}
+    assert least < lateral_resistance(model).right.alpha - 0.05
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("mu", [0.58, 0.9])
+def test_irregular_walls_are_answered_with_a_check_that_holds(seed, mu):
+    model = model_from_labels(irregular(seed, 12, 80, 60), mu).model
+    associative = lateral_resistance(model)
+    if not associative.stable:
+        assert nonassociative_load(model, "left").status is LimitStatus.UNSTABLE
+        return
+    for direction, above in (("left", associative.left), ("right", associative.right)):
+        result = nonassociative_load(model, direction, settings=FEW)
+        assert result.status in (LimitStatus.OPTIMAL, LimitStatus.UNSTABLE)
+        assert result.check.holds
+        if result.success:
+            assert 0.0 <= result.alpha <= above.alpha
+            again = check_flow(
+                model, None, direction, result.alpha, result.mechanism, result.forces
+            )
+            assert result.check == again
+        assert np.hypot(*result.mechanism.velocity[:, :2].T).max() == pytest.approx(1.0)
+
+
+def test_courses_with_open_joints():
+    both = nonassociative_resistance(model_from_labels(coursed(3, 5, 100, 3)).model, settings=FEW)
+    assert both.left.check.holds
+    assert both.right.check.holds
+
+
+def test_the_same_every_time():
+    model = model_from_labels(irregular(3, 8, 60, 40), 0.58).model
+    first, second = (nonassociative_load(model, "right") for _ in range(2))
+    assert first.alpha == second.alpha
+    assert first.method == second.method
+    np.testing.assert_array_equal(first.forces, second.forces)
+    np.testing.assert_array_equal(first.mechanism.velocity, second.mechanism.velocity)
+
+
+def test_more_starts_never_raise_the_load():
+    model = model_from_labels(coursed(3, 5, 100, 3)).model
+    one = replace(FEW, starts=FEW.starts[-1:])
+    alphas = [nonassociative_load(model, "left", settings=s).alpha for s in (one, FEW)]
+    assert alphas[1] <= alphas[0]
+
+
+def test_without_starts_it_says_that_it_did_not_converge():
+    nothing = NonassociativeSettings(starts=(), random_starts=0)
+    result = nonassociative_load(block(1, 2, 0.7), "left", settings=nothing)
+    assert result.status is LimitStatus.FAILED
+    assert result.alpha is None
+    assert "did not converge in 0 rounds" in result.message
+    assert "0.5" in result.message
+
+
+def test_answers_whose_check_does_not_hold_are_not_told(monkeypatch):
+    monkeypatch.setattr("drystone.statics.flow.flow_check.HOLDS", -1.0)
+    result = nonassociative_load(block(1, 2, 0.7), "left", settings=FEW)
+    assert (result.status, result.alpha) == (LimitStatus.FAILED, None)
+    assert result.rounds > 0
+
+
+def test_walls_that_do_not_stand():
+    labels = np.zeros((20, 30), np.uint32)
+    labels[10:, :10] = 1
+    labels[:10, 4:30] = 2
+    both = nonassociative_resistance(model_from_labels(labels).model)
+    assert both.left.status is both.right.status is LimitStatus.UNSTABLE
+    assert both.value is None
+
+
+def test_walls_that_stand_only_when_contacts_are_jammed():
+    model = model_from_labels(irregular(15, 12, 48, 40), 0.9).model
+    assert lateral_resistance(model).stable
+    result = nonassociative_load(model, "right")
+    assert result.status is LimitStatus.UNSTABLE
+    assert result.alpha is None
+    assert result.check.holds
+    assert "dead load alone" in result.message
+
+
+def test_nothing_free_has_no_limit():
+    data = {"blocks": [{"id": 1, "polygon": [[0, 0], [1, 0], [1, 1]], "fixed": True}]}
+    assert nonassociative_load(model_from_json(data), "left").status is LimitStatus.UNBOUNDED
+
+
+def test_other_loads():
+    model = block(1, 2, 0.7)
+    table = tilting_table(model)
+    twice = nonassociative_load(model, "left", loads=Loads(table.dead, 2.0 * table.live))
+    assert twice.alpha == pytest.approx(0.25, abs=1e-9)
+    leaning = Loads(table.dead + 0.1 * table.live, table.live)
+    both = nonassociative_resistance(model, loads=leaning)
+    assert (both.left.alpha, both.right.alpha) == pytest.approx((0.6, 0.4), abs=1e-9)
+
+
+def test_friction_of_an_interface_and_held_blocks():
+    model = block(1, 4, 0.65)
+    slippery = replace(model, interfaces=(replace(model.interfaces[0], mu=0.1),))
+    assert nonassociative_load(slippery, "right").alpha == pytest.approx(0.1, abs=1e-9)
+    level = replace(model, blocks=(replace(model.blocks[0], held=("turn",)),))
+    assert nonassociative_load(level, "right").alpha == pytest.approx(0.65, abs=1e-9)
+    smooth = replace(model, mu=0.0)
+    assert nonassociative_load(smooth, "right").alpha == pytest.approx(0.0, abs=1e-9)
+
+
+# The check itself, on a cube of weight 1 that slides to the right, mu = .3.
+
+CUBE = block(1, 1, 0.3)
+NORMAL = np.where(CUBE.interfaces[0].points[:, 0] > 0.5, 0.65, 0.35)
+FORCES = np.column_stack((NORMAL, -0.3 * NORMAL))
+SLIDES = np.array([[1.0, 0.0, 0.0]])
+
+
+def cube_check(alpha=0.3, velocity=SLIDES, forces=FORCES, direction="right"):
+    return check_flow(CUBE, None, direction, alpha, Mechanism((1,), np.array(velocity)), forces)
+
+
+def test_the_check_holds_for_a_sliding_cube():
+    assert cube_check().holds
+    assert cube_check().largest < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("changed", "error", "size"),
+    [
+        ({"alpha": 0.31}, "equilibrium", 0.01),
+        ({"forces": FORCES * (1.0, 1.1)}, "friction", 0.3 * 0.065),
+        ({"forces": -FORCES}, "friction", 0.65),
+        ({"velocity": [[1.0, -0.2, 0.0]]}, "closing", 0.2),
+        ({"velocity": [[1.0, 0.3, 0.0]]}, "dilatancy", 0.3),
+        ({"velocity": [[-1.0, 0.0, 0.0]], "direction": "left"}, "dissipation", 0.6),
+        ({"forces": FORCES * (1.0, 0.5)}, "dissipation", 0.15),
+        ({"velocity": [[-1.0, 0.0, 0.0]]}, "dilatancy", np.inf),
+    ],
+)
+def test_the_check_names_what_is_wrong(changed, error, size):
+    check = cube_check(**changed)
+    assert not check.holds
+    assert getattr(check, error) == pytest.approx(size)
+
+
+def fabricated(alpha, error=0.0, method=""):
+    mechanism = Mechanism((1,), np.array([[1.0, 0.0, 0.0]]))
+    check = FlowCheck(error, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return nonassociative._Answer(alpha, mechanism, np.zeros((2, 2)), check, method)
+
+
+def test_the_least_verified_answer_is_told():
+    answers = [fabricated(0.5), fabricated(0.3, method="second"), fabricated(0.1, error=1e-3)]
+    told = nonassociative._told("right", 0.6, 9, answers)
+    assert (told.alpha, told.method, told.answers) == (0.3, "second", (0.3, 0.5))
+    assert told.status is LimitStatus.OPTIMAL
+
+
+def test_a_motion_against_the_load_is_no_number():
+    told = nonassociative._told("right", 0.6, 9, [fabricated(0.5), fabricated(-0.1)])
+    assert (told.status, told.alpha) == (LimitStatus.UNSTABLE, None)
+    assert told.answers == (-0.1, 0.5)
+    assert "even against a load of 0.1000" in told.message
+
+
+@pytest.mark.parametrize("part", [f.name for f in fields(FlowCheck)])
+def test_a_check_that_is_no_number_does_not_hold(part):
+    right = FlowCheck(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    assert right.holds
+    assert not replace(right, **{part: float("nan")}).holds
+    assert not replace(right, **{part: 1e-6}).holds
+
+
+def test_what_is_held_must_not_move():
+    model = model_from_json({"blocks_xywh": [[0, 0, 1, 1]], "mu": 0.3})
+    slides = Mechanism((1,), np.array([[1.0, 0.0, 0.0]]))
+    forces = np.array([[0.35, -0.105], [0.65, -0.195]])
+    if model.interfaces[0].points[0, 0] != 0:
+        forces = forces[::-1]
+    assert check_flow(model, None, "right", 0.3, slides, forces).holds
+    guided = replace(model, blocks=(replace(model.blocks[0], held=("x",)),))
+    assert check_flow(guided, None, "right", 0.3, slides, forces).held == 1.0

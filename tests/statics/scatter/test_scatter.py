@@ -1,0 +1,266 @@
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.errors import InputError
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.given import model_from_json
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LimitStatus
+from drystone.statics.scatter import scatter as scatter_module
+from drystone.statics.scatter.scatter import scatter
+from drystone.statics.scatter.shaking import ScatterSettings, shaken
+from tests.statics.walls import brick_model, coursed, irregular, stacked
+from tests.strategies import label_images, repeatable
+
+FLAT = model_from_labels(stacked((40, 10, 0))).model
+TALL = model_from_labels(stacked((10, 40, 0))).model
+NOISY = ScatterSettings(samples=24, mu=(0.4, 0.8), outline_noise=0.3, placement_noise=0.4)
+
+
+def rng(seed=0):
+    return np.random.default_rng(seed)
+
+
+def figures(found):
+    arrays = (found.mu, found.alpha_left, found.alpha_right)
+    return [*found.status], [array.tolist() for array in arrays]
+
+
+@pytest.mark.parametrize("pool", [ThreadPoolExecutor, ProcessPoolExecutor])
+def test_workers_do_not_change_the_result(pool):
+    model = model_from_labels(coursed(3, 3, 60)).model
+    expected = scatter(model, NOISY, seed=5)
+    with pool(2) as executor:
+        assert figures(scatter(model, NOISY, seed=5, executor=executor)) == figures(expected)
+    assert figures(scatter(model, NOISY, seed=6)) != figures(expected)
+
+
+def test_more_samples_begin_with_the_same_ones():
+    few, many = (scatter(FLAT, replace(NOISY, samples=n), seed=2) for n in (5, 12))
+    assert many.mu[:5].tolist() == few.mu.tolist()
+    assert many.alpha_left[:5].tolist() == few.alpha_left.tolist()
+
+
+def test_progress_is_told_after_every_sample():
+    told = []
+    scatter(FLAT, replace(NOISY, samples=7), on_sample=told.append)
+    with ThreadPoolExecutor(2) as executor:
+        scatter(FLAT, replace(NOISY, samples=7), executor=executor, on_sample=told.append)
+    assert told == [1, 2, 3, 4, 5, 6, 7] * 2
+
+
+def test_friction_is_uniform_in_its_range_and_alpha_follows_where_blocks_slide():
+    found = scatter(FLAT, ScatterSettings(samples=300, mu=(0.4, 0.8)))
+    assert found.alpha_left == pytest.approx(found.mu)
+    assert found.value == pytest.approx(np.ones(300))
+    assert found.mu.min() >= 0.4
+    assert found.mu.max() <= 0.8
+    assert found.mu.mean() == pytest.approx(0.6, abs=0.02)
+    assert found.mu.std() == pytest.approx(0.4 / np.sqrt(12), abs=0.01)
+    assert found.alpha_quantiles == pytest.approx((0.42, 0.6, 0.78), abs=0.04)
+    assert found.value_quantiles == pytest.approx((1, 1, 1))
+
+
+def test_each_value_is_divided_by_its_own_friction():
+    """A tall block overturns at .25 on any ground, so F_LR falls as friction grows."""
+    found = scatter(TALL, ScatterSettings(samples=30, mu=(0.3, 0.9)))
+    assert found.alpha == pytest.approx(np.full(30, 0.25))
+    assert found.value == pytest.approx(0.25 / found.mu)
+    assert found.value_quantiles.high > 1.5 * found.value_quantiles.low
+
+
+def test_nothing_shaken_is_the_wall_itself():
+    model = model_from_labels(irregular(3, 12, 60, 40), 0.47).model
+    found = scatter(model, ScatterSettings(samples=3))
+    assert found.mu.tolist() == [0.47] * 3
+    for array, result in (
+        (found.alpha_left, found.unshaken.left),
+        (found.alpha_right, found.unshaken.right),
+    ):
+        assert array == pytest.approx([result.alpha] * 3)
+    assert found.alpha.tolist() == np.minimum(found.alpha_left, found.alpha_right).tolist()
+
+
+def test_every_interface_may_have_a_friction_of_its_own():
+    model = brick_model(3, 3, 1.0, 0.58)
+    smooth = (replace(model.interfaces[0], mu=0.0), *model.interfaces[1:])
+    model = replace(model, interfaces=smooth)
+    settings = ScatterSettings(mu=(0.4, 0.8), mu_per_interface=True)
+    wall = shaken(model, settings, rng())
+    first, *others = (interface.mu for interface in wall.interfaces)
+    assert first == 0.0
+    assert len(set(others)) == len(others)
+    assert 0.4 <= min(others) < max(others) <= 0.8
+    assert wall.mu == pytest.approx(np.mean(others))
+    whole = shaken(model, replace(settings, mu_per_interface=False), rng())
+    assert [interface.mu for interface in whole.interfaces] == [0.0] + [None] * len(others)
+    assert 0.4 < whole.mu < 0.8
+
+
+@given(seed=st.integers(0, 10**6), noise=st.sampled_from([0.5, 2.0, 30.0]))
+@repeatable(30)
+def test_flush_blocks_laid_out_of_place_touch_where_they_overlap(seed, noise):
+    model = model_from_labels(stacked((20, 8, 0), (20, 8, 0))).model
+    wall = shaken(model, ScatterSettings(placement_noise=noise), rng(seed))
+    (x1, y1), (x2, y2) = (block.centroid for block in wall.blocks)
+    assert (x1, y1) != (10, 4)
+    ground, joint = wall.interfaces
+    assert np.sort(ground.points, axis=0).ravel() == pytest.approx([x1 - 10, 0, x1 + 10, 0])
+    left, right = max(x1, x2) - 10, min(x1, x2) + 10
+    if left > right:  # they still touch, at a point
+        left = right = (left + right) / 2
+    between = 8 + ((y1 - 4) + (y2 - 12)) / 2
+    assert np.sort(joint.points, axis=0).ravel() == pytest.approx([left, between, right, between])
+    assert joint.normal == model.interfaces[1].normal
+
+
+def test_outlines_move_the_toe_and_turn_the_joint():
+    walls = [shaken(TALL, ScatterSettings(outline_noise=0.5), rng(seed)) for seed in range(600)]
+    ends = np.array([wall.interfaces[0].points for wall in walls])
+    spans = ends[:, 1] - ends[:, 0]
+    turned = np.arctan2(spans[:, 1], spans[:, 0])
+    assert turned.std() == pytest.approx(0.5 / 10, rel=0.1)  # the noise over its length
+    along = np.hypot(*spans.T)
+    assert along.mean() == pytest.approx(10, abs=0.1)  # the ground has no ends
+    assert along.std() == pytest.approx(0.5 * np.sqrt(2), rel=0.1)
+    normals = np.array([wall.interfaces[0].normal for wall in walls])
+    assert np.abs((normals * spans).sum(axis=1)).max() < 1e-9
+    assert {wall.blocks[0].centroid for wall in walls} == {TALL.blocks[0].centroid}
+
+
+def test_between_two_stones_the_nearer_end_counts():
+    model = model_from_labels(stacked((20, 8, 0), (20, 8, 0))).model
+    walls = [shaken(model, ScatterSettings(outline_noise=0.5), rng(seed)) for seed in range(600)]
+    lengths = [wall.interfaces[1].length for wall in walls]
+    # The lesser of two normal deviates lies 1 / sqrt(pi) below the mean.
+    assert np.mean(lengths) == pytest.approx(20 - 2 * 0.5 / np.sqrt(np.pi), abs=0.1)
+
+
+def test_no_direction_is_lost_in_noise():
+    """A joint of one pixel, known to a pixel, turns no more than one of three."""
+    model = model_from_labels(stacked((1, 9, 0))).model
+    settings = ScatterSettings(outline_noise=1.0)
+    normals = [shaken(model, settings, rng(seed)).interfaces[0].normal for seed in range(400)]
+    angles = np.arctan2([x for x, _ in normals], [y for _, y in normals])
+    assert angles.std() == pytest.approx(1 / 3, rel=0.15)
+
+
+def test_a_contact_at_a_point_moves_to_both_sides_alike():
+    model = model_from_labels(np.array([[0, 2], [1, 0]])).model
+    corner = next(i for i in model.interfaces if len(i.points) == 1)
+    tangent = np.array([corner.normal[1], -corner.normal[0]])
+    number = model.interfaces.index(corner)
+    walls = (shaken(model, ScatterSettings(outline_noise=1.0), rng(seed)) for seed in range(1500))
+    moved = np.array([wall.interfaces[number].points[0] - corner.points[0] for wall in walls])
+    assert moved.mean(axis=0) @ tangent == pytest.approx(0, abs=0.035)
+    assert (moved @ tangent).std() > 0.3
+
+
+def test_twice_the_noise_moves_twice_as_far():
+    one, two = (
+        shaken(FLAT, ScatterSettings(outline_noise=n, placement_noise=n), rng(4))
+        for n in (0.1, 0.2)
+    )
+    moved = [np.subtract(wall.blocks[0].centroid, FLAT.blocks[0].centroid) for wall in (one, two)]
+    assert 2 * moved[0] == pytest.approx(moved[1])
+    assert 2 * (one.interfaces[0].length - 40) == pytest.approx(two.interfaces[0].length - 40)
+
+
+def test_what_is_fixed_stays_and_so_does_the_joint_across():
+    below = [[0, 0], [4, 0], [4, 1], [0, 1]]
+    above = [[0, 1], [4, 1], [4, 2], [0, 2]]
+    blocks = [{"id": 1, "polygon": below, "fixed": True}, {"id": 2, "polygon": above}]
+    wall = shaken(model_from_json({"blocks": blocks}), ScatterSettings(placement_noise=0.3), rng())
+    assert wall.blocks[0].centroid == (2.0, 0.5)
+    joint = next(i for i in wall.interfaces if {i.block, i.other} == {1, 2})
+    assert joint.points[:, 1] == pytest.approx([1, 1])
+    shift = wall.blocks[1].centroid[0] - 2.0
+    assert shift != 0
+    assert sorted(joint.points[:, 0]) == pytest.approx(sorted([max(0, shift), 4 + min(0, shift)]))
+
+
+@given(label_images(), st.integers(0, 99), st.sampled_from([0.2, 1.0, 5.0]))
+@repeatable(60)
+def test_any_wall_can_be_shaken(labels, seed, noise):
+    model = model_from_labels(labels).model
+    settings = ScatterSettings(mu=(0.3, 0.9), outline_noise=noise, placement_noise=noise)
+    wall = shaken(model, settings, rng(seed))
+    assert [len(i.points) for i in wall.interfaces] == [len(i.points) for i in model.interfaces]
+    for interface in wall.interfaces:
+        assert np.hypot(*interface.normal) == pytest.approx(1)
+        assert np.isfinite(interface.points).all()
+    both = lateral_resistance(wall)
+    assert not both.failed
+    assert both.left.status is both.right.status
+
+
+def test_walls_that_do_not_stand_are_counted_and_have_no_numbers():
+    model = model_from_labels(stacked((20, 10, 0), (20, 10, 9))).model
+    found = scatter(model, ScatterSettings(samples=60, placement_noise=1.0, mu=(0.4, 0.8)))
+    counts = found.counts
+    assert counts[LimitStatus.OPTIMAL] + counts[LimitStatus.UNSTABLE] == 60
+    assert 0 < counts[LimitStatus.UNSTABLE] < 60
+    assert found.falling_share == counts[LimitStatus.UNSTABLE] / 60
+    assert len(found.alpha) == len(found.value) == len(found.standing_mu)
+    assert len(found.alpha) == counts[LimitStatus.OPTIMAL] == found.status.count("optimal")
+    assert len(found.mu) == 60
+    standing = [mu for mu, s in zip(found.mu, found.status, strict=True) if s == "optimal"]
+    assert found.standing_mu.tolist() == standing
+
+
+def test_a_wall_that_never_stands_is_a_result():
+    model = model_from_labels(stacked((20, 10, 0), (20, 10, 19))).model
+    found = scatter(model, ScatterSettings(samples=4, mu=(0.4, 0.8)))
+    assert found.falling_share == 1.0
+    assert (len(found.alpha), len(found.value)) == (0, 0)
+    assert (found.alpha_quantiles, found.value_quantiles) == (None, None)
+    assert not found.unshaken.stable
+
+
+def test_no_blocks_tell_nothing():
+    found = scatter(RigidBlockModel((), ()), ScatterSettings(samples=3, outline_noise=1.0))
+    assert found.counts[LimitStatus.UNBOUNDED] == 3
+    assert found.falling_share is None
+
+
+def test_failed_solves_count_neither_way(monkeypatch):
+    def gives_up(model):
+        both = lateral_resistance(model)
+        failed = replace(both.left, status=LimitStatus.FAILED, alpha=None)
+        return replace(both, left=failed) if model.mu < 0.6 else both
+
+    monkeypatch.setattr(scatter_module, "lateral_resistance", gives_up)
+    found = scatter(FLAT, ScatterSettings(samples=40, mu=(0.4, 0.8)))
+    assert found.counts[LimitStatus.FAILED] == np.count_nonzero(found.mu < 0.6) > 0
+    assert found.falling_share == 0.0
+    assert found.alpha.min() >= 0.6
+
+
+def test_without_friction_there_is_no_ratio_to_it():
+    found = scatter(FLAT, ScatterSettings(samples=3, mu=(0.0, 0.0)))
+    assert found.alpha == pytest.approx(np.zeros(3), abs=1e-9)
+    assert (found.value, found.value_quantiles) == (None, None)
+
+
+@pytest.mark.parametrize(
+    ("code", "settings"),
+    [
+        ("E302", {"mu": (0.8, 0.4)}),
+        ("E302", {"mu": (-0.1, 0.4)}),
+        ("E302", {"mu": (0.1, np.inf)}),
+        ("E302", {"mu": (np.nan, 0.4)}),
+        ("E318", {"samples": 0}),
+        ("E318", {"outline_noise": -1.0}),
+        ("E318", {"placement_noise": np.nan}),
+    ],
+)
+def test_settings_that_make_no_sense(code, settings):
+    with pytest.raises(InputError) as error:
+        ScatterSettings(**settings)
+    assert error.value.code == code
