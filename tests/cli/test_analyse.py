@@ -56,6 +56,7 @@ def test_json_keeps_the_contract(tower: Path, run: Run) -> None:
     assert report["certificate"]["gap_left"] <= 1e-8
     assert report["sensitivity"] == pytest.approx({"left": 0, "right": 0}, abs=1e-9)
     assert "Rocking" in report["words"]["left"]
+    assert report["joints"]["left"] == {"opening": [[1, 0]], "sliding": []}
     left_out = run("analyse", tower, "--json", "--associative-only").json()
     assert left_out["nonassociative"] is None
 

@@ -96,6 +96,10 @@ class Card:
                 if result.mechanism is not None
             },
             "words": {direction: failure.words for direction, failure in self.failures.items()},
+            "joints": {
+                direction: _moving_joints(self.model, failure)
+                for direction, failure in self.failures.items()
+            },
             "remarks": dict(self.remarks),
             "sha256": self.sha256,
             "version": self.version,
@@ -171,6 +175,19 @@ class RangeCard:
             "sha256": self.sha256,
             "version": self.version,
         }
+
+
+def _moving_joints(model: RigidBlockModel, failure: Failure) -> dict[str, list[list[int]]]:
+    """Name the pairs of blocks whose contacts open, and those whose contacts slide."""
+    kinds = iter(failure.contact_kinds)
+    found: dict[str, set[tuple[int, int]]] = {"opening": set(), "sliding": set()}
+    for interface in model.interfaces:
+        for _ in interface.points:
+            kind = next(kinds)
+            for name, pairs in found.items():
+                if name in kind:
+                    pairs.add((interface.block, interface.other))
+    return {name: [list(pair) for pair in sorted(pairs)] for name, pairs in found.items()}
 
 
 def _alphas(
