@@ -183,3 +183,13 @@ def test_bad_scenes(change: dict, code: str) -> None:
     with pytest.raises(InputError) as caught:
         Scene(**(square | change))
     assert caught.value.code == code
+
+
+def test_noise_never_makes_an_outline_cross_itself():
+    """A notch a thousandth of the block wide, and corners shifted by as much."""
+    width = 1e-3
+    notched = [[0, 0], [1, 0], [1, 1], [0.5 + width, 1], [0.5, 0.2], [0.5 - width, 1], [0, 1]]
+    scene = Scene({1: np.array(notched)}, 0.6)
+    noisy = Variation("noisy", EngineSettings(), TiltSettings(), outline_noise=0.01)
+    for seed in range(40):
+        assert noisy.of(scene, np.random.default_rng(seed)).shapes[1].is_valid

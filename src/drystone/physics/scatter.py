@@ -6,8 +6,9 @@ from statistics import median
 from typing import Literal
 
 import numpy as np
+import shapely
 
-from drystone.physics.scene import EngineSettings, Scene
+from drystone.physics.scene import EngineSettings, Points, Scene
 from drystone.physics.tilt import TiltSettings, TiltTrial, tilt_once
 from drystone.statics.model import Direction
 
@@ -50,8 +51,17 @@ class Variation:
             corners = np.asarray(scene.shapes[block].exterior.coords)[:-1]
             shift = rng.uniform(-1, 1, 2) * self.placement_noise
             moves = rng.uniform(-1, 1, corners.shape) * self.outline_noise
-            outlines[block] = corners + (shift + moves) * scene.length
+            outlines[block] = _moved(corners + shift * scene.length, moves * scene.length)
         return replace(scene, outlines=outlines)
+
+
+def _moved(corners: Points, moves: Points) -> Points:
+    """Move corners; by half, a quarter ... as far where an outline would cross itself."""
+    for part in (1.0, 0.5, 0.25, 0.125):
+        moved = corners + part * moves
+        if shapely.Polygon(moved).is_valid:
+            return moved
+    return corners
 
 
 def usual_variations(
