@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from drystone.cli.commands import analyse
+from drystone.experiments.walls_of_ferris import WALLS
 from drystone.io.wall_image import write_labels
 from drystone.statics.failure import load_program
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
@@ -78,6 +79,20 @@ def test_each_direction_has_its_own_lines(tmp_path: Path, run: Run) -> None:
     assert "right toe" in "".join(lines[right : right + 4])
     ranged = run("analyse", path, "--mu", ".2:.4", "--scatter", "3", "--json").json()
     assert ranged["mu"] == pytest.approx(0.3)  # the middle of the range
+
+
+def test_what_is_loose_without_dilatancy_is_named(tmp_path: Path, run: Run) -> None:
+    """Example 3 of Ferris and Tin-Loi fails at .3558 instead of .4037; a tall block does not."""
+    path = tmp_path / "ferris3.json"
+    data = {"blocks_xywh": [list(row) for row in WALLS[2].rectangles], "mu": 0.65}
+    path.write_text(json.dumps(data), encoding="utf-8")
+    ran = run("analyse", path)
+    assert "alpha = 0.3558" in ran.out
+    assert "moving then" in ran.out
+    report = run("analyse", path, "--json").json()
+    assert set(report["nonassociative"]["words"]) == {"left", "right"}
+    path.write_text(json.dumps({"blocks_xywh": [[0, 0, 1, 4]]}), encoding="utf-8")
+    assert "moving then" not in run("analyse", path).out
 
 
 def test_several_forces_add_up(tower: Path, run: Run) -> None:

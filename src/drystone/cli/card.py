@@ -32,6 +32,8 @@ class Card:
         Without dilatancy; None when it was not asked for.
     failures : mapping of {"left", "right"} to Failure
         How it fails, where that is known.
+    loose : mapping of {"left", "right"} to Failure
+        What moves without dilatancy, where that is at a clearly smaller load.
     sensitivity : mapping of {"left", "right"} to float
         d alpha / d mu, where that is known.
     sha256 : str
@@ -47,6 +49,7 @@ class Card:
     resistance: LateralResistance
     nonassociative: NonassociativeResistance | None
     failures: Mapping[str, Failure]
+    loose: Mapping[str, Failure]
     sensitivity: Mapping[str, float]
     sha256: str
     version: str
@@ -65,7 +68,8 @@ class Card:
         ]
         least = _least(both)
         if least is not None and self.load_case == "tilting table":
-            rows.append(("falls on a table", f"tilted by {degrees(atan(least)):.1f} degrees"))
+            angle = degrees(atan(least))
+            rows.append(("falls on a table", f"tilted by {angle:.1f} degrees, by associated flow"))
         rows += list(self.remarks.items())
         rows.append(("certificate", _certified(both.left, both.right)))
         rows.append(("assumptions", ASSUMPTIONS))
@@ -111,6 +115,8 @@ class Card:
         if self.nonassociative is not None:
             result = getattr(self.nonassociative, direction)
             rows.append(("  without dilatancy", _without(result)))
+        if direction in self.loose:
+            rows.append(("    moving then", self.loose[direction].words))
         if direction in self.failures:
             rows.append(("  mechanism", self.failures[direction].words))
         if direction in self.sensitivity:
@@ -132,6 +138,7 @@ class Card:
             "message_right": right.message,
             "answers_left": list(left.answers),
             "answers_right": list(right.answers),
+            "words": {direction: failure.words for direction, failure in self.loose.items()},
         }
 
 

@@ -24,14 +24,14 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 def table_of(rows: list[tuple[Cell, ...]], settings: BenchSettings) -> Table:
     """Return the rows as a table, with how many predictions are inside."""
     inside = [row[5] for row in rows]
-    counted = f"{inside.count('yes')} of {len(rows)} directions"
+    counted = f"{inside.count('yes')} of {len(rows)} directions: "
     return Table(
         "Planned walls tilted in a rigid-body engine",
         ("wall", "towards", "associative", "without dilatancy", "first motion", "inside",
          "comes down", "settled by px"),
         tuple(rows),
-        (f"{counted}: the factor without dilatancy lies within the simulation's own scatter of the"
-         " first motion.",
+        (f"{counted if rows else ''}the factor without dilatancy lies within the simulation's own"
+         " scatter of the first motion.",
          "Both sides see the same sub-pixel outlines. Scatter: nine trials that differ in what"
          " should not matter (order, iterations, time step, overlap, corners, tiny shifts)."
          " First motion: a block moves by .02 mean block sizes; comes down: by half of one.",

@@ -18,12 +18,18 @@ from drystone.cli.walls import read_wall, unsupported
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.statics.failing.mechanism import Failure, describe_mechanism
 from drystone.statics.failure import save_program
-from drystone.statics.flow.nonassociative import nonassociative_resistance
+from drystone.statics.flow.nonassociative import (
+    NonassociativeResult,
+    nonassociative_resistance,
+)
 from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import Loads
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.sensitivity import friction_sensitivity
+
+CLEARLY_LESS = 0.99
+"""Share of the associative load multiplier; above it the mechanisms are mostly the same."""
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -77,6 +83,7 @@ def _card(
         resistance=resistance,
         nonassociative=without,
         failures=_failures(wall, both),
+        loose={} if without is None else _loose(wall, both, (without.left, without.right)),
         sensitivity=sensitivity,
         sha256=_sha256(arguments),
         version=version("drystone"),
@@ -101,6 +108,23 @@ def _failures(wall: Modelled, results: tuple[LimitResult, ...]) -> Mapping[str, 
         )
         for result in results
         if result.mechanism is not None
+    }
+
+
+def _loose(
+    wall: Modelled,
+    associative: tuple[LimitResult, LimitResult],
+    without: tuple[NonassociativeResult, NonassociativeResult],
+) -> Mapping[str, Failure]:
+    """Describe what moves without dilatancy where it needs clearly less load."""
+    return {
+        result.direction: describe_mechanism(
+            wall.model, result.mechanism, noun=wall.noun, wedges=wall.wedge_ids
+        )
+        for result, bound in zip(without, associative, strict=True)
+        if result.mechanism is not None
+        and bound.alpha is not None
+        and (result.alpha is None or result.alpha < CLEARLY_LESS * bound.alpha)
     }
 
 
