@@ -239,7 +239,8 @@ def test_pictures_are_light_and_shown() -> None:
     for picture in pictures:
         assert picture.stat().st_size < 300_000
         with Image.open(picture) as image:
-            assert image.width >= 800
+            # What moves is kept smaller: each of its frames counts.
+            assert image.width >= (600 if picture.suffix == ".gif" else 800)
 
 
 def test_the_plan_of_the_documents_is_valid() -> None:
