@@ -1,55 +1,8 @@
 """Options of `drystone analyse`; nothing slow is imported here."""
 
 import argparse
-import math
-from collections.abc import Callable
 
-Friction = tuple[float, float]
-
-
-def friction(text: str) -> Friction:
-    """Read one coefficient of friction, or LOW:HIGH."""
-    try:
-        parts = [float(part) for part in text.split(":")]
-    except ValueError:
-        parts = []
-    low, high = (parts * 2)[:2] if len(parts) in (1, 2) else (math.nan, math.nan)
-    if not 0 <= low <= high < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is no friction such as .58 or .4:.8")
-    return low, high
-
-
-def _not_negative(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0 <= value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is no number from 0 on")
-    return value
-
-
-def _finite(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is no finite number")
-    return value
-
-
-def _from(least: int) -> Callable[[str], int]:
-    def read(text: str) -> int:
-        try:
-            value = int(text)
-        except ValueError:
-            value = least - 1
-        if value < least:
-            raise argparse.ArgumentTypeError(f"{text!r} is no whole number from {least} on")
-        return value
-
-    return read
+from drystone.cli.numbers import finite, friction, not_negative, whole_from
 
 
 def add_model(command: argparse.ArgumentParser) -> None:
@@ -60,7 +13,7 @@ def add_model(command: argparse.ArgumentParser) -> None:
         help="coefficient of friction (default .58); LOW:HIGH gives the scatter between them",
     )  # fmt: skip
     group.add_argument(
-        "--mu-head", type=_not_negative, metavar="MU", help="of head joints, 0 for open ones"
+        "--mu-head", type=not_negative, metavar="MU", help="of head joints, 0 for open ones"
     )
     group.add_argument(
         "--contacts", choices=["pixels", "outlines"], default="pixels",
@@ -82,18 +35,18 @@ def add_model(command: argparse.ArgumentParser) -> None:
 def add_scatter(command: argparse.ArgumentParser) -> None:
     """Add the options of the scatter of F_LR."""
     group = command.add_argument_group("scatter of the load multiplier (Monte Carlo)")
-    group.add_argument("--scatter", type=_from(1), metavar="N", help="samples (default 200)")
+    group.add_argument("--scatter", type=whole_from(1), metavar="N", help="samples (default 200)")
     group.add_argument(
-        "--outline-noise", type=_not_negative, default=0.0, metavar="PX",
+        "--outline-noise", type=not_negative, default=0.0, metavar="PX",
         help="standard deviation of the outlines",
     )  # fmt: skip
     group.add_argument(
-        "--placement-noise", type=_not_negative, default=0.0, metavar="PX",
+        "--placement-noise", type=not_negative, default=0.0, metavar="PX",
         help="standard deviation of where stones lie",
     )  # fmt: skip
-    group.add_argument("--seed", type=_from(0), default=0)
+    group.add_argument("--seed", type=whole_from(0), default=0)
     group.add_argument(
-        "--jobs", type=_from(1), default=1, metavar="N", help="workers; never the result"
+        "--jobs", type=whole_from(1), default=1, metavar="N", help="workers; never the result"
     )
 
 
@@ -106,7 +59,7 @@ def add_loads(command: argparse.ArgumentParser) -> None:
         " forces, or the weight itself with the --dead forces held",
     )  # fmt: skip
     group.add_argument(
-        "--tilt", type=_finite, default=0.0, metavar="DEG",
+        "--tilt", type=finite, default=0.0, metavar="DEG",
         help="gravity is turned by this towards the right already",
     )  # fmt: skip
     for name, text in (("--dead", "force that acts always"), ("--live", "force times alpha")):

@@ -1,11 +1,11 @@
 """Commands and options."""
 
 import argparse
-import math
 from collections.abc import Callable
 from typing import NoReturn
 
 from drystone.cli.analyse_options import add_loads, add_model, add_scatter
+from drystone.cli.numbers import positive, share, whole_from
 from drystone.cli.reading import add_reading
 from drystone.errors import UsageError
 
@@ -35,39 +35,7 @@ class _Parser(argparse.ArgumentParser):
         self.exit(int(coded.exit_code), f"drystone: {coded}\n")
 
 
-def _seed(text: str) -> int:
-    return _at_least(text, 0)
-
-
-def _count(text: str) -> int:
-    return _at_least(text, 1)
-
-
-def _at_least(text: str, smallest: int) -> int:
-    try:
-        value = int(text)
-    except ValueError:
-        value = smallest - 1
-    if value < smallest:
-        raise argparse.ArgumentTypeError(f"{text!r} is no whole number from {smallest} on")
-    return value
-
-
-def _positive(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is no number above 0")
-    return value
-
-
-def _share(text: str) -> float:
-    value = _positive(text)
-    if value > 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is above 1")
-    return value
+_seed, _count = whole_from(0), whole_from(1)
 
 
 class _Version(argparse.Action):
@@ -115,9 +83,9 @@ def _planning(command: argparse.ArgumentParser) -> None:
     )
     group.add_argument("--seed", type=_seed, default=0, help="of the random choices (default 0)")
     group.add_argument(
-        "--scale", type=_share, metavar="S", help="plan on images reduced by S, 0 to 1"
+        "--scale", type=share, metavar="S", help="plan on images reduced by S, 0 to 1"
     )
-    group.add_argument("--px-per-m", type=_positive, metavar="N", help="source px in a metre")
+    group.add_argument("--px-per-m", type=positive, metavar="N", help="source px in a metre")
     group.add_argument("--sampling", choices=["variant", "uniform", "twofold", "full"])
     group.add_argument("--placement", choices=["snug", "eq12", "lowest"])
     group.add_argument("--reach", choices=["any", "above"], help="where a stone may be inserted")
@@ -197,7 +165,7 @@ def _measure(command: argparse.ArgumentParser) -> None:
     command.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
     command.add_argument("--wall", metavar="WxH", help="wall that was to be built, px of the image")
     command.add_argument(
-        "--scale", type=_share, default=1.0, metavar="S", help="reduce the image by S first"
+        "--scale", type=share, default=1.0, metavar="S", help="reduce the image by S first"
     )
 
 

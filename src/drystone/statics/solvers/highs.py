@@ -72,8 +72,10 @@ class HighsSession:
         self._costs = costs.copy()
         self.highs.run()
         found = self.highs.getModelStatus()
+        name = self.name
         if found == highspy.HighsModelStatus.kInfeasible and not self._has_ray():
             # The interior point method proves nothing: the simplex method finds the ray.
+            name = f"{self.name}, then simplex"
             set_options(self.highs, _SIMPLEX)
             self.highs.run()
             found = self.highs.getModelStatus()
@@ -82,7 +84,7 @@ class HighsSession:
         columns, duals = self._vectors(status)
         if status is LimitStatus.OPTIMAL:
             set_options(self.highs, self._warm)
-        return Solution(status, columns, duals, said, self.name)
+        return Solution(status, columns, duals, said, name)
 
     def _has_ray(self) -> bool:
         _, there = self.highs.getDualRayExist()  # type: ignore[attr-defined]  # missing in its types
