@@ -10,8 +10,8 @@ import pytest
 from drystone.cli.commands import analyse
 from drystone.experiments.walls_of_ferris import WALLS
 from drystone.io.wall_image import write_labels
-from drystone.statics.failure import load_program
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
+from drystone.statics.saved_program import load_program
 from tests.cli.conftest import Run
 from tests.statics.walls import coursed
 

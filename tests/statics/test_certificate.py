@@ -38,6 +38,15 @@ def test_the_other_end_is_no_proof(sign):
     assert not certify(PROGRAM, solution(sign), -sign).holds
 
 
+def test_the_other_end_is_no_proof_where_alpha_is_0():
+    """A stack in balance carries nothing to the right and .75 to the left."""
+    balanced = assemble(model_from_labels(stacked((20, 20, 0), (20, 20, 10)), 0.9).model)
+    stale = solution(1.0, balanced)
+    assert stale.columns[0] == pytest.approx(0, abs=1e-9)
+    assert certify(balanced, stale, 1.0).holds
+    assert not certify(balanced, stale, -1.0).holds
+
+
 def test_forces_that_leave_their_cone():
     right = solution()
     columns = right.columns.copy()

@@ -146,3 +146,4 @@ def test_no_alpha_may_hold_a_wall_up():
     none = load_range(model, Loads(weight(model), sideways), mechanism=True)
     assert none.least.status is none.greatest.status is LimitStatus.UNSTABLE
     assert none.least.certificate.holds
+    assert none.least.message == "No alpha holds the blocks up."

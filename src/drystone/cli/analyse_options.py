@@ -24,7 +24,11 @@ def add_model(command: argparse.ArgumentParser) -> None:
         help="gaps up to PX between drawn stones bear, or stones are lowered until they touch",
     )  # fmt: skip
     group.add_argument(
-        "--solver", choices=["auto", "highs", "highs-ipm", "clarabel"], default="auto"
+        "--solver",
+        choices=["auto", "highs", "highs-ipm", "clarabel"],
+        default="auto",
+        help="of the associative load multiplier and its certificate (default auto: by the number"
+        " of blocks, and another one when a certificate fails)",
     )
     group.add_argument(
         "--associative-only", action="store_true",

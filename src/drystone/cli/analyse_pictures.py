@@ -1,12 +1,13 @@
 """The pictures of `drystone analyse`."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 from drystone.cli.modelling import Modelled
 from drystone.cli.output import prepare_files
 from drystone.statics.loads import Loads
-from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, LoadRange
+from drystone.statics.result import LimitResult, LimitStatus
 
 _DIRECTIONS = ("left", "right")
 
@@ -22,16 +23,14 @@ def prepare(folder: Path, arguments: argparse.Namespace) -> list[Path]:
     return paths
 
 
-def draw(paths: list[Path], wall: Modelled, loads: Loads, resistance: LateralResistance) -> None:
-    """Draw the contacts, and for both sides forces, mechanism and its motion."""
+def draw(paths: list[Path], wall: Modelled, loads: Loads, ends: Sequence[LimitResult]) -> None:
+    """Draw the contacts, and forces, mechanism and its motion for both ends, left first."""
     from drystone.plotting import plot_contacts, save  # noqa: PLC0415 - slow import
 
     contacts, *others = paths
     save(plot_contacts(wall.shapes, wall.model).figure, contacts)
-    for result, files in zip(
-        (resistance.left, resistance.right), (others[:3], others[3:]), strict=True
-    ):
-        _draw_direction(files, wall, loads, result)
+    for end, files in zip(ends, (others[:3], others[3:]), strict=True):
+        _draw_direction(files, wall, loads, end)
 
 
 def _draw_direction(files: list[Path], wall: Modelled, loads: Loads, result: LimitResult) -> None:
@@ -57,14 +56,3 @@ def _draw_direction(files: list[Path], wall: Modelled, loads: Loads, result: Lim
     # The card names blocks by their ids.
     save(plot_mechanism(*moving, load=load, numbers=True).figure, mechanism)
     save_mechanism_animation(motion, *moving, load=load, numbers=True)
-
-
-def draw_range(folder: Path, wall: Modelled, loads: Loads, found: LoadRange) -> None:
-    """Draw the contacts, and forces and mechanism at both ends of a range of alpha."""
-    from drystone.plotting import plot_contacts, save  # noqa: PLC0415 - slow import
-
-    save(plot_contacts(wall.shapes, wall.model).figure, folder / "contacts.png")
-    for end in (found.least, found.greatest):
-        names = [f"mechanism_{end.direction}.png", f"forces_{end.direction}.png"]
-        names.append(f"mechanism_{end.direction}.gif")
-        _draw_direction([folder / name for name in names], wall, loads, end)

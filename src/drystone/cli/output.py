@@ -12,7 +12,7 @@ _PICTURES = (".png", ".pdf", ".svg")
 
 def prepare_folder(path: Path, *, overwrite: bool) -> Path:
     """Make a folder to write into; refuse one that has files, unless told otherwise (E129)."""
-    _make_folder(path)
+    make_folder(path)
     if any(path.iterdir()) and not overwrite:
         raise UsageError(
             "E129",
@@ -35,7 +35,7 @@ def prepare_files(paths: Sequence[Path], *, overwrite: bool) -> None:
                 where=str(path),
                 cure="Choose another with -o, or add --overwrite to replace it.",
             )
-        _make_folder(path.parent)
+        make_folder(path.parent)
 
 
 def prepare_picture(path: Path, *, overwrite: bool) -> None:
@@ -68,7 +68,8 @@ def number(value: float | None, digits: int = 3) -> str:
     return "not defined" if value is None else f"{value:.{digits}f}"
 
 
-def _make_folder(path: Path) -> None:
+def make_folder(path: Path) -> None:
+    """Make a folder, with those that it lies in; refuse where a file is in the way (E129)."""
     for place in (path, *path.parents):
         if place.exists() and not place.is_dir():
             raise UsageError("E129", "is a file, not a folder.", where=str(place))

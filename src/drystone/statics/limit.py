@@ -9,6 +9,8 @@ An answer counts only with a certificate that holds (:mod:`drystone.statics.cert
 does not, the program is solved again from the start and by other algorithms.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from drystone.statics.asking import Answer, Solver, extremes
@@ -211,6 +213,9 @@ def _end(
     """Tell one end of the range of alpha."""
     if answer.status is LimitStatus.FAILED:
         return _failed(direction, answer)
+    if answer.status is LimitStatus.UNSTABLE:
+        told = _told(direction, answer, None, program if mechanism else None)
+        return replace(told, message="No alpha holds the blocks up.")
     alpha = answer.alpha if answer.status is LimitStatus.OPTIMAL else None
     return _told(direction, answer, alpha, program if mechanism else None)
 

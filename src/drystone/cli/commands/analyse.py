@@ -8,7 +8,7 @@ from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
-from drystone.cli.analyse_pictures import draw, draw_range, prepare
+from drystone.cli.analyse_pictures import draw, prepare
 from drystone.cli.analyse_scatter import scatter_of, wants_scatter
 from drystone.cli.card import Card, RangeCard
 from drystone.cli.loads import is_plain, is_range, load_case
@@ -17,7 +17,6 @@ from drystone.cli.output import print_json, print_table
 from drystone.cli.walls import read_wall, unsupported
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.statics.failing.mechanism import Failure, describe_mechanism
-from drystone.statics.failure import save_program
 from drystone.statics.flow.nonassociative import (
     NonassociativeResult,
     nonassociative_resistance,
@@ -26,6 +25,7 @@ from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import Loads
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
+from drystone.statics.saved_program import save_program
 from drystone.statics.sensitivity import friction_sensitivity
 
 CLEARLY_LESS = 0.99
@@ -43,14 +43,14 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     folder = None if arguments.output is None else Path(arguments.output)
     pictures = [] if folder is None else prepare(folder, arguments)
     if is_range(arguments):
-        return _print_range(wall, arguments, folder)
+        return _print_range(wall, arguments, pictures)
     model, loads = load_case(arguments, wall.model)
     resistance = lateral_resistance(model, loads, mechanism=True, solver=arguments.solver)
     loose = None if resistance.stable else unsupported(model)
     if loose is not None:
         print(f"drystone: {loose}", file=sys.stderr)
-    if folder is not None:
-        draw(pictures, wall, loads, resistance)
+    if pictures:
+        draw(pictures, wall, loads, (resistance.left, resistance.right))
     card = _card(wall, loads, resistance, arguments)
     scatter = scatter_of(wall, arguments, folder) if wants_scatter(arguments) else None
     if arguments.json:
@@ -128,19 +128,22 @@ def _loose(
     }
 
 
-def _print_range(wall: Modelled, arguments: argparse.Namespace, folder: Path | None) -> ExitCode:
+def _print_range(wall: Modelled, arguments: argparse.Namespace, pictures: list[Path]) -> ExitCode:
     model, loads = load_case(arguments, wall.model)
+    wall = replace(wall, model=model)
     found = load_range(model, loads, mechanism=True, solver=arguments.solver)
     ends = (found.least, found.greatest)
-    failures = _failures(replace(wall, model=model), ends)
-    card = RangeCard(found, loads.name, failures, _sha256(arguments), version("drystone"))
-    if folder is not None:
-        draw_range(folder, replace(wall, model=model), loads, found)
+    card = RangeCard(
+        found, loads.name, _failures(wall, ends), _sha256(arguments), version("drystone")
+    )
+    if pictures:
+        draw(pictures, wall, loads, ends)
     if arguments.json:
         print_json(card.report())
     else:
         print_table(f"{arguments.wall_path}: {len(model.blocks)} blocks", card.rows())
     failed = any(end.status is LimitStatus.FAILED for end in ends)
+    folder = pictures[0].parent if pictures else None
     return _keep_failure(model, loads, folder) if failed else ExitCode.DONE
 
 

@@ -5,7 +5,7 @@ import os
 import sys
 from pathlib import Path
 
-from drystone.cli.output import prepare_files, print_json
+from drystone.cli.output import make_folder, print_json
 from drystone.errors import ExitCode, UsageError
 from drystone.experiments.suites import SUITES, run_suite
 from drystone.experiments.table import BenchSettings
@@ -26,7 +26,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         )
     output = None if arguments.output is None else Path(arguments.output)
     if output is not None:
-        prepare_files([output / "table.txt"], overwrite=True)
+        make_folder(output)
     tables = run_suite(
         arguments.suite,
         BenchSettings(_data(arguments.data), output, arguments.seed, arguments.quick),

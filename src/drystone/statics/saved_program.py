@@ -1,4 +1,4 @@
-"""A solver failure saved for a report (E140)."""
+"""The program of a model as a file: what no solver could solve is saved for a report (E140)."""
 
 from pathlib import Path
 

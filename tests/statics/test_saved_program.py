@@ -3,10 +3,10 @@ import pytest
 
 from drystone.statics.asking import answered
 from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.failure import load_program, save_program
 from drystone.statics.limit import limit_load
 from drystone.statics.loads import growing_with_height
 from drystone.statics.program import assemble
+from drystone.statics.saved_program import load_program, save_program
 from drystone.statics.solvers.highs import HighsSession
 from tests.statics.walls import coursed
 
