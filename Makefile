@@ -1,6 +1,8 @@
 # Everything from a clean clone, with nothing but Python 3.11 or newer.
 PYTHON ?= python3
 BIN := .venv/bin
+# What an installation is made from; the kernels are compiled when there is a compiler.
+SOURCES := pyproject.toml requirements.lock setup.py $(wildcard src/drystone/kernels/compiled/*.pyx)
 
 .PHONY: demo test lint lock clean
 
@@ -16,12 +18,12 @@ lint: .venv/dev.stamp
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-.venv/demo.stamp: pyproject.toml requirements.lock
+.venv/demo.stamp: $(SOURCES)
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock -e .
 	@touch $@
 
-.venv/dev.stamp: pyproject.toml requirements.lock
+.venv/dev.stamp: $(SOURCES)
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock -e '.[dev]'
 	@touch $@ .venv/demo.stamp

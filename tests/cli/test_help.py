@@ -7,6 +7,7 @@ from importlib.metadata import version
 import pytest
 
 from drystone.cli.parser import build_parser
+from drystone.kernels.backend import describe
 from tests.cli.conftest import Run
 
 COMMANDS = ("plan", "demo", "stones", "analyse", "measure", "check", "generate")
@@ -46,7 +47,8 @@ def test_all_commands_are_tested() -> None:
 
 
 def test_version(run: Run) -> None:
-    assert run("--version").out == f"drystone {version('drystone')}\n"
+    out = run("--version").out
+    assert out == f"drystone {version('drystone')} (kernels: {describe()})\n"
 
 
 @pytest.mark.parametrize(

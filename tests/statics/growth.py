@@ -13,12 +13,12 @@ def empty(mu=0.58):
     return RigidBlockModel((), (), mu)
 
 
-def with_block(built, block, whole):
-    """The model with one more block of a whole wall."""
-    there = {GROUND, block.id, *(b.id for b in built.blocks)}
-    new = [i for i in whole.interfaces if block.id in (i.block, i.other)]
-    new = tuple(i for i in new if {i.block, i.other} <= there)
-    return RigidBlockModel((*built.blocks, block), (*built.interfaces, *new), built.mu)
+def with_block(built, *blocks, whole):
+    """The model with more blocks of a whole wall: a stone, or a stone and its wedge."""
+    new = {block.id for block in blocks}
+    there = {GROUND, *new, *(b.id for b in built.blocks)}
+    touching = [i for i in whole.interfaces if new & {i.block, i.other}]
+    return built.with_added(blocks, tuple(i for i in touching if {i.block, i.other} <= there))
 
 
 def upwards(labels):
@@ -31,8 +31,8 @@ def wall_and_candidates(labels, count):
     whole, blocks = upwards(labels)
     analysis = growing(empty(), PX)
     for block in blocks[:count]:
-        analysis = analysis.extended(with_block(analysis.model, block, whole))
-    return analysis, [with_block(analysis.model, block, whole) for block in blocks[count:]]
+        analysis = analysis.extended(with_block(analysis.model, block, whole=whole))
+    return analysis, [with_block(analysis.model, block, whole=whole) for block in blocks[count:]]
 
 
 class Pivots:

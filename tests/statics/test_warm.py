@@ -1,4 +1,3 @@
-from dataclasses import replace
 from functools import partial
 
 from drystone.statics.contacts.blocks import model_from_labels
@@ -23,11 +22,8 @@ def test_the_bases_are_of_use_when_contacts_go(monkeypatch):
     whole, blocks = upwards(coursed(6, 4, 80))
     analysis = growing(empty(), PX)
     for block in blocks:
-        analysis = analysis.extended(with_block(analysis.model, block, whole))
-    interfaces = analysis.model.interfaces
-    models = [
-        replace(analysis.model, interfaces=interfaces[:k] + interfaces[k + 1 :]) for k in (3, 9)
-    ]
+        analysis = analysis.extended(with_block(analysis.model, block, whole=whole))
+    models = [analysis.model.with_added((), (), (k,)) for k in (3, 9)]
     pivots = Pivots(monkeypatch)
     warm = pivots.of(lambda: [analysis.resistance_with(model) for model in models])
     start = growing(empty(), PX)
@@ -42,7 +38,7 @@ def test_how_a_stone_falls_is_found_without_a_pivot(monkeypatch):
     pivots = Pivots(monkeypatch)
     falling = 0
     for block in blocks:
-        model = with_block(analysis.model, block, whole)
+        model = with_block(analysis.model, block, whole=whole)
         calls = pivots.calls
         if analysis.resistance_with(model).resistance.stable:
             analysis = analysis.extended(model)

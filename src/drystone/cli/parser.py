@@ -48,7 +48,9 @@ class _Version(argparse.Action):
     ) -> None:
         from importlib.metadata import version  # noqa: PLC0415 - costs start-up time
 
-        print(f"drystone {version('drystone')}")
+        from drystone.kernels.backend import describe  # noqa: PLC0415
+
+        print(f"drystone {version('drystone')} (kernels: {describe()})")
         parser.exit()
 
 

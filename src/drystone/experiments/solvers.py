@@ -129,7 +129,7 @@ def _with_stone(built: RigidBlockModel, stone: Block, whole: RigidBlockModel) ->
     there = {GROUND, stone.id, *(block.id for block in built.blocks)}
     new = [i for i in whole.interfaces if stone.id in (i.block, i.other)]
     touching = (i for i in new if i.block in there and i.other in there)
-    return RigidBlockModel((*built.blocks, stone), (*built.interfaces, *touching), built.mu)
+    return built.with_added((stone,), tuple(touching))
 
 
 def _timed(wall: Standing) -> dict[str, Timing]:

@@ -18,7 +18,7 @@ from highspy import HighsBasis
 from drystone.statics.appending import OpenProgram, Units, columns_of
 from drystone.statics.asking import Answer, answered
 from drystone.statics.limit import lateral_resistance, resistance_between
-from drystone.statics.model import RigidBlockModel
+from drystone.statics.model import Addition, RigidBlockModel
 from drystone.statics.program import EquilibriumProgram
 from drystone.statics.result import LateralResistance, LimitStatus
 from drystone.statics.solvers.highs import HighsSession
@@ -67,9 +67,8 @@ class GrowingAnalysis(Protocol):
         Parameters
         ----------
         model : RigidBlockModel
-            The blocks of this wall and then new ones (a stone and its wedges); those of its
-            interfaces that stay, the same objects, and then new ones, as
-            :func:`drystone.statics.contacts.blocks.model_with` makes it.  Any other model is
+            Made from :attr:`model` by :meth:`RigidBlockModel.with_added`, as
+            :func:`drystone.statics.contacts.blocks.model_with` does.  Any other model is
             answered too, without the gain in time.
         """
         ...
@@ -124,22 +123,19 @@ class WarmGrowth:
 
     def _prepared(self, model: RigidBlockModel) -> tuple[OpenProgram, Bases]:
         """Append what is new to the program and to the bases."""
-        count = len(self.model.blocks)
-        staying = set(model.interfaces)
-        stay = [interface in staying for interface in self.model.interfaces]
-        kept = tuple(interface for interface in self.model.interfaces if interface in staying)
-        grows = model.blocks[:count] == self.model.blocks and model.mu == self.model.mu
-        if not grows or model.interfaces[: len(kept)] != kept:
+        added = Addition(model, (), ()) if model is self.model else model.added
+        if added is None or added.base is not self.model:
             units = Units(self.open_program.program.length, self.open_program.program.weight)
             return _anew(model, units)
         old, bases = self.open_program, self.bases
-        if not all(stay):
+        if added.closed:
+            stay = np.ones(len(self.model.interfaces), bool)
+            stay[list(added.closed)] = False
             repeats = [len(interface.points) for interface in self.model.interfaces]
             old = old.with_points(np.repeat(stay, repeats))
             columns = columns_of(np.repeat(stay, repeats))
             bases = Bases(bases.least.with_columns(columns), bases.greatest.with_columns(columns))
-        new = model.interfaces[len(kept) :]
-        program = old.appended(model, model.blocks[count:], new)
+        program = old.appended(model, added.blocks, added.interfaces)
         return program, _appended(bases, program.program)
 
 
@@ -165,7 +161,8 @@ def growing(model: RigidBlockModel, units: Units) -> GrowingAnalysis:
     >>> wall = growing(first, units_of(first))
     >>> round(wall.grown.resistance.right.alpha, 6)
     0.5
-    >>> round(wall.resistance_with(pile).resistance.right.alpha, 6)
+    >>> taller = wall.model.with_added(pile.blocks[1:], pile.interfaces[1:])
+    >>> round(wall.resistance_with(taller).resistance.right.alpha, 6)
     0.25
     """
     program, starts = _anew(model, units)
@@ -204,6 +201,7 @@ def _told(model: RigidBlockModel, program: EquilibriumProgram, tilts: Tilts) -> 
 
 
 def _grown_to(model: RigidBlockModel, program: OpenProgram, starts: Bases) -> WarmGrowth:
+    model = model.forgetting()  # or every model would keep all those before it
     if not program.seats:
         return WarmGrowth(model, Grown(lateral_resistance(model)), program, starts)
     tilts = _tilted(program.program, starts)

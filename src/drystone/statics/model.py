@@ -1,6 +1,6 @@
 """Rigid blocks and the interfaces between them (§4.1)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -93,11 +93,43 @@ class RigidBlockModel:
         Between blocks, or between a block and the ground.
     mu : float
         Coefficient of friction of the interfaces that have none of their own.
+    added : Addition or None
+        How it was made from another model by :meth:`with_added`, for what grows along with it.
     """
 
     blocks: tuple[Block, ...]
     interfaces: tuple[Interface, ...]
     mu: float = 0.58
+    added: "Addition | None" = field(default=None, init=False, repr=False)
+
+    def with_added(
+        self,
+        blocks: tuple[Block, ...],
+        interfaces: tuple[Interface, ...],
+        closed: tuple[int, ...] = (),
+    ) -> "RigidBlockModel":
+        """Return the model with a stone and its wedges: new ones come last.
+
+        Parameters
+        ----------
+        blocks : tuple of Block
+            New ones.
+        interfaces : tuple of Interface
+            New ones, between any blocks.
+        closed : tuple of int
+            Ascending positions in `interfaces` of this model of those that are there no more.
+        """
+        kept = self.interfaces
+        for position in reversed(closed):
+            kept = kept[:position] + kept[position + 1 :]
+        grown = RigidBlockModel(self.blocks + blocks, kept + interfaces, self.mu)
+        # Not an argument: a model that `replace` makes of this one was not made by adding.
+        object.__setattr__(grown, "added", Addition(self, blocks, interfaces, closed))
+        return grown
+
+    def forgetting(self) -> "RigidBlockModel":
+        """Return the same model without knowledge of how it was made."""
+        return self if self.added is None else replace(self)
 
     def friction(self, interface: Interface) -> float:
         """Return the coefficient of friction of an interface."""
@@ -107,3 +139,23 @@ class RigidBlockModel:
     def contact_count(self) -> int:
         """Number of contact points."""
         return sum(len(interface.points) for interface in self.interfaces)
+
+
+@dataclass(frozen=True, eq=False)
+class Addition:
+    """What a stone and its wedges add to a model.
+
+    Parameters
+    ----------
+    base : RigidBlockModel
+        The model without them.
+    blocks, interfaces : tuple of Block, tuple of Interface
+        New ones.
+    closed : tuple of int
+        Ascending positions in ``base.interfaces`` of contacts at a point that were closed in.
+    """
+
+    base: RigidBlockModel
+    blocks: tuple[Block, ...]
+    interfaces: tuple[Interface, ...]
+    closed: tuple[int, ...] = ()

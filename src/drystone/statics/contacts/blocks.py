@@ -10,9 +10,9 @@ from drystone.model.placement import Placement, Wedge
 from drystone.model.wall import Labels
 from drystone.statics.contacts.interfaces import (
     Window,
+    closed_in,
     find_interfaces,
     find_interfaces_of,
-    still_open,
 )
 from drystone.statics.contacts.pieces import notice_of_pieces
 from drystone.statics.model import Block, RigidBlockModel
@@ -117,8 +117,7 @@ def model_with(
     around = _hull([window for _, window, _ in parts])
     blocks = tuple(_block(grown, block_id, window) for block_id, window, _ in parts)
     found = find_interfaces_of(grown, [block_id for block_id, _, _ in parts], around)
-    kept = still_open(model.interfaces, grown, around)
-    return RigidBlockModel((*model.blocks, *blocks), (*kept, *found), model.mu)
+    return model.with_added(blocks, found, closed_in(model.interfaces, grown, around))
 
 
 def check_mu(mu: float) -> None:

@@ -92,15 +92,13 @@ def find_interfaces_of(labels: Labels, ids: Iterable[int], window: Window) -> tu
     -----
     Adding block after block this way gives the interfaces of the whole image, except that a
     contact at a point disappears when a later block fills a pixel beside it: see
-    :func:`still_open`.
+    :func:`closed_in`.
     """
     return _interfaces_in(labels, window, tuple(ids))
 
 
-def still_open(
-    interfaces: tuple[Interface, ...], labels: Labels, window: Window
-) -> tuple[Interface, ...]:
-    """Leave out the contacts at a point that blocks in a window have closed in.
+def closed_in(interfaces: tuple[Interface, ...], labels: Labels, window: Window) -> tuple[int, ...]:
+    """Return the positions of the contacts at a point that blocks in a window have closed in.
 
     Where stones fill the pixels beside a contact at a point the joints with them carry the load;
     a corner exactly above a corner, as at the crossing of two joints, carries nothing.
@@ -108,15 +106,17 @@ def still_open(
     height = labels.shape[0]
     rows, cols = window
 
-    def is_open(interface: Interface) -> bool:
-        if len(interface.points) > 1:
-            return True
+    def is_closed(interface: Interface) -> bool:
         col, row = int(interface.points[0, 0]), height - int(interface.points[0, 1])
         if not (rows.start <= row <= rows.stop and cols.start <= col <= cols.stop):
-            return True
-        return int(np.count_nonzero(labels[row - 1 : row + 1, col - 1 : col + 1])) == 2
+            return False
+        return int(np.count_nonzero(labels[row - 1 : row + 1, col - 1 : col + 1])) != 2
 
-    return tuple(interface for interface in interfaces if is_open(interface))
+    return tuple(
+        position
+        for position, interface in enumerate(interfaces)
+        if len(interface.points) == 1 and is_closed(interface)
+    )
 
 
 def _interfaces_in(

@@ -1,0 +1,1 @@
+"""The kernels in Cython; :mod:`drystone.kernels.backend` says which of them are used."""
