@@ -14,6 +14,7 @@ from drystone.errors import Notice
 from drystone.io.plan_json import read_plan
 from drystone.io.read_stones import ReadSettings, read_stones
 from drystone.io.wall_image import read_wall_image, write_labels
+from drystone.planner.profile import PARTS
 from tests.cli.conftest import WALL, Run
 
 FILES = {
@@ -289,3 +290,28 @@ def test_a_scale_is_chosen_and_said(rubble: Path, tmp_path: Path, run: Run) -> N
     assert 0 < scale <= 1
     assert read_plan(tmp_path).working_scale == scale
     assert math.isclose(scale, 1.0)  # the stones are smaller than the planner likes
+
+
+def test_profile_says_where_the_time_went(rubble: Path, tmp_path: Path, run: Run) -> None:
+    told = run("plan", rubble, *WALL, "--profile", "--json", "-o", tmp_path / "json")
+    profile = told.json()["profile"]
+    assert list(profile) == [
+        "seconds", "parts", "steps", "candidates", "longest_step", "jobs", "kernels",
+    ]  # fmt: skip
+    parts = profile["parts"]
+    assert list(parts) == [*PARTS, "other"]
+    assert all(parts[part] > 0 for part in PARTS if part != "metrics")
+    assert parts["metrics"] == 0  # only methods that go back look at them while planning
+    assert sum(parts.values()) == pytest.approx(profile["seconds"])
+    assert profile["candidates"] >= profile["steps"] >= 6
+    assert 0 < profile["longest_step"] <= profile["seconds"]
+    threads = run("plan", rubble, *WALL, "--profile", "--jobs", "2", "-o", tmp_path / "table")
+    assert "where the time went" in threads.out
+    assert "limit analysis" in threads.out
+    assert "2; parts are summed over them" in threads.out
+
+
+def test_without_profile_nothing_is_said_of_it(finished: Path, tmp_path: Path, run: Run) -> None:
+    del finished
+    told = run("demo", "--method", "paper", "--json", "-o", tmp_path / "demo")
+    assert "profile" not in told.json()

@@ -82,7 +82,7 @@ def _scene(
 
 
 def _judged(evaluator: Evaluator, build: Build, proposal: Proposal) -> Candidate:
-    return evaluator.judge(build.wall, build.analysis, proposal)
+    return evaluator.judge(build, Landscape.of(build.wall, proposal.side), proposal)
 
 
 def _trial(planner: Planner, stone_id: int) -> Trial:

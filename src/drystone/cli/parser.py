@@ -121,6 +121,7 @@ def _writing(command: argparse.ArgumentParser) -> None:
     )
     group.add_argument("--json", action="store_true", help="print the summary as JSON")
     group.add_argument("--quiet", action="store_true", help="no progress")
+    group.add_argument("--profile", action="store_true", help="say where the time went")
 
 
 def _overwriting(command: argparse.ArgumentParser, text: str) -> None:

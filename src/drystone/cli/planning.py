@@ -11,6 +11,7 @@ import tomli_w
 from drystone.cli.output import number, prepare_folder, print_json, print_table
 from drystone.cli.progress import step_bar
 from drystone.cli.settings import settings_from
+from drystone.cli.timing import print_profile, profile_summary
 from drystone.errors import ExitCode, UsageError
 from drystone.io.plan_json import read_plan, write_plan
 from drystone.io.wall_image import write_wall_image
@@ -55,10 +56,13 @@ def plan_and_write(
     for notice in result.notices:
         print(f"drystone: {notice}", file=sys.stderr)
     write_result(result, stones, folder)
+    profile = profile_summary(result, arguments.jobs) if arguments.profile else None
     if arguments.json:
-        print_json(_summary(result, folder))
-    else:
-        _print_summary(result, folder)
+        print_json(_summary(result, folder) | ({} if profile is None else {"profile": profile}))
+        return _EXIT[result.status]
+    _print_summary(result, folder)
+    if profile is not None:
+        print_profile(profile)
     return _EXIT[result.status]
 
 

@@ -13,6 +13,7 @@ from drystone.model.pose import PosedStone
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.choose import better_side, choose_by_algorithm2, choose_by_score
 from drystone.planner.evaluate import Evaluator, Trial
+from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.selection.sampling import sample_stones, second_fold
@@ -38,6 +39,8 @@ class Attempt:
         What is built.
     executor : concurrent.futures.Executor or None
         Evaluates candidates; the result does not depend on it.
+    profile : Profile or None
+        Told where the time goes.
     """
 
     def __init__(
@@ -46,6 +49,7 @@ class Attempt:
         settings: PlannerSettings,
         build: Build,
         executor: Executor | None = None,
+        profile: Profile | None = None,
     ) -> None:
         self.build = build
         self.candidates = 0
@@ -54,9 +58,10 @@ class Attempt:
         self._workshop = workshop
         self._settings = settings
         self._executor = executor
-        self._evaluator = Evaluator(settings, workshop.memory, workshop.stock)
+        self._profile = profile or Profile()
+        self._evaluator = Evaluator(settings, workshop.memory, workshop.stock, self._profile)
         sides: tuple[Side, ...] = ("left", "right") if settings.two_sided else ("left",)
-        self._landscapes = tuple(Landscape.of(build.wall, side) for side in sides)
+        self._landscapes = {side: Landscape.of(build.wall, side) for side in sides}
         self._rest = workshop.rest(build)
         self._proposed: dict[Key, Proposal | None] = {}
         self._judged: dict[Key, Candidate] = {}
@@ -76,8 +81,8 @@ class Attempt:
             return chosen
 
         if self._settings.selection_rule == "score":
-            return best(self._landscapes)
-        winners = [best([landscape]) for landscape in self._landscapes]
+            return best(tuple(self._landscapes.values()))
+        winners = [best([landscape]) for landscape in self._landscapes.values()]
         found = [winner for winner in winners if winner is not None]
         return better_side(found, self.build, self._settings.selection)
 
@@ -113,9 +118,11 @@ class Attempt:
     def _judge(self, proposals: Sequence[Proposal]) -> list[Candidate]:
         keys = [(p.stone_id, p.trial_angle_deg, p.side) for p in proposals]
         new = [k for k, key in enumerate(keys) if key not in self._judged]
-        wall, analysis = self.build.wall, self.build.analysis
+        if new:
+            with self._profile.part("limit analysis"):
+                _ = self.build.analysis  # before the threads ask for it, all at once
         results = self._map(
-            lambda proposal: self._evaluator.judge(wall, analysis, proposal),
+            lambda p: self._evaluator.judge(self.build, self._landscapes[p.side], p),
             [proposals[k] for k in new],
         )
         self._judged.update(zip([keys[k] for k in new], results, strict=True))
@@ -123,7 +130,7 @@ class Attempt:
         self.cold_solves += sum(result.solved_cold for result in results)
         # NHR depends on the other candidates, which differ between the folds.
         return [
-            self._evaluator.compared(self.build, proposal, self._judged[key])
+            self._evaluator.compared(self._landscapes[proposal.side], proposal, self._judged[key])
             for proposal, key in zip(proposals, keys, strict=True)
         ]
 

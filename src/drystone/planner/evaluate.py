@@ -1,7 +1,7 @@
 """Trial placement, stabilisation and indices of one candidate (Algorithm 1, lines 7-16)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -16,18 +16,17 @@ from drystone.indices.values import Indices
 from drystone.model.landscape import Landscape, view_box
 from drystone.model.placement import Placement
 from drystone.model.pose import PosedStone
-from drystone.model.wall import Wall
 from drystone.placement.best import best_spots
 from drystone.placement.feasible import can_be_lowered
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.craft import action_craft
+from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, Stock
 from drystone.selection.scored import craft_cost
 from drystone.stabilise.memory import StabiliseMemory
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.contacts.blocks import model_with
-from drystone.statics.growing import GrowingAnalysis
 from drystone.statics.result import LateralResistance
 
 
@@ -62,11 +61,14 @@ class Evaluator:
         Stabilises stones.
     stock : Stock
         Sizes of the set.
+    profile : Profile
+        Told where the time goes.
     """
 
     settings: PlannerSettings
     memory: StabiliseMemory
     stock: Stock
+    profile: Profile = field(default_factory=Profile)
 
     def propose(self, build: Build, trial: Trial) -> Proposal | None:
         """Return the best stable placement of a stone; None when there is none (lines 8-15).
@@ -76,16 +78,19 @@ class Evaluator:
         all of them are stabilised, and the one of the least craft cost is taken.
         """
         landscape = trial.landscape
-        views = [landscape.view(posed) for posed in trial.poses]
+        with self.profile.part("placement"):
+            views = [landscape.view(posed) for posed in trial.poses]
+            spots = best_spots(landscape, views, self.settings.placement)
         best: Proposal | None = None
-        for spot in best_spots(landscape, views, self.settings.placement):
+        for spot in spots:
             posed = trial.poses[spot.pose]
-            stabilised = self.memory.stabilise(
-                build.wall.occupied,
-                (posed, spot.row, landscape.view_col(posed, spot.col)),
-                landscape.side,
-                self.stock.largest_id + len(build.wall.wedges) + 1,
-            )
+            with self.profile.part("stabilisation"):
+                stabilised = self.memory.stabilise(
+                    build.wall.occupied,
+                    (posed, spot.row, landscape.view_col(posed, spot.col)),
+                    landscape.side,
+                    self.stock.largest_id + len(build.wall.wedges) + 1,
+                )
             if stabilised is None or not self._reached(landscape, stabilised):
                 continue
             proposal = self._proposal(trial, posed.angle_deg, stabilised)
@@ -103,38 +108,41 @@ class Evaluator:
         posed, col = placement.posed, landscape.view_col(placement.posed, placement.col)
         return can_be_lowered(landscape, landscape.view(posed), placement.row, col)
 
-    def judge(self, wall: Wall, analysis: GrowingAnalysis, proposal: Proposal) -> Candidate:
+    def judge(self, build: Build, landscape: Landscape, proposal: Proposal) -> Candidate:
         """Return the candidate of a proposal: all indices, with the wall's resistance after it.
 
         Parameters
         ----------
-        wall : Wall
+        build : Build
             Before the action.
-        analysis : GrowingAnalysis
-            Of that wall.
+        landscape : Landscape
+            Of its wall, seen from the side from which the stone is placed.
         proposal : Proposal
             The action.
         """
-        stabilised = proposal.stabilised
-        model = model_with(analysis.model, wall.labels, stabilised.placement, stabilised.wedges)
-        grown = analysis.resistance_with(model)
-        landscape = Landscape.of(wall, proposal.side)
-        indices, course_height = action_indices(
-            landscape,
-            stabilised,
-            grown.resistance,
-            proposal.other_heights_px,
-            self.stock.narrowest_px,
-        )
+        stabilised, analysis = proposal.stabilised, build.analysis
+        with self.profile.part("contacts"):
+            model = model_with(
+                analysis.model, build.wall.labels, stabilised.placement, stabilised.wedges
+            )
+        with self.profile.part("limit analysis"):
+            grown = analysis.resistance_with(model)
+        with self.profile.part("indices"):
+            indices, course_height = action_indices(
+                landscape,
+                stabilised,
+                grown.resistance,
+                proposal.other_heights_px,
+                self.stock.narrowest_px,
+            )
         return Candidate(
             proposal, indices, course_height, model, grown.resistance, grown.solved_cold
         )
 
-    def compared(self, build: Build, proposal: Proposal, judged: Candidate) -> Candidate:
+    def compared(self, landscape: Landscape, proposal: Proposal, judged: Candidate) -> Candidate:
         """Return a candidate that was judged before, compared with other candidates (Eq. 8)."""
         if proposal.other_heights_px == judged.proposal.other_heights_px:
             return judged
-        landscape = Landscape.of(build.wall, proposal.side)
         nhr, course_height = first_or_next(
             landscape, proposal.stabilised.placement, proposal.other_heights_px
         )
@@ -144,7 +152,8 @@ class Evaluator:
     def _proposal(self, trial: Trial, trial_angle_deg: float, stabilised: Stabilised) -> Proposal:
         cost = 0.0
         if self.settings.selection_rule == "score" or self.settings.placement.compare:
-            craft = action_craft(trial.landscape, stabilised, self.stock, trial.rest)
+            with self.profile.part("indices"):
+                craft = action_craft(trial.landscape, stabilised, self.stock, trial.rest)
             cost = craft_cost(craft, self.settings.score)
         return Proposal(stabilised, trial_angle_deg, cost=cost)
 

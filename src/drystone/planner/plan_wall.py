@@ -4,7 +4,7 @@ import time
 from collections.abc import Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib.metadata import version
 from typing import Any
 
@@ -19,6 +19,7 @@ from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame, assemble_plan, plan_metrics
 from drystone.planner.events import Callbacks, Round, Stopped
 from drystone.planner.planner import Planner
+from drystone.planner.profile import Profile
 from drystone.planner.rework import rework
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.statics.limit import lateral_resistance
@@ -61,6 +62,8 @@ class PlanResult:
     notices : tuple of Notice
         W303 when the solver gave up on some candidates, which were then passed over, and when
         it had to solve some from the start, which costs time alone.
+    profile : Profile
+        Where the time went.
     """
 
     success: bool
@@ -73,6 +76,7 @@ class PlanResult:
     clusters: dict[int, int]
     seconds: float
     notices: tuple[Notice, ...] = ()
+    profile: Profile = field(default_factory=Profile)
 
 
 def working_scale(stones: StoneSet) -> float:
@@ -202,7 +206,7 @@ def run_to_end(planner: Planner) -> tuple[Planner, Stopped]:
     try:
         for _ in planner.steps():
             pass
-        for number, incumbent in enumerate(rework(planner)):
+        for number, incumbent in enumerate(rework(planner) if rounds else ()):
             best = incumbent.planner
             stones = len(best.build.actions)
             planner.callbacks.on_round(Round(number, rounds, stones, incumbent.merit))
@@ -239,6 +243,7 @@ def finish(
         resistance=resistance,
         clusters=planner.workshop.clusters,
         seconds=seconds,
+        profile=planner.profile,
     )
 
 

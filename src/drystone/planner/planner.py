@@ -5,6 +5,7 @@ from concurrent.futures import Executor
 
 import numpy as np
 
+from drystone.model.landscape import Landscape
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
@@ -12,6 +13,7 @@ from drystone.planner.attempt import Attempt
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.events import Callbacks, Step, Stopped
+from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.stabilise.stabilise import Stabilised
@@ -38,6 +40,8 @@ class Planner:
         Told of every :class:`Step`.
     workshop : Workshop, optional
         The same stones and site, prepared before.
+    profile : Profile, optional
+        To go on with; told where the time goes.
 
     Examples
     --------
@@ -49,7 +53,7 @@ class Planner:
     3
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - options by keyword
         self,
         stones: StoneSet,
         site: Site,
@@ -59,10 +63,13 @@ class Planner:
         executor: Executor | None = None,
         callbacks: Callbacks | None = None,
         workshop: Workshop | None = None,
+        profile: Profile | None = None,
     ) -> None:
         self.seed = seed
         self.settings = settings or PlannerSettings()
-        self.workshop = workshop or Workshop.prepare(stones, site, self.settings)
+        self.profile = profile or Profile()
+        with self.profile.part("preparation"):
+            self.workshop = workshop or Workshop.prepare(stones, site, self.settings)
         self.executor = executor
         self.build = self._empty()
         self.stopped: Stopped | None = None
@@ -88,6 +95,7 @@ class Planner:
             self._count_solves(attempt)
             self.build = self._added(self.build, action)  # lines 18-22
             step = Step(len(self.build.actions), action, self.build, attempt.candidates)
+            self.profile.end_step(step.number - 1, step.candidates)
             attempt, failures = self._attempt(), 0
             self.callbacks.on_step(step)
             yield step
@@ -95,7 +103,8 @@ class Planner:
         self.stopped = stopped
 
     def _attempt(self) -> Attempt:
-        return Attempt(self.workshop, self.settings, self.build, self.executor)
+        self.profile.begin_step()
+        return Attempt(self.workshop, self.settings, self.build, self.executor, self.profile)
 
     def _count_solves(self, attempt: Attempt) -> None:
         self.failed_solves += attempt.failed_solves
@@ -131,7 +140,8 @@ class Planner:
         course_heights_px : mapping of int to float
             For stones that began a course: the height that Eq. 8 compared with.
         """
-        evaluator = Evaluator(self.settings, self.workshop.memory, self.workshop.stock)
+        workshop = self.workshop
+        evaluator = Evaluator(self.settings, workshop.memory, workshop.stock, self.profile)
         build = self._empty()
         for group in wall.groups:
             placement = group.placement
@@ -141,6 +151,7 @@ class Planner:
                 placement.posed.angle_deg,
                 other_heights_px=() if height is None else (height,),
             )
-            action = evaluator.judge(build.wall, build.analysis, proposal)
+            landscape = Landscape.of(build.wall, placement.side)
+            action = evaluator.judge(build, landscape, proposal)
             build = self._added(build, action)
         self.build = build

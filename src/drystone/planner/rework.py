@@ -64,6 +64,7 @@ def rework(planner: Planner) -> Iterator[Incumbent]:
             settings=_varied(planner.settings, rng),
             executor=planner.executor,
             workshop=planner.workshop,
+            profile=planner.profile,
         )
         varied.build = states[max(0, len(states) - 1 - back)]
         for _ in varied.steps():
@@ -83,10 +84,12 @@ def wall_merit(planner: Planner) -> float:
     if not build.actions:
         return -math.inf
     resistance = build.actions[-1].resistance.value
-    measured = measure_labels(
-        build.wall.labels, wedge_ids={wedge.id for wedge in build.wall.wedges},
-        wall_px=(build.wall.site.width_px, build.wall.site.height_px),
-    )  # fmt: skip
+    with planner.profile.part("metrics"):
+        measured = measure_labels(
+            build.wall.labels,
+            wedge_ids={wedge.id for wedge in build.wall.wedges},
+            wall_px=(build.wall.site.width_px, build.wall.site.height_px),
+        )
     stones = planner.workshop.stones.total_area_px * build.wall.site.scale**2
     possible = min(1.0, stones / (build.wall.site.width_px * build.wall.site.height_px))
     return math.fsum(

@@ -1,0 +1,52 @@
+"""What `plan --profile` says: where the time of a plan went."""
+
+from typing import Any
+
+from drystone.cli.output import print_table
+from drystone.kernels.backend import describe
+from drystone.planner.plan_wall import PlanResult
+from drystone.planner.profile import PARTS
+
+
+def profile_summary(result: PlanResult, jobs: int) -> dict[str, Any]:
+    """Return the times of a plan by part, for ``--json``; seconds.
+
+    What is not measured as a part is "other": sampling, selection, keeping books.  With several
+    threads parts are summed over them, waiting included, and there is no "other".
+    """
+    profile = result.profile
+    parts: dict[str, float] = {part: profile.total(part) for part in PARTS}
+    if jobs == 1:
+        parts["other"] = max(0.0, result.seconds - sum(parts.values()))
+    return {
+        "seconds": result.seconds,
+        "parts": parts,
+        "steps": len(profile.steps),
+        "candidates": sum(step.candidates for step in profile.steps),
+        "longest_step": max((step.seconds for step in profile.steps), default=0.0),
+        "jobs": jobs,
+        "kernels": describe(),
+    }
+
+
+def print_profile(summary: dict[str, Any]) -> None:
+    """Print the times as a table."""
+    whole = sum(summary["parts"].values()) or 1.0
+    rows = [
+        (part, f"{seconds:8.3f} s {100 * seconds / whole:5.1f} %{_each(seconds, summary)}")
+        for part, seconds in summary["parts"].items()
+    ]
+    threads = summary["jobs"]
+    rows += [
+        ("steps", f"{summary['steps']}, the longest {1000 * summary['longest_step']:.1f} ms"),
+        ("candidates", str(summary["candidates"])),
+        ("kernels", summary["kernels"]),
+        ("threads", "1" if threads == 1 else f"{threads}; parts are summed over them"),
+    ]
+    print_table("\nwhere the time went, and microseconds a candidate", rows)
+
+
+def _each(seconds: float, summary: dict[str, Any]) -> str:
+    if not summary["candidates"]:
+        return ""
+    return f" {1e6 * seconds / summary['candidates']:9.0f}"

@@ -1,0 +1,106 @@
+"""Where the time of a plan goes: by step, and by part of the work."""
+
+import time
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from typing import Literal
+
+Part = Literal[
+    "preparation", "placement", "stabilisation", "contacts", "limit analysis", "indices", "metrics"
+]
+"""Stones turned and clustered (once); trial positions; rotating and wedging; Pic-to-Ri; both
+tilts of the wall; the indices of the actions; figures of merit, for methods that look at them."""
+
+PARTS: tuple[Part, ...] = (
+    "preparation", "placement", "stabilisation", "contacts", "limit analysis", "indices", "metrics",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class StepTime:
+    """What one step took.
+
+    Parameters
+    ----------
+    stones : int
+        Stones that were there before it.
+    candidates : int
+        How many candidates were evaluated.
+    seconds : float
+        From its first attempt to its action.
+    parts : dict of str to float
+        Seconds by part of the work; what is missing to `seconds` is sampling, selection and
+        keeping books.  With several threads the parts of all of them, waiting included.
+    """
+
+    stones: int
+    candidates: int
+    seconds: float
+    parts: dict[Part, float]
+
+
+class Profile:
+    """Times of a planner at work; :attr:`drystone.planner.planner.Planner.profile`.
+
+    Examples
+    --------
+    >>> import drystone as ds
+    >>> import numpy as np
+    >>> bricks = ds.generate.BrickSettings(count=6, height_px=10, aspect=2)
+    >>> stones = ds.generate.brick_stones(bricks, np.random.default_rng(1))
+    >>> profile = ds.plan_wall(stones, 60, 20, scale=1.0, method="paper").profile
+    >>> [step.stones for step in profile.steps]
+    [0, 1, 2, 3, 4, 5]
+    >>> profile.total("placement") > 0
+    True
+    """
+
+    def __init__(self) -> None:
+        self.steps: list[StepTime] = []
+        # Appending is one operation: threads may do it without a lock.
+        self._pending: list[tuple[Part, float]] = []
+        self._other: list[tuple[Part, float]] = []
+        self._since = time.perf_counter()
+
+    def part(self, name: Part) -> AbstractContextManager[object]:
+        """Return a context whose duration counts for a part."""
+        return _Timing(name, self._pending)
+
+    def begin_step(self) -> None:
+        """Say that an attempt at a new action begins; what came before belongs to no step."""
+        self._other += self._pending
+        self._pending = []
+        self._since = time.perf_counter()
+
+    def end_step(self, stones: int, candidates: int) -> None:
+        """Say that the action is chosen."""
+        seconds = time.perf_counter() - self._since
+        self.steps.append(StepTime(stones, candidates, seconds, _sums(self._pending)))
+        self._pending = []
+
+    def total(self, part: Part) -> float:
+        """Return the seconds of a part, all steps and what is outside of steps together."""
+        rest = _sums(self._other + self._pending)
+        return sum(step.parts.get(part, 0.0) for step in self.steps) + rest.get(part, 0.0)
+
+
+class _Timing:
+    """Measures a block."""
+
+    __slots__ = ("_into", "_name", "_since")
+
+    def __init__(self, name: Part, into: list[tuple[Part, float]]) -> None:
+        self._name, self._into = name, into
+
+    def __enter__(self) -> None:
+        self._since = time.perf_counter()
+
+    def __exit__(self, *_: object) -> None:
+        self._into.append((self._name, time.perf_counter() - self._since))
+
+
+def _sums(times: list[tuple[Part, float]]) -> dict[Part, float]:
+    sums: dict[Part, float] = {}
+    for part, seconds in times:
+        sums[part] = sums.get(part, 0.0) + seconds
+    return sums
