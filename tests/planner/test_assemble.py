@@ -39,7 +39,7 @@ def wedged_build() -> tuple[Build, Frame]:
     empty = Wall.empty(site)
     model = model_with(RigidBlockModel((), ()), empty.labels, stabilised.placement, wedges)
     resistance = lateral_resistance(model)
-    indices, course = action_indices(Landscape.of(empty), stabilised, resistance, (), 4.0)
+    indices, course = action_indices(Landscape.of(empty), stabilised, resistance, None, 4.0)
     proposal = Proposal(stabilised, 0.0)
     action = Candidate(proposal, indices, course, model, resistance)
     return Build.empty(site, model.mu, 80.0).add(action), Frame(60.0, 40.0, site)

@@ -108,7 +108,7 @@ def test_the_second_fold_tries_the_cluster_of_the_winner(monkeypatch: pytest.Mon
     assert len(tried - members) == 1
 
 
-def test_other_heights_are_those_of_other_stones() -> None:
+def test_the_height_of_a_course_is_the_mean_of_other_stones() -> None:
     # Eq. 8: the first stone is compared with the mean height of the other candidates.
     stones = blocks({1: (20, 10), 2: (20, 10), 3: (20, 4)})
     settings = PlannerSettings(sampling="full")
@@ -117,7 +117,7 @@ def test_other_heights_are_those_of_other_stones() -> None:
     chosen = attempt.choose(np.random.default_rng(0))
     assert chosen is not None
     assert chosen.stone_id == 1
-    assert chosen.proposal.other_heights_px == (10.0, 4.0)
+    assert chosen.proposal.course_height_px == 7.0
     assert chosen.course_height_px == 7.0
     assert chosen.indices.NHR == pytest.approx(0.3)
 

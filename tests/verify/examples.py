@@ -95,7 +95,7 @@ def true_plan(built: Wall, stones: StoneSet) -> Plan:
             Landscape.of(before, placement.side),
             Stabilised(placement, group.wedges),
             carried,
-            (11.0 * site.scale, 12.0 * site.scale),
+            11.5 * site.scale,
             NARROWEST_PX * site.scale,
         )
         x, y = placement.centroid(site.height_px)

@@ -1,7 +1,5 @@
 """NHR: how far a stone's top is from level with its neighbour (Eq. 6-8)."""
 
-from collections.abc import Sequence
-
 from drystone.model.landscape import Box, Landscape
 
 
@@ -21,7 +19,7 @@ def left_neighbour(landscape: Landscape, box: Box) -> Box | None:
 
 
 def neighbour_height_ratio(
-    box: Box, neighbour: Box | None, other_heights_px: Sequence[float]
+    box: Box, neighbour: Box | None, course_height_px: float | None
 ) -> float:
     """Return NHR, 0 or larger; 0 is best (Eq. 6-8).
 
@@ -31,12 +29,12 @@ def neighbour_height_ratio(
         Of the stone where it is placed.
     neighbour : Box or None
         From :func:`left_neighbour`.
-    other_heights_px : sequence of float
-        Heights of the other candidates, which the first stone of a course is compared with.
+    course_height_px : float or None
+        Mean height of the other candidates, which the first stone of a course is compared with;
+        None when there are none.
     """
     if neighbour is not None:
         return abs(box.top - neighbour.top) / box.height
-    if not other_heights_px:
+    if course_height_px is None:
         return 0.0
-    mean = sum(other_heights_px) / len(other_heights_px)
-    return abs(box.height - mean) / box.height
+    return abs(box.height - course_height_px) / box.height

@@ -1,8 +1,10 @@
 """One step: evaluate candidates on the landscape as it stands and choose (lines 6-17)."""
 
+import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
+from statistics import fmean
 from typing import TypeVar
 
 import numpy as np
@@ -101,11 +103,12 @@ class Attempt:
         results = self._map(lambda trial: self._evaluator.propose(self.build, trial), trials)
         self._proposed.update(zip([keys[k] for k in new], results, strict=True))
         self.candidates += len(new)
+        heights = _course_heights(groups)
         found = []
-        for poses, key in zip(groups, keys, strict=True):
+        for key in keys:
             proposal = self._proposed[key]
             if proposal is not None:
-                found.append(replace(proposal, other_heights_px=_other_heights(poses, groups)))
+                found.append(replace(proposal, course_height_px=heights[proposal.stone_id]))
         return found
 
     def _groups(self, stones: Sequence[int]) -> list[tuple[PosedStone, ...]]:
@@ -141,11 +144,16 @@ class Attempt:
         return list(self._executor.map(work, items))
 
 
-def _other_heights(
-    poses: tuple[PosedStone, ...], groups: Sequence[tuple[PosedStone, ...]]
-) -> tuple[float, ...]:
-    """Return the heights of the candidates that are other stones (Eq. 8)."""
-    own = poses[0].stone.id
-    return tuple(
-        sum(p.height_px for p in group) / len(group) for group in groups if group[0].stone.id != own
-    )
+def _course_heights(groups: Sequence[tuple[PosedStone, ...]]) -> dict[int, float | None]:
+    """Return for each stone the mean height of the candidates that are other stones (Eq. 8)."""
+    heights = [(group[0].stone.id, fmean(posed.height_px for posed in group)) for group in groups]
+    total = math.fsum(height for _, height in heights)
+    own: dict[int, list[float]] = {}
+    for stone_id, height in heights:
+        own.setdefault(stone_id, []).append(height)
+    return {
+        stone_id: (total - math.fsum(mine)) / (len(heights) - len(mine))
+        if len(heights) > len(mine)
+        else None
+        for stone_id, mine in own.items()
+    }

@@ -24,15 +24,15 @@ class Proposal:
         Placement and wedges.
     trial_angle_deg : float
         Angle of the pose that was tried, before stabilisation.
-    other_heights_px : tuple of float
-        Heights of the other candidates of the step (Eq. 8).
+    course_height_px : float or None
+        Mean height of the other candidates of the step (Eq. 8); None when there are none.
     cost : float
         Weighted craft cost (:mod:`drystone.selection.scored`); 0 when no rule asks for it.
     """
 
     stabilised: Stabilised
     trial_angle_deg: float
-    other_heights_px: tuple[float, ...] = ()
+    course_height_px: float | None = None
     cost: float = 0.0
 
     @property

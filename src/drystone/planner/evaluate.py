@@ -1,6 +1,5 @@
 """Trial placement, stabilisation and indices of one candidate (Algorithm 1, lines 7-16)."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -132,7 +131,7 @@ class Evaluator:
                 landscape,
                 stabilised,
                 grown.resistance,
-                proposal.other_heights_px,
+                proposal.course_height_px,
                 self.stock.narrowest_px,
             )
         return Candidate(
@@ -141,10 +140,10 @@ class Evaluator:
 
     def compared(self, landscape: Landscape, proposal: Proposal, judged: Candidate) -> Candidate:
         """Return a candidate that was judged before, compared with other candidates (Eq. 8)."""
-        if proposal.other_heights_px == judged.proposal.other_heights_px:
+        if proposal.course_height_px == judged.proposal.course_height_px:
             return judged
         nhr, course_height = first_or_next(
-            landscape, proposal.stabilised.placement, proposal.other_heights_px
+            landscape, proposal.stabilised.placement, proposal.course_height_px
         )
         indices = replace(judged.indices, NHR=nhr)
         return replace(judged, proposal=proposal, indices=indices, course_height_px=course_height)
@@ -162,7 +161,7 @@ def action_indices(
     landscape: Landscape,
     stabilised: Stabilised,
     resistance: LateralResistance,
-    other_heights_px: Sequence[float],
+    course_height_px: float | None,
     narrowest_px: float,
 ) -> tuple[Indices, float | None]:
     """Return the indices of an action, and the mean height of Eq. 8 if it was used.
@@ -175,8 +174,8 @@ def action_indices(
         The action.
     resistance : LateralResistance
         Of the wall after it.
-    other_heights_px : sequence of float
-        Heights of the other candidates.
+    course_height_px : float or None
+        Mean height of the other candidates; None when there are none.
     narrowest_px : float
         Width of the narrowest stone of the set.
     """
@@ -185,7 +184,7 @@ def action_indices(
     col = landscape.view_col(placement.posed, placement.col)
     at = np.array([[placement.row, col]])
     box = view_box(posed, placement.row, col, landscape.height_px)
-    nhr, course_height = first_or_next(landscape, placement, other_heights_px)
+    nhr, course_height = first_or_next(landscape, placement, course_height_px)
     indices = Indices(
         SF=shape_factor(placement.posed),
         LFR=float(local_filling_ratio(landscape, posed, at)[0]),
@@ -200,14 +199,12 @@ def action_indices(
 
 
 def first_or_next(
-    landscape: Landscape, placement: Placement, other_heights_px: Sequence[float]
+    landscape: Landscape, placement: Placement, course_height_px: float | None
 ) -> tuple[float, float | None]:
-    """Return NHR, and the mean height of Eq. 8 when the stone is the first of a course."""
+    """Return NHR, and the mean height of Eq. 8 when the stone begins a course."""
     posed = landscape.view(placement.posed)
     col = landscape.view_col(placement.posed, placement.col)
     box = view_box(posed, placement.row, col, landscape.height_px)
     neighbour = left_neighbour(landscape, box)
-    nhr = neighbour_height_ratio(box, neighbour, other_heights_px)
-    if neighbour is not None or not other_heights_px:
-        return nhr, None
-    return nhr, sum(other_heights_px) / len(other_heights_px)
+    nhr = neighbour_height_ratio(box, neighbour, course_height_px)
+    return nhr, course_height_px if neighbour is None else None

@@ -145,11 +145,10 @@ class Planner:
         build = self._empty()
         for group in wall.groups:
             placement = group.placement
-            height = course_heights_px.get(placement.stone_id)
             proposal = Proposal(
                 Stabilised(placement, group.wedges),
                 placement.posed.angle_deg,
-                other_heights_px=() if height is None else (height,),
+                course_height_px=course_heights_px.get(placement.stone_id),
             )
             landscape = Landscape.of(build.wall, placement.side)
             action = evaluator.judge(build, landscape, proposal)

@@ -141,19 +141,17 @@ def check_indices(
     """
     step = stage.stone
     group = stage.group
-    others = () if step.course_height is None else (step.course_height / units_per_px,)
+    claimed_height = step.course_height
     indices, course_height = action_indices(
         Landscape.of(stage.before, step.side),
         Stabilised(group.placement, group.wedges),
         resistance,
-        others,
+        None if claimed_height is None else claimed_height / units_per_px,
         reference.stock.narrowest_px,
     )
     problems = []
-    if step.course_height is not None and course_height is None:
-        message = (
-            f"course_height is {step.course_height} by the plan, but the stone has a neighbour."
-        )
+    if claimed_height is not None and course_height is None:
+        message = f"course_height is {claimed_height} by the plan, but the stone has a neighbour."
         problems.append(Problem("E232", step.step, message))
     for name, found in indices.as_dict().items():
         claimed = step.indices.get(name)
