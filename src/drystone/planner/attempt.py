@@ -24,6 +24,9 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 Key = tuple[int, float, Side]
 
+TASKS = 16
+"""Into how many tasks the candidates of a step are divided for an executor."""
+
 
 class Attempt:
     """Attempts at the next action on one state of construction.
@@ -64,7 +67,7 @@ class Attempt:
         self._evaluator = Evaluator(settings, workshop.memory, workshop.stock, self._profile)
         sides: tuple[Side, ...] = ("left", "right") if settings.two_sided else ("left",)
         self._landscapes = {side: Landscape.of(build.wall, side) for side in sides}
-        self._rest = workshop.rest(build)
+        self._rest = workshop.rest(build) if settings.weighs_craft else None
         self._proposed: dict[Key, Proposal | None] = {}
         self._judged: dict[Key, Candidate] = {}
 
@@ -141,7 +144,11 @@ class Attempt:
         """Apply a function to all items, in their order, by the executor if there is one."""
         if self._executor is None:
             return [work(item) for item in items]
-        return list(self._executor.map(work, items))
+        # Handing over a candidate costs as much as a part of it: a few tasks, many candidates.
+        size = math.ceil(len(items) / TASKS)
+        chunks = [items[k : k + size] for k in range(0, len(items), size)] if items else []
+        done = self._executor.map(lambda chunk: [work(item) for item in chunk], chunks)
+        return [result for results in done for result in results]
 
 
 def _course_heights(groups: Sequence[tuple[PosedStone, ...]]) -> dict[int, float | None]:

@@ -39,13 +39,13 @@ class Trial:
         The stone as it may be turned for the trial; the placement rule picks one.
     landscape : Landscape
         What is built, seen from the side.
-    rest : Rest
-        What the stones that are left could fill.
+    rest : Rest or None
+        What the stones that are left could fill; None when no choice depends on it.
     """
 
     poses: tuple[PosedStone, ...]
     landscape: Landscape
-    rest: Rest
+    rest: Rest | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +150,8 @@ class Evaluator:
 
     def _proposal(self, trial: Trial, trial_angle_deg: float, stabilised: Stabilised) -> Proposal:
         cost = 0.0
-        if self.settings.selection_rule == "score" or self.settings.placement.compare:
+        if self.settings.weighs_craft:
+            assert trial.rest is not None  # noqa: S101 - the attempt gives it then
             with self.profile.part("indices"):
                 craft = action_craft(trial.landscape, stabilised, self.stock, trial.rest)
             cost = craft_cost(craft, self.settings.score)

@@ -125,6 +125,11 @@ class PlannerSettings:
         if not self.mu > 0:
             raise ValueError("mu must be positive")
 
+    @property
+    def weighs_craft(self) -> bool:
+        """True when a choice depends on craft costs (:mod:`drystone.selection.scored`)."""
+        return self.selection_rule == "score" or self.placement.compare
+
     def as_dict(self) -> dict[str, Any]:
         """Return nested dictionaries, as TOML and JSON write them."""
         return dataclasses.asdict(self)
