@@ -6,15 +6,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from drystone.kernels import boundary as module
 from drystone.kernels.boundary import (
     EMPTY,
+    boundary_numpy,
+    boundary_of,
     crossing_corners,
-    split_at_corners,
     touching_edges,
     trace_chains,
 )
+from drystone.kernels.raster import Mask
+from tests.naive import contacts as naive
 from tests.naive.statics import diagonal_touches, pixel_edges
-from tests.strategies import repeatable
+from tests.strategies import label_images, repeatable
 
 pictures = arrays(
     np.uint32, st.tuples(st.integers(1, 9), st.integers(1, 9)), elements=st.integers(0, 3)
@@ -106,16 +110,60 @@ def test_pixels_that_cross_give_chains_around_each_pixel():
     ]
 
 
-@pytest.mark.parametrize(
-    ("points", "cuts"),
-    [
-        ([[0, 0], [9, 0]], [0, 1]),
-        ([[0, 0], [5, 0], [9, 0]], [0, 2]),
-        ([[0, 0], [5, 0], [5, 5]], [0, 1, 2]),
-        ([[0, 0], [5, 0], [5, 1]], [0, 2]),
-        ([[0, 0], [5, 0], [5, 5], [10, 5]], [0, 1, 2, 3]),
-        ([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], [0, 2, 4]),
-    ],
+compiled_too = pytest.mark.skipif(module._fast is None, reason="kernels are not compiled here")
+
+
+def same_bytes(one, other):
+    """Of dataclasses of arrays: the same types, shapes and bits."""
+    pairs = zip(vars(one).values(), vars(other).values(), strict=True)
+    return all(a.dtype == b.dtype and a.shape == b.shape and (a == b).all() for a, b in pairs)
+
+
+def fresh_ids(cells, ids: list[int] | None) -> Mask | None:
+    return None if ids is None else np.isin(cells, ids)
+
+
+@compiled_too
+@given(
+    labels=pictures | label_images(),
+    ids=st.none() | st.lists(st.integers(1, 4), max_size=3),
+    margin=st.booleans(),
 )
-def test_split_at_corners(points, cuts):
-    assert split_at_corners(np.array(points, float), 2**0.5) == cuts
+@repeatable(300)
+def test_the_compiled_boundary_is_the_same(labels, ids, margin):
+    cells = cells_of(labels)
+    if not margin:
+        cells = np.ascontiguousarray(cells[1:-1, 1:-1])
+    fresh = fresh_ids(cells, ids)
+    assert same_bytes(boundary_of(cells, fresh), boundary_numpy(cells, fresh))
+
+
+@compiled_too
+@pytest.mark.parametrize("shape", [(0, 0), (0, 3), (3, 0), (1, 1), (1, 4), (4, 1)])
+def test_the_compiled_boundary_of_hardly_anything_is_the_same(shape):
+    cells = np.arange(shape[0] * shape[1]).reshape(shape)
+    assert same_bytes(boundary_of(cells), boundary_numpy(cells))
+
+
+@given(labels=pictures | label_images())
+@repeatable(100)
+def test_chains_equal_their_naive_twin(labels):
+    boundary = boundary_of(cells_of(labels))
+    found = {}
+    for pair, begin, end in zip(
+        boundary.labels.tolist(), boundary.begins[:-1], boundary.begins[1:], strict=True
+    ):
+        row, col = boundary.nodes[begin:end].T
+        nodes = zip((col - 1).tolist(), (labels.shape[0] + 1 - row).tolist(), strict=True)
+        found.setdefault(tuple(pair), []).append(list(nodes))
+    assert list(found) == sorted(found)
+    assert found == {
+        pair: naive.chains(edges) for pair, edges in naive.directed_edges(labels).items()
+    }
+
+
+def test_labels_of_64_bits_survive():
+    cells = np.array([[2**62], [2**40 + 1], [2**40]])
+    assert boundary_of(cells).labels.tolist() == [[2**40 + 1, 2**40], [2**62, 2**40 + 1]]
+    crossing = np.array([[EMPTY, 2**62], [2**40, EMPTY]])
+    assert boundary_of(crossing).corners.tolist() == [[2**62, 2**40, 1, 1]]

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
+from scipy.sparse import csc_array
 
 from drystone.statics.model import GROUND, RigidBlockModel
 
@@ -96,3 +97,55 @@ def limit_alphas(model: RigidBlockModel) -> tuple[float, float] | None:
     assert left is not None
     assert right is not None
     return left, right
+
+
+def cone_program(model: RigidBlockModel) -> tuple[csc_array, NDArray[np.float64]]:
+    """Matrix and right-hand side of the tilting table, entry by entry.
+
+    Column 0 is alpha, then come the two edges of the friction cone of every contact point; mean
+    weight and mean area of the blocks are 1.
+    """
+    weight = sum(block.weight for block in model.blocks) / len(model.blocks)
+    length = (sum(block.area for block in model.blocks) / len(model.blocks)) ** 0.5
+    place = {block.id: 3 * i for i, block in enumerate(model.blocks)}
+    centroid = {block.id: block.centroid for block in model.blocks}
+    dead = np.zeros(3 * len(model.blocks))
+    entries: list[tuple[int, int, float]] = []
+    for block in model.blocks:
+        entries.append((place[block.id], 0, block.weight / weight))
+        dead[place[block.id] + 1] = block.weight / weight
+    column = 0
+    for interface in model.interfaces:
+        mu = model.friction(interface)
+        nx, ny = interface.normal
+        for px, py in interface.points.tolist():
+            for along in (mu, -mu):
+                column += 1
+                for block_id, sign in ((interface.block, 1), (interface.other, -1)):
+                    if block_id == GROUND:
+                        continue
+                    fx, fy = sign * (nx + along * ny), sign * (ny - along * nx)
+                    cx, cy = centroid[block_id]
+                    moment = ((px - cx) * fy - (py - cy) * fx) / length
+                    at = place[block_id]
+                    entries += [(at, column, fx), (at + 1, column, fy), (at + 2, column, moment)]
+    rows, columns, values = zip(*entries, strict=True)
+    return csc_array((values, (rows, columns)), shape=(dead.size, column + 1)), dead
+
+
+def alphas_by_linprog(model: RigidBlockModel) -> tuple[float, float] | None:
+    """alpha to the left and right, each from the start; None when the blocks do not stand."""
+    matrix, dead = cone_program(model)
+    costs = np.zeros(matrix.shape[1])
+    bounds = [(None, None)] + [(0, None)] * (matrix.shape[1] - 1)
+    tight = {"primal_feasibility_tolerance": 1e-9, "dual_feasibility_tolerance": 1e-9}
+    ends = []
+    for sign in (-1.0, 1.0):
+        costs[0] = -sign
+        answer = linprog(costs, A_eq=matrix, b_eq=dead, bounds=bounds, options=tight)
+        assert answer.status in (0, 2), answer.message
+        if answer.status == 2:
+            return None
+        ends.append(-answer.fun)
+    # No load at all is the load 0.
+    return (ends[0], ends[1]) if min(ends) >= -1e-9 else None

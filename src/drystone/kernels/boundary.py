@@ -4,12 +4,12 @@ Nodes are pixel corners (row, col) of the array handed in: node (r, c) is the to
 cell (r, c).  Everything is directed so that the larger of the two labels lies to the left.
 """
 
-from collections import defaultdict
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.kernels.backend import compiled
 from drystone.kernels.raster import Mask
 
 Cells = NDArray[np.int64]
@@ -18,8 +18,64 @@ Nodes = NDArray[np.int64]
 EMPTY = -1
 """Label of nothing; labels that bound something are >= 0."""
 
-_STEP = np.array([[0, 1], [-1, 0], [0, -1], [1, 0]])
-"""(row, col) of a step to the right, up, to the left, down."""
+_fast = compiled("boundary")
+
+
+@dataclass(frozen=True, eq=False)
+class Boundary:
+    """Where the regions of an array of cells touch.
+
+    Parameters
+    ----------
+    labels : (n, 2) int64 array
+        The two labels of each chain of pixel edges; the first is the larger and lies to the left.
+    begins : (n + 1,) int64 array
+        Where the nodes of each chain begin; in the end the number of all nodes.
+    nodes : (m, 2) int64 array
+        Row and col of the nodes of all chains, one chain after the other.
+    corners : (k, 4) int64 array
+        From :func:`crossing_corners`.
+    """
+
+    labels: NDArray[np.int64]
+    begins: NDArray[np.int64]
+    nodes: Nodes
+    corners: NDArray[np.int64]
+
+
+def boundary_of(cells: Cells, fresh: Mask | None = None) -> Boundary:
+    """Find where the regions of an array of cells touch: chains and crossing corners.
+
+    Parameters
+    ----------
+    cells : (h, w) int64 array
+        Labels; EMPTY where nothing is.  C-contiguous.
+    fresh : (h, w) bool array, optional
+        At least one side must be in here.  Of a label all cells are, or none.
+
+    Examples
+    --------
+    >>> boundary = boundary_of(np.array([[5, 5], [3, 3]]))
+    >>> boundary.labels.tolist(), boundary.nodes.tolist()
+    ([[5, 3]], [[1, 0], [1, 1], [1, 2]])
+    """
+    if _fast is None:
+        return boundary_numpy(cells, fresh)
+    return Boundary(*_fast.boundary(cells, fresh))
+
+
+def boundary_numpy(cells: Cells, fresh: Mask | None = None) -> Boundary:
+    """Find chains and crossing corners without compiled code."""
+    chains = trace_chains(touching_edges(cells, fresh))
+    counts = [0, *(len(chain.rows) for chain in chains)]
+    rows = [row for chain in chains for row in chain.rows]
+    cols = [col for chain in chains for col in chain.cols]
+    return Boundary(
+        np.array([(chain.high, chain.low) for chain in chains], np.int64).reshape(-1, 2),
+        np.cumsum(counts, dtype=np.int64),
+        np.array([rows, cols], np.int64).T.copy(),
+        crossing_corners(cells, fresh),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,24 +86,30 @@ class Chain:
     ----------
     high, low : int
         The two labels; `high` is the larger and lies to the left of the chain.
-    nodes : (n + 1, 2) int array
-        Pixel corners (row, col) along the chain; first and last are equal in a closed one.
+    rows, cols : list of int
+        Pixel corners along the chain; first and last are equal in a closed one.
     """
 
     high: int
     low: int
-    nodes: Nodes
+    rows: list[int]
+    cols: list[int]
+
+    @property
+    def nodes(self) -> Nodes:
+        """Pixel corners (row, col), one a row."""
+        return np.column_stack((self.rows, self.cols))
 
 
-def touching_edges(cells: Cells, fresh: Mask) -> NDArray[np.int64]:
+def touching_edges(cells: Cells, fresh: Mask | None = None) -> NDArray[np.int64]:
     """Find the pixel edges between two labels of which one is fresh.
 
     Parameters
     ----------
     cells : (h, w) int array
         Labels; EMPTY where nothing is.
-    fresh : (h, w) bool array
-        Only edges with at least one of their two cells in here are returned.
+    fresh : (h, w) bool array, optional
+        Only edges with at least one of their two cells in here are returned; all without it.
 
     Returns
     -------
@@ -61,23 +123,31 @@ def touching_edges(cells: Cells, fresh: Mask) -> NDArray[np.int64]:
     >>> touching_edges(cells, cells > 0).tolist()
     [[5, 3, 1, 0, 0]]
     """
-    parts = []
-    # Horizontal edges lie between a cell and the one below, vertical ones beside each other.
-    for first, second, new, horizontal in (
-        (cells[:-1], cells[1:], fresh[:-1] | fresh[1:], True),
-        (cells[:, :-1], cells[:, 1:], fresh[:, :-1] | fresh[:, 1:], False),
-    ):
-        row, col = np.nonzero(new & (first != second) & (np.minimum(first, second) > EMPTY))
-        a, b = first[row, col], second[row, col]
-        forward = a > b
-        if horizontal:  # to the right along the top of `second` when it is the lower label
-            start_row, start_col = row + 1, np.where(forward, col, col + 1)
-            heading = np.where(forward, 0, 2)
-        else:
-            start_row, start_col = np.where(forward, row + 1, row), col + 1
-            heading = np.where(forward, 1, 3)
-        parts.append((np.maximum(a, b), np.minimum(a, b), start_row, start_col, heading))
-    return np.concatenate([np.column_stack(part) for part in parts])
+    # Horizontal edges lie between a cell and the one below: they run to the right along the top
+    # of the lower cell when that has the lower label.  Vertical ones lie beside each other.
+    a, b, row, col = _unlike(cells, fresh, np.s_[:-1], np.s_[1:])
+    back = a < b
+    across = np.maximum(a, b), np.minimum(a, b), row + 1, col + back, 2 * back
+    a, b, row, col = _unlike(cells, fresh, np.s_[:, :-1], np.s_[:, 1:])
+    up = a > b
+    upright = np.maximum(a, b), np.minimum(a, b), row + up, col + 1, 3 - 2 * up
+    return np.concatenate([np.column_stack(across), np.column_stack(upright)])
+
+
+Part = slice | tuple[slice, slice]
+
+
+def _unlike(
+    cells: Cells, fresh: Mask | None, one: Part, other: Part
+) -> tuple[Cells, Cells, NDArray[np.intp], NDArray[np.intp]]:
+    """Return the labels of neighbours that differ, neither of them empty, and where they are."""
+    first, second = cells[one], cells[other]
+    unlike = first != second
+    unlike &= (first | second) > EMPTY  # all bits of EMPTY are set
+    if fresh is not None:
+        unlike &= fresh[one] | fresh[other]
+    row, col = np.nonzero(unlike)
+    return first[row, col], second[row, col], row, col
 
 
 def trace_chains(edges: NDArray[np.int64]) -> list[Chain]:
@@ -97,29 +167,58 @@ def trace_chains(edges: NDArray[np.int64]) -> list[Chain]:
     list of Chain
         Sorted by labels, then by start: from the bottom up and from left to right.
     """
-    starts: dict[tuple[int, int, int, int], dict[int, int]] = defaultdict(dict)
-    rows: list[list[int]] = edges.tolist()
-    for index, (high, low, row, col, heading) in enumerate(rows):
-        starts[high, low, row, col][heading] = index
-    following: list[int] = []
-    ends = (edges[:, 2:4] + _STEP[edges[:, 4]]).tolist() if len(edges) else []
-    for (high, low, _, _, heading), (row, col) in zip(rows, ends, strict=True):
-        leaving = starts.get((high, low, row, col), {})
-        left = leaving.get((heading + 1) % 4)
-        following.append(next(iter(leaving.values()), -1) if left is None else left)
+    if not len(edges):
+        return []
+    # Nodes are numbered row by row, with one more than the last column of an edge's end.
+    stride = int(edges[:, 3].max()) + 2
+    start = edges[:, 2] * stride + edges[:, 3]
+    end = start + np.array([1, -stride, -1, stride])[edges[:, 4]]
+    high, low, rows, cols, _ = edges.T.tolist()
+    following = _following(high, low, start, end, edges[:, 4])
     chains = []
     for sequence in _sequences(following):
         members = sequence
+        last = end[sequence[-1]]
         if following[sequence[-1]] == sequence[0]:
             # A closed chain may begin anywhere: leftmost, then lowest.
-            place = [(rows[i][3], -rows[i][2]) for i in sequence]
-            first = place.index(min(place))
+            first = min(range(len(sequence)), key=lambda k: (cols[sequence[k]], -rows[sequence[k]]))
             members = sequence[first:] + sequence[:first]
-        high, low = rows[members[0]][:2]
-        nodes = [*(rows[i][2:4] for i in members), ends[members[-1]]]
-        chains.append(Chain(high, low, np.array(nodes)))
-    chains.sort(key=lambda chain: (chain.high, chain.low, -chain.nodes[0, 0], chain.nodes[0, 1]))
+            last = start[members[0]]
+        row, col = divmod(int(last), stride)
+        first = members[0]
+        chains.append(
+            Chain(
+                high[first],
+                low[first],
+                [*(rows[i] for i in members), row],
+                [*(cols[i] for i in members), col],
+            )
+        )
+    chains.sort(key=lambda chain: (chain.high, chain.low, -chain.rows[0], chain.cols[0]))
     return chains
+
+
+def _following(
+    high: list[int],
+    low: list[int],
+    start: NDArray[np.int64],
+    end: NDArray[np.int64],
+    heading: NDArray[np.int64],
+) -> list[int]:
+    """Return which edge of the same two labels goes on where each edge ends, -1 for none."""
+    leaving = {code: edge for edge, code in enumerate((4 * start + heading).tolist())}
+    # To the left before straight on, and that before to the right.
+    turns = (4 * end[:, None] + (heading[:, None] + np.array([1, 0, 3])) % 4).tolist()
+    following = []
+    for a, b, codes in zip(high, low, turns, strict=True):
+        for code in codes:
+            edge = leaving.get(code, -1)
+            if edge >= 0 and high[edge] == a and low[edge] == b:
+                following.append(edge)
+                break
+        else:
+            following.append(-1)
+    return following
 
 
 def _sequences(following: list[int]) -> list[list[int]]:
@@ -141,72 +240,33 @@ def _sequences(following: list[int]) -> list[list[int]]:
     return sequences
 
 
-def split_at_corners(points: NDArray[np.float64], tolerance: float) -> list[int]:
-    """Cut a polyline at its corners (Douglas and Peucker 1973).
-
-    Parameters
-    ----------
-    points : (n, 2) float array
-        At least two points; a closed line repeats the first one at the end.
-    tolerance : float
-        A piece is straight when no point is further from its chord, same unit as `points`.
-
-    Returns
-    -------
-    list of int
-        Indices of the points where pieces meet, with 0 and n - 1.
-
-    Examples
-    --------
-    >>> split_at_corners(np.array([[0.0, 0], [0, 1], [0, 5], [4, 5]]), 1.5)
-    [0, 2, 3]
-    """
-    cuts = {0, len(points) - 1}
-    pieces = [(0, len(points) - 1)]
-    while pieces:
-        first, last = pieces.pop()
-        if last - first < 2:
-            continue
-        chord = points[last] - points[first]
-        inner = points[first + 1 : last] - points[first]
-        length = float(np.hypot(chord[0], chord[1]))
-        if length > 0:
-            distance = np.abs(chord[0] * inner[:, 1] - chord[1] * inner[:, 0]) / length
-        else:  # a closed piece has no chord; it is bent however small it is
-            distance = np.hypot(inner[:, 0], inner[:, 1]) + tolerance
-        furthest = int(distance.argmax())
-        if distance[furthest] > tolerance:
-            middle = first + 1 + furthest
-            cuts.add(middle)
-            pieces += [(first, middle), (middle, last)]
-    return sorted(cuts)
-
-
-def crossing_corners(cells: Cells, fresh: Mask) -> NDArray[np.int64]:
+def crossing_corners(cells: Cells, fresh: Mask | None = None) -> NDArray[np.int64]:
     """Find where two labels touch only diagonally, across two empty cells.
 
     Parameters
     ----------
     cells : (h, w) int array
         Labels; EMPTY where nothing is.
-    fresh : (h, w) bool array
+    fresh : (h, w) bool array, optional
         At least one of the two must be in here.
 
     Returns
     -------
     (n, 4) int array
         Label above, label below, row and col of the node; from the top down.
+
+    Examples
+    --------
+    >>> crossing_corners(np.array([[EMPTY, 7], [4, EMPTY]])).tolist()
+    [[7, 4, 1, 1]]
     """
-    empty = cells == EMPTY
-    found = []
-    for above, below, beside, beneath in (
-        (np.s_[:-1, :-1], np.s_[1:, 1:], np.s_[:-1, 1:], np.s_[1:, :-1]),
-        (np.s_[:-1, 1:], np.s_[1:, :-1], np.s_[:-1, :-1], np.s_[1:, 1:]),
-    ):
-        across = empty[beside] & empty[beneath] & ~empty[above] & ~empty[below]
-        across &= (fresh[above] | fresh[below]) & (cells[above] != cells[below])
-        row, col = np.nonzero(across)
-        ids = cells[above][row, col], cells[below][row, col]
-        found.append(np.column_stack((*ids, row + 1, col + 1)))
-    corners = np.concatenate(found)
-    return corners[np.lexsort((corners[:, 3], corners[:, 2]))]
+    full = cells != EMPTY
+    one = full[:-1, :-1]
+    across = (one == full[1:, 1:]) & (full[:-1, 1:] == full[1:, :-1]) & (one != full[:-1, 1:])
+    row, col = np.nonzero(across)
+    to_right = (~full[row, col]).astype(np.int64)  # whether the upper label is on the right
+    above, below = (row, col + to_right), (row + 1, col + 1 - to_right)
+    found = cells[above] != cells[below]
+    if fresh is not None:
+        found &= fresh[above] | fresh[below]
+    return np.asarray(np.column_stack((cells[above], cells[below], row + 1, col + 1))[found])

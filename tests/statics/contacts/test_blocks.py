@@ -9,6 +9,7 @@ from drystone.model.placement import Placement, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.statics.contacts.blocks import model_from_labels, model_with
+from drystone.statics.contacts.interfaces import PointContacts, find_interfaces
 from drystone.statics.model import GROUND, Block, RigidBlockModel
 from tests.strategies import repeatable
 
@@ -113,3 +114,43 @@ def test_stone_after_stone_gives_the_model_of_the_whole(labels, order, with_wedg
     for block, other in zip(blocks, told(expected)[0], strict=True):
         assert (block.id, block.area) == (other.id, other.area)
         assert block.centroid == pytest.approx(other.centroid, abs=1e-12)
+
+
+def told_exactly(model):
+    return told(model), model.added.closed
+
+
+@given(labels=pictures, first=st.integers(1, 4))
+@repeatable(100)
+def test_points_known_before_change_nothing(labels, first):
+    labels = labels.copy()
+    labels[-1, 0], labels[-1, -1] = 1, first
+    wall = np.where(labels == first, 0, labels)
+    model, new = model_from_labels(labels).model, placed(labels, first)
+    model = RigidBlockModel(model.blocks, find_interfaces(wall), model.mu)
+    anew = told_exactly(model_with(model, wall, new))
+    points = PointContacts.of(model.interfaces)
+    assert told_exactly(model_with(model, wall, new, points=points)) == anew
+    others = PointContacts.of(find_interfaces(labels))
+    assert told_exactly(model_with(model, wall, new, points=others)) == anew
+
+
+def test_points_known_before_are_believed():
+    labels = np.kron([[1, 0], [0, 2]], np.ones((4, 4))).astype(np.uint32)
+    model = model_from_labels(labels).model
+    stone = PosedStone(Stone(3, np.ones((4, 4), bool)), 0.0, 1.0, np.ones((4, 4), bool), (2.0, 2.0))
+    for points, closed in (
+        (None, (1,)),
+        (PointContacts.of(model.interfaces), (1,)),
+        (PointContacts(model.interfaces, ()), ()),
+    ):
+        grown = model_with(model, labels, Placement(stone, 4, 0), points=points)
+        assert grown.added.closed == closed
+
+
+def test_a_placement_knows_area_and_centroid_of_its_pixels():
+    labels = np.zeros((30, 40), np.uint32)
+    mask = np.array([[1, 1, 0], [1, 1, 1]], bool)
+    posed = PosedStone(Stone(5, mask), 0.0, 1.0, mask, (0.0, 0.0))
+    model = model_with(RigidBlockModel((), ()), labels, Placement(posed, 20, 30))
+    assert model.blocks == (Block(5, 5.0, (30 + 6.5 / 5, 8 + 4.5 / 5)),)

@@ -6,15 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from drystone.statics.contacts.interfaces import (
-    CORNER_TOLERANCE_PX,
-    closed_in,
-    find_interfaces,
-    find_interfaces_of,
-)
+from drystone.io.read_stones import read_stones
+from drystone.kernels.patches import painted_patch
+from drystone.planner.plan_wall import plan_wall
+from drystone.planner.settings import method_settings
+from drystone.statics.contacts.interfaces import PointContacts, find_interfaces, interfaces_in
 from drystone.statics.model import GROUND
+from tests.naive import contacts as naive
 from tests.naive.statics import diagonal_touches, pixel_edges
-from tests.strategies import repeatable
+from tests.statics.walls import coursed, irregular
+from tests.strategies import label_images, repeatable
 
 
 def between(labels, block, other):
@@ -113,7 +114,7 @@ def test_a_tilted_joint_is_one_run_with_a_bounded_error_of_its_normal(angle_deg,
     # Half a pixel up at one end and down at the other, and some for runs of a few steps.
     assert error * run.length < 1.6
     away = run.points - size / 2
-    assert np.abs(away @ normal - offset).max() <= CORNER_TOLERANCE_PX / 2 + 1e-9
+    assert np.abs(away @ normal - offset).max() <= 0.5**0.5 + 1e-9
 
 
 def test_separate_patches_of_one_pair_stay_separate():
@@ -195,40 +196,104 @@ def test_normals_are_unit_vectors_and_order_is_fixed(labels):
     assert [told(i) for i in found] == [told(i) for i in find_interfaces(labels.copy())]
 
 
-def left_open(interfaces, labels, window):
-    closed = closed_in(interfaces, labels, window)
-    return (i for place, i in enumerate(interfaces) if place not in closed)
+def assert_equals_naive(labels):
+    """Ids and points exactly; normals to rounding."""
+    found, expected = find_interfaces(labels), naive.interfaces(labels)
+    assert [told(i)[:3] for i in found] == [i[:3] for i in expected]
+    for interface, twin in zip(found, expected, strict=True):
+        assert interface.normal == pytest.approx(twin[3], abs=1e-12)
 
 
-@given(labels=pictures, order=st.permutations(range(1, 6)), together=st.integers(1, 3))
+@given(labels=pictures | label_images())
+@repeatable(200)
+def test_interfaces_equal_their_naive_twin(labels):
+    assert_equals_naive(labels)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_interfaces_of_tilted_joints_equal_their_naive_twin(seed):
+    assert_equals_naive(irregular(seed, 20, 90, 60))
+    assert_equals_naive(coursed(seed, 4, 120, gap_px=seed))
+
+
+def test_interfaces_of_a_planned_wall_equal_their_naive_twin(data_dir):
+    stones = read_stones(data_dir / "almeida" / "IR.png")
+    settings = method_settings("paper").updated({"rework": {"rounds": 0}})
+    labels = plan_wall(stones, 560, 160, scale=0.25, seed=1, settings=settings).wall.labels
+    assert len(np.unique(labels)) > 15
+    assert_equals_naive(labels)
+
+
+def added(built, found, labels, group):
+    """Interfaces after a group of blocks of `labels` was built, and whether they closed any in."""
+    parts = []
+    for block in group:
+        rows, cols = np.nonzero(labels == block)
+        top, left = int(rows.min()), int(cols.min())
+        mask = labels[top : rows.max() + 1, left : cols.max() + 1] == block
+        parts.append((block, top, left, mask))
+    patch, _ = painted_patch(built, parts)
+    closed = PointContacts.of(found).closed_in(patch)
+    assert list(closed) == sorted(closed)
+    kept = [interface for place, interface in enumerate(found) if place not in closed]
+    built[np.isin(labels, group)] = labels[np.isin(labels, group)]
+    return (*kept, *interfaces_in(patch))
+
+
+@given(
+    labels=pictures | label_images(),
+    order=st.permutations(range(1, 6)),
+    together=st.integers(1, 3),
+)
 @repeatable(150)
 def test_block_after_block_gives_the_interfaces_of_the_whole(labels, order, together):
-    """Blocks come in groups, as a stone and its wedges do, each with its own window."""
+    """Blocks come in groups, as a stone and its wedges do."""
     built, found = np.zeros_like(labels), ()
-    present = [block for block in order if (labels == block).any()]
+    there = np.unique(labels[labels > 0]).tolist()
+    present = [there[i - 1] for i in order if i <= len(there)] + there[5:]
     for first in range(0, len(present), together):
-        group = present[first : first + together]
-        new = np.isin(labels, group)
-        built[new] = labels[new]
-        rows, cols = np.flatnonzero(new.any(axis=1)), np.flatnonzero(new.any(axis=0))
-        window = (slice(rows[0], rows[-1] + 1), slice(cols[0], cols[-1] + 1))
-        found = (
-            *left_open(found, built, window),
-            *find_interfaces_of(built, group, window),
-        )
+        found = added(built, found, labels, present[first : first + together])
+    assert (built == labels).all()
     assert sorted(map(told, found)) == sorted(map(told, find_interfaces(labels)))
 
 
 @pytest.mark.parametrize("order", [(1, 4, 2, 3), (1, 4, 3, 2), (2, 3, 4, 1), (2, 3, 1, 4)])
 def test_a_contact_at_a_point_disappears_when_the_pixels_beside_it_fill(order):
     labels = np.kron([[1, 2], [3, 4]], np.ones((5, 5))).astype(np.uint32)
-    windows = {1: np.s_[0:5, 0:5], 2: np.s_[0:5, 5:10], 3: np.s_[5:10, 0:5], 4: np.s_[5:10, 5:10]}
     built, found, points = np.zeros_like(labels), (), []
     for block in order:
-        built[windows[block]] = block
-        found = (
-            *left_open(found, built, windows[block]),
-            *find_interfaces_of(built, [block], windows[block]),
-        )
+        found = added(built, found, labels, [block])
         points.append(sum(len(i.points) == 1 for i in found))
     assert points == [0, 1, 0, 0]
+
+
+@pytest.mark.parametrize(
+    ("row", "col", "closes"),
+    [(4, 6, True), (6, 5, True), (3, 6, False), (7, 5, False), (4, 7, False), (6, 4, False)],
+)
+def test_only_what_fills_a_pixel_beside_a_contact_at_a_point_closes_it_in(row, col, closes):
+    labels = np.kron([[1, 0], [0, 2]], np.ones((6, 6))).astype(np.uint32)
+    found = find_interfaces(labels)
+    patch, _ = painted_patch(labels, [(9, row, col, np.ones((2, 1), bool))])
+    closed = PointContacts.of(found).closed_in(patch)
+    assert [found[k].points.tolist() for k in closed] == [[[6.0, 6.0]]] * closes
+
+
+@given(seed=st.integers(0, 2**32), row=st.integers(0, 21), col=st.integers(0, 17))
+@repeatable(100)
+def test_the_contacts_that_are_closed_in_are_those_that_are_there_no_more(seed, row, col):
+    labels = np.random.default_rng(seed).choice([0, 0, 0, 1, 2, 3, 4], (24, 20))
+    mask = labels[row : row + 3, col : col + 5] == 0
+    grown = labels.copy()
+    grown[row : row + 3, col : col + 5][mask] = 9
+    patch, _ = painted_patch(labels, [(9, row, col, mask)])
+    found = find_interfaces(labels)
+    after = [told(interface) for interface in find_interfaces(grown) if len(interface.points) == 1]
+    places = {(*ids, points[0]) for *ids, points, _ in after}
+    gone = [
+        position
+        for position, interface in enumerate(found)
+        if len(interface.points) == 1
+        and (interface.block, interface.other, tuple(interface.points[0])) not in places
+    ]
+    assert list(PointContacts.of(found).closed_in(patch)) == gone

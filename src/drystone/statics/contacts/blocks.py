@@ -6,14 +6,11 @@ from math import isfinite
 import numpy as np
 
 from drystone.errors import InputError, LabelImageError, Notice
+from drystone.kernels.label_runs import label_runs
+from drystone.kernels.patches import Part, painted_patch
 from drystone.model.placement import Placement, Wedge
 from drystone.model.wall import Labels
-from drystone.statics.contacts.interfaces import (
-    Window,
-    closed_in,
-    find_interfaces,
-    find_interfaces_of,
-)
+from drystone.statics.contacts.interfaces import PointContacts, find_interfaces, interfaces_in
 from drystone.statics.contacts.pieces import notice_of_pieces
 from drystone.statics.model import Block, RigidBlockModel
 
@@ -88,9 +85,15 @@ def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
 
 
 def model_with(
-    model: RigidBlockModel, labels: Labels, placement: Placement, wedges: tuple[Wedge, ...] = ()
+    model: RigidBlockModel,
+    labels: Labels,
+    placement: Placement,
+    wedges: tuple[Wedge, ...] = (),
+    points: PointContacts | None = None,
 ) -> RigidBlockModel:
     """Return the model of a wall with one more stone and its wedges.
+
+    Only what is around them is looked at, however large the wall is.
 
     Parameters
     ----------
@@ -102,6 +105,8 @@ def model_with(
         The stone.
     wedges : tuple of Wedge
         The wedges under it.
+    points : PointContacts, optional
+        Of `model`, for whoever asks for many candidates; otherwise they are looked for here.
 
     Returns
     -------
@@ -109,15 +114,16 @@ def model_with(
         With the blocks and interfaces of :func:`model_from_labels`, in the order of
         construction.
     """
-    grown = labels.copy()
-    parts = [(placement.stone_id, placement.window, placement.posed.mask)]
-    parts += [(wedge.id, wedge.window, wedge.mask) for wedge in wedges]
-    for block_id, window, mask in parts:
-        grown[window][mask] = block_id
-    around = _hull([window for _, window, _ in parts])
-    blocks = tuple(_block(grown, block_id, window) for block_id, window, _ in parts)
-    found = find_interfaces_of(grown, [block_id for block_id, _, _ in parts], around)
-    return model.with_added(blocks, found, closed_in(model.interfaces, grown, around))
+    parts = [(placement.stone_id, placement.row, placement.col, placement.posed.mask)]
+    parts += [(wedge.id, wedge.row, wedge.col, wedge.mask) for wedge in wedges]
+    patch, sums = painted_patch(labels, parts)
+    blocks = tuple(
+        _block(part, sums_of_part, labels.shape[0])
+        for part, sums_of_part in zip(parts, sums, strict=True)
+    )
+    if points is None or points.interfaces is not model.interfaces:
+        points = PointContacts.of(model.interfaces)
+    return model.with_added(blocks, interfaces_in(patch), points.closed_in(patch))
 
 
 def check_mu(mu: float) -> None:
@@ -141,30 +147,23 @@ def _check_labels(labels: Labels) -> None:
         )
 
 
-def _block(labels: Labels, block_id: int, window: Window) -> Block:
-    pixels = labels[window] == block_id
-    area = int(np.count_nonzero(pixels))
-    height, width = pixels.shape
-    x = float(pixels.sum(axis=0) @ (np.arange(width) + 0.5)) / area
-    y = float(pixels.sum(axis=1) @ (height - np.arange(height) - 0.5)) / area
-    bottom = labels.shape[0] - window[0].stop
-    return Block(block_id, float(area), (window[1].start + x, bottom + y))
-
-
-def _hull(windows: list[Window]) -> Window:
-    """Return the smallest window around all windows."""
-    rows, cols = zip(*windows, strict=True)
-    return (
-        slice(min(r.start for r in rows), max(r.stop for r in rows)),
-        slice(min(c.start for c in cols), max(c.stop for c in cols)),
-    )
+def _block(part: Part, sums: tuple[int, int, int], height_px: int) -> Block:
+    """Return the block of a part, from its area and the sums of its columns and rows."""
+    block_id, row, col, mask = part
+    area, cols, rows = sums
+    x = (cols + 0.5 * area) / area
+    y = (area * mask.shape[0] - rows - 0.5 * area) / area
+    bottom = height_px - row - mask.shape[0]
+    return Block(block_id, float(area), (col + x, bottom + y))
 
 
 def _all_blocks(labels: Labels) -> tuple[Block, ...]:
-    rows, cols = np.nonzero(labels)
-    ids, place = np.unique(labels[rows, cols], return_inverse=True)
-    area = np.bincount(place, minlength=len(ids))
-    x = np.bincount(place, cols + 0.5, len(ids)) / np.maximum(area, 1)
-    y = np.bincount(place, labels.shape[0] - rows - 0.5, len(ids)) / np.maximum(area, 1)
+    runs = label_runs(labels)
+    ids, place = np.unique(runs.labels, return_inverse=True)
+    # All sums are multiples of a half, exact in floats in any order.
+    area = np.bincount(place, runs.lengths, len(ids))
+    x = np.bincount(place, runs.lengths * (runs.begins + runs.ends) / 2.0, len(ids)) / area
+    up = labels.shape[0] - runs.rows - 0.5
+    y = np.bincount(place, runs.lengths * up, len(ids)) / area
     columns = zip(ids.tolist(), area.tolist(), x.tolist(), y.tolist(), strict=True)
-    return tuple(Block(i, float(a), (cx, cy)) for i, a, cx, cy in columns)
+    return tuple(Block(i, a, (cx, cy)) for i, a, cx, cy in columns)

@@ -1,9 +1,9 @@
 """Ids of a label image whose pixels lie apart."""
 
 import numpy as np
-from scipy import ndimage
 
 from drystone.errors import Notice
+from drystone.kernels.label_runs import label_runs, runs_in_pieces
 from drystone.model.wall import Labels
 
 NAMED = 5
@@ -29,17 +29,16 @@ def pieces_apart(labels: Labels) -> tuple[tuple[int, int], ...]:
     >>> pieces_apart(np.array([[7, 7, 0, 7], [7, 0, 0, 0], [0, 7, 0, 2]]))
     ((7, 1),)
     """
-    ids, place = np.unique(labels, return_inverse=True)
-    numbers = place.reshape(labels.shape) + 1
-    apart = []
-    for block, window in zip(ids.tolist(), ndimage.find_objects(numbers), strict=True):
-        if block == 0:
-            continue
-        pieces, count = ndimage.label(labels[window] == block, np.ones((3, 3)))
-        if count > 1:
-            sizes = np.bincount(pieces.ravel())[1:]
-            apart.append((block, int(sizes.sum() - sizes.max())))
-    return tuple(apart)
+    runs = label_runs(labels)
+    ids, place = np.unique(runs.labels, return_inverse=True)
+    piece = runs_in_pieces(runs)
+    sizes = np.bincount(piece, runs.lengths)
+    block = np.zeros(len(sizes), np.intp)
+    block[piece] = place
+    largest = np.zeros(len(ids))
+    np.maximum.at(largest, block, sizes)
+    apart = np.bincount(block, sizes, len(ids)) - largest
+    return tuple((int(ids[k]), int(apart[k])) for k in np.flatnonzero(apart).tolist())
 
 
 def notice_of_pieces(labels: Labels) -> tuple[Notice, ...]:

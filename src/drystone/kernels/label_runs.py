@@ -1,0 +1,98 @@
+"""Runs of one label along the rows of an image: what is counted on runs need not see pixels."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+Ints = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class LabelRuns:
+    """The longest runs of equal labels above 0, row by row.
+
+    Parameters
+    ----------
+    width : int
+        Of the image.
+    labels : (n,) integer array
+        Label of each run.
+    rows, begins, ends : (n,) int array
+        Its row, its first column and the column after its last one.
+    """
+
+    width: int
+    labels: NDArray[np.integer]
+    rows: Ints
+    begins: Ints
+    ends: Ints
+
+    @property
+    def lengths(self) -> Ints:
+        """Number of pixels of each run."""
+        return self.ends - self.begins
+
+
+def label_runs(labels: NDArray[np.integer]) -> LabelRuns:
+    """Find the runs of an image.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        0 where nothing is.
+
+    Examples
+    --------
+    >>> runs = label_runs(np.array([[7, 7, 0], [0, 2, 7]]))
+    >>> runs.labels.tolist(), runs.begins.tolist(), runs.ends.tolist()
+    ([7, 2, 7], [0, 1, 2], [2, 2, 3])
+    """
+    width = labels.shape[1]
+    flat = labels.ravel()
+    is_first = np.empty(flat.shape, bool)
+    np.not_equal(flat[1:], flat[:-1], out=is_first[1:])
+    is_first[:: max(width, 1)] = True
+    first = np.flatnonzero(is_first)
+    beyond = np.append(first[1:], flat.size)
+    taken = flat[first] > 0
+    rows, begins = np.divmod(first[taken], max(width, 1))
+    return LabelRuns(width, flat[first[taken]], rows, begins, beyond[taken] - rows * width)
+
+
+def runs_in_pieces(runs: LabelRuns) -> Ints:
+    """Return which connected piece of its label each run is in; corners connect, too.
+
+    Parameters
+    ----------
+    runs : LabelRuns
+        Of an image.
+
+    Returns
+    -------
+    (n,) int array
+        For each run the number of its piece, from 0 on without gaps.
+
+    Examples
+    --------
+    >>> runs_in_pieces(label_runs(np.array([[7, 0, 0, 7], [0, 7, 2, 0]]))).tolist()
+    [0, 1, 0, 2]
+    """
+    count = len(runs.rows)
+    if not count:
+        return np.zeros(0, np.intp)
+    # In the row below, the runs that a run touches follow one another; runs are in order.
+    stride = runs.width + 1
+    below = (runs.rows + 1) * stride
+    first = np.searchsorted(runs.rows * stride + runs.ends, below + runs.begins)
+    last = np.searchsorted(runs.rows * stride + runs.begins, below + runs.ends, side="right")
+    touched = np.maximum(last - first, 0)
+    upper = np.repeat(np.arange(count), touched)
+    lower = np.arange(touched.sum()) + np.repeat(first - np.cumsum(touched) + touched, touched)
+    alike = runs.labels[upper] == runs.labels[lower]
+    edges = coo_array(
+        (np.ones(np.count_nonzero(alike), bool), (upper[alike], lower[alike])), (count, count)
+    )
+    return np.asarray(connected_components(edges, directed=False)[1], np.intp)
