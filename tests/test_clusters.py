@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy import ndimage
 
+from drystone import clusters
 from drystone.clusters import ClusterSettings, cluster_stones
+from drystone.generate.fourier import FourierSettings, fourier_stones
 from drystone.model.stone import Stone, StoneSet
 from drystone.poses import PoseBook
 
@@ -37,13 +39,32 @@ def read_ids(path: Path) -> NDArray[np.int64]:
 
 
 @pytest.mark.parametrize(
-    ("name", "stones", "clusters"), [("PR", 32, 7), ("R", 34, 9), ("IR", None, 15)]
+    ("name", "stones", "count"), [("PR", 32, 7), ("R", 34, 9), ("IR", None, 15)]
 )
-def test_published_sets(data_dir: Path, name: str, stones: int | None, clusters: int) -> None:
+def test_published_sets(data_dir: Path, name: str, stones: int | None, count: int) -> None:
     """PR: the paper's Fig. 5 says 32 stones in 7 clusters; R and IR: docs/decisions.md."""
     found = stones_of(read_ids(data_dir / "almeida" / f"{name}.png"))
     assert stones is None or len(found) == stones
-    assert len(set(cluster_stones(found, PoseBook()).values())) == clusters
+    assert len(set(cluster_stones(found, PoseBook()).values())) == count
+
+
+@pytest.mark.parametrize("name", ["PR", "R"])
+def test_sets_too_large_for_pairs_have_the_same_clusters(
+    data_dir: Path, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found, book = stones_of(read_ids(data_dir / "almeida" / f"{name}.png")), PoseBook()
+    expected = cluster_stones(found, book)
+    monkeypatch.setattr(clusters, "MOST_IN_PAIRS", 1)
+    assert cluster_stones(found, book) == expected
+
+
+def test_a_generated_set_too_large_for_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
+    settings = FourierSettings(count=150, smallest_radius_px=4, largest_radius_px=12, D2=0.15)
+    found, book = fourier_stones(settings, np.random.default_rng(2)), PoseBook()
+    expected = cluster_stones(found, book)
+    monkeypatch.setattr(clusters, "MOST_IN_PAIRS", 149)
+    assert cluster_stones(found, book) == expected
+    assert len(set(expected.values())) > 3
 
 
 def rectangles(*sizes: tuple[int, int]) -> StoneSet:
@@ -52,12 +73,12 @@ def rectangles(*sizes: tuple[int, int]) -> StoneSet:
 
 def test_similar_stones_share_a_cluster_and_larger_ones_come_first() -> None:
     stones = rectangles((4, 4), (20, 40), (4, 12), (20, 41), (4, 13), (5, 5))
-    clusters = cluster_stones(stones, PoseBook())
-    assert clusters[6] == clusters[8] == 1
-    assert clusters[7] == clusters[9]
-    assert clusters[5] == clusters[10]
-    assert set(clusters.values()) == {1, 2, 3}
-    assert set(clusters) == {5, 6, 7, 8, 9, 10}
+    found = cluster_stones(stones, PoseBook())
+    assert found[6] == found[8] == 1
+    assert found[7] == found[9]
+    assert found[5] == found[10]
+    assert set(found.values()) == {1, 2, 3}
+    assert set(found) == {5, 6, 7, 8, 9, 10}
 
 
 def test_size_does_not_depend_on_how_the_stone_lies() -> None:

@@ -6,8 +6,12 @@ import numpy as np
 from scipy.cluster.hierarchy import fcluster, ward
 
 from drystone.kernels.raster import turn
+from drystone.kernels.ward import ward_clusters
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
+
+MOST_IN_PAIRS = 2000
+"""Of more stones the distances of all pairs are not written down: they are half the square."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +51,10 @@ def cluster_stones(
     extents = [np.ptp(turn(s.hull, book.initial_angle(s)), axis=0) for s in stones]
     box = np.array([extent[0] * extent[1] for extent in extents])
     features = np.column_stack([[s.eccentricity for s in stones], box / box.max()])
-    flat = fcluster(ward(features), settings.distance, criterion="distance")
+    if len(ids) <= MOST_IN_PAIRS:
+        flat = fcluster(ward(features), settings.distance, criterion="distance")
+    else:
+        flat = ward_clusters(features, settings.distance)
     size = {label: -float(box[flat == label].mean()) for label in np.unique(flat)}
     order = {label: rank for rank, label in enumerate(sorted(size, key=lambda k: size[k]), 1)}
     return {stone_id: order[label] for stone_id, label in zip(ids, flat, strict=True)}

@@ -1,13 +1,35 @@
 """Initial poses and orientation sets (§3.6, Eq. 3, Eq. 12d; DESIGN 4.2)."""
 
 import math
+from collections import OrderedDict
+from collections.abc import Hashable
+from threading import Lock
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from drystone.errors import UsageError
-from drystone.kernels.raster import areas_by_phase, quantise, rasterise, turn
+from drystone.kernels.raster import (
+    quantise,
+    rasterise,
+    rasterise_to_area,
+    rotation,
+    turned_boxes,
+)
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
+
+Key = TypeVar("Key", bound=Hashable)
+Value = TypeVar("Value")
+
+BOOK_BYTES = 1 << 29
+"""Poses that a book remembers at most, about: those of a thousand stones at 50 angles each."""
+
+INITIAL_DEG = tuple(sorted(range(-45, 45), key=lambda a: (abs(a), a)))
+"""Angles of which the initial one is chosen, smallest turns first."""
+
+_INITIAL_TURNS = np.array([rotation(float(angle)) for angle in INITIAL_DEG])
+_INITIAL_TURNS.flags.writeable = False
 
 
 def bounding_box_shape_factor(stone: Stone, angle_deg: float) -> float:
@@ -15,8 +37,9 @@ def bounding_box_shape_factor(stone: Stone, angle_deg: float) -> float:
 
     The box is that of the turned outline, without resampling.
     """
-    extent = np.ptp(turn(stone.hull, angle_deg), axis=0)
-    return float(stone.area_px / (extent[0] * extent[1]))
+    turns = np.array([rotation(angle_deg)])
+    left, bottom, right, top = turned_boxes(stone.hull, turns)[0].tolist()
+    return float(stone.area_px / ((right - left) * (top - bottom)))
 
 
 def initial_angle_deg(stone: Stone) -> float:
@@ -24,10 +47,9 @@ def initial_angle_deg(stone: Stone) -> float:
 
     Of equal angles the smallest turn wins, so a disc stays as it lies.
     """
-    angles = sorted(range(-45, 45), key=lambda a: (abs(a), a))
-    factors = [bounding_box_shape_factor(stone, float(a)) for a in angles]
-    best = max(factors)
-    return float(next(a for a, f in zip(angles, factors, strict=True) if f >= best - 1e-12))
+    left, bottom, right, top = turned_boxes(stone.hull, _INITIAL_TURNS).T
+    factors = stone.area_px / ((right - left) * (top - bottom))
+    return float(INITIAL_DEG[np.flatnonzero(factors >= factors.max() - 1e-12)[0]])
 
 
 def wrap_deg(angle_deg: float) -> float:
@@ -54,6 +76,47 @@ def orientation_step_deg(orientations: str) -> float | None:
     return step
 
 
+class RecentlyUsed(Generic[Key, Value]):
+    """Values that were used last, as many as a budget of bytes holds; threads may share it.
+
+    Parameters
+    ----------
+    budget_bytes : int
+        When the sizes of the values exceed it, those not used for longest are forgotten.
+    """
+
+    def __init__(self, budget_bytes: int) -> None:
+        self.budget_bytes = budget_bytes
+        self.held_bytes = 0
+        self._entries: OrderedDict[Key, tuple[Value, int]] = OrderedDict()
+        self._lock = Lock()
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def get(self, key: Key) -> Value | None:
+        """Return the value of a key; None when there is none, or no longer."""
+        with self._lock:
+            entry = self._entries.get(key)
+            if entry is None:
+                return None
+            self._entries.move_to_end(key)
+            return entry[0]
+
+    def keep(self, key: Key, value: Value, size_bytes: int) -> Value:
+        """Remember a value; return it, or the one that another thread has put there first."""
+        with self._lock:
+            if key in self._entries:
+                return self._entries[key][0]
+            if size_bytes > self.budget_bytes:
+                return value
+            self._entries[key] = (value, size_bytes)
+            self.held_bytes += size_bytes
+            while self.held_bytes > self.budget_bytes:
+                self.held_bytes -= self._entries.popitem(last=False)[1][1]
+            return value
+
+
 class PoseBook:
     """Turned, rasterised stones at one working resolution, each made once.
 
@@ -61,11 +124,14 @@ class PoseBook:
     ----------
     scale : float
         Working resolution over source resolution.
+    budget_bytes : int
+        Memory for poses.  Those not asked for for longest are forgotten and made again when they
+        are: no result depends on it.
     """
 
-    def __init__(self, scale: float = 1.0) -> None:
+    def __init__(self, scale: float = 1.0, budget_bytes: int = BOOK_BYTES) -> None:
         self.scale = scale
-        self._poses: dict[tuple[Stone, float], PosedStone] = {}
+        self._poses = RecentlyUsed[tuple[Stone, float], PosedStone](budget_bytes)
         self._angles: dict[Stone, float] = {}
 
     def pose(self, stone: Stone, angle_deg: float) -> PosedStone:
@@ -75,15 +141,26 @@ class PoseBook:
         pixels comes within 1 % (or 2 px) of the stone's own, or else comes closest.
         """
         key = (stone, wrap_deg(angle_deg))
-        if key not in self._poses:
-            self._poses[key] = _best_phase_pose(stone, key[1], self.scale)
-        return self._poses[key]
+        posed = self._poses.get(key)
+        if posed is None:
+            posed = _best_phase_pose(stone, key[1], self.scale)
+            posed = self._poses.keep(key, posed, _memory_bytes(posed))
+        return posed
 
     def initial_angle(self, stone: Stone) -> float:
         """Return :func:`initial_angle_deg` of a stone, computed once."""
         if stone not in self._angles:
             self._angles[stone] = initial_angle_deg(stone)
         return self._angles[stone]
+
+    def angles(self, stone: Stone, orientations: str) -> list[float]:
+        """Return the angles of a set of orientations; some may give the same pixels."""
+        step = orientation_step_deg(orientations)
+        if step is not None:
+            return [-180.0 + i * step for i in range(math.ceil(360.0 / step - 1e-9))]
+        first = self.initial_angle(stone)
+        turns = (0,) if orientations == "sf" else (0, 90, 180, 270)
+        return [wrap_deg(first + quarter) for quarter in turns]
 
     def orientations(self, stone: Stone, orientations: str) -> tuple[PosedStone, ...]:
         """Return the poses of a stone that are candidates (DESIGN 4.2).
@@ -101,15 +178,8 @@ class PoseBook:
         poses : tuple of PosedStone
             Poses whose pixels are the same are given once.
         """
-        step = orientation_step_deg(orientations)
-        if step is not None:
-            angles = [-180.0 + i * step for i in range(math.ceil(360.0 / step - 1e-9))]
-        else:
-            first = self.initial_angle(stone)
-            turns = (0,) if orientations == "sf" else (0, 90, 180, 270)
-            angles = [wrap_deg(first + quarter) for quarter in turns]
         different: dict[tuple[tuple[int, ...], bytes], PosedStone] = {}
-        for angle in angles:
+        for angle in self.angles(stone, orientations):
             posed = self.pose(stone, angle)
             different.setdefault((posed.mask.shape, posed.mask.tobytes()), posed)
         return tuple(different.values())
@@ -145,18 +215,23 @@ def pose_at(
 
 def _best_phase_pose(stone: Stone, angle_deg: float, scale: float) -> PosedStone:
     area = stone.area_px * scale**2
-    edge = -turn(stone.hull, angle_deg).min(axis=0) * scale
-    first = (quantise(edge[0]) % 1.0, quantise(edge[1]) % 1.0)
-    tolerance = max(0.01 * area, 2.0)
-    best, least = 0, math.inf
-    # Rows first: a bottom edge on a pixel edge rests flat.
-    areas = areas_by_phase(stone.mask, stone.local_centroid, angle_deg, scale, first)
-    for number, found in enumerate(areas):
-        error = abs(found - area)
-        if error < least:
-            best, least = number, error
-        if error <= tolerance:
-            break
-    up, right = divmod(best, 4)
-    phase = ((first[0] + right / 4) % 1.0, (first[1] + up / 4) % 1.0)
-    return pose_at(stone, angle_deg, scale, phase)[0]
+    left, bottom, _, _ = turned_boxes(stone.hull, np.array([rotation(angle_deg)]))[0].tolist()
+    # The first position is the one with edges on pixel edges: a bottom edge there rests flat.
+    mask, col, row, phase = rasterise_to_area(
+        stone.mask,
+        stone.local_centroid,
+        angle_deg,
+        scale,
+        (quantise(-left * scale) % 1.0, quantise(-bottom * scale) % 1.0),
+        (area, max(0.01 * area, 2.0)),
+    )
+    return PosedStone(stone, angle_deg, scale, mask, (phase[0] - col, phase[1] - row))
+
+
+def _memory_bytes(posed: PosedStone) -> int:
+    """Return about how much memory a pose takes with all that is worked out from it later.
+
+    That is its mirror image, and a few numbers for each run of pixels, of which a row or column
+    has one or two.
+    """
+    return 2 * posed.mask.nbytes + 150 * (posed.height_px + posed.width_px) + 3000

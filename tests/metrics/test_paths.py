@@ -4,17 +4,29 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from hypothesis.extra import numpy as hnp
 from skimage.graph import MCP_Geometric
 
 from drystone.metrics.joints import joint_mask
-from drystone.metrics.paths import horizontal_paths, vertical_paths
+from drystone.metrics.paths import (
+    horizontal_lengths,
+    horizontal_paths,
+    vertical_lengths,
+    vertical_paths,
+)
 from tests.metrics.walls import bricks, walls
 from tests.naive import metrics as naive
 from tests.strategies import repeatable
 
-JOINTS = st.tuples(st.integers(2, 14), st.integers(21, 45)).flatmap(
-    lambda shape: hnp.arrays(bool, shape, elements=st.integers(0, 2).map(bool))
+
+def noise(shape, share, seed):
+    return np.random.default_rng(seed).random(shape) < share
+
+
+JOINTS = st.builds(
+    noise,
+    st.tuples(st.integers(2, 14), st.integers(21, 45)),
+    st.sampled_from([0.6, 0.8]),
+    st.integers(0, 10**6),
 )
 
 
@@ -30,6 +42,14 @@ def test_lengths_are_those_of_the_slow_twin(joint):
 def test_horizontal_paths_are_vertical_paths_of_the_turned_image(joint):
     lengths = [path.length_px for path in horizontal_paths(joint.T)]
     assert lengths == pytest.approx(naive.vertical_lengths(joint), abs=1e-9)
+
+
+@repeatable()
+@given(JOINTS)
+def test_lengths_without_paths_are_those_of_the_paths(joint):
+    assert vertical_lengths(joint) == tuple(path.length_px for path in vertical_paths(joint))
+    turned = joint.T
+    assert horizontal_lengths(turned) == tuple(path.length_px for path in horizontal_paths(turned))
 
 
 @repeatable()
@@ -65,6 +85,7 @@ def test_an_independent_solver_finds_the_same_lengths():
 def test_starts_stand_ten_pixels_from_the_ends_and_a_tenth_of_the_width_apart():
     columns = [path.pixels[0, 1] for path in vertical_paths(np.ones((5, 57), bool))]
     assert columns == [10, 15, 20, 25, 30, 35, 40, 45]
+    assert len(vertical_lengths(np.ones((5, 57), bool))) == len(columns)
 
 
 def test_a_detour_takes_the_diagonals():
@@ -88,4 +109,5 @@ def test_a_start_inside_a_stone_has_no_path():
 
 def test_an_image_of_twenty_columns_has_no_start():
     assert vertical_paths(np.ones((5, 20), bool)) == ()
+    assert vertical_lengths(np.ones((5, 20), bool)) == ()
     assert horizontal_paths(np.ones((20, 5), bool)) == ()

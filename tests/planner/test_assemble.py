@@ -16,7 +16,8 @@ from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.contacts.blocks import model_with
-from drystone.statics.growing import Grown, WarmGrowth
+from drystone.statics.growing import Grown
+from drystone.statics.growing_simplex import SimplexGrowth
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
@@ -111,14 +112,14 @@ def test_candidates_on_which_the_solver_gave_up_are_counted_and_said(
     assert plan_wall(stones, 60, 10, scale=1.0, method="paper").notices == ()
     calls = iter(range(1000))
 
-    def fails_first(analysis: WarmGrowth, model: RigidBlockModel) -> Grown:
+    def fails_first(analysis: SimplexGrowth, model: RigidBlockModel) -> Grown:
         if next(calls) > 0:
             return analyse(analysis, model)
         gave_up = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
         return Grown(LateralResistance(gave_up[0], gave_up[1], model.mu), solved_cold=True)
 
-    analyse = WarmGrowth.resistance_with
-    monkeypatch.setattr(WarmGrowth, "resistance_with", fails_first)
+    analyse = SimplexGrowth.resistance_with
+    monkeypatch.setattr(SimplexGrowth, "resistance_with", fails_first)
     result = plan_wall(stones, 60, 10, scale=1.0, method="paper")
     assert [notice.code for notice in result.notices] == ["W303", "W303"]
     passed_over, solved_again = (notice.message for notice in result.notices)
@@ -140,11 +141,11 @@ def test_candidates_that_were_solved_again_are_counted_and_change_nothing(
     assert plain.notices == ()
     asked: list[RigidBlockModel] = []
 
-    def from_the_start(_: WarmGrowth, model: RigidBlockModel) -> Grown:
+    def from_the_start(_: SimplexGrowth, model: RigidBlockModel) -> Grown:
         asked.append(model)
         return Grown(lateral_resistance(model), solved_cold=True)
 
-    monkeypatch.setattr(WarmGrowth, "resistance_with", from_the_start)
+    monkeypatch.setattr(SimplexGrowth, "resistance_with", from_the_start)
     again = planned()
     (notice,) = again.notices
     assert notice.code == "W303"

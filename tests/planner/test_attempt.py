@@ -145,7 +145,7 @@ def test_a_stone_that_turns_out_of_reach_from_above_is_not_proposed(
     settings = greedy()
     planner = Planner(stones, Site(60, 30), settings=settings)
     evaluator = Evaluator(settings, planner.workshop.memory, planner.workshop.stock)
-    posed = planner.workshop.poses[1][0]
+    posed = planner.workshop.poses(1)[0]
     landscape = Landscape.of(planner.build.wall)
     trial = Trial((posed,), landscape, planner.workshop.rest(planner.build))
     assert evaluator.propose(planner.build, trial) is not None

@@ -13,11 +13,11 @@ from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.rework import rework
 from drystone.planner.settings import PlannerSettings
-from drystone.statics.growing import GrowingAnalysis, Grown, WarmGrowth
+from drystone.statics.growing import GrowingAnalysis, Grown
+from drystone.statics.growing_simplex import NAME, SimplexGrowth
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
-from drystone.statics.solvers.warm import NAME
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
 
 SETTINGS = [PlannerSettings(sampling="full", two_sided=True), greedy()]
@@ -74,13 +74,13 @@ def test_the_analysis_of_a_state_gives_what_its_last_action_was_judged_by(
 
 def test_no_state_is_analysed_twice_not_even_by_rework(monkeypatch: pytest.MonkeyPatch) -> None:
     models: list[RigidBlockModel] = []
-    extended = WarmGrowth.extended
+    extended = SimplexGrowth.extended
 
-    def watched(analysis: WarmGrowth, model: RigidBlockModel) -> WarmGrowth:
+    def watched(analysis: SimplexGrowth, model: RigidBlockModel) -> SimplexGrowth:
         models.append(model)
         return extended(analysis, model)
 
-    monkeypatch.setattr(WarmGrowth, "extended", watched)
+    monkeypatch.setattr(SimplexGrowth, "extended", watched)
     settings = greedy({"rework": {"rounds": 3}})
     planner = finish(Planner(rubble(seed=1), RUBBLE_SITE, seed=1, settings=settings))
     list(rework(planner))
@@ -108,14 +108,13 @@ def test_states_are_kept_only_to_go_back_to_them() -> None:
 def test_the_unit_of_weight_is_a_stone_of_the_set(monkeypatch: pytest.MonkeyPatch) -> None:
     """Certificates must not depend on which stones were placed, as in a resumed plan."""
     units: set[tuple[float, float]] = set()
-    resistance_with = WarmGrowth.resistance_with
+    resistance_with = SimplexGrowth.resistance_with
 
-    def watched(analysis: WarmGrowth, model: RigidBlockModel) -> Grown:
-        program = analysis.open_program.program
-        units.add((program.length, program.weight))
+    def watched(analysis: SimplexGrowth, model: RigidBlockModel) -> Grown:
+        units.add((analysis.program.units.length, analysis.program.units.weight))
         return resistance_with(analysis, model)
 
-    monkeypatch.setattr(WarmGrowth, "resistance_with", watched)
+    monkeypatch.setattr(SimplexGrowth, "resistance_with", watched)
     planner = Planner(rubble(), RUBBLE_SITE, settings=greedy({"rework": {"rounds": 1}}))
     list(rework(finish(planner)))
     again = Planner(rubble(), RUBBLE_SITE, settings=greedy())

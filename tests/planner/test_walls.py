@@ -57,7 +57,7 @@ def test_the_default_finishes_the_first_course_before_the_second(
         if bottom > 2:
             above += 1
             room = _longest_run(np.asarray(~before.any(axis=0)))
-            narrowest = min(p.width_px for i in left for p in planner.workshop.poses[i])
+            narrowest = min(p.width_px for i in left for p in planner.workshop.poses(i))
             assert room < narrowest
         before = planner.build.wall.occupied
         left.remove(step.action.stone_id)
@@ -75,7 +75,7 @@ def _scene(
     workshop = planner.workshop
     wall = planner.build.wall
     for stone_id, (left, bottom) in places.items():
-        posed = workshop.initial[stone_id]
+        posed = workshop.initial(stone_id)
         wall = wall.add(Placement(posed, height - bottom - posed.height_px, left))
     planner.restore(wall, {})
     return planner, Evaluator(settings, workshop.memory, workshop.stock)
@@ -87,7 +87,7 @@ def _judged(evaluator: Evaluator, build: Build, proposal: Proposal) -> Candidate
 
 def _trial(planner: Planner, stone_id: int) -> Trial:
     workshop, build = planner.workshop, planner.build
-    return Trial(workshop.poses[stone_id], Landscape.of(build.wall), workshop.rest(build))
+    return Trial(workshop.poses(stone_id), Landscape.of(build.wall), workshop.rest(build))
 
 
 @pytest.mark.parametrize("settings", [PlannerSettings(), greedy()], ids=["paper", "best"])

@@ -2,7 +2,9 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import count
+from typing import Any
 
 import numpy as np
 from numpy.random import Generator
@@ -60,6 +62,13 @@ class FourierSettings:
         for ok, what in ranges:
             check_setting(ok, what, "fourier")
 
+    @cached_property
+    def waves(self) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+        """Angles (points,) of the points; cosine and sine (points, N + 1) of harmonics there."""
+        theta = np.arange(self.points) * (2 * math.pi / self.points)
+        angle = np.outer(theta, np.arange(self.harmonics + 1))
+        return theta, np.cos(angle), np.sin(angle)
+
 
 def fourier_descriptors(settings: FourierSettings) -> NDArray[np.float64]:
     """Return D_0 ... D_N: amplitudes of the harmonics over the mean radius (Eq. 30d).
@@ -103,9 +112,8 @@ def fourier_contour(radius_px: float, settings: FourierSettings, rng: Generator)
     """
     amplitude = radius_px * fourier_descriptors(settings)
     phase = rng.uniform(-math.pi, math.pi, amplitude.size)
-    theta = np.arange(settings.points) * (2 * math.pi / settings.points)
-    angle = np.outer(theta, np.arange(amplitude.size))
-    wave = np.cos(angle) @ (amplitude * np.cos(phase)) + np.sin(angle) @ (amplitude * np.sin(phase))
+    theta, cos, sin = settings.waves
+    wave = cos @ (amplitude * np.cos(phase)) + sin @ (amplitude * np.sin(phase))
     radius = radius_px + wave
     if radius.min() <= 0:
         return None

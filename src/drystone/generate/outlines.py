@@ -14,6 +14,8 @@ from drystone.kernels.raster import Mask
 Outline = NDArray[np.float64]
 """Corners (n, 2) of a closed polygon, x right, y up, px; the last joins the first."""
 
+_WITH_CORNERS = np.ones((3, 3))
+
 ATTEMPTS = 1000
 """Draws after which a generator gives up on its settings."""
 
@@ -61,8 +63,10 @@ def is_whole(mask: Mask) -> bool:
     >>> is_whole(np.array([[1, 0, 1]], bool)), is_whole(np.array([[1, 0], [0, 1]], bool))
     (False, True)
     """
-    pieces = int(ndimage.label(mask, np.ones((3, 3)))[1])
-    return pieces == 1 and bool((ndimage.binary_fill_holes(mask) == mask).all())
+    if ndimage.label(mask, _WITH_CORNERS)[1] != 1:
+        return False
+    # A hole is a piece of its own among what is not stone, with a rim around it.
+    return int(ndimage.label(np.pad(~mask, 1, constant_values=True))[1]) == 1
 
 
 def draw_stone(draws: Iterable[Outline | None], what: str) -> Mask:

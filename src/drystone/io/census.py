@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.kernels.ids import counted, numbered
+
 
 @dataclass(frozen=True, eq=False)
 class Census:
@@ -26,8 +28,7 @@ class Census:
     @cached_property
     def counts(self) -> NDArray[np.int64]:
         """Number of pixels of each value."""
-        counts = np.bincount(self.index.ravel(), minlength=len(self.values) + 1)[1:]
-        return np.asarray(counts, np.int64)
+        return counted(self.index, len(self.values))[1:]
 
     @property
     def commonest(self) -> int:
@@ -59,16 +60,4 @@ def take_census(ids: NDArray[Any]) -> Census:
     array([[1, 2],
            [3, 2]], dtype=int32)
     """
-    top = int(ids.max())
-    if top < max(1 << 16, 4 * ids.size):
-        present = np.zeros(top + 1, bool)
-        present[ids.ravel()] = True
-        table = np.cumsum(present, dtype=np.int32)
-        return Census(table[ids], np.flatnonzero(present).astype(np.int64))
-    # Labels come in runs: only the first pixel of each run is sorted.
-    flat = ids.ravel()
-    starts = np.concatenate(([0], np.flatnonzero(flat[1:] != flat[:-1]) + 1))
-    values, index = np.unique(flat[starts], return_inverse=True)
-    lengths = np.diff(starts, append=flat.size)
-    image = np.repeat(index.astype(np.int32) + np.int32(1), lengths).reshape(ids.shape)
-    return Census(image, values.astype(np.int64))
+    return Census(*numbered(ids))

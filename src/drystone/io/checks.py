@@ -8,6 +8,7 @@ from scipy import ndimage
 
 from drystone.errors import LabelImageError
 from drystone.io.census import Census
+from drystone.kernels.ids import counted
 
 RARE_PX = 10
 _MANY_VALUES = 64
@@ -51,7 +52,7 @@ def check_background(index: NDArray[Any], census: Census, background: int, where
     where : str
         Name for messages.
     """
-    common = int(np.bincount(index.ravel()).argmax())
+    common = int(counted(index, len(census.values)).argmax())
     value = int(census.values[common - 1])
     if value == background:
         return

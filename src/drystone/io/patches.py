@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -50,10 +51,35 @@ class Patch:
     others: Mask | None = None
     name: str = ""
 
-    @property
+    @cached_property
     def area_px(self) -> int:
         """Number of pixels."""
         return int(self.mask.sum())
+
+    @cached_property
+    def piece_areas_px(self) -> tuple[int, ...]:
+        """Number of pixels of each 8-connected piece, in row order."""
+        found, count = ndimage.label(self.mask, _WHOLE)
+        if count == 1:
+            return (self.area_px,)
+        return tuple(np.bincount(found.ravel())[1:].tolist())
+
+    def pieces(self) -> list["Patch"]:
+        """Return the 8-connected pieces, the largest first, equal ones in row order."""
+        if len(self.piece_areas_px) == 1:
+            return [self]
+        found, _ = ndimage.label(self.mask, _WHOLE)
+        pieces = [
+            replace(
+                self,
+                mask=found[window] == label,
+                row=self.row + window[0].start,
+                col=self.col + window[1].start,
+                others=None,
+            )
+            for label, window in enumerate(ndimage.find_objects(found), start=1)
+        ]
+        return sorted(pieces, key=lambda piece: -piece.area_px)
 
     def __str__(self) -> str:
         return f"{self.id} ({self.name})" if self.name else str(self.id)
@@ -102,7 +128,8 @@ def without_specks(patches: list[Patch], limit_px: float) -> tuple[list[Patch], 
     kept: list[Patch] = []
     specks: list[Patch] = []
     for patch in patches:
-        (kept if _largest_piece(patch.mask) >= limit_px else specks).append(patch)
+        largest_px = max(patch.piece_areas_px, default=0)
+        (kept if largest_px >= limit_px else specks).append(patch)
     if not specks:
         return patches, []
     listed = ", ".join(
@@ -111,13 +138,6 @@ def without_specks(patches: list[Patch], limit_px: float) -> tuple[list[Patch], 
     total = sum(speck.area_px for speck in specks)
     message = f"{len(specks)} specks < {limit_px:g} px left out ({total} px in all): {listed}."
     return kept, [Notice("W113", message, "Set min_area_px to keep smaller stones.")]
-
-
-def _largest_piece(mask: Mask) -> int:
-    found, count = ndimage.label(mask, _WHOLE)
-    if count < 2:
-        return int(mask.sum())
-    return int(np.bincount(found.ravel())[1:].max())
 
 
 def filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], list[Notice]]:
@@ -151,8 +171,12 @@ def enclosed(mask: Mask) -> Mask:
     >>> int(enclosed(np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], bool)).sum())
     1
     """
-    outside, _ = ndimage.label(~np.pad(mask, 1))
-    return np.asarray((outside != outside[0, 0])[1:-1, 1:-1] & ~mask)
+    around = np.ones((mask.shape[0] + 2, mask.shape[1] + 2), bool)
+    np.logical_not(mask, out=around[1:-1, 1:-1])
+    found, count = ndimage.label(around)
+    if count == 1:
+        return np.zeros_like(mask)
+    return np.asarray(found[1:-1, 1:-1] > 1)
 
 
 def in_one_piece(
@@ -177,7 +201,7 @@ def in_one_piece(
     result, refused, dropped = [], [], []
     several: list[tuple[Patch, list[Patch]]] = []
     for patch in patches:
-        pieces = _pieces(patch)
+        pieces = patch.pieces()
         result.append(pieces[0])
         if len(pieces) == 1:
             continue
@@ -195,24 +219,6 @@ def in_one_piece(
     cure = "Use pieces='split' to make them stones."
     text = f"smaller pieces left out: {'; '.join(dropped)}."
     return result, [Notice("W111", text, cure)]
-
-
-def _pieces(patch: Patch) -> list[Patch]:
-    """Return the 8-connected pieces, the largest first, equal ones in row order."""
-    found, count = ndimage.label(patch.mask, _WHOLE)
-    if count == 1:
-        return [patch]
-    pieces = [
-        replace(
-            patch,
-            mask=found[window] == label,
-            row=patch.row + window[0].start,
-            col=patch.col + window[1].start,
-            others=None,
-        )
-        for label, window in enumerate(ndimage.find_objects(found), start=1)
-    ]
-    return sorted(pieces, key=lambda piece: -piece.area_px)
 
 
 def _is_refused(pieces: list[Patch], rule: Pieces) -> bool:

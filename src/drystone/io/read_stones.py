@@ -76,6 +76,7 @@ def _read(source: str | Path | NDArray[Any], settings: ReadSettings) -> StoneSet
     data = _bytes_of(path)
     picture = decode(data, path.name, _max_px(settings))
     digest = hashlib.sha256(data).hexdigest()
+    del data  # as large as the picture when it is not compressed
     return _read_picture(picture, Source(path.name, digest), settings)
 
 

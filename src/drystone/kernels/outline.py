@@ -96,16 +96,33 @@ def rasterise_polygon(polygon: Polygon) -> tuple[Mask, int, int]:
     """
     left, bottom = np.floor(polygon.min(axis=0)).astype(int).tolist()
     right, top = np.ceil(polygon.max(axis=0)).astype(int).tolist()
-    x = np.arange(left, right) + 0.5
-    inside = np.zeros((top - bottom, right - left), bool)
-    for (x0, y0), (x1, y1) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-        # Rows of centres that the edge crosses, its lower end counted and its upper one not.
-        first, last = (np.ceil(np.sort([y0, y1]) - 0.5).astype(int) - bottom).tolist()
-        for row in range(first, last):
-            crossing = x0 + (bottom + row + 0.5 - y0) * (x1 - x0) / (y1 - y0)
-            inside[row] ^= x >= crossing
+    row, crossing = _crossings(polygon)
+    # A crossing turns over all centres from the first that is not left of it.
+    first = np.searchsorted(np.arange(left, right) + 0.5, crossing)
+    shape = (top - bottom, right - left + 1)
+    flat = np.bincount((row - bottom) * shape[1] + first, minlength=shape[0] * shape[1])
+    inside = (np.cumsum(flat.reshape(shape)[:, :-1], axis=1) & 1).astype(bool)
     rows, cols = np.flatnonzero(inside.any(axis=1)), np.flatnonzero(inside.any(axis=0))
     if not rows.size:
         return np.zeros((0, 0), bool), left, bottom
     cropped = inside[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1][::-1]
     return np.ascontiguousarray(cropped), left + int(cols[0]), bottom + int(rows[0])
+
+
+def _crossings(polygon: Polygon) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return where the rows of pixel centres cross the edges of a polygon.
+
+    Returns
+    -------
+    row : (n,) int array
+        Numbers of rows, y up; the lower end of an edge counts to it, the upper one does not.
+    x : (n,) float array
+        Where each crosses its edge.
+    """
+    (x0, y0), (x1, y1) = polygon.T, np.roll(polygon, -1, axis=0).T
+    first = np.ceil(np.minimum(y0, y1) - 0.5).astype(np.int64)
+    counts = np.ceil(np.maximum(y0, y1) - 0.5).astype(np.int64) - first
+    edge = np.repeat(np.arange(len(polygon)), counts)
+    row = np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts - first, counts)
+    x0, y0, x1, y1 = x0[edge], y0[edge], x1[edge], y1[edge]
+    return row, x0 + (row + 0.5 - y0) * (x1 - x0) / (y1 - y0)

@@ -1,18 +1,19 @@
 """How much of a length stones can fill, side by side or on top of each other."""
 
-from collections.abc import Iterable
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 
-def unfillable(lengths: Iterable[tuple[int, ...]], limit: int) -> NDArray[np.int64]:
+def unfillable(counts: Mapping[tuple[int, ...], int], limit: int) -> NDArray[np.int64]:
     """Return for every length up to a limit what is left over at best.
 
     Parameters
     ----------
-    lengths : iterable of tuples of int
-        The lengths of each stone, of which one may be used, once; positive.
+    counts : mapping of tuples of int to int
+        How many stones there are of each kind, a kind being the lengths of a stone, of which one
+        may be used, once; positive.
     limit : int
         Largest length asked for.
 
@@ -23,14 +24,20 @@ def unfillable(lengths: Iterable[tuple[int, ...]], limit: int) -> NDArray[np.int
 
     Examples
     --------
-    >>> unfillable([(3,), (4, 5)], 8).tolist()
+    >>> unfillable({(3,): 1, (4, 5): 1}, 8).tolist()
     [0, 1, 2, 0, 0, 0, 1, 0, 0]
     """
     reached = 1  # bit s: the sum s can be reached
     keep = (1 << (limit + 1)) - 1
-    for choices in lengths:
-        for sums in [reached << length for length in choices]:
-            reached |= sums & keep
-    bits = np.array([reached >> s & 1 for s in range(limit + 1)], bool)
+    for lengths, count in counts.items():
+        for _ in range(count):
+            more = reached
+            for length in lengths:
+                more |= reached << length & keep
+            if more == reached:
+                break  # nor would any other stone of this kind add a sum
+            reached = more
+    packed = np.frombuffer(reached.to_bytes(limit // 8 + 1, "little"), np.uint8)
+    bits = np.unpackbits(packed, count=limit + 1, bitorder="little")
     lengths_px = np.arange(limit + 1)
-    return np.asarray(lengths_px - np.maximum.accumulate(np.where(bits, lengths_px, 0)))
+    return np.asarray(lengths_px - np.maximum.accumulate(bits * lengths_px))

@@ -10,7 +10,6 @@ from drystone.metrics.flush import flush_deviation
 from drystone.metrics.frame import frame_wall
 from drystone.metrics.joints import joint_mask
 from drystone.metrics.level import level_deviation
-from drystone.metrics.paths import horizontal_paths, vertical_paths
 from drystone.metrics.sizes import stone_sizes
 from drystone.model.wall import Labels
 
@@ -105,8 +104,8 @@ def measure_labels(
     joint = joint_mask(frame.labels)
     return WallMetrics(
         F_SF=filling(sizes.area_px if stone_area_px is None else stone_area_px, wall_px),
-        F_AV=vertical_arrangement(vertical_paths(joint)),
-        F_AH=horizontal_arrangement(horizontal_paths(joint)),
+        F_AV=vertical_arrangement(joint),
+        F_AH=horizontal_arrangement(joint),
         F_LR=lateral_resistance,
         T_LEVEL=level_deviation(frame.labels, sizes.mean_height_px),
         E_FLUSH=flush_deviation(frame, sizes.mean_width_px),

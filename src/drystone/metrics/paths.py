@@ -5,9 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
+from drystone.kernels.paths import row_lengths, row_ways, step_counts
 from drystone.kernels.raster import Mask
 
 FIRST_PX = 10
@@ -15,8 +14,6 @@ FIRST_PX = 10
 
 STARTS = 10
 """The side is divided by this to find the distance between two starts."""
-
-NO_NODE = -1
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,8 +32,24 @@ class JointPath:
     def length_px(self) -> float:
         """Length over pixel centres: 1 for a straight step, sqrt 2 for a diagonal one."""
         steps = np.abs(np.diff(self.pixels, axis=0)).sum(axis=1)
-        # Counted, not summed up, so that paths of equal length are equal to the last bit.
-        return float(np.count_nonzero(steps == 1) + math.sqrt(2) * np.count_nonzero(steps == 2))
+        return _length_px(int((steps == 1).sum()), int((steps == 2).sum()))
+
+
+def vertical_lengths(joint: Mask) -> tuple[float, ...]:
+    """Return the lengths of :func:`vertical_paths`, px, the shortest first.
+
+    Examples
+    --------
+    >>> vertical_lengths(np.ones((4, 21), bool))
+    (3.0,)
+    """
+    return horizontal_lengths(joint.T)
+
+
+def horizontal_lengths(joint: Mask) -> tuple[float, ...]:
+    """Return the lengths of :func:`horizontal_paths`, px, the shortest first."""
+    lengths = row_lengths(joint, _starts(joint.shape[0])).tolist()
+    return tuple(sorted(_length_px(*step_counts(length)) for length in lengths if length >= 0))
 
 
 def vertical_paths(joint: Mask) -> tuple[JointPath, ...]:
@@ -60,19 +73,7 @@ def vertical_paths(joint: Mask) -> tuple[JointPath, ...]:
     >>> [path.length_px for path in vertical_paths(np.ones((4, 21), bool))]
     [3.0]
     """
-    node, graph = _joint_graph(joint)
-    width = joint.shape[1]
-    paths = []
-    for column in range(FIRST_PX, width - FIRST_PX, max(1, width // STARTS)):
-        start, end = int(node[0, column]), int(node[-1, column])
-        if NO_NODE not in (start, end):
-            before = dijkstra(graph, indices=start, return_predecessors=True)[1]
-            trail = _trail(before, start, end)
-            if trail is not None:
-                paths.append(trail)
-    positions = np.argwhere(joint)
-    found = (JointPath(positions[trail]) for trail in paths)
-    return tuple(sorted(found, key=lambda path: path.length_px))
+    return tuple(JointPath(path.pixels[:, ::-1]) for path in horizontal_paths(joint.T))
 
 
 def horizontal_paths(joint: Mask) -> tuple[JointPath, ...]:
@@ -95,34 +96,15 @@ def horizontal_paths(joint: Mask) -> tuple[JointPath, ...]:
     >>> [path.length_px for path in horizontal_paths(np.ones((21, 4), bool))]
     [3.0]
     """
-    turned = vertical_paths(np.ascontiguousarray(joint.T))
-    return tuple(JointPath(path.pixels[:, ::-1]) for path in turned)
+    ways = row_ways(joint, _starts(joint.shape[0]))
+    paths = [JointPath(way) for way in ways if way is not None]
+    return tuple(sorted(paths, key=lambda path: path.length_px))
 
 
-def _joint_graph(joint: Mask) -> tuple[NDArray[np.int32], csr_array]:
-    """Return the number of each joint pixel and the steps between neighbours."""
-    height, width = joint.shape
-    count = int(np.count_nonzero(joint))
-    node = np.full(joint.shape, NO_NODE, np.int32)
-    node[joint] = np.arange(count)
-    starts, ends, lengths = [], [], []
-    for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):
-        here = node[: height - down, max(0, -right) : width - max(0, right)]
-        there = node[down:, max(0, right) : width - max(0, -right)]
-        both = (here != NO_NODE) & (there != NO_NODE)
-        starts += [here[both], there[both]]
-        ends += [there[both], here[both]]
-        lengths.append(np.full(2 * np.count_nonzero(both), math.hypot(down, right)))
-    steps = (np.concatenate(starts), np.concatenate(ends))
-    return node, csr_array((np.concatenate(lengths), steps), shape=(count, count))
+def _starts(side_px: int) -> NDArray[np.intp]:
+    return np.arange(FIRST_PX, side_px - FIRST_PX, max(1, side_px // STARTS))
 
 
-def _trail(before: NDArray[np.int32], start: int, end: int) -> list[int] | None:
-    """Follow predecessors from the end back to the start; None when they do not lead there."""
-    trail = [end]
-    while trail[-1] != start:
-        previous = int(before[trail[-1]])
-        if previous < 0:
-            return None
-        trail.append(previous)
-    return trail[::-1]
+def _length_px(straight: int, diagonal: int) -> float:
+    # Counted, not summed up, so that paths of equal length are equal to the last bit.
+    return float(straight + math.sqrt(2) * diagonal)

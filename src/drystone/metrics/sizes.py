@@ -3,10 +3,10 @@
 from collections.abc import Collection
 from dataclasses import dataclass
 
-import numpy as np
 from scipy import ndimage
 
 from drystone.errors import LabelImageError
+from drystone.kernels.ids import counted, numbered
 from drystone.model.wall import Labels
 
 
@@ -47,15 +47,14 @@ def stone_sizes(labels: Labels, wedge_ids: Collection[int] = frozenset()) -> Sto
 
     Examples
     --------
+    >>> import numpy as np
     >>> stone_sizes(np.array([[0, 7, 7], [9, 7, 7]], np.uint32), wedge_ids={9})
     StoneSizes(count=1, area_px=4, mean_height_px=2.0, mean_width_px=2.0)
     """
-    ids, numbers = np.unique(labels, return_inverse=True)
-    # Numbers 1, 2, ... so that an id of four thousand million costs no more than one of four.
-    numbered = numbers.reshape(labels.shape) + (0 if ids[0] == 0 else 1)
-    boxes = ndimage.find_objects(numbered)
-    areas = np.bincount(numbered.ravel())[1:]
-    stones = [i for i, stone in enumerate(ids[ids > 0].tolist()) if stone not in wedge_ids]
+    index, ids = numbered(labels)
+    boxes = ndimage.find_objects(index)
+    areas = counted(index, len(ids))[1:]
+    stones = [i for i, stone in enumerate(ids.tolist()) if stone and stone not in wedge_ids]
     if not stones:
         raise LabelImageError(
             "E104",

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 from skimage import measure
 
 from drystone.errors import Notice, PlanError
+from drystone.kernels.hull import pixel_hull
 from drystone.kernels.raster import Mask
 
 OUTLINE_TOLERANCE_PX = 0.35
@@ -93,15 +93,7 @@ class Stone:
     @cached_property
     def hull(self) -> NDArray[np.float64]:
         """Corners of the convex hull of the pixel squares, (n, 2), relative to the centroid."""
-        height = self.mask.shape[0]
-        corners = []
-        for row in range(height):
-            cols = np.flatnonzero(self.mask[row])
-            if cols.size:
-                for y in (height - row, height - row - 1):
-                    corners += [(cols[0], y), (cols[-1] + 1, y)]
-        points = np.array(corners, float)
-        return np.asarray(points[ConvexHull(points).vertices] - self.local_centroid)
+        return np.asarray(pixel_hull(self.mask) - self.local_centroid)
 
     @cached_property
     def eccentricity(self) -> float:

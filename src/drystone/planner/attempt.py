@@ -118,8 +118,8 @@ class Attempt:
         """Return the poses of each candidate: one each, or all of a stone for the rule to pick."""
         poses = self._workshop.poses
         if self._settings.orientation_choice == "placement":
-            return [poses[stone_id] for stone_id in stones]
-        return [(posed,) for stone_id in stones for posed in poses[stone_id]]
+            return [poses(stone_id) for stone_id in stones]
+        return [(posed,) for stone_id in stones for posed in poses(stone_id)]
 
     def _judge(self, proposals: Sequence[Proposal]) -> list[Candidate]:
         keys = [(p.stone_id, p.trial_angle_deg, p.side) for p in proposals]

@@ -9,6 +9,7 @@ from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.appending import Units
+from drystone.statics.contacts.interfaces import PointContacts
 from drystone.statics.growing import GrowingAnalysis, growing
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
@@ -140,6 +141,11 @@ class Build:
         """
         assert self.grown_from is not None  # noqa: S101 - a wall that is built on began empty
         return self.grown_from.extended(self.model)
+
+    @cached_property
+    def points(self) -> PointContacts:
+        """Contacts at a point, which a new stone may close in."""
+        return PointContacts.of(self.model.interfaces)
 
     def add(self, action: Candidate, *, keep: bool = False) -> "Build":
         """Return the state after one more action (Eq. 1).

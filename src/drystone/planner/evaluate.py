@@ -122,7 +122,11 @@ class Evaluator:
         stabilised, analysis = proposal.stabilised, build.analysis
         with self.profile.part("contacts"):
             model = model_with(
-                analysis.model, build.wall.labels, stabilised.placement, stabilised.wedges
+                analysis.model,
+                build.wall.labels,
+                stabilised.placement,
+                stabilised.wedges,
+                build.points,
             )
         with self.profile.part("limit analysis"):
             grown = analysis.resistance_with(model)

@@ -1,7 +1,8 @@
 """What the planner needs to know of the stone set as a whole."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +10,28 @@ from numpy.typing import NDArray
 from drystone.kernels.sums import unfillable
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
+
+
+@dataclass(frozen=True, eq=False)
+class Sides:
+    """The shorter and the longer sides of some stones, counted.
+
+    Parameters
+    ----------
+    counts : Counter of pairs of int
+        How many stones in their initial poses have a box of these sides, working px.
+    """
+
+    counts: Counter[tuple[int, ...]] = field(default_factory=Counter)
+
+    @classmethod
+    def of(cls, initial: Iterable[PosedStone]) -> "Sides":
+        """Count the sides of stones in their initial poses."""
+        return cls(Counter(_sorted(posed.height_px, posed.width_px) for posed in initial))
+
+    def without(self, gone: Iterable[PosedStone]) -> "Sides":
+        """Return the sides of the stones that are left when some are gone."""
+        return Sides(self.counts - Sides.of(gone).counts)
 
 
 @dataclass(frozen=True)
@@ -23,22 +46,32 @@ class Stock:
         Means over the set.
     largest_id : int
         Wedges are numbered after it.
+    sides : Sides
+        Of the stones.
     """
 
     narrowest_px: float
     mean_height_px: float
     mean_area_px: float
     largest_id: int
+    sides: Sides = field(default_factory=Sides, compare=False)
 
     @classmethod
-    def of(cls, initial: Sequence[PosedStone]) -> "Stock":
-        """Return the sizes of a set of stones in their initial poses, at least one."""
-        count = len(initial)
+    def of(cls, initial: Iterable[PosedStone]) -> "Stock":
+        """Return the sizes of a set of stones in their initial poses, at least one.
+
+        Each pose is looked at once, so that poses of a large set need not exist together.
+        """
+        found = [
+            (posed.height_px, posed.width_px, posed.area_px, posed.stone.id) for posed in initial
+        ]
+        heights, widths, areas, ids = zip(*found, strict=True)
         return cls(
-            narrowest_px=float(min(posed.width_px for posed in initial)),
-            mean_height_px=sum(posed.height_px for posed in initial) / count,
-            mean_area_px=sum(posed.area_px for posed in initial) / count,
-            largest_id=max(posed.stone.id for posed in initial),
+            narrowest_px=float(min(widths)),
+            mean_height_px=sum(heights) / len(found),
+            mean_area_px=sum(areas) / len(found),
+            largest_id=max(ids),
+            sides=Sides(Counter(map(_sorted, heights, widths))),
         )
 
 
@@ -58,10 +91,13 @@ class Rest:
     width_px: NDArray[np.int64]
 
     @classmethod
-    def of(cls, initial: Iterable[PosedStone], site: Site) -> "Rest":
-        """Return it for the initial poses of the stones that are left."""
-        sides = [sorted((posed.height_px, posed.width_px)) for posed in initial]
-        return cls(
-            unfillable([(low,) for low, _ in sides], site.height_px),
-            unfillable([(low, high) for low, high in sides], site.width_px),
-        )
+    def of(cls, sides: Sides, site: Site) -> "Rest":
+        """Return it for the sides of the stones that are left."""
+        low: Counter[tuple[int, ...]] = Counter()
+        for (shorter, _), count in sides.counts.items():
+            low[(shorter,)] += count
+        return cls(unfillable(low, site.height_px), unfillable(sides.counts, site.width_px))
+
+
+def _sorted(height: int, width: int) -> tuple[int, ...]:
+    return (height, width) if height < width else (width, height)

@@ -9,14 +9,14 @@ from drystone.model.site import Site
 from drystone.model.stone import Stone, StoneSet
 from drystone.planner.build import Build
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.stock import Rest, Stock
+from drystone.planner.stock import Rest, Sides, Stock
 from drystone.poses import PoseBook
 from drystone.stabilise.memory import StabiliseMemory
 
 
 @dataclass(frozen=True, eq=False)
 class Workshop:
-    """Stones turned, rasterised, clustered and measured.
+    """Stones clustered and measured; their poses are made when they are asked for.
 
     Parameters
     ----------
@@ -28,12 +28,14 @@ class Workshop:
         Turned stones.
     clusters : dict of int to int
         Cluster of each stone (§3.4).
-    poses : dict of int to tuple of PosedStone
-        Candidate poses of each stone that fit into the wall; none for a stone that is too large.
-    initial : dict of int to PosedStone
-        Pose of largest SF of each stone (Eq. 12d).
+    orientations : str
+        Which poses of a stone are candidates (DESIGN 4.2).
+    fitting : tuple of int
+        Ids of the stones that fit into the wall in a candidate pose, ascending.
     stock : Stock
         Sizes of the set.
+    sides : Sides
+        Of the stones that fit.
     memory : StabiliseMemory
         Stabilises stones.
     """
@@ -42,9 +44,10 @@ class Workshop:
     site: Site
     book: PoseBook
     clusters: dict[int, int]
-    poses: dict[int, tuple[PosedStone, ...]]
-    initial: dict[int, PosedStone]
+    orientations: str
+    fitting: tuple[int, ...]
     stock: Stock
+    sides: Sides
     memory: StabiliseMemory
 
     @classmethod
@@ -60,34 +63,49 @@ class Workshop:
         if not len(stones):
             raise UsageError("E126", "there are no stones to build with.", where=stones.source.path)
         book = PoseBook(site.scale)
-        poses = {s.id: _fitting_poses(s, site, book, settings.orientations) for s in stones}
-        if not settings.skip_too_large:
-            _refuse_too_large(poses, site)
+        fitting = tuple(s.id for s in stones if _fits(s, site, book, settings.orientations))
+        too_large = sorted({s.id for s in stones}.difference(fitting))
+        if too_large and not settings.skip_too_large:
+            raise _too_large(too_large, site)
         _leave_ids_for_wedges(stones)
-        initial = {s.id: book.pose(s, book.initial_angle(s)) for s in stones}
-        stock = Stock.of(tuple(initial.values()))
+        stock = Stock.of(book.pose(s, book.initial_angle(s)) for s in stones)
+        unfit = [stones.by_id(stone_id) for stone_id in too_large]
+        sides = stock.sides.without(book.pose(s, book.initial_angle(s)) for s in unfit)
         clusters = cluster_stones(stones, book, settings.clusters)
         memory = StabiliseMemory(book, stock.mean_height_px, settings.stabilise)
-        return cls(stones, site, book, clusters, poses, initial, stock, memory)
+        return cls(
+            stones, site, book, clusters, settings.orientations, fitting, stock, sides, memory
+        )
+
+    def poses(self, stone_id: int) -> tuple[PosedStone, ...]:
+        """Return the candidate poses of a stone that fit into the wall."""
+        posed = self.book.orientations(self.stones.by_id(stone_id), self.orientations)
+        return tuple(p for p in posed if _has_room(self.site, p))
+
+    def initial(self, stone_id: int) -> PosedStone:
+        """Return the pose of largest SF of a stone (Eq. 12d)."""
+        stone = self.stones.by_id(stone_id)
+        return self.book.pose(stone, self.book.initial_angle(stone))
 
     def remaining(self, build: Build) -> tuple[int, ...]:
         """Return the ids of the stones that are left and fit into the wall, Omega_i."""
         placed = {action.stone_id for action in build.actions}
-        return tuple(i for i, poses in self.poses.items() if poses and i not in placed)
+        return tuple(i for i in self.fitting if i not in placed)
 
     def rest(self, build: Build) -> Rest:
         """Return what the stones that are left could still fill."""
-        return Rest.of((self.initial[i] for i in self.remaining(build)), self.site)
+        placed = (self.initial(action.stone_id) for action in build.actions)
+        return Rest.of(self.sides.without(placed), self.site)
 
 
-def _fitting_poses(
-    stone: Stone, site: Site, book: PoseBook, orientations: str
-) -> tuple[PosedStone, ...]:
-    return tuple(
-        posed
-        for posed in book.orientations(stone, orientations)
-        if posed.width_px <= site.width_px and posed.height_px <= site.height_px
-    )
+def _has_room(site: Site, posed: PosedStone) -> bool:
+    return posed.width_px <= site.width_px and posed.height_px <= site.height_px
+
+
+def _fits(stone: Stone, site: Site, book: PoseBook, orientations: str) -> bool:
+    """Say whether a stone fits into the wall; most do in the first pose, the others can wait."""
+    angles = book.angles(stone, orientations)
+    return any(_has_room(site, book.pose(stone, angle)) for angle in angles)
 
 
 def _leave_ids_for_wedges(stones: StoneSet) -> None:
@@ -102,13 +120,11 @@ def _leave_ids_for_wedges(stones: StoneSet) -> None:
         )
 
 
-def _refuse_too_large(poses: dict[int, tuple[PosedStone, ...]], site: Site) -> None:
-    too_large = [stone_id for stone_id, fitting in poses.items() if not fitting]
-    if too_large:
-        raise UsageError(
-            "E120",
-            f"stones {', '.join(map(str, too_large))} fit into the wall of "
-            f"{site.width_px} x {site.height_px} working px in no orientation.",
-            where="--wall",
-            cure="Leave them out with --skip-too-large, or build a larger wall.",
-        )
+def _too_large(stone_ids: list[int], site: Site) -> UsageError:
+    return UsageError(
+        "E120",
+        f"stones {', '.join(map(str, stone_ids))} fit into the wall of "
+        f"{site.width_px} x {site.height_px} working px in no orientation.",
+        where="--wall",
+        cure="Leave them out with --skip-too-large, or build a larger wall.",
+    )

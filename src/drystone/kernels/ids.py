@@ -1,0 +1,60 @@
+"""Images of large, sparse ids as images of small numbers."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+BLOCK_PX = 1 << 20
+"""Pixels that are counted at once: counting takes copies of 8 bytes each."""
+
+
+def counted(index: NDArray[np.int32], most: int) -> NDArray[np.int64]:
+    """Return how often each of the numbers 0 ... `most` is in an image.
+
+    Examples
+    --------
+    >>> counted(np.array([[1, 3], [3, 3]], np.int32), 4)
+    array([0, 1, 0, 3, 0])
+    """
+    flat = index.ravel()
+    counts = np.zeros(most + 1, np.int64)
+    for start in range(0, flat.size, BLOCK_PX):
+        counts += np.bincount(flat[start : start + BLOCK_PX], minlength=most + 1)
+    return counts
+
+
+def numbered(ids: NDArray[Any]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    """Return an image with the number of each value instead of the value.
+
+    Parameters
+    ----------
+    ids : (h, w) integer array
+        At least one pixel, none of them negative.
+
+    Returns
+    -------
+    index : (h, w) int32 array
+        Pixel by pixel 1 + the position of its value in `values`.
+    values : (n,) int64 array
+        The different values, ascending.
+
+    Examples
+    --------
+    >>> numbered(np.array([[0, 7], [70000, 7]]))
+    (array([[1, 2],
+           [3, 2]], dtype=int32), array([    0,     7, 70000]))
+    """
+    top = int(ids.max())
+    if top < max(1 << 16, 4 * ids.size):
+        present = np.zeros(top + 1, bool)
+        present[ids.ravel()] = True
+        table = np.cumsum(present, dtype=np.int32)
+        return table[ids], np.flatnonzero(present).astype(np.int64)
+    # Ids come in runs: only the first pixel of each run is sorted.
+    flat = ids.ravel()
+    starts = np.concatenate(([0], np.flatnonzero(flat[1:] != flat[:-1]) + 1))
+    values, position = np.unique(flat[starts], return_inverse=True)
+    lengths = np.diff(starts, append=flat.size)
+    index = np.repeat(position.astype(np.int32) + np.int32(1), lengths).reshape(ids.shape)
+    return index, values.astype(np.int64)

@@ -1,0 +1,74 @@
+"""Corners of the convex hull of pixels: compiled and NumPy against shapely's."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels import hull as module
+from drystone.kernels.backend import compiled
+from drystone.kernels.raster import Mask
+from tests.strategies import blobs, repeatable
+
+shapes = st.tuples(st.integers(1, 9), st.integers(1, 9))
+
+
+def noise(shape: tuple[int, int], share: float, seed: int) -> Mask:
+    return np.asarray(np.random.default_rng(seed).random(shape) < share)
+
+
+shares = st.sampled_from([0.1, 0.3, 0.8])
+dust = st.builds(noise, shapes, shares, st.integers(0, 10**6))
+pixels = st.one_of(dust, dust, blobs(max_px=16)).filter(lambda mask: bool(mask.any()))
+
+
+def kernels() -> list[object]:
+    absent = pytest.mark.skipif(compiled("hull") is None, reason="kernels are not compiled here")
+    return [
+        pytest.param(module.pixel_hull_numpy, id="numpy"),
+        pytest.param(module.pixel_hull, id="compiled", marks=absent),
+    ]
+
+
+@pytest.mark.parametrize("pixel_hull", kernels())
+def test_corners_are_those_of_all_pixel_squares(pixel_hull: Callable[[Mask], Any]) -> None:
+    @repeatable(150)
+    @given(pixels)
+    def check(mask: Mask) -> None:
+        rows, cols = np.nonzero(mask)
+        x, y = cols, mask.shape[0] - 1 - rows
+        squares = shapely.multipoints(
+            np.concatenate([np.column_stack([x + i, y + j]) for i in (0, 1) for j in (0, 1)])
+        )
+        expected = shapely.get_coordinates(squares.convex_hull)[:-1].astype(int)
+        found = pixel_hull(mask)
+        assert len(found) == len(expected)
+        assert set(map(tuple, found.tolist())) == set(map(tuple, expected.tolist()))
+        ring = shapely.LinearRing(found)
+        assert ring.is_ccw
+        assert ring.is_simple
+        # From the right end of the lowest edge to its left end.
+        assert found[0].tolist() == [max(x[y == y.min()]) + 1, y.min()]
+        assert found[-1].tolist() == [min(x[y == y.min()]), y.min()]
+
+    check()
+
+
+@pytest.mark.skipif(compiled("hull") is None, reason="kernels are not compiled here")
+@repeatable(100)
+@given(pixels)
+def test_both_versions_agree(mask: Mask) -> None:
+    for view in (mask, mask[:, ::-1], mask.T):
+        assert module.pixel_hull(view).tolist() == module.pixel_hull_numpy(view).tolist()
+
+
+@pytest.mark.parametrize("pixel_hull", kernels())
+def test_one_pixel_and_empty_lines_around_it(pixel_hull: Callable[[Mask], Any]) -> None:
+    assert pixel_hull(np.ones((1, 1), bool)).tolist() == [[1, 0], [1, 1], [0, 1], [0, 0]]
+    lonely = np.zeros((4, 5), bool)
+    lonely[1, 3] = True
+    assert pixel_hull(lonely).tolist() == [[4, 2], [4, 3], [3, 3], [3, 2]]

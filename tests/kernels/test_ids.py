@@ -1,0 +1,40 @@
+"""Numbering and counting ids."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from numpy.typing import NDArray
+
+from drystone.kernels import ids as module
+from drystone.kernels.ids import counted, numbered
+from tests.naive import io as naive
+from tests.strategies import repeatable
+
+shapes = hnp.array_shapes(min_dims=2, max_dims=2, max_side=9)
+values = st.sampled_from([0, 1, 2, 7, 300, 65535, 65536, 70000, 2**31, 2**32 - 1])
+
+
+@repeatable(150)
+@given(
+    st.one_of(
+        hnp.arrays(np.uint32, shapes, elements=values),
+        hnp.arrays(np.uint8, shapes, elements=st.integers(0, 5)),
+        hnp.arrays(np.int64, shapes, elements=st.integers(0, 400)),
+    )
+)
+def test_numbers_are_places_among_the_sorted_values(ids: NDArray[np.integer]) -> None:
+    for image in (ids, ids.T):
+        index, found = numbered(image)
+        expected, sorted_values = naive.index_of(image)
+        assert index.tolist() == expected.tolist()
+        assert found.tolist() == sorted_values
+        assert (index.dtype, found.dtype) == (np.int32, np.int64)
+
+
+@pytest.mark.parametrize("block", [1, 5, 1 << 20])
+def test_counts_do_not_depend_on_the_blocks(block: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "BLOCK_PX", block)
+    index = np.random.default_rng(1).integers(0, 6, (7, 9)).astype(np.int32)
+    assert counted(index, 8).tolist() == [int((index == k).sum()) for k in range(9)]

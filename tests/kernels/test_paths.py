@@ -1,0 +1,180 @@
+"""Shortest ways along rows: compiled and NumPy against a search on a heap."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from drystone.kernels import paths as module
+from drystone.kernels.backend import compiled
+from drystone.kernels.paths import DIAGONAL, STRAIGHT, step_counts
+from drystone.kernels.raster import Mask
+from tests.naive import metrics as naive
+from tests.strategies import repeatable
+
+Kernel = Callable[..., Any]
+
+
+def kernels(name: str) -> list[object]:
+    absent = pytest.mark.skipif(compiled("paths") is None, reason="kernels are not compiled here")
+    return [
+        pytest.param(getattr(module, f"{name}_numpy"), id="numpy"),
+        pytest.param(getattr(module, name), id="compiled", marks=absent),
+    ]
+
+
+def noise(shape: tuple[int, int], share: float, seed: int) -> Mask:
+    return np.asarray(np.random.default_rng(seed).random(shape) < share)
+
+
+images = st.builds(
+    noise,
+    st.tuples(st.integers(1, 12), st.integers(1, 20)),
+    st.sampled_from([0.5, 0.65, 0.8]),
+    st.integers(0, 10**6),
+)
+
+
+def lengths_px(lengths: NDArray[np.int64]) -> list[float | None]:
+    """Lengths in pixels, as the slow twin gives them."""
+    counts = [step_counts(length) if length >= 0 else None for length in lengths.tolist()]
+    return [None if c is None else c[0] + math.sqrt(2) * c[1] for c in counts]
+
+
+@pytest.mark.parametrize("row_lengths", kernels("row_lengths"))
+def test_lengths_are_those_of_the_slow_twin(row_lengths: Kernel) -> None:
+    @repeatable(120)
+    @given(images)
+    def check(image: Mask) -> None:
+        rows = np.arange(image.shape[0])
+        last = image.shape[1] - 1
+        expected = [naive.shortest_length(image, (row, 0), (row, last)) for row in rows.tolist()]
+        found = lengths_px(row_lengths(image, rows))
+        assert [x is None for x in found] == [x is None for x in expected]
+        assert found == pytest.approx(expected, abs=1e-9)
+
+    check()
+
+
+@pytest.mark.parametrize("row_ways", kernels("row_ways"))
+def test_a_way_is_as_long_as_it_should_be_and_stays_on_open_pixels(row_ways: Kernel) -> None:
+    @repeatable(100)
+    @given(images, st.data())
+    def check(image: Mask, data: st.DataObject) -> None:
+        row = data.draw(st.integers(0, image.shape[0] - 1))
+        (way,) = row_ways(image, np.array([row]))
+        length = module.row_lengths_numpy(image, np.array([row]))[0]
+        assert (way is None) == (length < 0)
+        if way is None:
+            return
+        assert way[0].tolist() == [row, 0]
+        assert way[-1].tolist() == [row, image.shape[1] - 1]
+        assert image[tuple(way.T)].all()
+        steps = np.abs(np.diff(way, axis=0))
+        assert (steps.max(axis=1, initial=1) == 1).all()
+        diagonal = np.count_nonzero(steps.sum(axis=1) == 2)
+        assert (len(steps) - diagonal) * STRAIGHT + diagonal * DIAGONAL == length
+
+    check()
+
+
+@pytest.mark.skipif(compiled("paths") is None, reason="kernels are not compiled here")
+@pytest.mark.parametrize("share", [0.5, 0.62, 0.75, 0.95])
+@pytest.mark.parametrize("seed", range(3))
+def test_both_versions_agree_on_larger_images(share: float, seed: int) -> None:
+    image = noise((60, 110), share, seed)
+    rows = np.arange(0, 60, 3)
+    lengths = module.row_lengths(image, rows)
+    assert lengths.tolist() == module.row_lengths_numpy(image, rows).tolist()
+    pairs = zip(module.row_ways(image, rows), module.row_ways_numpy(image, rows), strict=True)
+    for way, expected in pairs:
+        assert (way is None) == (expected is None)
+        assert way is None or expected is None or way.tolist() == expected.tolist()
+
+
+@pytest.mark.parametrize("row_lengths", kernels("row_lengths"))
+@pytest.mark.parametrize("seed", [2492, 2882, 3913, 4836])
+def test_a_better_way_that_is_found_just_after_the_first(row_lengths: Kernel, seed: int) -> None:
+    """Images in which a search that ends with the first bucket of the end is wrong."""
+    image, rows = noise((12, 18), 0.62, seed), np.arange(12)
+    expected = [naive.shortest_length(image, (row, 0), (row, 17)) for row in rows.tolist()]
+    found = lengths_px(row_lengths(image, rows))
+    assert found == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("row_lengths", kernels("row_lengths"))
+@pytest.mark.parametrize("turns", range(4))
+def test_a_way_that_goes_back_and_forth(row_lengths: Kernel, turns: int) -> None:
+    """Corridors, once along the rows and once across them, ended by either row or column."""
+    image = np.zeros((31, 31), bool)
+    image[::2] = True
+    image[1::4, -1] = image[3::4, 0] = True
+    image = np.rot90(image, turns)
+    rows = np.array([0, 14, 30])
+    expected = [naive.shortest_length(image, (row, 0), (row, 30)) for row in rows.tolist()]
+    assert lengths_px(row_lengths(image, rows)) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("row_lengths", kernels("row_lengths"))
+def test_rows_do_not_disturb_each_other(row_lengths: Kernel) -> None:
+    image = noise((25, 40), 0.66, 4)
+    rows = np.array([3, 20, 3, 11, 0, 24, 11])
+    alone = [row_lengths(image, rows[k : k + 1])[0] for k in range(len(rows))]
+    assert row_lengths(image, rows).tolist() == alone
+    assert -1 in alone
+    assert max(alone) > 0
+
+
+@pytest.mark.parametrize("row_lengths", kernels("row_lengths"))
+def test_edges(row_lengths: Kernel) -> None:
+    nothing = np.zeros((3, 4), bool)
+    assert row_lengths(nothing, np.array([1])).tolist() == [-1]
+    assert row_lengths(~nothing, np.zeros(0, int)).tolist() == []
+    assert row_lengths(~nothing, np.array([0, 2])).tolist() == [3 * STRAIGHT] * 2
+    one_column = np.array([[1], [0]], bool)
+    assert row_lengths(one_column, np.array([0, 1])).tolist() == [0, -1]
+    shut = ~nothing
+    shut[1, 0] = shut[2, 3] = False
+    assert row_lengths(shut, np.array([1, 2])).tolist() == [-1, -1]
+
+
+@pytest.mark.parametrize("row_lengths", kernels("row_lengths"))
+def test_views_of_images_do(row_lengths: Kernel) -> None:
+    image = noise((40, 50), 0.8, 1)
+    rows = np.array([0, 9, 19])
+    for view in (image.T[::2, ::-1], image[::2, 3:-3]):
+        expected = row_lengths(np.ascontiguousarray(view), rows)
+        assert row_lengths(view, rows).tolist() == expected.tolist()
+
+
+@pytest.mark.parametrize("row_ways", kernels("row_ways"))
+def test_of_equal_ways_always_the_same_is_taken(row_ways: Kernel) -> None:
+    ring = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], bool)
+    found = row_ways(ring, np.array([1, 0]))
+    assert [way.tolist() for way in found] == [
+        [[1, 0], [2, 1], [1, 2]],
+        [[0, 0], [0, 1], [0, 2]],
+    ]
+    longer = np.insert(ring, [1, 2], True, axis=1)
+    assert row_ways(longer, np.array([1]))[0].tolist() == [[1, 0], [2, 1], [2, 2], [1, 3], [1, 4]]
+    assert row_ways(ring[:, :1], np.array([2]))[0].tolist() == [[2, 0]]
+
+
+def test_the_ratio_of_the_steps_is_a_convergent_of_the_root_of_two() -> None:
+    assert abs(DIAGONAL**2 - 2 * STRAIGHT**2) == 1
+
+
+@given(*[st.integers(0, 10**6)] * 4)
+def test_whole_numbers_order_ways_as_their_true_lengths_do(
+    a: int, b: int, straight: int, diagonal: int
+) -> None:
+    whole = (a - straight) * STRAIGHT + (b - diagonal) * DIAGONAL
+    more, less = a - straight, diagonal - b  # longer when more > sqrt 2 * less
+    true = np.sign(more * abs(more) - 2 * less * abs(less))
+    assert np.sign(whole) == true
+    assert step_counts(a * STRAIGHT + b * DIAGONAL) == (a, b)
