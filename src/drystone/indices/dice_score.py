@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.kernels.merits import dice_score
 from drystone.model.landscape import Landscape
 from drystone.model.pose import PosedStone
 
@@ -24,12 +25,26 @@ def geometrical_dice_score(
     rows : (n,) int array
         Row of the mask's top edge.
     """
-    box_area = float(landscape.width_px * landscape.built_height_px)
-    if box_area == 0:
-        return np.zeros(len(rows))
+    mask, box_area = posed.silhouette, float(landscape.width_px * landscape.built_height_px)
     # Pixels of the stone from its row k downwards lie in B when B's top row is k rows below its.
-    from_row = np.append(np.cumsum(posed.mask.sum(axis=1)[::-1])[::-1], 0)
     box_top = landscape.height_px - landscape.built_height_px
-    inside = from_row[np.clip(box_top - rows, 0, posed.height_px)]
-    area = posed.area_px
-    return np.asarray((inside / area) * (box_area / (box_area + area - inside)))
+    inside = mask.area_from[np.clip(box_top - rows, 0, mask.height)]
+    return dice_score(inside, posed.area_px, box_area)
+
+
+def geometrical_dice_score_at(landscape: Landscape, posed: PosedStone, row: int) -> float:
+    """Return GDS at one row: the same number.
+
+    Parameters
+    ----------
+    landscape, posed
+        As for :func:`geometrical_dice_score`.
+    row : int
+        Row of the mask's top edge.
+    """
+    mask, box_area = posed.silhouette, float(landscape.width_px * landscape.built_height_px)
+    if box_area == 0:
+        return 0.0
+    box_top = landscape.height_px - landscape.built_height_px
+    inside = int(mask.area_from[min(max(box_top - row, 0), mask.height)])
+    return (inside / posed.area_px) * (box_area / (box_area + posed.area_px - inside))

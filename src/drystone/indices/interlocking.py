@@ -1,5 +1,6 @@
 """IWR: how far a stone's ends are from the joints below (Eq. 9)."""
 
+from drystone.kernels.boxes import nearest_joints
 from drystone.model.landscape import Box, Landscape
 
 NO_JOINT = 0.5
@@ -26,18 +27,12 @@ def interlocking_width_ratio(landscape: Landscape, box: Box, end_px: float) -> f
     """
     if box.bottom == 0:
         return NO_JOINT
-    below = [b for b in landscape.boxes if 2 * b.top <= box.top + box.bottom]
-    rights = [b for b in below if b.right < landscape.width_px - end_px]
-    lefts = [b for b in below if b.left > end_px]
+    below1, below2 = nearest_joints(landscape.box_table, box, end_px, landscape.width_px - end_px)
     terms = []
-    if rights:
-        one = min(rights, key=lambda b: _distance2(b.right, b.top, box.left, box.bottom))
+    if below1 >= 0:
+        one = landscape.boxes[below1]
         terms.append(min(1.0, abs(box.left - one.right) / one.width))
-    if lefts:
-        two = min(lefts, key=lambda b: _distance2(b.left, b.top, box.right, box.bottom))
+    if below2 >= 0:
+        two = landscape.boxes[below2]
         terms.append(min(1.0, abs(box.right - two.left) / two.width))
     return sum(terms) / len(terms) if terms else NO_JOINT
-
-
-def _distance2(x0: int, y0: int, x1: int, y1: int) -> int:
-    return (x0 - x1) ** 2 + (y0 - y1) ** 2

@@ -1,6 +1,6 @@
 """IS: how much the top of a stone at an end of the wall slopes inwards (Eq. 10)."""
 
-import numpy as np
+import math
 
 from drystone.model.landscape import Box, Landscape
 from drystone.model.pose import PosedStone
@@ -21,20 +21,23 @@ def inward_slope(landscape: Landscape, posed: PosedStone, col: int) -> float:
     col : int
         Column of the mask's left edge.
     """
-    x = np.arange(posed.width_px) + 0.5
-    top, x_c = posed.top, posed.anchor[0]
-    # A column exactly at the centroid belongs to both halves, as x_c does in Eq. 10.
-    left_half, right_half = top[x <= x_c], top[x >= x_c]
-    if not (left_half.size and right_half.size):
+    top: list[int] = posed.top.tolist()
+    x_c = posed.anchor[0]
+    # Column k is centred at k + 1/2; one exactly at the centroid belongs to both halves, as x_c
+    # does in Eq. 10.
+    left_half = top[: max(0, math.floor(x_c + 0.5))]
+    right_half = top[max(0, math.ceil(x_c - 0.5)) :]
+    if not (left_half and right_half):
         return 0.0
-    left = int(np.argmin(left_half))
-    right = posed.width_px - 1 - int(np.argmin(right_half[::-1]))
+    left = left_half.index(min(left_half))
+    right = len(top) - 1 - right_half[::-1].index(min(right_half))
     if left == right:
         return 0.0
     # Rows count downwards: a smaller row is higher.
     slope = (top[right] - top[left]) / (left - right)
     centre = col + posed.anchor[0] - landscape.width_px / 2
-    return float(np.clip(slope * np.sign(centre), -1.0, 1.0))
+    side = (centre > 0) - (centre < 0)
+    return min(1.0, max(-1.0, slope * side))
 
 
 def is_boundary(landscape: Landscape, box: Box, narrowest_px: float) -> bool:

@@ -29,5 +29,17 @@ def local_filling_ratio(
     ratio : (n,) float array
         1 where the rays sweep nothing.
     """
-    shape = (posed.height_px, posed.width_px)
-    return landscape.rays.filled_share(posed.ray_pattern, shape, positions[:, 0], positions[:, 1])
+    return landscape.rays.filled_share(posed.silhouette, positions)
+
+
+def local_filling_ratio_at(landscape: Landscape, posed: PosedStone, row: int, col: int) -> float:
+    """Return LFR at one position: the same number without prefix sums.
+
+    Parameters
+    ----------
+    landscape, posed
+        As for :func:`local_filling_ratio`.
+    row, col : int
+        Top-left corner of the mask.
+    """
+    return landscape.rays.filled_share_at(posed.silhouette, row, col)

@@ -1,21 +1,17 @@
 """NHR: how far a stone's top is from level with its neighbour (Eq. 6-8)."""
 
+from drystone.kernels.boxes import left_neighbour as neighbour_place
 from drystone.model.landscape import Box, Landscape
 
 
 def left_neighbour(landscape: Landscape, box: Box) -> Box | None:
     """Return the nearest stone on the building side in the same course; None when there is none.
 
-    Its rows overlap the stone's by at least half the smaller of the two heights.
+    Its rows overlap the stone's by at least half the smaller of the two heights, and it ends left
+    of the stone's middle: outlines may interlock.
     """
-
-    def level(other: Box) -> bool:
-        shared = min(box.top, other.top) - max(box.bottom, other.bottom)
-        return 2 * shared >= min(box.height, other.height)
-
-    # Left of it means that it ends left of the stone's middle: outlines may interlock.
-    beside = [b for b in landscape.boxes if 2 * b.right <= box.left + box.right and level(b)]
-    return max(beside, key=lambda b: (b.right, b.top), default=None)
+    place = neighbour_place(landscape.box_table, box)
+    return landscape.boxes[place] if place >= 0 else None
 
 
 def neighbour_height_ratio(
