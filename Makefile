@@ -2,9 +2,9 @@
 PYTHON ?= python3
 BIN := .venv/bin
 # What an installation is made from; the kernels are compiled when there is a compiler.
-SOURCES := pyproject.toml requirements.lock setup.py $(wildcard src/drystone/kernels/compiled/*.pyx)
+SOURCES := pyproject.toml requirements.lock setup.py $(wildcard src/drystone/kernels/compiled/*.p[yx][xd])
 
-.PHONY: demo test lint lock clean
+.PHONY: demo test lint bench lock clean
 
 demo: .venv/demo.stamp          ## plan a generated stone set and say where the picture is
 	$(BIN)/drystone demo -o demo --overwrite
@@ -17,6 +17,9 @@ lint: .venv/dev.stamp
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+bench: .venv/dev.stamp          ## times beside slow twins; QUICK=1 takes a minute instead of ten
+	$(BIN)/python -m benchmarks $(if $(QUICK),--quick)
 
 .venv/demo.stamp: $(SOURCES)
 	$(PYTHON) -m venv .venv

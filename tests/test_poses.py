@@ -1,6 +1,8 @@
 """Initial poses, orientation sets and the pixels of a turned stone (§3.6, Eq. 3, DESIGN 4.2)."""
 
 import math
+import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -8,10 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.errors import UsageError
-from drystone.kernels.raster import Mask
+from drystone.kernels.raster import Mask, quantise, rotation
+from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.poses import (
     PoseBook,
+    RecentlyUsed,
     bounding_box_shape_factor,
     initial_angle_deg,
     orientation_step_deg,
@@ -88,6 +92,35 @@ def test_the_anchor_is_where_the_centroid_of_the_turned_stone_falls(
     assert np.array_equal(got[decided], exact[decided] >= 0.5)
 
 
+@repeatable(40)
+@given(mask=masks(6), angle=st.integers(-180, 179).map(float), scale=st.sampled_from([1.0, 0.6]))
+def test_a_pose_is_the_first_of_sixteen_positions_with_the_right_area(
+    mask: Mask, angle: float, scale: float
+) -> None:
+    stone = Stone(1, mask)
+    posed = PoseBook(scale).pose(stone, angle)
+    (cos, sin), (x0, y0) = rotation(angle), stone.local_centroid
+    corners = [
+        (col + i - x0, mask.shape[0] - row - 1 + j - y0)
+        for row, col in np.argwhere(mask).tolist()
+        for i in (0, 1)
+        for j in (0, 1)
+    ]
+    left = min(x * cos - y * sin for x, y in corners)
+    bottom = min(x * sin + y * cos for x, y in corners)
+    first = quantise(-left * scale) % 1.0, quantise(-bottom * scale) % 1.0
+    area = int(mask.sum()) * scale**2
+    tolerance = max(2.0, 0.01 * area)
+    pixels, phase = naive.rasterised_to_area(
+        mask, stone.local_centroid, angle, scale, first, (area, tolerance)
+    )
+    x = min(x for x, _ in pixels)
+    y = min(y for _, y in pixels)
+    assert posed.anchor == (phase[0] - x, phase[1] - y)
+    rows, cols = np.nonzero(posed.mask[::-1])
+    assert {(x + c, y + r) for r, c in zip(rows.tolist(), cols.tolist(), strict=True)} == pixels
+
+
 def test_a_pose_depends_on_the_pixels_not_on_the_id_or_the_place() -> None:
     one = PoseBook(0.5).pose(Stone(1, L_MASK), 25.0)
     other = PoseBook(0.5).pose(Stone(2**32 - 1, L_MASK, 100, 200), 25.0)
@@ -107,6 +140,63 @@ def test_the_book_makes_each_pose_once() -> None:
     book, stone = PoseBook(), Stone(1, L_MASK)
     assert book.pose(stone, 190.0) is book.pose(stone, -170.0)
     assert book.pose(stone, 190.0).angle_deg == -170.0
+
+
+def test_a_book_without_memory_gives_the_same_poses() -> None:
+    stone = Stone(1, np.kron(L_MASK, np.ones((5, 5), bool)))
+    keeps, forgets = PoseBook(0.5), PoseBook(0.5, budget_bytes=20_000)
+    for angle in (0.0, 13.0, -90.0, 13.0, 40.0, 50.0, 60.0, 0.0):
+        one, other = keeps.pose(stone, angle), forgets.pose(stone, angle)
+        assert np.array_equal(one.mask, other.mask)
+        assert (one.anchor, one.angle_deg) == (other.anchor, other.angle_deg)
+        assert forgets._poses.held_bytes <= 20_000
+    assert keeps.pose(stone, 0.0) is keeps.pose(stone, 360.0)
+    assert 0 < len(forgets._poses) < len(keeps._poses) == 6
+    # Whoever still has a forgotten pose keeps it; the book makes another one.
+    first = forgets.pose(stone, 0.0)
+    for angle in range(1, 40):
+        forgets.pose(stone, float(angle))
+    assert forgets.pose(stone, 0.0) is not first
+
+
+def test_threads_share_the_poses_of_a_book() -> None:
+    stones = [Stone(k, np.kron(L_MASK, np.ones((k, k), bool))) for k in range(1, 5)]
+    asked = [(stone, float(angle)) for angle in range(0, 50, 5) for stone in stones] * 3
+    alone = PoseBook(0.7)
+    expected = [alone.pose(*it).mask.tobytes() for it in asked]
+    for budget in (1 << 20, 10_000):
+        book = PoseBook(0.7, budget_bytes=budget)
+        with ThreadPoolExecutor(4) as pool:
+            poses = list(pool.map(book.pose, *zip(*asked, strict=True)))
+        assert [posed.mask.tobytes() for posed in poses] == expected
+        assert book._poses.held_bytes <= budget
+    many = PoseBook(0.7)
+    start = threading.Barrier(4)
+
+    def together(_: int) -> PosedStone:
+        start.wait()
+        return many.pose(stones[3], 31.0)
+
+    with ThreadPoolExecutor(4) as pool:
+        first, *others = pool.map(together, range(4))
+    assert all(posed is first for posed in others)
+
+
+def test_what_was_not_used_for_longest_is_forgotten_first() -> None:
+    used = RecentlyUsed[str, int](10)
+    assert used.keep("a", 1, 4) == 1
+    assert used.keep("b", 2, 4) == 2
+    assert used.get("a") == 1
+    assert used.keep("c", 3, 4) == 3
+    assert [used.get(key) for key in "abc"] == [1, None, 3]
+    assert (used.held_bytes, len(used)) == (8, 2)
+    assert used.keep("a", 7, 4) == 1, "the first value stays"
+    assert (used.held_bytes, len(used)) == (8, 2)
+    used.keep("d", 4, 8)
+    assert [used.get(key) for key in "acd"] == [None, None, 4]
+    assert used.held_bytes == 8
+    assert used.keep("e", 5, 11) == 5, "too large to be kept at all"
+    assert [used.get(key) for key in "de"] == [4, None]
 
 
 def test_orientation_sets() -> None:

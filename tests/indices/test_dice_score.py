@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from drystone.indices.dice_score import geometrical_dice_score
+from drystone.indices.dice_score import geometrical_dice_score, geometrical_dice_score_at
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement
 from drystone.model.pose import PosedStone
@@ -21,8 +21,12 @@ from tests.strategies import posed_on_walls, repeatable
 def test_gds_is_that_of_the_painted_box(scene: tuple[Wall, PosedStone, int, int]) -> None:
     wall, posed, row, col = scene
     stone = naive.painted(wall.occupied.shape, posed.mask, row, col)
-    got = geometrical_dice_score(Landscape.of(wall), posed, np.array([row]))
+    landscape = Landscape.of(wall)
+    got = geometrical_dice_score(landscape, posed, np.array([row]))
     assert got == pytest.approx([naive.dice_score(wall.occupied, stone)])
+    rows = np.arange(wall.site.height_px - posed.height_px + 1)
+    at_once = [geometrical_dice_score_at(landscape, posed, r) for r in rows.tolist()]
+    assert geometrical_dice_score(landscape, posed, rows).tolist() == at_once
 
 
 def test_inside_outside_and_between() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from drystone.indices.local_filling import local_filling_ratio
+from drystone.indices.local_filling import local_filling_ratio, local_filling_ratio_at
 from drystone.model.landscape import Landscape
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
@@ -19,8 +19,10 @@ from tests.strategies import posed_on_walls, repeatable
 @given(scene=posed_on_walls())
 def test_lfr_is_that_of_rays(scene: tuple[Wall, PosedStone, int, int]) -> None:
     wall, posed, row, col = scene
-    got = local_filling_ratio(Landscape.of(wall), posed, np.array([[row, col]]))
+    landscape = Landscape.of(wall)
+    got = local_filling_ratio(landscape, posed, np.array([[row, col]]))
     assert got == pytest.approx([naive.local_filling_ratio(wall.occupied, posed.mask, row, col)])
+    assert local_filling_ratio_at(landscape, posed, row, col) == got[0]
 
 
 def test_nothing_swept_is_full() -> None:

@@ -1,63 +1,117 @@
-"""Packed-bit overlap and lowering against loops over pixels (§3.6)."""
+"""Where a mask rests: compiled and packed in Python against loops over pixels (§3.6)."""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.bits import BitLandscape, drop_rows, row_runs
+from drystone.kernels.backend import compiled
+from drystone.kernels.bits import BitLandscape, BitLandscapeNumpy, bit_landscape
+from drystone.kernels.lowering import Positions, skyline_numpy
 from drystone.kernels.raster import Mask
-from tests.naive import overlap as naive
+from drystone.kernels.silhouette import Ints, silhouette
+from tests.naive import placement as naive
 from tests.strategies import landscapes, masks, repeatable
 
+absent = pytest.mark.skipif(compiled("bits") is None, reason="kernels are not compiled here")
+twins = pytest.mark.parametrize(
+    "pack",
+    [
+        pytest.param(BitLandscapeNumpy, id="numpy"),
+        pytest.param(bit_landscape, id="compiled", marks=absent),
+    ],
+)
+Pack = Callable[[Mask, Ints], BitLandscape]
 
-@repeatable(150)
-@given(occupied=landscapes(), mask=masks(9))
-def test_overlap_is_that_of_two_loops(occupied: Mask, mask: Mask) -> None:
-    assert np.array_equal(
-        BitLandscape(occupied).overlap(mask), naive.overlap_everywhere(occupied, mask)
-    )
+
+def resting(pack: Pack, occupied: Mask, mask: Mask) -> Positions:
+    return pack(occupied, skyline_numpy(occupied)).resting(silhouette(mask))
 
 
-def test_a_long_run_does_not_see_the_next_row() -> None:
+@twins
+def test_masks_rest_where_two_loops_say(pack: Pack) -> None:
+    @repeatable(200)
+    @given(occupied=landscapes(16), mask=masks(8))
+    def check(occupied: Mask, mask: Mask) -> None:
+        found = resting(pack, occupied, mask)
+        assert found.dtype == np.int64
+        assert found.flags.c_contiguous
+        assert found.tolist() == [list(at) for at in naive.resting_positions(occupied, mask)]
+
+    check()
+
+
+@twins
+@pytest.mark.parametrize("stretch", [13, 40])
+def test_rows_of_several_words_and_runs_longer_than_one(pack: Pack, stretch: int) -> None:
+    @repeatable(60)
+    @given(occupied=landscapes(9), mask=masks(5), shift=st.integers(0, 12), cut=st.integers(0, 12))
+    def check(occupied: Mask, mask: Mask, shift: int, cut: int) -> None:
+        wide = np.roll(np.repeat(occupied, stretch, axis=1), shift, axis=1)
+        stone = np.repeat(mask, stretch, axis=1)[:, : mask.shape[1] * stretch - cut]
+        expected = naive.resting_by_areas(wide, stone, slid) if fits(wide, stone) else []
+        assert resting(pack, wide, stone).tolist() == [list(at) for at in expected]
+
+    check()
+
+
+def fits(occupied: Mask, mask: Mask) -> bool:
+    return mask.shape[0] <= occupied.shape[0] and mask.shape[1] <= occupied.shape[1]
+
+
+def slid(scene: Mask, mask: Mask) -> np.ndarray:
+    """Overlapping pixels at every position, all positions of a pixel of the mask at once."""
+    rows, cols = scene.shape[0] - mask.shape[0] + 1, scene.shape[1] - mask.shape[1] + 1
+    areas = np.zeros((rows, cols), np.int64)
+    for i, j in zip(*np.nonzero(mask), strict=True):
+        areas += scene[i : i + rows, j : j + cols]
+    return areas
+
+
+@twins
+def test_a_long_run_does_not_see_the_next_row(pack: Pack) -> None:
     occupied = np.zeros((4, 9), bool)
     occupied[1:, 0] = True
-    free = ~BitLandscape(occupied).overlap(np.ones((1, 8), bool))
-    assert free.tolist() == [[True, True], [False, True], [False, True], [False, True]]
+    found = resting(pack, occupied, np.ones((1, 8), bool))
+    assert found.tolist() == [[0, 0], [3, 1]]
 
 
-def test_asking_changes_nothing_so_threads_may_share_it() -> None:
-    landscape = BitLandscape(np.eye(20, dtype=bool))
-    before = {name: repr(value) for name, value in vars(landscape).items()}
-    landscape.overlap(np.ones((3, 17), bool))
-    assert {name: repr(value) for name, value in vars(landscape).items()} == before
+@twins
+def test_under_a_roof_and_on_it(pack: Pack) -> None:
+    occupied = np.zeros((7, 200), bool)
+    occupied[3, 10:190] = True
+    # As wide as what is left of the roof, and a pixel wider.
+    assert [6, 0] in resting(pack, occupied, np.ones((1, 10), bool)).tolist()
+    places = resting(pack, occupied, np.ones((3, 150), bool)).tolist()
+    assert places == [[0, col] for col in range(51)] + [[4, col] for col in range(51)]
 
 
-def test_a_mask_that_is_too_large_has_no_position() -> None:
-    landscape = BitLandscape(np.zeros((4, 6), bool))
-    assert landscape.overlap(np.ones((5, 2), bool)).shape == (0, 5)
-    assert landscape.overlap(np.ones((4, 7), bool)).shape == (1, 0)
+@twins
+def test_a_mask_that_is_too_large_has_no_position(pack: Pack) -> None:
+    occupied = np.zeros((4, 6), bool)
+    for shape in ((5, 2), (4, 7)):
+        assert resting(pack, occupied, np.ones(shape, bool)).shape == (0, 2)
 
 
-@repeatable()
-@given(mask=masks(9))
-def test_row_runs_give_back_the_mask(mask: Mask) -> None:
-    painted = np.zeros_like(mask)
-    for row, runs in enumerate(row_runs(mask)):
-        for start, length in runs:
-            assert not painted[row, max(0, start - 1) : start + length].any()
-            painted[row, start : start + length] = True
-    assert np.array_equal(painted, mask)
+@twins
+def test_a_mask_as_large_as_the_image(pack: Pack) -> None:
+    occupied = np.zeros((4, 6), bool)
+    assert resting(pack, occupied, np.ones((4, 6), bool)).tolist() == [[0, 0]]
+    occupied[0, 0] = True
+    assert resting(pack, occupied, np.ones((4, 6), bool)).tolist() == []
+    assert resting(pack, np.ones((2, 2), bool), np.ones((1, 1), bool)).tolist() == []
 
 
-@repeatable(100)
-@given(data=st.data(), occupied=landscapes(), mask=masks(6))
-def test_drop_rows_lower_pixel_by_pixel(data: st.DataObject, occupied: Mask, mask: Mask) -> None:
-    height = occupied.shape[0]
-    top = np.where(occupied.any(axis=0), np.argmax(occupied, axis=0), height)
-    bottom = mask.shape[0] - 1 - np.argmax(mask[::-1], axis=0)
-    rows = drop_rows(top, bottom)
-    assert rows.size == max(0, occupied.shape[1] - mask.shape[1] + 1)
-    if rows.size:
-        col = data.draw(st.integers(0, rows.size - 1))
-        expected = naive.lowered(occupied, mask, col)
-        assert (rows[col] if rows[col] >= 0 else None) == expected
+@twins
+def test_threads_may_share_a_landscape(pack: Pack) -> None:
+    rng = np.random.default_rng(0)
+    occupied = np.vstack([np.zeros((8, 150), bool), rng.random((12, 150)) < 0.1])
+    landscape = pack(occupied, skyline_numpy(occupied))
+    outlines = [silhouette(np.ones((h, w), bool)) for h in range(1, 6) for w in range(1, 6)]
+    alone = [landscape.resting(outline).tolist() for outline in outlines]
+    with ThreadPoolExecutor(4) as pool:
+        together = pool.map(landscape.resting, outlines * 4)
+        assert [found.tolist() for found in together] == alone * 4

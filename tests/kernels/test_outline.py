@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from drystone.kernels.outline import pixel_polygon, rasterise_polygon
 from drystone.kernels.raster import Mask
-from tests.naive.outline import centre_inside
+from tests.naive.outline import centre_inside, inside_by_floats
 from tests.strategies import masks, repeatable
 
 
@@ -89,3 +89,24 @@ def test_rounding_errors_of_metres_do_not_change_the_pixels() -> None:
 def test_polygon_without_a_pixel_centre_has_an_empty_mask() -> None:
     mask, _, _ = rasterise_polygon(np.array([[0.1, 0.1], [0.4, 0.1], [0.4, 0.4]]))
     assert mask.shape == (0, 0)
+
+
+@repeatable(150)
+@given(st.integers(0, 10**6), st.integers(3, 9), st.sampled_from([0.4, 3.0, 9.0]), st.booleans())
+def test_pixels_of_any_polygon_are_those_of_loops(
+    seed: int, count: int, size: float, halves: bool
+) -> None:
+    """Polygons that cross themselves among them, and corners that are centres of pixels."""
+    polygon = np.random.default_rng(seed).uniform(-size, size, (count, 2))
+    if halves:
+        polygon = np.round(2 * polygon) / 2
+    mask, left, bottom = rasterise_polygon(polygon)
+    found = {
+        (left + col, bottom + mask.shape[0] - 1 - row) for row, col in np.argwhere(mask).tolist()
+    }
+    reach = range(-11, 11)
+    corners = polygon.tolist()
+    assert found == {
+        (x, y) for x in reach for y in reach if inside_by_floats(corners, x + 0.5, y + 0.5)
+    }
+    assert not mask.size or (mask[[0, -1]].any(axis=1).all() and mask[:, [0, -1]].any(axis=0).all())

@@ -1,23 +1,28 @@
 """Turning, reducing and rasterising by coverage (DESIGN 4.2)."""
 
 import math
+from collections.abc import Iterator
+from typing import Literal
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from drystone.kernels import raster
+from drystone.kernels.backend import compiled
 from drystone.kernels.raster import (
     PHASE_STEPS,
     Mask,
-    areas_by_phase,
     quantise,
     rasterise,
+    rasterise_to_area,
     rotation,
     turn,
+    turned_boxes,
 )
 from tests.naive import raster as naive
-from tests.strategies import blobs, masks, repeatable
+from tests.strategies import blobs, landscapes, masks, repeatable
 
 L_SHAPE = np.array([[1, 0, 0], [1, 0, 0], [1, 0, 0], [1, 1, 1]], bool)
 PHASES = st.integers(0, PHASE_STEPS - 1).map(lambda n: n / PHASE_STEPS)
@@ -70,10 +75,11 @@ def test_rotation_is_exact_at_quarter_turns(quarters: int) -> None:
 @given(angle=st.floats(-720, 720))
 @repeatable()
 def test_turn_is_a_rotation_by_the_angle(angle: float) -> None:
-    x, y = turn(np.array([[2.0, 0.0]]), angle)[0]
-    assert math.hypot(x, y) == pytest.approx(2.0)
-    difference = math.degrees(math.atan2(y, x)) - angle
-    assert (difference + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-9)
+    points = [(2.0, 0.0), (0.0, 1.0), (-3.0, 0.5)]
+    for (x, y), (u, v) in zip(turn(np.array(points), angle).tolist(), points, strict=True):
+        assert math.hypot(x, y) == pytest.approx(math.hypot(u, v))
+        difference = math.degrees(math.atan2(y, x) - math.atan2(v, u)) - angle
+        assert (difference + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-9)
 
 
 @given(value=st.floats(-1e6, 1e6))
@@ -123,13 +129,190 @@ def test_a_whole_pixel_of_phase_moves_and_changes_nothing() -> None:
     assert (there[1] - here[1], there[2] - here[2]) == (2, 3)
 
 
-@pytest.mark.parametrize("scale", [1.0, 0.5, 0.3])
-def test_areas_at_all_phases_are_those_of_rasterising_at_each(scale: float) -> None:
-    mask = np.zeros((23, 31), bool)
-    mask[2:20, 3:29] = True
-    mask[2:9, 3:12] = False
-    areas = list(areas_by_phase(mask, (14.3, 9.8), 17.0, scale, (0.125, 0.5)))
-    assert len(areas) == 16
-    for number, area in enumerate(areas):
-        phase = (0.125 + number % 4 / 4, 0.5 + number // 4 / 4)
-        assert area == rasterise(mask, (14.3, 9.8), 17.0, scale, phase)[0].sum()
+FAST = compiled("raster")
+KERNELS = [
+    pytest.param(None, id="numpy"),
+    pytest.param(
+        FAST,
+        id="compiled",
+        marks=pytest.mark.skipif(FAST is None, reason="kernels are not compiled here"),
+    ),
+]
+
+
+@pytest.fixture(scope="module", params=KERNELS)
+def kernel(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Rasterise by NumPy, then by the compiled kernel."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(raster, "_fast", request.param)
+        yield
+
+
+def pixels_of(mask: Mask, left: int, bottom: int) -> set[tuple[int, int]]:
+    rows, cols = np.nonzero(mask)
+    top = bottom + mask.shape[0] - 1
+    return {(left + col, top - row) for row, col in zip(rows.tolist(), cols.tolist(), strict=True)}
+
+
+ANGLES = st.one_of(
+    st.floats(-180, 180),
+    st.integers(-4, 4).map(lambda n: 90.0 * n),
+    st.integers(-180, 180).map(float),
+    # So near a quarter turn that a line of samples hardly leaves its row.
+    st.tuples(st.integers(-2, 2), st.integers(3, 17)).map(lambda n: 90.0 * n[0] + 10.0 ** -n[1]),
+)
+
+
+@pytest.mark.usefixtures("kernel")
+@repeatable(50)
+@given(
+    mask=masks(5),
+    at=st.tuples(st.floats(0, 1), st.sampled_from([0.0, 0.5, 1.0])),
+    angle=ANGLES,
+    scale=st.sampled_from([2.0, 1.0, 0.5, 0.3, 0.12]),
+    phase=st.tuples(PHASES, PHASES),
+)
+def test_rasterising_is_counting_samples_one_by_one(
+    mask: Mask, at: tuple[float, float], angle: float, scale: float, phase: tuple[float, float]
+) -> None:
+    centre = (at[0] * mask.shape[1], at[1] * mask.shape[0])
+    expected = naive.rasterised(mask, centre, angle, scale, phase)
+    if expected:
+        assert pixels_of(*rasterise(mask, centre, angle, scale, phase)) == expected
+
+
+@pytest.mark.usefixtures("kernel")
+@repeatable(40)
+@given(
+    mask=masks(4),
+    angle=ANGLES,
+    scale=st.sampled_from([1.0, 0.5, 0.2]),
+    phase=st.tuples(PHASES, PHASES),
+    off=st.sampled_from([0.0, 0.0, 1.0, -2.0, 0.3]),
+    tolerance=st.sampled_from([0.0, 0.6, 1.0, 2.0, math.inf]),
+)
+def test_the_area_is_sought_at_sixteen_positions_one_after_the_other(
+    mask: Mask,
+    angle: float,
+    scale: float,
+    phase: tuple[float, float],
+    off: float,
+    tolerance: float,
+) -> None:
+    wanted = (round(int(mask.sum()) * scale**2) + off, tolerance)
+    expected, best = naive.rasterised_to_area(mask, (0.5, 0.5), angle, scale, phase, wanted)
+    if expected:
+        found = rasterise_to_area(mask, (0.5, 0.5), angle, scale, phase, wanted)
+        assert pixels_of(*found[:3]) == expected
+        assert found[3] == best
+
+
+@pytest.mark.skipif(FAST is None, reason="kernels are not compiled here")
+@repeatable(150)
+@given(
+    # Rings and loose pixels among them.
+    mask=st.one_of(masks(12), blobs(), landscapes(12).filter(np.any)),
+    angle=ANGLES,
+    scale=st.sampled_from([2.5, 1.0, 0.5, 0.3, 0.05, 0.004]),
+    phase=st.tuples(PHASES, PHASES),
+    area=st.tuples(st.floats(0.5, 1.5), st.sampled_from([0.0, 2.0, math.inf])),
+    order=st.sampled_from("CF"),
+)
+def test_compiled_pixels_are_those_of_numpy(
+    mask: Mask,
+    angle: float,
+    scale: float,
+    phase: tuple[float, float],
+    area: tuple[float, float],
+    order: Literal["C", "F"],
+) -> None:
+    wanted = (area[0] * mask.sum() * scale**2, area[1])
+    source = np.array(mask, order=order)
+    found = []
+    for fast in (None, FAST):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(raster, "_fast", fast)
+            found.append(rasterise_to_area(source, (7.3, 4.5), angle, scale, phase, wanted))
+    assert found[0][0].dtype == found[1][0].dtype == bool
+    assert found[0][0].tolist() == found[1][0].tolist()
+    assert found[0][1:] == found[1][1:]
+
+
+@pytest.mark.usefixtures("kernel")
+@pytest.mark.parametrize(
+    ("scale", "expected"),
+    [
+        (0.5, ["######...######", "######...######", "###############", "######...######"]),
+        # Covered to a quarter: enough for the neck, and for the bump on the left block.
+        (0.25, ["###.####", "########"]),
+        # Covered to an eighth: all that is touched is taken.
+        (0.125, ["####"]),
+    ],
+)
+def test_a_neck_too_thin_for_the_resolution_does_not_break(
+    scale: float, expected: list[str]
+) -> None:
+    dumbbell = np.zeros((8, 30), bool)
+    dumbbell[:, :12], dumbbell[:, 18:] = True, True
+    dumbbell[4, :] = dumbbell[3, 13:15] = True
+    turned, _, _ = rasterise(dumbbell, (0.0, 0.0), 0.0, scale, (0.0, 0.0))
+    assert ["".join(".#"[pixel] for pixel in row) for row in turned.astype(int)] == expected
+
+
+@pytest.mark.usefixtures("kernel")
+def test_a_ring_is_one_piece() -> None:
+    ring = np.pad(np.zeros((8, 8), bool), 4, constant_values=True)
+    turned, _, _ = rasterise(ring, (8.0, 8.0), 10.0, 0.5, (0.0, 0.0))
+    counts, full = naive.sampled(ring, (8.0, 8.0), 10.0, 0.5, (0.0, 0.0))
+    assert turned.sum() == sum(2 * count >= full for count in counts.values()) < len(counts)
+
+
+@pytest.mark.usefixtures("kernel")
+def test_a_pixel_between_the_sample_points_does_not_vanish() -> None:
+    counts, _ = naive.sampled(np.ones((1, 1), bool), (0.5, 0.5), 45.0, 0.25, (0.0, 0.0))
+    assert not counts
+    turned, left, bottom = rasterise(np.ones((1, 1), bool), (0.5, 0.5), 45.0, 0.25, (0.0, 0.0))
+    assert (turned.tolist(), left, bottom) == ([[True, True], [True, True]], -1, -1)
+
+
+@pytest.mark.usefixtures("kernel")
+@pytest.mark.parametrize(("phase", "shape"), [((0.625, 0.0), (1, 2)), ((0.0, 0.375), (2, 1))])
+def test_samples_on_an_edge_belong_to_the_pixel_right_of_or_below_it(
+    phase: tuple[float, float], shape: tuple[int, int]
+) -> None:
+    """A pixel across two of the result: half of each when one of its two edges counts."""
+    turned, left, bottom = rasterise(np.ones((1, 1), bool), (0.0, 0.0), 0.0, 1.0, phase)
+    assert (turned.shape, left, bottom) == (shape, 0, 0)
+
+
+@pytest.mark.usefixtures("kernel")
+def test_a_mask_without_pixels_is_refused() -> None:
+    with pytest.raises(ValueError, match="no pixel"):
+        rasterise(np.zeros((2, 3), bool), (0.0, 0.0), 10.0, 1.0, (0.0, 0.0))
+
+
+def test_numpy_takes_a_large_mask_in_bands(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(raster, "_fast", None)
+    mask = np.indices((23, 31)).sum(axis=0) % 7 > 1
+    whole = rasterise(mask, (9.2, 8.1), 33.0, 0.15, (0.25, 0.5))
+    monkeypatch.setattr(raster, "BAND", 1)
+    banded = rasterise(mask, (9.2, 8.1), 33.0, 0.15, (0.25, 0.5))
+    assert np.array_equal(whole[0], banded[0])
+    assert whole[1:] == banded[1:]
+
+
+@pytest.mark.usefixtures("kernel")
+@repeatable()
+@given(
+    points=st.lists(st.tuples(st.floats(-99, 99), st.floats(-99, 99)), min_size=1, max_size=9),
+    angles=st.lists(ANGLES, min_size=1, max_size=4),
+)
+def test_boxes_are_those_of_the_points_turned_one_by_one(
+    points: list[tuple[float, float]], angles: list[float]
+) -> None:
+    turns = [rotation(angle) for angle in angles]
+    boxes = turned_boxes(np.array(points), np.array(turns))
+    for (cos, sin), box in zip(turns, boxes.tolist(), strict=True):
+        x = [u * cos - v * sin for u, v in points]
+        y = [u * sin + v * cos for u, v in points]
+        assert box == [min(x), min(y), max(x), max(y)]

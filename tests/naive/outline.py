@@ -17,3 +17,12 @@ def centre_inside(corners: list[tuple[int, int]], col: int, row: int) -> bool | 
                 return None
             crossings += at < x
     return crossings % 2 == 1
+
+
+def inside_by_floats(corners: list[list[float]], x: float, y: float) -> bool:
+    """Say whether a point is inside any polygon, even one that crosses itself: even-odd rule."""
+    inside = False
+    for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
+        if min(y0, y1) <= y < max(y0, y1) and x0 + (y - y0) * (x1 - x0) / (y1 - y0) <= x:
+            inside = not inside
+    return inside

@@ -15,16 +15,6 @@ def overlaps(occupied: Mask, mask: Mask, row: int, col: int) -> bool:
     return False
 
 
-def overlap_everywhere(occupied: Mask, mask: Mask) -> Mask:
-    """Overlap at every position of the mask's top-left corner inside the image."""
-    rows, cols = occupied.shape[0] - mask.shape[0] + 1, occupied.shape[1] - mask.shape[1] + 1
-    result = np.zeros((max(0, rows), max(0, cols)), bool)
-    for row in range(rows):
-        for col in range(cols):
-            result[row, col] = overlaps(occupied, mask, row, col)
-    return result
-
-
 def lowered(occupied: Mask, mask: Mask, col: int) -> int | None:
     """Row at which a mask comes to rest that is lowered from far above, row by row.
 

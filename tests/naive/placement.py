@@ -1,12 +1,17 @@
 """Slow, obvious twins of placement: every position of the image, one after the other (§3.6)."""
 
+from collections.abc import Callable
+
 import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage, signal
 
 from drystone.kernels.raster import Mask
 from tests.naive import indices, rays
 from tests.naive.overlap import lowered, overlaps
 
 Position = tuple[int, int]
+OverlapAreas = Callable[[Mask, Mask], NDArray[np.int64]]
 
 
 def all_positions(occupied: Mask, mask: Mask) -> list[Position]:
@@ -91,3 +96,56 @@ def void_below(occupied: Mask, mask: Mask, at: Position) -> int:
             empty += 1
             row += 1
     return empty
+
+
+def areas_by_convolution(scene: Mask, mask: Mask) -> NDArray[np.int64]:
+    """Overlapping pixels at every position of a mask, by convolution of the whole image (§3.6)."""
+    stone = mask[::-1, ::-1].astype(np.int64)
+    areas = ndimage.convolve(scene.astype(np.int64), stone, mode="constant")
+    # The middle of the stone, in an even number of pixels the one before it, is at each pixel.
+    top, left = (mask.shape[0] - 1) // 2, (mask.shape[1] - 1) // 2
+    rows, cols = scene.shape[0] - mask.shape[0] + 1, scene.shape[1] - mask.shape[1] + 1
+    return np.asarray(areas[top : top + max(0, rows), left : left + max(0, cols)])
+
+
+def areas_by_fft(scene: Mask, mask: Mask) -> NDArray[np.int64]:
+    """The same by Fourier transforms; the mask is not larger than the scene."""
+    areas = signal.fftconvolve(scene.astype(float), mask[::-1, ::-1].astype(float), mode="valid")
+    return np.asarray(np.rint(areas), np.int64)
+
+
+def resting_by_areas(occupied: Mask, mask: Mask, areas: OverlapAreas) -> list[Position]:
+    """`resting_positions` from two maps: of the landscape, and of all of it a row higher."""
+    raised = np.vstack([occupied[1:], np.ones((1, occupied.shape[1]), bool)])
+    free, rests = areas(occupied, mask) == 0, areas(raised, mask) > 0
+    return [(int(row), int(col)) for row, col in np.argwhere(free & rests)]
+
+
+def filling_on_images(occupied: Mask, stone: Mask) -> float:
+    """Eq. 4 with the rays of a painted stone painted as whole images."""
+    left = np.logical_or.accumulate(stone[:, ::-1], axis=1)[:, ::-1]
+    swept = (left | np.logical_or.accumulate(stone, axis=0)) & ~stone
+    count = int(np.count_nonzero(swept))
+    return float(np.count_nonzero(swept & occupied) / count) if count else 1.0
+
+
+def eq12_on_images(occupied: Mask, mask: Mask, anchor_x: float, at: Position, beta: float) -> float:
+    """`eq12` on whole images."""
+    stone = indices.painted(occupied.shape, mask, *at)
+    dice = indices.dice_score(occupied, stone)
+    x_c = (at[1] + anchor_x) / occupied.shape[1]
+    return filling_on_images(occupied, stone) + (dice if dice > beta else 0.0) - x_c
+
+
+def best_by_eq12(
+    occupied: Mask, mask: Mask, anchor_x: float, positions: list[Position], beta: float
+) -> Position | None:
+    """The position of the largest merit; equal ones: the lower, then the one further left."""
+    ranked = [
+        (-round(eq12_on_images(occupied, mask, anchor_x, at, beta), 12), -at[0], at[1])
+        for at in positions
+    ]
+    if not ranked:
+        return None
+    _, row, col = min(ranked)
+    return -row, col

@@ -1,7 +1,25 @@
-"""Slow, obvious versions of what the planner computes."""
+"""Slow, obvious versions of what the planner computes, and of the planner itself."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from itertools import product
+
+import numpy as np
+
+from drystone.clusters import cluster_stones
+from drystone.indices.shape_factor import shape_factor
+from drystone.indices.values import Indices
+from drystone.model.placement import Placement, Wedge
+from drystone.model.pose import PosedStone
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.planner.settings import PlannerSettings
+from drystone.poses import PoseBook
+from drystone.selection.algorithm2 import Action
+from drystone.selection.sampling import sample_stones
+from drystone.stabilise.memory import StabiliseMemory
+from drystone.statics.contacts.blocks import model_from_labels
+from tests.naive import indices, placement, selection, statics
 
 
 def unfillable(lengths: list[tuple[int, ...]], limit: int) -> list[int]:
@@ -20,3 +38,111 @@ def free_area_under(occupied: list[list[bool]], cells: Iterable[tuple[int, int]]
             count += 1
             below += 1
     return count
+
+
+@dataclass(frozen=True)
+class Tried:
+    """A candidate of a step."""
+
+    placement: Placement
+    wedges: tuple[Wedge, ...]
+    alphas: tuple[float, float] | None
+    action: Action
+
+
+class SlowPlanner:
+    """Algorithm 1 with the defaults of the paper, everything anew for every candidate.
+
+    Stones are turned and made stable by the functions of the package, each one without memory;
+    positions, indices, contacts and loads are found on whole images and by fresh programs.
+    """
+
+    def __init__(self, stones: StoneSet, site: Site, seed: int = 0) -> None:
+        self.settings = PlannerSettings()
+        self.site, self.seed = site, seed
+        self.book = PoseBook(site.scale)
+        self.poses = {s.id: self.book.pose(s, self.book.initial_angle(s)) for s in stones}
+        self.clusters = cluster_stones(stones, self.book)
+        heights = [posed.height_px for posed in self.poses.values()]
+        self.mean_height = sum(heights) / len(heights)
+        self.narrowest = min(posed.width_px for posed in self.poses.values())
+        self.labels = np.zeros((site.height_px, site.width_px), np.uint32)
+        # Numbered in the order of placement, without wedges.
+        self.order = np.zeros_like(self.labels)
+        self.built: list[Tried] = []
+
+    def plan(self, at_most: int | None = None) -> list[Tried]:
+        """Place stones until the wall is full, none is left, or five samples in a row failed."""
+        failures = 0
+        while failures < self.settings.stop.failures and len(self.built) != at_most:
+            placed = {tried.placement.stone_id for tried in self.built}
+            remaining = [i for i in self.poses if i not in placed]
+            area = sum(t.placement.posed.stone.area_px for t in self.built) * self.site.scale**2
+            full = area / self.labels.size > self.settings.stop.filling
+            if full or not remaining:
+                break
+            rng = np.random.default_rng([self.seed, len(self.built), failures])
+            sample = sample_stones("variant", remaining, self.clusters, rng)
+            found = [self.tried(self.poses[i], sample) for i in sample]
+            candidates = [tried for tried in found if tried is not None]
+            actions = [tried.action for tried in candidates]
+            chosen = selection.algorithm2(actions, self.settings.selection.weights)
+            if chosen is None:
+                failures += 1
+                continue
+            failures = 0
+            self.build(candidates[actions.index(chosen)])
+        return self.built
+
+    def build(self, tried: Tried) -> None:
+        """Paint a stone and its wedges."""
+        self.built.append(tried)
+        at = tried.placement
+        self.labels[at.window][at.posed.mask] = at.stone_id
+        self.order[at.window][at.posed.mask] = len(self.built)
+        for wedge in tried.wedges:
+            self.labels[wedge.window][wedge.mask] = wedge.id
+
+    def tried(self, posed: PosedStone, sample: Iterable[int]) -> Tried | None:
+        """Place, stabilise and judge one stone; None when it can stand nowhere."""
+        occupied = self.labels > 0
+        positions = placement.resting_by_areas(occupied, posed.mask, placement.areas_by_convolution)
+        beta = self.settings.placement.beta
+        spot = placement.best_by_eq12(occupied, posed.mask, posed.anchor[0], positions, beta)
+        if spot is None:
+            return None
+        memory = StabiliseMemory(self.book, self.mean_height, self.settings.stabilise)
+        next_wedge = max(self.poses) + sum(len(tried.wedges) for tried in self.built) + 1
+        stabilised = memory.stabilise(occupied, (posed, *spot), "left", next_wedge)
+        if stabilised is None:
+            return None
+        others = [float(self.poses[i].height_px) for i in sample if i != posed.stone.id]
+        return self.judged(stabilised.placement, stabilised.wedges, others, posed.angle_deg)
+
+    def judged(
+        self,
+        at: Placement,
+        wedges: tuple[Wedge, ...],
+        other_heights: list[float],
+        trial_angle_deg: float,
+    ) -> Tried:
+        """Everything that selection asks for."""
+        occupied = self.labels > 0
+        grown = self.labels.copy()
+        grown[at.window][at.posed.mask] = at.stone_id
+        for wedge in wedges:
+            grown[wedge.window][wedge.mask] = wedge.id
+        alphas = statics.alphas_by_linprog(model_from_labels(grown, self.settings.mu).model)
+        stone = indices.painted(occupied.shape, at.posed.mask, at.row, at.col)
+        extent = indices.extent_of(stone)
+        values = Indices(
+            SF=shape_factor(at.posed),
+            LFR=placement.filling_on_images(occupied, stone),
+            GDS=indices.dice_score(occupied, stone),
+            NHR=indices.neighbour_height_ratio(self.order, stone, other_heights),
+            IWR=indices.interlocking(self.order, stone, self.narrowest),
+            IS=indices.inward_slope(stone, at.col + at.posed.anchor[0]),
+            LLC=None if alphas is None else min(alphas) / self.settings.mu,
+            boundary=min(extent.x0, occupied.shape[1] - extent.x1) < self.narrowest,
+        )
+        return Tried(at, wedges, alphas, Action(at.stone_id, trial_angle_deg, values))

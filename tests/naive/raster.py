@@ -1,11 +1,15 @@
-"""Slow, obvious twins of rasterising: exact clipping of polygons."""
+"""Slow, obvious twins of rasterising: exact clipping of polygons, samples one by one."""
+
+import math
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely import affinity
 
-from drystone.kernels.raster import Mask
+from drystone.kernels.raster import Mask, rotation
+
+Pixel = tuple[int, int]
 
 
 def polygon_of(mask: Mask) -> shapely.Geometry:
@@ -56,3 +60,80 @@ def second_moment_eccentricity(mask: Mask) -> float:
     y = (rows[:, None, None] + 0 * fine[None, :, None] + fine[None, None, :]).ravel()
     small, large = np.linalg.eigvalsh(np.cov(x, y, bias=True))
     return float(np.sqrt(1 - small / large))
+
+
+def sampled(
+    mask: Mask,
+    centre: tuple[float, float],
+    angle_deg: float,
+    scale: float,
+    phase: tuple[float, float],
+) -> tuple[dict[Pixel, int], int]:
+    """Samples that hit, of each pixel (x, y of its bottom-left corner), and samples in a pixel."""
+    height, width = mask.shape
+    cos, sin = rotation(angle_deg)
+    k = 4
+    while k < (1 - 1e-9) / scale:
+        k *= 2
+    reach = math.ceil(scale * math.hypot(width, height)) + 1  # from any point of the mask
+    counts: dict[Pixel, int] = {}
+    for x in range(-reach, reach + 1):
+        for y in range(-reach, reach + 1):
+            for i in range(k * k):
+                u = (x + (i % k + 0.5) / k - phase[0]) / scale
+                v = (y + (i // k + 0.5) / k - phase[1]) / scale
+                col = math.floor(cos * u + (sin * v + centre[0]))
+                row = math.floor(sin * u + (height - centre[1] - cos * v))
+                if 0 <= row < height and 0 <= col < width and mask[row, col]:
+                    counts[x, y] = counts.get((x, y), 0) + 1
+    return counts, k * k
+
+
+def rasterised(
+    mask: Mask,
+    centre: tuple[float, float],
+    angle_deg: float,
+    scale: float,
+    phase: tuple[float, float],
+) -> set[Pixel]:
+    """Pixels covered to a half, or to less where the mask would fall apart; empty when missed."""
+    counts, full = sampled(mask, centre, angle_deg, scale, phase)
+    for share in (2, 4):
+        taken = {pixel for pixel, count in counts.items() if share * count >= full}
+        if pieces(taken) == 1:
+            return taken
+    return set(counts)
+
+
+def rasterised_to_area(
+    mask: Mask,
+    centre: tuple[float, float],
+    angle_deg: float,
+    scale: float,
+    phase: tuple[float, float],
+    area: tuple[float, float],
+) -> tuple[set[Pixel], tuple[float, float]]:
+    """Rasterise at one sub-pixel position after the other until the area is right."""
+    phases = [(phase[0] + i / 4, phase[1] + j / 4) for j in range(4) for i in range(4)]
+    errors = []
+    for at in phases:
+        counts, full = sampled(mask, centre, angle_deg, scale, at)
+        errors.append(abs(sum(2 * count >= full for count in counts.values()) - area[0]))
+        if errors[-1] <= area[1]:
+            break
+    best = phases[errors.index(min(errors))]
+    return rasterised(mask, centre, angle_deg, scale, best), best
+
+
+def pieces(pixels: set[Pixel]) -> int:
+    """Count the pieces of some pixels, joined at edges or corners."""
+    left, count = set(pixels), 0
+    while left:
+        count += 1
+        open_ends = [left.pop()]
+        while open_ends:
+            x, y = open_ends.pop()
+            beside = {(x + i, y + j) for i in (-1, 0, 1) for j in (-1, 0, 1)} & left
+            left -= beside
+            open_ends += beside
+    return count

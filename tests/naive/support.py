@@ -1,8 +1,17 @@
-"""Slow, obvious twins of the support polyline and of wedges (§3.7, Fig. 9)."""
+"""Slow, obvious twins of the support polyline, of seating and of wedges (§3.7, Fig. 9)."""
+
+import math
 
 import numpy as np
 
 from drystone.kernels.raster import Mask
+from drystone.model.pose import PosedStone
+from drystone.poses import PoseBook
+from drystone.stabilise.settings import StabiliseSettings
+from tests.naive.overlap import overlaps
+
+Ends = tuple[tuple[int, int], tuple[int, int]]
+Pose = tuple[PosedStone, int, int]
 
 
 def supported_columns(occupied: Mask, mask: Mask, row: int, col: int) -> dict[int, list[int]]:
@@ -15,9 +24,7 @@ def supported_columns(occupied: Mask, mask: Mask, row: int, col: int) -> dict[in
     return found
 
 
-def support_ends(
-    occupied: Mask, mask: Mask, row: int, col: int
-) -> tuple[tuple[int, int], tuple[int, int]] | None:
+def support_ends(occupied: Mask, mask: Mask, row: int, col: int) -> Ends | None:
     """A and B as (x, row of the edge); None when nothing supports."""
     columns = supported_columns(occupied, mask, row, col)
     if not columns:
@@ -32,3 +39,133 @@ def rests_stably(
     """Whether the centre of mass projects inside the support, by a margin."""
     ends = support_ends(occupied, mask, row, col)
     return ends is not None and ends[0][0] + margin_px <= x_c <= ends[1][0] - margin_px
+
+
+def resting_row(occupied: Mask, mask: Mask, row: int, col: int, reach: int) -> int | None:
+    """The nearest row, the lower of two, where the mask is free and one row lower is not."""
+    found = [
+        (abs(at - row), -at)
+        for at in range(row - reach, row + reach + 1)
+        if not overlaps(occupied, mask, at, col) and overlaps(occupied, mask, at + 1, col)
+    ]
+    return -min(found)[1] if found else None
+
+
+def gap_pixels(
+    occupied: Mask,
+    mask: Mask,
+    at: tuple[int, int],
+    columns: tuple[int, int],
+    sizes: tuple[int, int],
+) -> set[tuple[int, int]] | None:
+    """Pixels (row, column of the wall) of the gap that fills what touches first, if it can."""
+    smallest, largest = sizes
+    under = {at[1] + j: _gap_rows(occupied, mask, at, j) for j in range(*columns)}
+    gaps = {x: rows for x, rows in under.items() if smallest <= len(rows) <= largest}
+    least = min(map(len, gaps.values()), default=0)
+    for slack in range(1, largest + 1):
+        for start in sorted(gaps):
+            if len(gaps[start]) == least:
+                run = _run(gaps, start, least + slack)
+                if len(run) >= smallest:
+                    return _connected({(row, x) for x in run for row in gaps[x]})
+    return None
+
+
+def _gap_rows(occupied: Mask, mask: Mask, at: tuple[int, int], column: int) -> list[int]:
+    """Free rows of the wall under a column of the stone."""
+    below = at[0] + int(max(np.flatnonzero(mask[:, column]))) + 1
+    rows = []
+    while below < len(occupied) and not occupied[below, at[1] + column]:
+        rows.append(below)
+        below += 1
+    return rows
+
+
+def _run(gaps: dict[int, list[int]], start: int, highest: int) -> set[int]:
+    """Columns side by side, from one on, whose gaps are no higher than that."""
+    run = {start}
+    for step in (-1, 1):
+        x = start + step
+        while x in gaps and len(gaps[x]) <= highest:
+            run.add(x)
+            x += step
+    return run
+
+
+def _connected(pixels: set[tuple[int, int]]) -> set[tuple[int, int]] | None:
+    """The pixels, if edges join them all."""
+    reached = open_ends = {min(pixels)}
+    while open_ends:
+        beside = {
+            (r + i, c + j) for r, c in open_ends for i, j in ((0, 1), (1, 0), (0, -1), (-1, 0))
+        }
+        open_ends = (beside & pixels) - reached
+        reached = reached | open_ends
+    return pixels if reached == pixels else None
+
+
+def rotated(
+    occupied: Mask, trial: Pose, book: PoseBook, settings: StabiliseSettings
+) -> tuple[Pose, int] | None:
+    """Turn a stone about the nearer end of its support until it rests: pose, and points used."""
+    pose = trial
+    for pivots in range(settings.max_pivots + 1):
+        side = fall(occupied, pose, settings)
+        if side == 0:
+            return pose, pivots
+        if side is None or pivots == settings.max_pivots:
+            return None
+        start, step = pose, 0
+        pivot = support_end(occupied, start, side)
+        while pose == start or (
+            fall(occupied, pose, settings) == side
+            and abs(support_end(occupied, pose, side)[0] - pivot[0]) <= settings.new_pivot_px
+        ):
+            step += 1
+            angle = start[0].angle_deg - side * step * settings.step_deg
+            if abs(angle - trial[0].angle_deg) > settings.max_turn_deg + 1e-9:
+                return None
+            posed = book.pose(trial[0].stone, angle)
+            row, col = _about(pivot, start, posed, -side * step * settings.step_deg)
+            inside = 0 <= col <= occupied.shape[1] - posed.width_px
+            seated = resting_row(occupied, posed.mask, row, col, settings.max_shift_px)
+            if not inside or seated is None:
+                return None
+            pose = posed, seated, col
+    return None
+
+
+def _about(
+    pivot: tuple[int, int], start: Pose, posed: PosedStone, turn_deg: float
+) -> tuple[int, int]:
+    """Row and column of a turned stone that keeps a point where it is, to the nearest pixel."""
+    before, row, col = start
+    x = col + before.anchor[0] - pivot[0]
+    y = pivot[1] - (row + before.height_px - before.anchor[1])
+    moved = complex(x, y) * complex(
+        math.cos(math.radians(turn_deg)), math.sin(math.radians(turn_deg))
+    )
+    left = pivot[0] + moved.real - posed.anchor[0]
+    top = pivot[1] - moved.imag + posed.anchor[1] - posed.height_px
+    return math.floor(top + 0.5), math.floor(left + 0.5)
+
+
+def fall(occupied: Mask, pose: Pose, settings: StabiliseSettings) -> int | None:
+    """Side to which a stone falls, 0 when it is stable, None when it stands on nothing."""
+    posed, row, col = pose
+    ends = support_ends(occupied, posed.mask, row, col)
+    if ends is None:
+        return None
+    x_c, margin = col + posed.anchor[0], settings.margin * posed.width_px
+    if rests_stably(occupied, posed.mask, row, col, x_c, margin):
+        return 0
+    return -1 if x_c - ends[0][0] < ends[1][0] - x_c else 1
+
+
+def support_end(occupied: Mask, pose: Pose, side: int) -> tuple[int, int]:
+    """x and row of one end of the support."""
+    posed, row, col = pose
+    ends = support_ends(occupied, posed.mask, row, col)
+    assert ends is not None
+    return ends[0] if side < 0 else ends[1]

@@ -1,8 +1,11 @@
 """Stabilisation remembered by surroundings gives what stabilising afresh gives."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 import drystone.stabilise.memory as memory_module
 from drystone.kernels.raster import Mask
@@ -10,9 +13,19 @@ from drystone.model.pose import PosedStone
 from drystone.model.wall import Wall
 from drystone.poses import PoseBook
 from drystone.stabilise.memory import StabiliseMemory
-from drystone.stabilise.settings import StabiliseSettings
-from drystone.stabilise.stabilise import Stabilised, WedgeStock, stabilise
-from tests.stabilise.scenes import bar_on_the_ledge, ledge
+from drystone.stabilise.settings import Method, StabiliseSettings
+from drystone.stabilise.stabilise import Outcome, Stabilised, WedgeStock, make_stable, stabilise
+from tests.naive.overlap import lowered, overlaps
+from tests.stabilise.scenes import (
+    BAR,
+    BLOCK,
+    BOOK,
+    Pose,
+    bar_on_the_ledge,
+    high_walls,
+    ledge,
+    stairs,
+)
 from tests.strategies import posed_on_walls, repeatable
 
 SETTINGS = StabiliseSettings()
@@ -25,6 +38,19 @@ def told(outcome: Stabilised | None) -> object:
     at = outcome.placement
     wedges = [(w.id, w.under, w.mask.tobytes(), w.row, w.col) for w in outcome.wedges]
     return at.posed.mask.tobytes(), at.row, at.col, at.side, at.rotation_moves, wedges
+
+
+def afresh(
+    occupied: Mask, trial: Pose, settings: StabiliseSettings, mean_height_px: float = 12.0
+) -> Stabilised | None:
+    """Stabilise from the left in the window that reaches down to the ground, wedges from 50 on."""
+    posed, row, col = trial
+    reach = memory_module._reach_px(posed)
+    top, left = max(0, row - reach), max(0, col - reach)
+    window = occupied[top:, left : col + posed.width_px + reach]
+    local = posed, row - top, col - left
+    found = stabilise(window, local, "left", BOOK, WedgeStock(50, mean_height_px), settings)
+    return memory_module._moved(found, top, left, "left", 50)
 
 
 @repeatable(80)
@@ -41,6 +67,65 @@ def test_on_a_site_within_the_window_it_is_stabilise_itself(
         assert told(memory.stabilise(wall.occupied, trial, "right", 50)) == told(expected)
 
 
+@pytest.mark.parametrize(
+    ("method", "max_turn_deg", "mean_height_px"),
+    [("rotation", 15.0, 1.0), ("rotation", 70.0, 1.0), ("wedge", 0.0, 12.0), ("both", 30.0, 70.0)],
+)
+def test_walls_that_differ_far_below_are_told_apart_where_it_matters(
+    method: Method, max_turn_deg: float, mean_height_px: float
+) -> None:
+    """One memory for all: what it remembers from one wall must hold in the next."""
+    settings = StabiliseSettings(method=method, margin=0.1, max_turn_deg=max_turn_deg)
+    memory = StabiliseMemory(BOOK, mean_height_px, settings)
+
+    @repeatable(40)
+    @given(walls=high_walls(), posed=st.sampled_from([BAR, BLOCK]), col=st.integers(0, 30))
+    def check(walls: list[Mask], posed: PosedStone, col: int) -> None:
+        row = lowered(walls[0], posed.mask, col)
+        for wall in walls:
+            if row is None or overlaps(wall, posed.mask, row, col):
+                continue
+            trial = (posed, row, col)
+            expected = afresh(wall, trial, settings, mean_height_px)
+            assert told(memory.stabilise(wall, trial, "left", 50)) == told(expected)
+
+    check()
+    assert len(memory._outcomes) > 10
+
+
+def test_stairs_on_different_ground_are_told_apart_where_it_matters() -> None:
+    settings = StabiliseSettings(margin=0.1, max_turn_deg=40.0)
+    memory = StabiliseMemory(BOOK, 12.0, settings)
+    ground = st.tuples(st.integers(0, 30), st.integers(1, 9))
+
+    @repeatable(80)
+    @given(scene=stairs(), below=st.lists(ground, max_size=3))
+    def check(scene: tuple[Mask, Pose], below: list[tuple[int, int]]) -> None:
+        occupied, trial = scene
+        for cut, gap in [(0, 1), *below]:
+            wall = np.vstack([occupied, np.zeros((20, occupied.shape[1]), bool)])[: 84 - cut]
+            wall[64 - cut :, ::gap] = True
+            if not overlaps(wall, trial[0].mask, *trial[1:]):
+                expected = afresh(wall, trial, settings)
+                assert told(memory.stabilise(wall, trial, "left", 50)) == told(expected)
+
+    check()
+    assert len(memory._outcomes) > 10
+
+
+def worked_out(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """How deep was looked in each outcome that is worked out from now on."""
+    depths = []
+
+    def counted(*arguments: object) -> Outcome:
+        outcome = make_stable(*arguments)  # type: ignore[arg-type]
+        depths.append(outcome.depth)
+        return outcome
+
+    monkeypatch.setattr(memory_module, "make_stable", counted)
+    return depths
+
+
 def far_apart(offset: int) -> Mask:
     """A ledge with much free ground to its left."""
     occupied = np.zeros((24, 200), bool)
@@ -51,19 +136,13 @@ def far_apart(offset: int) -> Mask:
 def test_the_same_surroundings_elsewhere_are_not_worked_out_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    calls = []
-
-    def counted(*arguments: object) -> Stabilised | None:
-        calls.append(arguments)
-        return stabilise(*arguments)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(memory_module, "stabilise", counted)
+    depths = worked_out(monkeypatch)
     book = PoseBook()
     memory = StabiliseMemory(book, 12.0, StabiliseSettings(method="wedge"))
     posed, row, _ = bar_on_the_ledge(ledge(), book)
     here = memory.stabilise(far_apart(60), (posed, row, 62), "left", 90)
     there = memory.stabilise(far_apart(100), (posed, row, 102), "right", 95)
-    assert len(calls) == 1
+    assert len(depths) == 1
     assert here is not None
     assert there is not None
     assert there.placement.col - here.placement.col == 40
@@ -71,15 +150,75 @@ def test_the_same_surroundings_elsewhere_are_not_worked_out_again(
     assert there.wedges[0].col - here.wedges[0].col == 40
     assert (here.wedges[0].id, there.wedges[0].id) == (90, 95)
     memory.stabilise(far_apart(101), (posed, row, 102), "right", 95)
-    assert len(calls) == 2, "another ledge is another scene"
+    assert len(depths) == 2, "another ledge is another scene"
+
+
+@pytest.mark.parametrize(("max_turn_deg", "again"), [(15.0, 1), (45.0, 3)])
+def test_what_is_below_all_that_was_looked_at_has_no_say(
+    monkeypatch: pytest.MonkeyPatch, max_turn_deg: float, again: int
+) -> None:
+    """A bar that turns further comes deeper, and finds the shelf or the ground there or not."""
+    depths = worked_out(monkeypatch)
+    settings = StabiliseSettings(method="rotation", max_turn_deg=max_turn_deg)
+    memory = StabiliseMemory(BOOK, 12.0, settings)
+    cliff = ledge(height=60, site=(90, 60))
+    shelf = cliff.copy()
+    shelf[46, 30:] = True
+    # The window starts 16 rows above the bar; as many below it are what is looked up at first.
+    shallow = cliff[: 24 + 6 + 16]
+    trial = (BAR, 24, 2)
+    for wall in (cliff, shelf, shallow):
+        expected = told(afresh(wall, trial, settings))
+        for _ in range(2):
+            assert told(memory.stabilise(wall, trial, "left", 50)) == expected
+    assert len(depths) == again
+    assert (max(depths) > 16 + 6 + 16) == (again > 1)
+
+
+def test_the_place_in_a_window_that_is_cut_off_at_the_ends_matters() -> None:
+    site = ledge(site=(24, 40))
+    memory = StabiliseMemory(BOOK, 12.0, StabiliseSettings(method="wedge"))
+    for col in (2, 4, 2, 6):
+        trial = (BAR, 14, col)
+        expected = afresh(site, trial, StabiliseSettings(method="wedge"))
+        assert told(memory.stabilise(site, trial, "left", 50)) == told(expected)
+
+
+def test_two_wedges_have_ids_one_after_the_other() -> None:
+    pillar = np.zeros((24, 50), bool)
+    pillar[20:, 16:18] = True
+    settings = StabiliseSettings(method="wedge", margin=0.1)
+    found = StabiliseMemory(BOOK, 12.0, settings).stabilise(pillar, (BAR, 14, 2), "left", 70)
+    assert found is not None
+    assert [wedge.id for wedge in found.wedges] == [70, 71]
+
+
+def test_stable_and_floating_stones_need_no_memory() -> None:
+    memory = StabiliseMemory(BOOK, 12.0, SETTINGS)
+    assert memory.stabilise(ledge(), (BAR, 18, 15), "left", 9) is not None
+    assert memory.stabilise(ledge(), (BAR, 5, 15), "left", 9) is None
+    assert len(memory._outcomes) == 0
 
 
 def test_forgetting_changes_nothing() -> None:
     book = PoseBook()
     keeps = StabiliseMemory(book, 12.0, SETTINGS)
-    forgets = StabiliseMemory(book, 12.0, SETTINGS, capacity=1)
+    forgets = StabiliseMemory(PoseBook(budget_bytes=0), 12.0, SETTINGS, budget_bytes=2000)
     posed, row, _ = bar_on_the_ledge(ledge(), book)
-    for offset in (60, 70, 60, 80, 60):
+    for offset in (60, 70, 60, 2, 60):
         trial = (posed, row, offset + 2)
         found = [m.stabilise(far_apart(offset), trial, "left", 9) for m in (keeps, forgets)]
         assert told(found[0]) == told(found[1])
+        assert forgets._outcomes.held_bytes <= 2000
+    assert len(keeps._outcomes) > len(forgets._outcomes)
+
+
+def test_threads_share_a_memory_and_its_book() -> None:
+    book = PoseBook(budget_bytes=30_000)
+    memory = StabiliseMemory(book, 12.0, SETTINGS, budget_bytes=5_000)
+    posed, row, _ = bar_on_the_ledge(ledge(), book)
+    trials = [(far_apart(10 * (k % 7)), (posed, row, 10 * (k % 7) + 2)) for k in range(40)]
+    alone = [told(afresh(wall, trial, SETTINGS)) for wall, trial in trials]
+    with ThreadPoolExecutor(4) as pool:
+        shared = list(pool.map(lambda it: told(memory.stabilise(*it, "left", 50)), trials))
+    assert shared == alone

@@ -4,15 +4,19 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from drystone.kernels.raster import Mask
 from drystone.model.stone import Stone
 from drystone.poses import PoseBook
-from drystone.stabilise.rotate import rotate_to_rest, seat
+from drystone.stabilise.rotate import rotate_to_rest
 from drystone.stabilise.settings import StabiliseSettings
 from drystone.stabilise.support import support_polyline
 from tests.naive import support as naive
 from tests.naive.overlap import overlaps
-from tests.stabilise.scenes import Pose, bar_on_the_ledge, ledge, mirrored
+from tests.stabilise.scenes import BOOK, Pose, bar_on_the_ledge, ledge, mirrored, stairs
+from tests.strategies import repeatable
 
 
 def rests(occupied: np.ndarray, pose: Pose) -> bool:
@@ -28,9 +32,9 @@ def test_an_overhanging_bar_turns_towards_its_fall_until_it_rests(side: str) -> 
         occupied, trial = mirrored(occupied, trial, PoseBook())
     assert not rests(occupied, trial)
     result = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings())
-    assert result is not None
-    (turned, row, col), pivots = result
-    assert pivots >= 1
+    assert result.pose is not None
+    turned, row, col = result.pose
+    assert result.pivots >= 1
     # About asin(4 / 18): its free end comes down onto the ground.
     expected = -12.8 if side == "right" else 12.8
     assert turned.angle_deg == pytest.approx(expected, abs=2.5)
@@ -53,8 +57,8 @@ def test_the_centroid_goes_round_the_end_of_the_support(side: str) -> None:
         occupied, trial = mirrored(occupied, trial, PoseBook())
     settings = StabiliseSettings(max_pivots=1, max_shift_px=1)
     result = rotate_to_rest(occupied, trial, PoseBook(), settings)
-    assert result is not None
-    (turned, row, col), _ = result
+    assert result.pose is not None
+    turned, row, col = result.pose
     # From (11, 3) right of and above A at (14, 4 px over the ground), turned with the stone.
     sign = 1 if side == "right" else -1
     angle = math.radians(-sign * turned.angle_deg)
@@ -73,19 +77,40 @@ def test_mirrored_scenes_have_mirrored_results() -> None:
     other_side, other = mirrored(occupied, trial, PoseBook())
     one = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings())
     two = rotate_to_rest(other_side, other, PoseBook(), StabiliseSettings())
-    assert one is not None
-    assert two is not None
-    assert one[0][0].angle_deg == -two[0][0].angle_deg
-    assert one[0][1] == pytest.approx(two[0][1], abs=1)
+    assert one.pose is not None
+    assert two.pose is not None
+    assert one.pose[0].angle_deg == -two.pose[0].angle_deg
+    assert one.pose[1] == pytest.approx(two.pose[1], abs=1)
 
 
 def test_a_stable_stone_is_left_alone() -> None:
     occupied = ledge()
     trial = bar_on_the_ledge(occupied, PoseBook(), col=0, length=20)
     result = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings())
-    assert result is not None
-    assert result[1] == 0
-    assert result[0] == trial
+    assert result.pivots == 0
+    assert result.pose == trial
+    assert result.depth == trial[1] + 6 + 1  # the rows of the bar, and the one below
+
+
+@repeatable(80)
+@given(
+    scene=stairs(),
+    settings=st.sampled_from(
+        [
+            StabiliseSettings(),
+            StabiliseSettings(margin=0.1, max_turn_deg=70.0, step_deg=2.0),
+            StabiliseSettings(max_turn_deg=40.0, max_pivots=2, new_pivot_px=0, max_shift_px=5),
+            StabiliseSettings(new_pivot_px=60),
+        ]
+    ),
+)
+def test_it_turns_as_a_walk_from_angle_to_angle_does(
+    scene: tuple[Mask, Pose], settings: StabiliseSettings
+) -> None:
+    occupied, trial = scene
+    result = rotate_to_rest(occupied, trial, BOOK, settings)
+    expected = naive.rotated(occupied, trial, BOOK, settings)
+    assert (result.pose and (result.pose, result.pivots)) == expected
 
 
 @pytest.mark.parametrize(
@@ -95,7 +120,9 @@ def test_limits_end_the_rotation(limits: dict[str, float]) -> None:
     occupied = ledge()
     trial = bar_on_the_ledge(occupied, PoseBook())
     settings = StabiliseSettings(**limits)  # type: ignore[arg-type]
-    assert rotate_to_rest(occupied, trial, PoseBook(), settings) is None
+    result = rotate_to_rest(occupied, trial, PoseBook(), settings)
+    assert result.pose is None
+    assert result.pivots <= settings.max_pivots
 
 
 def test_meeting_the_landscape_before_resting_ends_the_rotation() -> None:
@@ -104,29 +131,18 @@ def test_meeting_the_landscape_before_resting_ends_the_rotation() -> None:
     occupied[: row + 4, col + posed.width_px :] = True  # a wall close to its free end
     occupied[: row - 1, :] = True
     occupied[row - 1, 0:16] = True
-    assert rotate_to_rest(occupied, (posed, row, col), PoseBook(), StabiliseSettings()) is None
+    trial = posed, row, col
+    assert rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings()).pose is None
 
 
 def test_it_never_leaves_the_site() -> None:
     occupied = ledge(height=8, site=(24, 26))
     trial = bar_on_the_ledge(occupied, PoseBook(), col=2, length=24)
-    before = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings(max_turn_deg=60))
-    assert before is None or before[0][2] + before[0][0].width_px <= 26
+    pose = rotate_to_rest(occupied, trial, PoseBook(), StabiliseSettings(max_turn_deg=60)).pose
+    assert pose is None or pose[2] + pose[0].width_px <= 26
 
 
 def test_a_stone_in_the_air_does_not_rest() -> None:
     posed = PoseBook().pose(Stone(7, np.ones((6, 30), bool)), 0.0)
-    assert rotate_to_rest(ledge(), (posed, 3, 10), PoseBook(), StabiliseSettings()) is None
-
-
-def test_seat_takes_the_nearest_row_that_rests() -> None:
-    occupied = ledge(height=4, width=14)
-    posed = PoseBook().pose(Stone(9, np.ones((3, 5), bool)), 0.0)
-    assert seat(occupied, posed, 17, 2, 3) == 17
-    assert seat(occupied, posed, 15, 2, 3) == 17
-    assert seat(occupied, posed, 19, 2, 3) == 17
-    assert seat(occupied, posed, 13, 2, 3) is None
-    assert seat(occupied, posed, 19, 20, 3) == 21  # on the ground
-    assert seat(occupied, posed, 23, 20, 3) == 21
-    assert seat(occupied, posed, 21, -1, 3) is None
-    assert seat(occupied, posed, 21, 46, 3) is None
+    result = rotate_to_rest(ledge(), (posed, 3, 10), PoseBook(), StabiliseSettings())
+    assert result.pose is None

@@ -9,7 +9,7 @@ from drystone.model.pose import PosedStone
 from drystone.model.wall import Wall
 from drystone.poses import PoseBook
 from drystone.stabilise.settings import Method, StabiliseSettings
-from drystone.stabilise.stabilise import Stabilised, WedgeStock, stabilise
+from drystone.stabilise.stabilise import Stabilised, WedgeStock, make_stable, stabilise
 from tests.naive import support as naive
 from tests.stabilise.scenes import bar_on_the_ledge, ledge
 from tests.stabilise.test_wedge import check_wedge, holds
@@ -103,6 +103,20 @@ def test_whatever_comes_out_is_a_stable_rigid_copy_inside_the_site(
         assert placed.posed.angle_deg == posed.angle_deg
     if result.wedges:
         assert placed.rotation_moves == 0
+
+
+@pytest.mark.parametrize(("depth", "held"), [(29, True), (30, True), (31, False), (40, False)])
+def test_a_gap_higher_than_a_wedge_may_be_is_not_taken_for_the_ground(
+    depth: int, held: bool
+) -> None:
+    occupied = ledge(height=depth, site=(60, 50))
+    trial = bar_on_the_ledge(occupied, PoseBook())
+    stock = WedgeStock(next_id=100, mean_height_px=60.0)
+    settings = StabiliseSettings(method="wedge")
+    result = stabilise(occupied, trial, "left", PoseBook(), stock, settings)
+    assert (result is not None) is held
+    outcome = make_stable(occupied, trial, "left", PoseBook(), stock, settings)
+    assert outcome.depth == trial[1] + 6 + 30 + 1
 
 
 def test_a_floating_stone_is_not_stabilised() -> None:

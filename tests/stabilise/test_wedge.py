@@ -76,7 +76,15 @@ def test_the_wedge_is_where_the_free_side_touches_first() -> None:
 
 @pytest.mark.parametrize(
     ("height", "mean", "smallest", "found"),
-    [(4, 8.0, 2, True), (5, 8.0, 2, False), (2, 8.0, 2, True), (2, 8.0, 3, False)],
+    [
+        (4, 8.0, 2, True),
+        (5, 8.0, 2, False),
+        (2, 8.0, 2, True),
+        (2, 8.0, 3, False),
+        (4, 9.0, 2, True),
+        (5, 9.0, 2, False),
+        (5, 10.0, 2, True),
+    ],
 )
 def test_smallest_and_largest_size(height: int, mean: float, smallest: int, found: bool) -> None:
     occupied = ledge(height=height)
@@ -114,3 +122,37 @@ def test_columns_that_do_not_help_are_not_wedged() -> None:
     assert wedge is not None
     assert wedge.col + wedge.mask.shape[1] >= 17  # the centre of mass is at x = 17
     assert holds(occupied, trial, (wedge,))
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+@pytest.mark.parametrize(("shelf", "taken"), [((16, 18), (16, 18)), ((15, 18), (16, 18))])
+def test_the_column_at_the_centre_of_mass_is_the_first_that_helps(
+    side: str, shelf: tuple[int, int], taken: tuple[int, int]
+) -> None:
+    occupied = ledge()
+    occupied[-2:, slice(*shelf)] = True
+    trial = bar_on_the_ledge(occupied, PoseBook())
+    if side == "left":
+        occupied, trial = mirrored(occupied, trial, PoseBook())
+        taken = (50 - taken[1], 50 - taken[0])
+    wedge = wedge_under(occupied, trial, ID, 12.0, StabiliseSettings())
+    assert wedge is not None
+    assert (wedge.col, wedge.col + wedge.mask.shape[1]) == taken
+    assert holds(occupied, trial, (wedge,))
+
+
+@pytest.mark.parametrize(("mean", "found"), [(12.0, False), (16.0, True)])
+def test_between_sloping_faces_the_whole_wedge_counts(mean: float, found: bool) -> None:
+    """Three pixels of gap, in a wedge of six columns that is eight pixels high."""
+    bottoms = [12] * 4 + [2] * 10 + [4, 5, 6, 7, 8, 9]
+    mask = np.arange(12)[:, None] < bottoms
+    occupied = np.ones((24, 30), bool)
+    for column, bottom in enumerate(bottoms):
+        occupied[: 6 + bottom + (3 if column >= 14 else 0 if column < 4 else 9), column] = False
+    posed = PoseBook().pose(Stone(5, mask), 0.0)
+    assert posed.mask.tolist() == mask.tolist()
+    occupied[:18, 20:] = False
+    settings = StabiliseSettings(margin=0.2)
+    wedge = wedge_under(occupied, (posed, 6, 0), ID, mean, settings)
+    assert (wedge is not None) is found
+    assert wedge is None or wedge.mask.shape == (8, 6)

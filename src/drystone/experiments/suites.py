@@ -10,6 +10,8 @@ SUITES = {
     "pixels": ("the same cases from pixels, and tilted joints at 40 to 320 px", "pixels"),
     "walls": ("planned walls: agreement of solvers and certificates at every step", "agreement"),
     "solvers": ("ms a candidate (both tilts) of every solver beside a fresh linprog", "solvers"),
+    "candidates": ("every answer about a next stone beside a fresh linprog", "candidates"),
+    "growth": ("time of a step, by part, against pixels and stones (Fig. 28, Fig. 29)", "growth"),
     "shear": ("shear tests of dry-joint walls, predicted over measured", "shear"),
     "tilt": ("walls tilted in a rigid-body engine beside the limit analysis", "tilt"),
 }

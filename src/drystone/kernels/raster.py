@@ -1,19 +1,30 @@
 """Rasterise a turned, reduced binary mask once, by coverage (paper §3.3; DESIGN 4.2)."""
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from drystone.kernels.backend import compiled
+
 Mask = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+Pair = tuple[float, float]
 
 PHASE_STEPS = 64
 """Sub-pixel positions are multiples of 1/64 px: exact in floats, so a plan can be re-derived."""
 
+FINEST = 512
+"""Samples along a pixel that the compiled kernel can count; NumPy takes more."""
 
-def rotation(angle_deg: float) -> tuple[float, float]:
+BAND = 1 << 18
+"""Samples that NumPy takes at once: a large stone must not need a multiple of its own memory."""
+
+_fast = compiled("raster")
+
+
+def rotation(angle_deg: float) -> Pair:
     """Return cosine and sine of an angle in degrees, exact at quarter turns.
 
     Examples
@@ -28,7 +39,7 @@ def rotation(angle_deg: float) -> tuple[float, float]:
     return math.cos(angle), math.sin(angle)
 
 
-def turn(points: NDArray[np.float64], angle_deg: float) -> NDArray[np.float64]:
+def turn(points: Floats, angle_deg: float) -> Floats:
     """Turn points counter-clockwise about the origin.
 
     Parameters
@@ -39,8 +50,42 @@ def turn(points: NDArray[np.float64], angle_deg: float) -> NDArray[np.float64]:
         Counter-clockwise angle in degrees.
     """
     cos, sin = rotation(angle_deg)
-    turned: NDArray[np.float64] = points @ np.array([[cos, sin], [-sin, cos]])
-    return turned
+    x, y = points[:, 0], points[:, 1]
+    return np.column_stack([x * cos - y * sin, x * sin + y * cos])
+
+
+def turned_boxes(points: Floats, turns: Floats) -> Floats:
+    """Return the bounding boxes of points that are turned about the origin.
+
+    Parameters
+    ----------
+    points : (n, 2) float array
+        x to the right, y up.
+    turns : (m, 2) float array
+        Cosine and sine of each angle, of :func:`rotation`.
+
+    Returns
+    -------
+    boxes : (m, 4) float array
+        Left, bottom, right and top of the points turned by each angle.
+
+    Examples
+    --------
+    >>> turned_boxes(np.array([[0.0, 0.0], [2.0, 1.0]]), np.array([rotation(90.0)])).tolist()
+    [[-1.0, 0.0, 0.0, 2.0]]
+    """
+    if _fast is None:
+        return turned_boxes_numpy(points, turns)
+    boxes: Floats = _fast.turned_boxes(points, turns)
+    return boxes
+
+
+def turned_boxes_numpy(points: Floats, turns: Floats) -> Floats:
+    """Return the boxes of :func:`turned_boxes`, by NumPy."""
+    cos, sin = turns[:, :1], turns[:, 1:]
+    x = points[:, 0] * cos - points[:, 1] * sin
+    y = points[:, 0] * sin + points[:, 1] * cos
+    return np.column_stack([x.min(axis=1), y.min(axis=1), x.max(axis=1), y.max(axis=1)])
 
 
 def quantise(value: float) -> float:
@@ -49,11 +94,7 @@ def quantise(value: float) -> float:
 
 
 def rasterise(
-    mask: Mask,
-    centre: tuple[float, float],
-    angle_deg: float,
-    scale: float,
-    phase: tuple[float, float],
+    mask: Mask, centre: Pair, angle_deg: float, scale: float, phase: Pair
 ) -> tuple[Mask, int, int]:
     """Turn a mask about a point, reduce it, and rasterise it once by coverage >= 1/2.
 
@@ -68,7 +109,7 @@ def rasterise(
     scale : float
         Size of the result over the size of the mask.
     phase : (float, float)
-        Where the centre falls in the result, in [0, 1) px right of and above a pixel corner.
+        Where the centre falls in the result, px right of and above a pixel corner.
 
     Returns
     -------
@@ -81,102 +122,166 @@ def rasterise(
     Notes
     -----
     Coverage is counted on k x k sample points a pixel, k the power of two from 4 on that is at
-    least 1/scale, so every source pixel is seen.  Nothing is resampled twice.
+    least 1/scale, so every source pixel is seen; of a mask of a pixel or two that falls between
+    the points, on more.  Nothing is resampled twice.  A stone neither vanishes nor falls apart at
+    a coarse resolution: where a thin neck would break, pixels covered to a quarter are taken, or
+    all that are touched.
 
     Examples
     --------
     >>> rasterise(np.ones((2, 4), bool), (2.0, 1.0), 90.0, 1.0, (0.0, 0.0))[0].shape
     (4, 2)
     """
-    hit, k, x0, y1 = _sampled(mask, centre, angle_deg, scale, phase)
-    turned = _in_one_piece(_counted(hit, k), k * k)
-    rows, cols = np.flatnonzero(turned.any(axis=1)), np.flatnonzero(turned.any(axis=0))
-    cropped = turned[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
-    return np.ascontiguousarray(cropped), x0 + int(cols[0]), y1 - int(rows[-1]) - 1
+    return rasterise_to_area(mask, centre, angle_deg, scale, phase, (0.0, math.inf))[:3]
 
 
-def areas_by_phase(
-    mask: Mask,
-    centre: tuple[float, float],
-    angle_deg: float,
-    scale: float,
-    phase: tuple[float, float],
-) -> Iterator[int]:
-    """Yield the area of the rasterised mask at 16 sub-pixel positions, from one sampling.
+def rasterise_to_area(
+    mask: Mask, centre: Pair, angle_deg: float, scale: float, phase: Pair, area: Pair
+) -> tuple[Mask, int, int, Pair]:
+    """Rasterise a mask where its area comes out right, at one of 16 sub-pixel positions.
 
     Parameters
     ----------
-    mask, centre, angle_deg, scale, phase
+    mask, centre, angle_deg, scale
         As for :func:`rasterise`.
-
-    Yields
-    ------
-    area : int
-        Number of pixels covered to a half; the n-th with the phase (n % 4)/4 px further right and
-        (n // 4)/4 px further up.
-    """
-    hit, k, _, _ = _sampled(mask, centre, angle_deg, scale, phase)
-    # A phase further right and up is a grid of pixels further left and down on the same samples.
-    hit = np.pad(hit, k)
-    height, width = hit.shape[0] // k - 1, hit.shape[1] // k - 1
-    for number in range(16):
-        top, left = number // 4 * k // 4, k - number % 4 * k // 4
-        view = hit[top : top + height * k, left : left + width * k]
-        yield int(np.count_nonzero(2 * _counted(view, k) >= k * k))
-
-
-def _sampled(
-    mask: Mask,
-    centre: tuple[float, float],
-    angle_deg: float,
-    scale: float,
-    phase: tuple[float, float],
-) -> tuple[Mask, int, int, int]:
-    """Sample a turned mask on k x k points a pixel.
+    phase : (float, float)
+        The first position; multiples of 1/64 px.  The others are up to 3/4 px further right, then
+        further up.
+    area : (float, float)
+        The area that is wanted, px of the result, and how far off it may be; pixels covered to a
+        half count.
 
     Returns
     -------
-    hit : (n k, m k) bool array
-        The samples.
-    k, left, top : int
-        Samples a pixel, and the top-left pixel corner of the samples relative to the corner that
-        the phase is measured from.
+    turned, left, bottom
+        As of :func:`rasterise`, at the first position where the area is within the tolerance, or
+        else at the first of those where it comes nearest.
+    phase : (float, float)
+        That position, measured from the same pixel corner.
     """
-    height, width = mask.shape
-    cos, sin = rotation(angle_deg)
-    corners = np.array([[0, 0], [width, 0], [width, height], [0, height]], float) - centre
-    box = turn(corners, angle_deg) * scale + phase
-    x0, y0 = np.floor(box.min(axis=0) + 1e-9).astype(int).tolist()
-    x1, y1 = np.ceil(box.max(axis=0) - 1e-9).astype(int).tolist()
+    way = rotation(angle_deg)
+    left, bottom, right, top = _box_px(mask.shape, centre, way, scale, phase)
+    corner, size = (left - phase[0], top - phase[1]), (right - left, top - bottom)
     # A power of two: sample points are then exact in floats at every phase.
-    k = max(4, 1 << math.ceil(math.log2(1.0 / scale) - 1e-9))
-    # Sample points of the result, from its centre, in source px; then turned back.
-    sx = (np.arange((x1 - x0) * k) + 0.5) / k + (x0 - phase[0])
-    sy = y1 - (np.arange((y1 - y0) * k) + 0.5) / k - phase[1]
-    u, v = sx[None, :] / scale, sy[:, None] / scale
-    col = np.floor(cos * u + (sin * v + centre[0])).astype(np.int32)
-    row = np.floor(sin * u + (height - centre[1] - cos * v)).astype(np.int32)
+    k = 1 << max(2, math.ceil(math.log2(1.0 / scale) - 1e-9))
+    while True:
+        kernel = fitted_numpy if _fast is None or k > FINEST else _fast.fitted
+        found = kernel(mask, centre, way, scale, corner, (*size, k), area)
+        if found is not None:
+            turned, col, row, number = found
+            up, aside = divmod(number, 4)
+            return turned, left + col, top + 1 - row, (phase[0] + aside / 4, phase[1] + up / 4)
+        if not mask.any():
+            raise ValueError("the mask has no pixel")
+        k *= 2
+
+
+def _box_px(
+    shape: tuple[int, ...], centre: Pair, way: Pair, scale: float, phase: Pair
+) -> tuple[int, int, int, int]:
+    """Return the pixel corners left, below, right of and above a turned, reduced mask."""
+    (height, width), (x, y), (cos, sin) = shape, centre, way
+    corners = [(u, v) for u in (-x, width - x) for v in (-y, height - y)]
+    across = [(u * cos - v * sin) * scale + phase[0] for u, v in corners]
+    upwards = [(u * sin + v * cos) * scale + phase[1] for u, v in corners]
+    return (
+        math.floor(min(across) + 1e-9),
+        math.floor(min(upwards) + 1e-9),
+        math.ceil(max(across) - 1e-9),
+        math.ceil(max(upwards) - 1e-9),
+    )
+
+
+def fitted_numpy(
+    mask: Mask,
+    centre: Pair,
+    way: Pair,
+    scale: float,
+    corner: Pair,
+    grid: tuple[int, int, int],
+    area: Pair,
+) -> tuple[Mask, int, int, int] | None:
+    """Sample a turned mask, and take its pixels where the area comes out right.
+
+    Parameters
+    ----------
+    mask, centre, scale, area
+        As for :func:`rasterise_to_area`.
+    way : (float, float)
+        Cosine and sine of the angle.
+    corner : (float, float)
+        x and y of the top-left pixel corner of the samples, px of the result from the centre.
+    grid : (int, int, int)
+        Width and height of the samples in px of the result, and samples along a pixel.
+
+    Returns
+    -------
+    turned : (h', w') bool array
+        Cropped.
+    left, bottom : int
+        Its columns start so many px right of the corner; its last row ends so many px below a
+        line one pixel above the corner.
+    number : int
+        The sub-pixel position: n % 4 quarters of a pixel further right, n // 4 further up.
+
+    None when no sample hits.
+    """
+    counts = _quarter_counts(mask, centre, way, scale, corner, grid)
+    full = grid[2] * grid[2]
+    best, least = 0, math.inf
+    for number in range(16):
+        error = abs(float(np.count_nonzero(2 * _covered(counts, number) >= full)) - area[0])
+        if error < least:
+            best, least = number, error
+        if error <= area[1]:
+            break
+    taken = _in_one_piece(_covered(counts, best), full)
+    rows, cols = np.flatnonzero(taken.any(axis=1)), np.flatnonzero(taken.any(axis=0))
+    if not rows.size:
+        return None
+    cropped = taken[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
+    return np.ascontiguousarray(cropped), int(cols[0]), int(rows[-1]) + 1, best
+
+
+def _quarter_counts(
+    mask: Mask, centre: Pair, way: Pair, scale: float, corner: Pair, grid: tuple[int, int, int]
+) -> NDArray[np.int32]:
+    """Count the samples that hit, a quarter of a pixel wide and high; a free pixel all around."""
+    (height, width), (cos, sin), (cols, rows, k) = mask.shape, way, grid
+    side = k // 4
     padded = np.zeros((height + 2, width + 2), bool)
     padded[1:-1, 1:-1] = mask
-    np.clip(row, -1, height, out=row)
-    np.clip(col, -1, width, out=col)
-    return padded[row + 1, col + 1], k, x0, y1
+    counts = np.zeros((4 * (rows + 2), 4 * (cols + 2)), np.int32)
+    # Sample points of the result, from its centre, in source px; then turned back.
+    u = ((np.arange(cols * k) + 0.5) / k + corner[0]) / scale
+    v = (corner[1] - (np.arange(rows * k)[:, None] + 0.5) / k) / scale
+    band = max(1, BAND // (cols * k * side)) * side
+    for start in range(0, rows * k, band):
+        lines = v[start : start + band]
+        col = np.floor(cos * u + (sin * lines + centre[0])).astype(np.int32)
+        row = np.floor(sin * u + (height - centre[1] - cos * lines)).astype(np.int32)
+        np.clip(row, -1, height, out=row)
+        np.clip(col, -1, width, out=col)
+        hit = padded[row + 1, col + 1].reshape(lines.size // side, side, 4 * cols, side)
+        at = 4 + start // side
+        counts[at : at + len(hit), 4:-4] = hit.sum(axis=(1, 3))
+    return counts
 
 
-def _counted(hit: Mask, k: int) -> NDArray[np.int64]:
-    """Return how many of the k x k samples of each pixel are hit."""
-    height, width = hit.shape[0] // k, hit.shape[1] // k
-    rows = hit.reshape(height, k, width * k).sum(axis=1, dtype=np.int64)
-    return np.asarray(rows.reshape(height, width, k).sum(axis=2))
+def _covered(counts: NDArray[np.int32], number: int) -> NDArray[np.int32]:
+    """Return how many samples of each pixel hit at a sub-pixel position."""
+    up, right = divmod(number, 4)
+    rows, cols = counts.shape[0] // 4 - 1, counts.shape[1] // 4 - 1
+    # A mask further right and up is a grid of pixels further left and down on the same samples.
+    view = counts[up : up + 4 * rows, 4 - right : 4 - right + 4 * cols]
+    lines = view.reshape(rows, 4, 4 * cols).sum(axis=1, dtype=np.int32)
+    return np.asarray(lines.reshape(rows, cols, 4).sum(axis=2, dtype=np.int32))
 
 
-def _in_one_piece(covered: NDArray[np.int64], full: int) -> Mask:
-    """Return the pixels covered to a half, or to less where a thin neck would break otherwise.
-
-    A stone neither vanishes nor falls apart at a coarse resolution.
-    """
+def _in_one_piece(covered: NDArray[np.int32], full: int) -> Mask:
+    """Return the pixels covered to a half, or to less where a thin neck would break otherwise."""
     for share in (2, 4):
-        turned = share * covered >= full
-        if ndimage.label(turned, np.ones((3, 3)))[1] == 1:
-            return turned
+        taken = share * covered >= full
+        if ndimage.label(taken, np.ones((3, 3)))[1] == 1:
+            return taken
     return np.asarray(covered > 0)

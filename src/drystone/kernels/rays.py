@@ -1,99 +1,152 @@
-"""Filled share of the rays that leave a mask to the left and downwards (Eq. 4)."""
+"""What the rays meet that leave a mask to the left and downwards (Eq. 4)."""
 
-from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.bits import row_runs
+from drystone.kernels.backend import compiled
+from drystone.kernels.lowering import Positions
 from drystone.kernels.raster import Mask
+from drystone.kernels.silhouette import Ints, Silhouette
 
-Ints = NDArray[np.int64]
+Longs = NDArray[np.int64]
+Number = TypeVar("Number", int, Longs)
 
-
-@dataclass(frozen=True, eq=False)
-class RayPattern:
-    """What the rays of a mask sweep inside its bounding box, as horizontal runs.
-
-    Parameters
-    ----------
-    rows, starts, stops : (n,) int arrays
-        Runs of swept pixels in the mask's own rows and columns.
-    area : int
-        Number of swept pixels inside the bounding box.
-    """
-
-    rows: Ints
-    starts: Ints
-    stops: Ints
-    area: int
+_fast = compiled("rays")
 
 
-def ray_pattern(mask: Mask) -> RayPattern:
-    """Return the pixels of the bounding box outside the mask that its rays sweep.
+class RaySums(Protocol):
+    """Sums of a landscape from which any swept region is counted in a few look-ups."""
 
-    A pixel is swept when some pixel of the mask lies to the right of it in its row, or above it
-    in its column; rays pass through stones.
-    """
-    left_of = np.logical_or.accumulate(mask[:, ::-1], axis=1)[:, ::-1]
-    below = np.logical_or.accumulate(mask, axis=0)
-    swept = (left_of | below) & ~mask
-    runs = [
-        (row, start, start + length)
-        for row, row_list in enumerate(row_runs(swept))
-        for start, length in row_list
-    ]
-    table = np.array(runs, np.int64).reshape(-1, 3)
-    return RayPattern(table[:, 0], table[:, 1], table[:, 2], int(swept.sum()))
+    height: int
+    width: int
 
-
-class RaySums:
-    """Prefix sums of a landscape, from which any swept region is counted in a few look-ups.
-
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape, row 0 at the top.
-    """
-
-    def __init__(self, occupied: Mask) -> None:
-        self.height, self.width = occupied.shape
-        self._area = np.zeros((self.height + 1, self.width + 1), np.int64)
-        np.cumsum(np.cumsum(occupied, axis=0), axis=1, out=self._area[1:, 1:])
-        self._row = np.zeros((self.height, self.width + 1), np.int64)
-        np.cumsum(occupied, axis=1, out=self._row[:, 1:])
-
-    def filled_share(
-        self, pattern: RayPattern, shape: tuple[int, int], rows: Ints, cols: Ints
-    ) -> NDArray[np.float64]:
+    def filled_share(self, mask: Silhouette, positions: Positions) -> NDArray[np.float64]:
         """Return the filled share of the swept pixels for many positions of one mask (Eq. 4).
 
         Parameters
         ----------
-        pattern : RayPattern
+        mask : Silhouette
             Of the mask.
-        shape : (int, int)
-            Height and width of the mask.
-        rows, cols : (n,) int arrays
-            Positions of its top-left corner.
+        positions : (n, 2) int array
+            Row and column of its top-left corner, inside the image.
 
         Returns
         -------
         share : (n,) float array
             In [0, 1]; 1 where nothing is swept.
         """
-        h, w = shape
-        area = self._area
-        left = area[rows + h, cols] - area[rows, cols]
-        below = (
-            area[self.height, cols + w]
-            - area[self.height, cols]
-            - area[rows + h, cols + w]
-            + area[rows + h, cols]
+
+    def filled_share_at(self, mask: Silhouette, row: int, col: int) -> float:
+        """Return the same for one position."""
+
+    def empty_beside(self, mask: Silhouette, positions: Positions) -> Longs:
+        """Return the pixels between a mask and the next ones to its left, for many positions."""
+
+
+def ray_sums(occupied: Mask, first: int) -> RaySums:
+    """Sum up a landscape.
+
+    Parameters
+    ----------
+    occupied : (h, w) bool array
+        The landscape, row 0 at the top.
+    first : int
+        There is nothing above this row.
+
+    Examples
+    --------
+    >>> from drystone.kernels.silhouette import silhouette
+    >>> sums = ray_sums(np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1]], bool), 1)
+    >>> corner = silhouette(np.array([[1, 1], [0, 1]], bool))
+    >>> sums.filled_share_at(corner, 0, 1), sums.empty_beside(corner, np.array([[0, 1]]))
+    (0.4, array([2]))
+    """
+    if _fast is None:
+        return RaySumsNumpy(occupied, first)
+    sums: RaySums = _fast.RaySums(occupied, first)
+    return sums
+
+
+class RaySumsNumpy:
+    """Twin in NumPy.
+
+    Parameters
+    ----------
+    occupied, first
+        As for :func:`ray_sums`.
+    """
+
+    def __init__(self, occupied: Mask, first: int) -> None:
+        self.height, self.width = occupied.shape
+        self._first = first
+        self._occupied = occupied
+
+    @cached_property
+    def _along(self) -> Ints:
+        """Pixels left of each column, in each row from the first on."""
+        along = np.zeros((self.height - self._first, self.width + 1), np.int32)
+        np.cumsum(self._occupied[self._first :], axis=1, out=along[:, 1:])
+        return along
+
+    @cached_property
+    def _above(self) -> Ints:
+        """Pixels left of each column, in all rows above each row from the first on."""
+        above = np.zeros((self.height - self._first + 1, self.width + 1), np.int32)
+        np.cumsum(self._along, axis=0, out=above[1:])
+        return above
+
+    @cached_property
+    def _ends(self) -> Ints:
+        """Column after the last pixel left of each column, in each row from the first on."""
+        ends = np.zeros((self.height - self._first, self.width + 1), np.int32)
+        columns = np.arange(1, self.width + 1)
+        ends[:, 1:] = np.where(self._occupied[self._first :], columns, 0)
+        return np.maximum.accumulate(ends, axis=1)
+
+    def filled_share(self, mask: Silhouette, positions: Positions) -> NDArray[np.float64]:
+        """Return the filled share of the swept pixels for many positions of one mask (Eq. 4)."""
+        rows, cols = positions[:, :1] - self._first, positions[:, 1:]
+        at, starts, stops = mask.rays.runs.T
+        under = np.maximum(rows + mask.height, 0)
+        filled = (
+            _sum(self._along, rows + np.arange(mask.height), cols + mask.rays.left)
+            + _sum(self._along, rows + at, cols + stops)
+            - _sum(self._along, rows + at, cols + starts)
+            + (self._above[-1, cols + mask.width] - self._above[-1, cols])[:, 0]
+            - (self._above[under, cols + mask.width] - self._above[under, cols])[:, 0]
         )
-        at = rows[:, None] + pattern.rows
-        inner = self._row[at, cols[:, None] + pattern.stops]
-        inner = inner - self._row[at, cols[:, None] + pattern.starts]
-        filled = left + below + inner.sum(axis=1)
-        swept = h * cols + w * (self.height - rows - h) + pattern.area
+        swept = swept_area(mask, self.height, positions[:, 0], positions[:, 1])
         return np.where(swept > 0, filled / np.maximum(swept, 1), 1.0)
+
+    def filled_share_at(self, mask: Silhouette, row: int, col: int) -> float:
+        """Return the same for one position, without the sums."""
+        below = row + mask.height
+        filled = int(np.count_nonzero(self._occupied[below:, col : col + mask.width]))
+        for line, left in zip(self._occupied[row:below], mask.rays.left.tolist(), strict=True):
+            filled += int(np.count_nonzero(line[: col + left]))
+        for at, start, stop in mask.rays.runs.tolist():
+            filled += int(np.count_nonzero(self._occupied[row + at, col + start : col + stop]))
+        swept = swept_area(mask, self.height, row, col)
+        return filled / swept if swept > 0 else 1.0
+
+    def empty_beside(self, mask: Silhouette, positions: Positions) -> Longs:
+        """Return the pixels between a mask and the next ones to its left, for many positions."""
+        rows = positions[:, :1] - self._first + np.arange(mask.height)
+        cols = positions[:, 1:] + mask.rays.left
+        return np.asarray(cols.sum(axis=1) - _sum(self._ends, rows, cols))
+
+
+def _sum(table: Ints, rows: Longs, cols: Longs) -> Longs:
+    """Sum values of a table along the last axis; above its first row there is nothing."""
+    if not table.size:
+        return np.zeros(len(rows), np.int64)
+    values = np.where(rows >= 0, table[np.maximum(rows, 0), cols], 0)
+    return np.asarray(values.sum(axis=1, dtype=np.int64))
+
+
+def swept_area(mask: Silhouette, height: int, row: Number, col: Number) -> Number:
+    """Return how many pixels of an image so high the rays of a mask sweep."""
+    return mask.height * col + mask.width * (height - row - mask.height) + mask.rays.area

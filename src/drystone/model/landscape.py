@@ -1,21 +1,25 @@
 """The landscape L_i: the wall as the next stone sees it, from one end or the other (§3.2)."""
 
+import itertools
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.bits import BitLandscape
+from drystone.kernels.bits import BitLandscape, bit_landscape
+from drystone.kernels.lowering import skyline
+from drystone.kernels.mirror import mirrored
 from drystone.kernels.raster import Mask
-from drystone.kernels.rays import RaySums
+from drystone.kernels.rays import RaySums, ray_sums
+from drystone.kernels.silhouette import Ints
 from drystone.model.placement import Side
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Wall
 
 
-@dataclass(frozen=True)
-class Box:
+class Box(NamedTuple):
     """Bounding box of a placed stone in view columns, y up from the ground, working px."""
 
     left: int
@@ -56,16 +60,28 @@ class Landscape:
     side: Side = "left"
 
     @classmethod
-    def of(cls, wall: Wall, side: Side = "left") -> "Landscape":
-        """Return the landscape of a wall."""
-        occupied = wall.occupied if side == "left" else wall.occupied[:, ::-1]
+    def of(cls, wall: Wall, side: Side = "left", before: "Landscape | None" = None) -> "Landscape":
+        """Return the landscape of a wall.
+
+        Parameters
+        ----------
+        wall : Wall
+            What is built.
+        side : {"left", "right"}
+            Building side.
+        before : Landscape, optional
+            Of the same wall when it had fewer stones, from the same side: saves their boxes.
+        """
+        occupied = wall.occupied if side == "left" else mirrored(wall.occupied)
         width, height = wall.site.width_px, wall.site.height_px
-        boxes = tuple(
+        known = () if before is None else before.boxes
+        placed = (group.placement for group in wall.groups[len(known) :])
+        new = tuple(
             view_box(p.posed, p.row, p.col if side == "left" else width - p.col - p.posed.width_px,
                      height)
-            for p in wall.placements
+            for p in placed
         )  # fmt: skip
-        return cls(np.ascontiguousarray(occupied), boxes, side)
+        return cls(occupied, known + new, side)
 
     @property
     def height_px(self) -> int:
@@ -83,19 +99,25 @@ class Landscape:
         return self.height_px - int(self.skyline.min())
 
     @cached_property
-    def skyline(self) -> NDArray[np.intp]:
+    def skyline(self) -> Ints:
         """Row of the highest occupied pixel of each column; height_px where there is none."""
-        return np.where(self.occupied.any(axis=0), np.argmax(self.occupied, axis=0), self.height_px)
+        return skyline(self.occupied)
+
+    @cached_property
+    def box_table(self) -> NDArray[np.int64]:
+        """The boxes as rows (left, right, bottom, top)."""
+        numbers = itertools.chain.from_iterable(self.boxes)
+        return np.fromiter(numbers, np.int64, 4 * len(self.boxes)).reshape(-1, 4)
 
     @cached_property
     def bits(self) -> BitLandscape:
-        """Packed form, for overlap at all positions."""
-        return BitLandscape(self.occupied)
+        """Packed form, for all positions at which a stone rests."""
+        return bit_landscape(self.occupied, self.skyline)
 
     @cached_property
     def rays(self) -> RaySums:
-        """Prefix sums, for LFR at all positions."""
-        return RaySums(self.occupied)
+        """What rays to the building side and downwards meet."""
+        return ray_sums(self.occupied, self.height_px - self.built_height_px)
 
     def view(self, posed: PosedStone) -> PosedStone:
         """Return a posed stone as it appears in this view."""

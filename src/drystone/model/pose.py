@@ -6,8 +6,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.kernels.mirror import mirrored
 from drystone.kernels.raster import Mask
-from drystone.kernels.rays import RayPattern, ray_pattern
+from drystone.kernels.silhouette import Silhouette, silhouette
 from drystone.model.stone import Stone
 
 
@@ -70,9 +71,9 @@ class PosedStone:
         return float(np.abs(self.top - np.median(self.top)).mean())
 
     @cached_property
-    def ray_pattern(self) -> RayPattern:
-        """What the rays of LFR sweep inside the bounding box (Eq. 4)."""
-        return ray_pattern(self.mask)
+    def silhouette(self) -> Silhouette:
+        """What placement asks of the mask."""
+        return silhouette(self.mask)
 
     @cached_property
     def mirrored(self) -> "PosedStone":
@@ -81,6 +82,6 @@ class PosedStone:
             self.stone,
             self.angle_deg,
             self.scale,
-            np.ascontiguousarray(self.mask[:, ::-1]),
+            mirrored(self.mask),
             (self.width_px - self.anchor[0], self.anchor[1]),
         )

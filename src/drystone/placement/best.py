@@ -1,17 +1,24 @@
 """The best positions of a stone, best first (§3.6)."""
 
-from collections.abc import Sequence
+import operator
+import types
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
-from drystone.indices.local_filling import local_filling_ratio
+from drystone.kernels.lowering import Positions
+from drystone.kernels.spots import Place
 from drystone.model.landscape import Landscape
 from drystone.model.pose import PosedStone
-from drystone.placement.feasible import Positions, feasible_positions
-from drystone.placement.objective import Floats, eq12_objective
-from drystone.placement.settings import PlacementSettings
-from drystone.placement.snug import snug_objective
+from drystone.placement.feasible import feasible_positions
+from drystone.placement.objective import best_by_objective, lowest
+from drystone.placement.settings import PlacementSettings, Rule
+from drystone.placement.snug import snuggest
+
+Choice = Callable[[Landscape, PosedStone, Positions, PlacementSettings], list[Place]]
+
+_RULES: Mapping[Rule, Choice] = types.MappingProxyType(
+    {"eq12": best_by_objective, "lowest": lowest, "snug": snuggest}
+)
 
 
 @dataclass(frozen=True)
@@ -51,30 +58,14 @@ def best_spots(
         At most `settings.tries`; empty when the stone fits nowhere.  Ties of the rule go to the
         lower place, then to the one further to the building side, then to the earlier pose.
     """
-    merits, floors, cols, keys = [], [], [], []
+    spots: list[tuple[tuple[float, ...], Spot]] = []
     for index, posed in enumerate(poses):
         positions = feasible_positions(landscape, posed, settings.reach, settings.clearance_px)
-        if len(positions):
-            merits.append(_merit(landscape, posed, positions, settings))
-            floors.append(positions[:, 0] + posed.height_px)
-            cols.append(positions[:, 1])
-            keys.append(np.column_stack([np.full(len(positions), index), positions]))
-    if not keys:
-        return []
-    merit, floor, col = np.concatenate(merits), np.concatenate(floors), np.concatenate(cols)
-    # A rounding error in the merit must not decide between equal places.
-    ranked = [col, -floor, -np.round(merit, 12)]
-    if settings.rule == "lowest":
-        ranked = [col, -np.round(merit, 12), -floor]
-    order = np.lexsort(ranked)[: settings.tries]
-    return [Spot(*key) for key in np.concatenate(keys)[order].tolist()]
-
-
-def _merit(
-    landscape: Landscape, posed: PosedStone, positions: Positions, settings: PlacementSettings
-) -> Floats:
-    if settings.rule == "eq12":
-        return eq12_objective(landscape, posed, positions, settings.beta)
-    if settings.rule == "lowest":
-        return local_filling_ratio(landscape, posed, positions)
-    return snug_objective(landscape, posed, positions, settings)
+        if not len(positions):
+            continue
+        for merit, row, col in _RULES[settings.rule](landscape, posed, positions, settings):
+            floor = row + posed.height_px
+            order = (-floor, -merit) if settings.rule == "lowest" else (-merit, -floor)
+            spots.append(((*order, col, index), Spot(index, row, col)))
+    spots.sort(key=operator.itemgetter(0))
+    return [spot for _, spot in spots[: settings.tries]]

@@ -3,15 +3,12 @@
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy import ndimage
 
-from drystone.kernels.bits import drop_rows
+from drystone.kernels.lowering import Positions, lowered_positions
 from drystone.model.landscape import Landscape
 from drystone.model.pose import PosedStone
 
 Reach = Literal["any", "above"]
-Positions = NDArray[np.int64]
 
 
 def feasible_positions(
@@ -44,29 +41,12 @@ def feasible_positions(
     no overlap here, overlap one pixel lower, or the ground.  The same map answers both.
     """
     if reach == "above":
-        return _lowered(landscape, posed, clearance_px)
-    free = ~landscape.bits.overlap(posed.mask)
-    rests = np.ones_like(free)
-    rests[:-1] = ~free[1:]
-    return np.argwhere(free & rests)
+        top, height = landscape.skyline, landscape.height_px
+        return lowered_positions(top, posed.silhouette, height, clearance_px)
+    return landscape.bits.resting(posed.silhouette)
 
 
 def can_be_lowered(landscape: Landscape, posed: PosedStone, row: int, col: int) -> bool:
     """Say whether nothing stands above a place, so that the stone can be lowered in from above."""
     tops = landscape.skyline[col : col + posed.width_px]
     return bool(np.all(tops > row + posed.bottom))
-
-
-def _lowered(landscape: Landscape, posed: PosedStone, clearance_px: int) -> Positions:
-    skyline = landscape.skyline
-    rows = drop_rows(skyline, posed.bottom)
-    cols = np.arange(rows.size)
-    inside = rows >= 0
-    if clearance_px:
-        # Widened by the clearance, the stone must come down to one own height above its place.
-        wider = np.pad(posed.bottom, clearance_px, mode="edge")
-        wider = ndimage.maximum_filter1d(wider, 2 * clearance_px + 1)
-        ends = np.pad(skyline, clearance_px, constant_values=landscape.height_px)
-        inside &= drop_rows(ends, wider) >= rows - posed.height_px
-    positions = np.column_stack([rows[inside], cols[inside]]).astype(np.int64)
-    return positions[np.lexsort((positions[:, 1], positions[:, 0]))]

@@ -1,32 +1,16 @@
-"""The objective of the paper, for all feasible positions at once (Eq. 12-13)."""
+"""The paper's rule of placement (Eq. 12-13), and the rule of its released code."""
 
-import numpy as np
-from numpy.typing import NDArray
-
-from drystone.indices.dice_score import geometrical_dice_score
-from drystone.indices.local_filling import local_filling_ratio
+from drystone.kernels.lowering import Positions
+from drystone.kernels.spots import Place, best_by_eq12, best_by_height
 from drystone.model.landscape import Landscape
 from drystone.model.pose import PosedStone
-from drystone.placement.feasible import Positions
-
-Floats = NDArray[np.float64]
+from drystone.placement.settings import PlacementSettings
 
 
-def threshold(x: Floats, beta: float) -> Floats:
-    """Return H(x, beta): x where it is larger than beta, otherwise 0 (Eq. 13).
-
-    Examples
-    --------
-    >>> threshold(np.array([0.7, 0.8]), 0.7)
-    array([0. , 0.8])
-    """
-    return np.where(x > beta, x, 0.0)
-
-
-def eq12_objective(
-    landscape: Landscape, posed: PosedStone, positions: Positions, beta: float
-) -> Floats:
-    """Return LFR + H(GDS, beta) - x_c / w for every position (Eq. 12a).
+def best_by_objective(
+    landscape: Landscape, posed: PosedStone, positions: Positions, settings: PlacementSettings
+) -> list[Place]:
+    """Return the positions of the largest LFR + H(GDS, beta) - x_c / w, the best first (Eq. 12a).
 
     Parameters
     ----------
@@ -36,10 +20,23 @@ def eq12_objective(
         The stone, in the same view.
     positions : (n, 2) int array
         Feasible positions.
-    beta : float
-        Threshold of Eq. 13.
+    settings : PlacementSettings
+        Threshold of Eq. 13, and how many positions are wanted.
     """
-    filling = local_filling_ratio(landscape, posed, positions)
-    dice = geometrical_dice_score(landscape, posed, positions[:, 0])
-    x_c = positions[:, 1] + posed.anchor[0]
-    return np.asarray(filling + threshold(dice, beta) - x_c / landscape.width_px)
+    rays, built = landscape.rays, landscape.built_height_px
+    beta, tries = settings.beta, settings.tries
+    return best_by_eq12(positions, posed.silhouette, rays, built, posed.anchor[0], beta, tries)
+
+
+def lowest(
+    landscape: Landscape, posed: PosedStone, positions: Positions, settings: PlacementSettings
+) -> list[Place]:
+    """Return the lowest positions; of equal ones those of the largest LFR.
+
+    Parameters
+    ----------
+    landscape, posed, positions, settings
+        As for :func:`best_by_objective`.
+    """
+    rays = landscape.rays
+    return best_by_height(positions, posed.silhouette, rays, settings.tries)

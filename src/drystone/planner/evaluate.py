@@ -2,13 +2,11 @@
 
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
-from drystone.indices.dice_score import geometrical_dice_score
+from drystone.indices.dice_score import geometrical_dice_score_at
 from drystone.indices.interlocking import interlocking_width_ratio
 from drystone.indices.inward_slope import inward_slope, is_boundary
 from drystone.indices.load_coefficient import limit_load_coefficient
-from drystone.indices.local_filling import local_filling_ratio
+from drystone.indices.local_filling import local_filling_ratio_at
 from drystone.indices.neighbour_height import left_neighbour, neighbour_height_ratio
 from drystone.indices.shape_factor import shape_factor
 from drystone.indices.values import Indices
@@ -187,13 +185,12 @@ def action_indices(
     placement = stabilised.placement
     posed = landscape.view(placement.posed)
     col = landscape.view_col(placement.posed, placement.col)
-    at = np.array([[placement.row, col]])
     box = view_box(posed, placement.row, col, landscape.height_px)
     nhr, course_height = first_or_next(landscape, placement, course_height_px)
     indices = Indices(
         SF=shape_factor(placement.posed),
-        LFR=float(local_filling_ratio(landscape, posed, at)[0]),
-        GDS=float(geometrical_dice_score(landscape, posed, at[:, 0])[0]),
+        LFR=local_filling_ratio_at(landscape, posed, placement.row, col),
+        GDS=geometrical_dice_score_at(landscape, posed, placement.row),
         NHR=nhr,
         IWR=interlocking_width_ratio(landscape, box, narrowest_px),
         IS=inward_slope(landscape, posed, col),

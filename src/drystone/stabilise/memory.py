@@ -1,27 +1,30 @@
 """Stabilise each stone in the same surroundings only once."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
 from drystone.kernels.raster import Mask
-from drystone.model.placement import Side, Wedge
+from drystone.model.placement import Placement, Side, Wedge
 from drystone.model.pose import PosedStone
-from drystone.poses import PoseBook
-from drystone.stabilise.rotate import Pose
+from drystone.poses import PoseBook, RecentlyUsed
 from drystone.stabilise.settings import StabiliseSettings
-from drystone.stabilise.stabilise import Stabilised, WedgeStock, stabilise
+from drystone.stabilise.stabilise import Outcome, Stabilised, WedgeStock, falls_to, make_stable
+from drystone.stabilise.support import Pose
 
-Key = tuple[PosedStone, int, int, tuple[int, ...], bytes]
+Key = tuple[PosedStone, int, int, int, tuple[int, ...], bytes]
+
+MEMORY_BYTES = 1 << 28
+"""Outcomes that are remembered at most, about: a hundred thousand."""
 
 
 class StabiliseMemory:
     """Stabilisation as a function of a stone and what is around it, remembered.
 
-    A stone is stabilised in a window of the landscape: from some way above it down to the ground,
-    and some way beyond its sides.  So what happens further away cannot matter, and the outcome
-    can be used again whenever the window looks the same, in a later step or in another wall.
+    A stone that falls is made stable in a window of the landscape: from some way above it down to
+    the ground, and some way beyond its sides.  So what happens further away cannot matter, and
+    the outcome can be used again whenever the window looks the same, in a later step or in
+    another wall: as far down, that is, as was looked at to make the stone stable.
 
     Parameters
     ----------
@@ -31,8 +34,9 @@ class StabiliseMemory:
         Mean height of the stones, which limits the wedges.
     settings : StabiliseSettings
         Which methods, with which limits.
-    capacity : int
-        Outcomes that are kept; when it is reached, all are forgotten.
+    budget_bytes : int
+        Memory for outcomes.  Those not asked for for longest are forgotten and worked out again
+        when they are: no result depends on it.
     """
 
     def __init__(
@@ -40,13 +44,12 @@ class StabiliseMemory:
         book: PoseBook,
         mean_height_px: float,
         settings: StabiliseSettings,
-        capacity: int = 100_000,
+        budget_bytes: int = MEMORY_BYTES,
     ) -> None:
         self._book = book
-        self._mean_height_px = mean_height_px
+        self._stock = WedgeStock(1, mean_height_px)
         self._settings = settings
-        self._capacity = capacity
-        self._outcomes: dict[Key, Stabilised | None] = {}
+        self._outcomes = RecentlyUsed[Key, Outcome](budget_bytes)
 
     def stabilise(
         self, occupied: Mask, trial: Pose, side: Side, next_wedge: int
@@ -68,21 +71,38 @@ class StabiliseMemory:
         -----
         A stone that would turn or slide out of the window counts as not stable.
         """
+        falls = falls_to(occupied, trial, self._settings)
+        if falls is None:
+            return None
+        if falls == 0:  # most are: quicker seen than remembered
+            return Stabilised(Placement(*trial, side))
         posed, row, col = trial
         reach = _reach_px(posed)
         top, left = max(0, row - reach), max(0, col - reach)
         window = occupied[top:, left : col + posed.width_px + reach]
-        key = (posed, row - top, col - left, window.shape, np.packbits(window).tobytes())
-        if key in self._outcomes:
-            outcome = self._outcomes[key]
-        else:
-            stock = WedgeStock(1, self._mean_height_px)
-            local = (posed, row - top, col - left)
-            outcome = stabilise(window, local, side, self._book, stock, self._settings)
-            if len(self._outcomes) >= self._capacity:
-                self._outcomes.clear()
-            self._outcomes[key] = outcome
-        return None if outcome is None else _moved(outcome, top, left, side, next_wedge)
+        local = (posed, row - top, col - left)
+        outcome = self._outcome(window, local, side, row - top + posed.height_px + reach)
+        return _moved(outcome.stabilised, top, left, side, next_wedge)
+
+    def _outcome(self, window: Mask, trial: Pose, side: Side, depth: int) -> Outcome:
+        """Return what becomes of a stone in a window that reaches down to the ground.
+
+        An outcome is looked for by the window down to a depth: at first a guess, then as deep as
+        what is found there has looked.
+        """
+        outcome: Outcome | None = None
+        while True:
+            part = window[:depth]
+            key = (*trial, depth, part.shape, np.packbits(part).tobytes())
+            found = self._outcomes.get(key)
+            if found is None:
+                if outcome is None:
+                    book, stock, settings = self._book, self._stock, self._settings
+                    outcome = make_stable(window, trial, side, book, stock, settings)
+                found = self._outcomes.keep(key, outcome, _memory_bytes(key, outcome))
+            if found.depth <= depth or len(window) < depth:
+                return found
+            depth = found.depth
 
 
 def _reach_px(posed: PosedStone) -> int:
@@ -90,11 +110,25 @@ def _reach_px(posed: PosedStone) -> int:
     return math.ceil(max(posed.width_px, posed.height_px) / 3) + 6
 
 
-def _moved(outcome: Stabilised, top: int, left: int, side: Side, next_wedge: int) -> Stabilised:
+def _memory_bytes(key: Key, outcome: Outcome) -> int:
+    """Return about how much memory an outcome takes; poses are the book's or the planner's."""
+    size = len(key[-1]) + 1000
+    if outcome.stabilised is not None:
+        size += outcome.stabilised.placement.posed.mask.nbytes
+        size += sum(wedge.mask.nbytes + 500 for wedge in outcome.stabilised.wedges)
+    return size
+
+
+def _moved(
+    stabilised: Stabilised | None, top: int, left: int, side: Side, next_wedge: int
+) -> Stabilised | None:
     """Return an outcome in the rows and columns of the whole wall, with wedge ids of its own."""
-    at = outcome.placement
+    if stabilised is None:
+        return None
+    at = stabilised.placement
     wedges = tuple(
         Wedge(next_wedge + k, wedge.under, wedge.mask, wedge.row + top, wedge.col + left)
-        for k, wedge in enumerate(outcome.wedges)
+        for k, wedge in enumerate(stabilised.wedges)
     )
-    return Stabilised(replace(at, row=at.row + top, col=at.col + left, side=side), wedges)
+    placement = Placement(at.posed, at.row + top, at.col + left, side, at.rotation_moves)
+    return Stabilised(placement, wedges)

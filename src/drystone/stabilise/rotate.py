@@ -1,21 +1,37 @@
 """Rotation-based stabilisation about the end of the support polyline (§3.7, Fig. 9b)."""
 
 import math
-
-import numpy as np
+from dataclasses import dataclass
 
 from drystone.kernels.raster import Mask, rotation
-from drystone.model.pose import PosedStone
+from drystone.kernels.support import resting_place
 from drystone.poses import PoseBook
 from drystone.stabilise.settings import StabiliseSettings
-from drystone.stabilise.support import Support, support_polyline
+from drystone.stabilise.support import Pose, Support, falling_side, support_polyline
 
-Pose = tuple[PosedStone, int, int]
+
+@dataclass(frozen=True, eq=False)
+class Rotation:
+    """What became of a stone that was turned.
+
+    Parameters
+    ----------
+    pose : (PosedStone, int, int) or None
+        Where it rests; None when it meets the landscape before it does, or a limit is reached.
+    pivots : int
+        How many points it was turned about.
+    depth : int
+        Rows of the landscape, from the top, that were looked at: what is further down has no say.
+    """
+
+    pose: Pose | None
+    pivots: int
+    depth: int
 
 
 def rotate_to_rest(
     occupied: Mask, trial: Pose, book: PoseBook, settings: StabiliseSettings
-) -> tuple[Pose, int] | None:
+) -> Rotation:
     """Turn an unstable stone about A, the nearer end of its support, until it rests (§3.7).
 
     The stone turns towards the side to which it falls, in steps of a degree.  Each step takes the
@@ -33,34 +49,30 @@ def rotate_to_rest(
         Gives the turned stones.
     settings : StabiliseSettings
         Margin, steps and limits.
-
-    Returns
-    -------
-    pose, pivots : (PosedStone, int, int), int
-        The stable pose and the number of pivots; None when the stone meets the landscape before
-        it rests, or a limit is reached.
     """
-    pose = trial
-    first_angle = trial[0].angle_deg
-    for pivots in range(settings.max_pivots + 1):
-        support = support_polyline(occupied, *pose)
-        if support is None:
-            return None
-        side = _falls(support, pose, settings)
+    pose, depth = trial, trial[1] + trial[0].height_px + 1
+    support = support_polyline(occupied, *trial)
+    if support is None:
+        return Rotation(None, 0, depth)
+    for pivots in range(settings.max_pivots):
+        side = falling_side(support, pose, settings)
         if side == 0:
-            return pose, pivots
-        if pivots == settings.max_pivots:
-            return None
-        turned = _turn_about(occupied, pose, support, side, first_angle, book, settings)
-        if turned is None:
-            return None
-        pose = turned
-    return None
+            return Rotation(pose, pivots, depth)
+        turned = _turn_about(occupied, pose, support, side, trial[0].angle_deg, book, settings)
+        depth = max(depth, turned.depth)
+        if turned.end is None:
+            return Rotation(None, pivots, depth)
+        pose, support = turned.end
+    rests = falling_side(support, pose, settings) == 0
+    return Rotation(pose if rests else None, settings.max_pivots, depth)
 
 
-def _falls(support: Support, pose: Pose, settings: StabiliseSettings) -> int:
-    posed, _, col = pose
-    return support.falls(col + posed.anchor[0], settings.margin * posed.width_px)
+@dataclass(frozen=True, eq=False)
+class _Turned:
+    """Where a stone stands after turning about one point, if it does; and the rows looked at."""
+
+    end: tuple[Pose, Support] | None
+    depth: int
 
 
 def _turn_about(
@@ -71,12 +83,16 @@ def _turn_about(
     first_angle_deg: float,
     book: PoseBook,
     settings: StabiliseSettings,
-) -> Pose | None:
+) -> _Turned:
     """Turn about one end of the support until the stone rests or stands on something new."""
     posed, row, col = start
     x_a, row_a = (
         (support.left_x, support.left_row) if side < 0 else (support.right_x, support.right_row)
     )
+    # Centroid relative to A, y up.
+    dx = col + posed.anchor[0] - x_a
+    dy = row_a - (row + posed.height_px - posed.anchor[1])
+    depth, reach = 0, settings.max_shift_px
     steps = math.floor(settings.max_turn_deg / settings.step_deg + 1e-9)
     for step in range(1, 2 * steps + 1):
         # Falling to the right is turning clockwise, a negative angle.
@@ -84,56 +100,20 @@ def _turn_about(
         total = posed.angle_deg + turn_deg - first_angle_deg
         total -= 360.0 * round(total / 360.0)
         if abs(total) > settings.max_turn_deg + 1e-9:
-            return None
+            break
         turned = book.pose(posed.stone, posed.angle_deg + turn_deg)
-        # Centroid relative to A, y up, turned with the stone.
-        dx = col + posed.anchor[0] - x_a
-        dy = row_a - (row + posed.height_px - posed.anchor[1])
+        height, (anchor_x, anchor_y) = turned.height_px, turned.anchor
         cos, sin = rotation(turn_deg)
         x_c, y_up = x_a + cos * dx - sin * dy, sin * dx + cos * dy
-        new_col = math.floor(x_c - turned.anchor[0] + 0.5)
-        new_row = math.floor(row_a - y_up + turned.anchor[1] - turned.height_px + 0.5)
-        seated = seat(occupied, turned, new_row, new_col, settings.max_shift_px)
-        if seated is None:
-            return None
-        pose = (turned, seated, new_col)
-        new = support_polyline(occupied, *pose)
-        if new is None:
-            return None
-        falls = _falls(new, pose, settings)
+        new_col = math.floor(x_c - anchor_x + 0.5)
+        new_row = math.floor(row_a - y_up + anchor_y - height + 0.5)
+        depth = max(depth, new_row + reach + height + 1)
+        place = resting_place(occupied, turned.mask, new_row, new_col, reach)
+        if place is None:
+            break
+        new, pose = Support(*place[1]), (turned, place[0], new_col)
         pivot_x = new.left_x if side < 0 else new.right_x
-        if falls != side or abs(pivot_x - x_a) > settings.new_pivot_px:
-            return pose
-    return None
-
-
-def seat(occupied: Mask, posed: PosedStone, row: int, col: int, reach_px: int) -> int | None:
-    """Return the row nearest to a given one at which a stone rests in its column.
-
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape.
-    posed : PosedStone
-        The stone.
-    row, col : int
-        Where its mask should go.
-    reach_px : int
-        How far up or down it may be moved.
-
-    Returns
-    -------
-    row : int or None
-        None when it overlaps something, leaves the site, or hangs in the air in all these rows.
-    """
-    height, width = occupied.shape
-    lowest = height - posed.height_px
-    if col < 0 or col + posed.width_px > width:
-        return None
-    window = occupied[:, col : col + posed.width_px]
-
-    def free(at: int) -> bool:
-        return 0 <= at <= lowest and not np.any(window[at : at + posed.height_px] & posed.mask)
-
-    shifts = sorted(range(-reach_px, reach_px + 1), key=lambda shift: (abs(shift), -shift))
-    return next((row + s for s in shifts if free(row + s) and not free(row + s + 1)), None)
+        moved = abs(pivot_x - x_a) > settings.new_pivot_px
+        if moved or falling_side(new, pose, settings) != side:
+            return _Turned((pose, new), depth)
+    return _Turned(None, depth)

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from drystone.kernels.raster import Mask
 from drystone.model.placement import Placement, Side, Wedge
 from drystone.poses import PoseBook
-from drystone.stabilise.rotate import Pose, rotate_to_rest
+from drystone.stabilise.rotate import rotate_to_rest
 from drystone.stabilise.settings import StabiliseSettings
-from drystone.stabilise.support import support_polyline
-from drystone.stabilise.wedge import wedge_under
+from drystone.stabilise.support import Pose, falling_side, support_polyline
+from drystone.stabilise.wedge import wedge_sizes_px, wedge_under
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +43,23 @@ class WedgeStock:
     mean_height_px: float
 
 
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What became of a stone that falls.
+
+    Parameters
+    ----------
+    stabilised : Stabilised or None
+        None when it cannot be made stable.
+    depth : int
+        Rows of the landscape, from the top, that were looked at: in another landscape that is the
+        same so far down the outcome is the same.
+    """
+
+    stabilised: Stabilised | None
+    depth: int
+
+
 def stabilise(
     occupied: Mask,
     trial: Pose,
@@ -68,22 +85,50 @@ def stabilise(
     settings : StabiliseSettings
         Which methods, with which limits.
     """
-    posed, row, col = trial
-    support = support_polyline(occupied, posed, row, col)
-    if support is None:
+    falls = falls_to(occupied, trial, settings)
+    if falls is None:
         return None
-    if support.falls(col + posed.anchor[0], settings.margin * posed.width_px) == 0:
-        return Stabilised(Placement(posed, row, col, side))
+    if falls == 0:
+        return Stabilised(Placement(*trial, side))
+    return make_stable(occupied, trial, side, book, wedges, settings).stabilised
+
+
+def falls_to(occupied: Mask, trial: Pose, settings: StabiliseSettings) -> int | None:
+    """Say to which side a stone falls: -1 left, +1 right, 0 stable; None when nothing supports."""
+    support = support_polyline(occupied, *trial)
+    return None if support is None else falling_side(support, trial, settings)
+
+
+def make_stable(
+    occupied: Mask,
+    trial: Pose,
+    side: Side,
+    book: PoseBook,
+    wedges: WedgeStock,
+    settings: StabiliseSettings,
+) -> Outcome:
+    """Turn a stone that falls, or wedge it.
+
+    Parameters
+    ----------
+    occupied, trial, side, book, wedges, settings
+        As for :func:`stabilise`.
+    """
+    posed, row, col = trial
+    depth = row + posed.height_px + 1
     if settings.method in ("both", "rotation"):
-        rotated = rotate_to_rest(occupied, trial, book, settings)
-        if rotated is not None:
-            (turned, row, col), pivots = rotated
-            return Stabilised(Placement(turned, row, col, side, rotation_moves=pivots))
+        rotation = rotate_to_rest(occupied, trial, book, settings)
+        depth = max(depth, rotation.depth)
+        if rotation.pose is not None:
+            placement = Placement(*rotation.pose, side, rotation_moves=rotation.pivots)
+            return Outcome(Stabilised(placement), depth)
     if settings.method in ("both", "wedge"):
-        cut = _wedges_under(occupied, trial, wedges, settings)
+        deepest = row + posed.height_px + wedge_sizes_px(wedges.mean_height_px, settings)[1] + 1
+        depth = max(depth, deepest)
+        cut = _wedges_under(occupied[:deepest], trial, wedges, settings)
         if cut is not None:
-            return Stabilised(Placement(posed, trial[1], trial[2], side), cut)
-    return None
+            return Outcome(Stabilised(Placement(posed, row, col, side), cut), depth)
+    return Outcome(None, depth)
 
 
 def _wedges_under(
@@ -93,17 +138,15 @@ def _wedges_under(
 
     The second is for a support too narrow for both margins.
     """
-    posed, row, col = trial
+    first = wedge_under(occupied, trial, stock.next_id, stock.mean_height_px, settings)
+    if first is None:
+        return None
     scene = occupied.copy()
-    cut: list[Wedge] = []
-    for wedge_id in (stock.next_id, stock.next_id + 1):
-        wedge = wedge_under(scene, trial, wedge_id, stock.mean_height_px, settings)
-        if wedge is None:
-            return None
-        scene[wedge.window] |= wedge.mask
-        cut.append(wedge)
-        support = support_polyline(scene, posed, row, col)
-        margin_px = settings.margin * posed.width_px
-        if support is not None and support.falls(col + posed.anchor[0], margin_px) == 0:
-            return tuple(cut)
-    return None
+    scene[first.window] |= first.mask
+    if falls_to(scene, trial, settings) == 0:
+        return (first,)
+    second = wedge_under(scene, trial, stock.next_id + 1, stock.mean_height_px, settings)
+    if second is None:
+        return None
+    scene[second.window] |= second.mask
+    return (first, second) if falls_to(scene, trial, settings) == 0 else None

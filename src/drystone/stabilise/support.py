@@ -2,10 +2,13 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from drystone.kernels.raster import Mask
+from drystone.kernels.support import support_ends
 from drystone.model.pose import PosedStone
+from drystone.stabilise.settings import StabiliseSettings
+
+Pose = tuple[PosedStone, int, int]
+"""A turned stone, and the row and column of its mask's top-left corner."""
 
 
 @dataclass(frozen=True)
@@ -59,15 +62,11 @@ def support_polyline(occupied: Mask, posed: PosedStone, row: int, col: int) -> S
     row, col : int
         Top-left corner of its mask; it overlaps nothing there.
     """
-    height, width = posed.mask.shape
-    below = occupied[row + 1 : row + height + 1, col : col + width]
-    hit = np.zeros_like(posed.mask)
-    hit[: below.shape[0]] = posed.mask[: below.shape[0]] & below
-    if row + height == occupied.shape[0]:
-        hit[-1] = posed.mask[-1]
-    columns = np.flatnonzero(hit.any(axis=0))
-    if columns.size == 0:
-        return None
-    first, last = int(columns[0]), int(columns[-1])
-    lowest = height - np.argmax(hit[::-1, [first, last]], axis=0)
-    return Support(col + first, col + last + 1, row + int(lowest[0]), row + int(lowest[1]))
+    ends = support_ends(occupied, posed.mask, row, col)
+    return None if ends is None else Support(*ends)
+
+
+def falling_side(support: Support, pose: Pose, settings: StabiliseSettings) -> int:
+    """Say to which side a stone on its support falls: -1 left, +1 right, 0 when it is stable."""
+    posed, _, col = pose
+    return support.falls(col + posed.anchor[0], settings.margin * posed.width_px)

@@ -1,15 +1,18 @@
 """Wedging: a small stone under the free side (§3.7, Fig. 9c)."""
 
-import numpy as np
-from numpy.typing import NDArray
-from scipy import ndimage
+import math
 
-from drystone.kernels.columns import free_below
+from drystone.kernels.columns import gap_filling
 from drystone.kernels.raster import Mask
 from drystone.model.placement import Wedge
-from drystone.stabilise.rotate import Pose
 from drystone.stabilise.settings import StabiliseSettings
-from drystone.stabilise.support import support_polyline
+from drystone.stabilise.support import Pose, falling_side, support_polyline
+
+
+def wedge_sizes_px(mean_height_px: float, settings: StabiliseSettings) -> tuple[int, int]:
+    """Return the smallest height and width, and the largest height, of a wedge in whole px."""
+    smallest = settings.min_wedge_px
+    return smallest, math.floor(max(smallest, settings.max_wedge_height * mean_height_px))
 
 
 def wedge_under(
@@ -47,55 +50,22 @@ def wedge_under(
     """
     posed, row, col = pose
     support = support_polyline(occupied, posed, row, col)
-    if support is None:
-        return None
-    margin = settings.margin * posed.width_px
-    x_c = col + posed.anchor[0]
-    side = support.falls(x_c, margin)
+    side = 0 if support is None else falling_side(support, pose, settings)
     if side == 0:
         return None
-    x = col + np.arange(posed.width_px)
-    useful = x + 1 >= x_c + margin if side > 0 else x <= x_c - margin
-    gap = free_below(occupied, posed.bottom, row, col)
-    largest = max(settings.min_wedge_px, settings.max_wedge_height * mean_height_px)
-    fits = useful & (gap >= settings.min_wedge_px) & (gap <= largest)
-    run = _touching_run(gap, fits, settings.min_wedge_px)
-    if run is None:
-        return None
-    wedge = _fill(pose, gap, run, wedge_id)
+    sizes = wedge_sizes_px(mean_height_px, settings)
+    columns = _useful_columns(pose, side, settings)
+    filling = gap_filling(occupied, posed.mask, row, col, columns, sizes)
     # Between sloping faces a wedge may be higher than each of its columns.
-    return wedge if wedge is not None and wedge.mask.shape[0] <= largest else None
-
-
-def _touching_run(gap: NDArray[np.intp], fits: Mask, min_width_px: int) -> tuple[int, int] | None:
-    """Return the columns that touch first when the free side is lowered, at least the minimum.
-
-    The run starts from the smallest gap and takes in neighbours whose gap is a pixel larger, or
-    more as long as it is narrower than a wedge may be.
-    """
-    if not fits.any():
+    if filling is None or filling[0].shape[0] > sizes[1]:
         return None
-    for slack in range(1, int(gap[fits].max()) + 1):
-        for at in np.flatnonzero(fits & (gap == gap[fits].min())):
-            start = stop = int(at)
-            touches = fits & (gap <= gap[at] + slack)
-            while start > 0 and touches[start - 1]:
-                start -= 1
-            while stop + 1 < gap.size and touches[stop + 1]:
-                stop += 1
-            if stop + 1 - start >= min_width_px:
-                return start, stop + 1
-    return None
+    return Wedge(wedge_id, posed.stone.id, *filling)
 
 
-def _fill(pose: Pose, gap: NDArray[np.intp], run: tuple[int, int], wedge_id: int) -> Wedge | None:
-    posed, row, col = pose
-    columns = np.arange(*run)
-    tops = row + posed.bottom[columns] + 1
-    bottoms = tops + gap[columns]
-    first, last = int(tops.min()), int(bottoms.max())
-    rows = np.arange(first, last)[:, None]
-    mask = (rows >= tops) & (rows < bottoms)
-    if ndimage.label(mask)[1] != 1:
-        return None
-    return Wedge(wedge_id, posed.stone.id, mask, first, col + run[0])
+def _useful_columns(pose: Pose, side: int, settings: StabiliseSettings) -> tuple[int, int]:
+    """Return the columns whose support would bring the centre of mass inside, first and end."""
+    posed, _, col = pose
+    x_c, margin = col + posed.anchor[0], settings.margin * posed.width_px
+    if side > 0:  # the right edge of a column at the centre of mass, or beyond it by the margin
+        return max(0, math.ceil(x_c + margin) - 1 - col), posed.width_px
+    return 0, min(posed.width_px, math.floor(x_c - margin) + 1 - col)

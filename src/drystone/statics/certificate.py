@@ -1,9 +1,8 @@
 """Certificates of answers, computed from the program and independent of what a solver claims."""
 
-from dataclasses import replace
-
 import numpy as np
 
+from drystone.kernels.certificate import Figures
 from drystone.statics.program import EquilibriumProgram, Floats
 from drystone.statics.result import Certificate, LimitStatus
 from drystone.statics.solvers.solution import Solution
@@ -38,9 +37,10 @@ def certify(program: EquilibriumProgram, solution: Solution, sign: float) -> Cer
     if solution.status is LimitStatus.OPTIMAL:
         assert solution.columns is not None  # noqa: S101 - an optimal solution has both
         assert solution.duals is not None  # noqa: S101
-        return _of_optimum(program, solution.columns, -solution.duals, sign)
+        found = _figures(program, solution.columns, -solution.duals)
+        return optimum_of(found, float(solution.columns[0]), sign)
     if solution.status is LimitStatus.UNSTABLE and solution.duals is not None:
-        return _of_no_alpha(program, -solution.duals)
+        return no_alpha_of(_figures(program, None, -solution.duals))
     if solution.status is LimitStatus.UNBOUNDED and solution.columns is not None:
         return _of_growth(program, solution.columns, sign)
     return None
@@ -56,40 +56,72 @@ def of_fall(program: EquilibriumProgram, velocity: Floats) -> Certificate:
     velocity : (rows,) float array
         The mechanism, one entry a row of the program.
     """
-    largest = _largest(velocity)
-    if largest == 0.0:
-        return Certificate(fall_work=0.0)
-    velocity = velocity / largest
-    inadmissible = _inadmissible(program.matrix.T @ velocity)
-    return Certificate(inadmissible=inadmissible, fall_work=-float(program.rhs @ velocity))
+    return fall_of(_figures(program, None, velocity))
 
 
-def _of_no_alpha(program: EquilibriumProgram, velocity: Floats) -> Certificate:
-    """Certify that no alpha holds the blocks up: as a fall on which the live load does no work."""
-    fall = of_fall(program, velocity)
-    largest = _largest(velocity)
-    live = abs(float((program.matrix[:, [0]].T @ velocity)[0])) / largest if largest else 0.0
-    return replace(fall, inadmissible=max(fall.inadmissible, live))
+def optimum_of(found: Figures, alpha: float, sign: float) -> Certificate:
+    """Certify that alpha is an extreme.
 
-
-def _of_optimum(
-    program: EquilibriumProgram, columns: Floats, velocity: Floats, sign: float
-) -> Certificate:
-    powers = program.matrix.T @ velocity
+    Parameters
+    ----------
+    found : Figures
+        Of the forces and the mechanism.
+    alpha : float
+        Load multiplier of the forces.
+    sign : float
+        1 when it is said to be the greatest, -1 for the least.
+    """
     # Of the live load; along the end that was asked for.
-    power = sign * float(powers[0])
-    inadmissible = _inadmissible(powers)
+    power = sign * found.live
     upper = slack = None
     if power > 0.0:
-        upper = sign * float(program.rhs @ velocity) / power
-        slack = inadmissible * float(np.abs(columns[1:]).sum()) / power
+        upper = sign * found.rhs / power
+        slack = found.inadmissible * found.total / power
     return Certificate(
-        residual=_largest(program.matrix @ columns - program.rhs),
-        violation=max(0.0, -float(columns[1:].min(initial=0.0))),
-        inadmissible=inadmissible / max(1.0, _largest(velocity)),
-        lower=float(columns[0]),
-        upper=upper,
-        slack=slack,
+        found.residual,
+        found.violation,
+        found.inadmissible / max(1.0, found.largest),
+        alpha,
+        upper,
+        slack,
+    )
+
+
+def fall_of(found: Figures) -> Certificate:
+    """Certify that the dead load does work on a mechanism."""
+    if found.largest == 0.0:
+        return Certificate(fall_work=0.0)
+    return Certificate(
+        inadmissible=found.inadmissible / found.largest, fall_work=-found.rhs / found.largest
+    )
+
+
+def no_alpha_of(found: Figures) -> Certificate:
+    """Certify that no alpha holds the blocks up: as a fall on which the live load does no work."""
+    if found.largest == 0.0:
+        return Certificate(fall_work=0.0)
+    return Certificate(
+        inadmissible=max(found.inadmissible, abs(found.live)) / found.largest,
+        fall_work=-found.rhs / found.largest,
+    )
+
+
+def _figures(program: EquilibriumProgram, columns: Floats | None, velocity: Floats) -> Figures:
+    """Measure forces, if there are any, and a mechanism."""
+    residual = violation = total = 0.0
+    if columns is not None:
+        residual = _largest(np.abs(program.matrix @ columns - program.rhs))
+        violation = _largest(-columns[1:])
+        total = float(np.abs(columns[1:]).sum())
+    powers = program.matrix.T @ velocity
+    return Figures(
+        residual,
+        violation,
+        total,
+        _largest(np.abs(velocity)),
+        _largest(-powers[1:]),
+        float(powers[0]),
+        float(program.rhs @ velocity),
     )
 
 
@@ -99,15 +131,12 @@ def _of_growth(program: EquilibriumProgram, ray: Floats, sign: float) -> Certifi
         return None
     ray = ray / abs(ray[0])
     return Certificate(
-        residual=_largest(program.matrix @ ray),
-        violation=max(0.0, -float(ray[1:].min(initial=0.0))),
+        residual=_largest(np.abs(program.matrix @ ray)),
+        violation=_largest(-ray[1:]),
         lower=sign * np.inf,
     )
 
 
 def _largest(values: Floats) -> float:
-    return float(np.abs(values).max(initial=0.0))
-
-
-def _inadmissible(powers: Floats) -> float:
-    return max(0.0, -float(powers[1:].min(initial=0.0)))
+    """Return the largest value above 0; NaN when there is one."""
+    return float(values.max(initial=0.0)) + 0.0  # never -0.0

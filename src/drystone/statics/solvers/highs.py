@@ -15,6 +15,9 @@ Algorithm = Literal["simplex", "ipm"]
 TOLERANCE = 1e-9
 """Primal and dual feasibility; the default of HiGHS costs two digits of alpha at 300 blocks."""
 
+PIVOTS_PER_ROW = 10
+"""HiGHS gives up after so many and a thousand more; walls take one to three, but it can cycle."""
+
 _COMMON: Mapping[str, Any] = {
     "output_flag": False,
     "primal_feasibility_tolerance": TOLERANCE,
@@ -54,7 +57,9 @@ class HighsSession:
     """
 
     def __init__(self, program: EquilibriumProgram, algorithm: Algorithm = "simplex") -> None:
-        self.highs = _loaded(program, {**_COMMON, **_OPTIONS[algorithm]})
+        self.limit = PIVOTS_PER_ROW * len(program.rhs) + 1000
+        limit = {"simplex_iteration_limit": self.limit}
+        self.highs = _loaded(program, {**_COMMON, **limit, **_OPTIONS[algorithm]})
         self.name = f"HiGHS {algorithm}"
         self._warm: Mapping[str, Any] = _FROM_BASIS if algorithm == "simplex" else {}
         self._costs = np.zeros(program.column_count)
@@ -74,10 +79,7 @@ class HighsSession:
         found = self.highs.getModelStatus()
         name = self.name
         if found == highspy.HighsModelStatus.kInfeasible and not self._has_ray():
-            # The interior point method proves nothing: the simplex method finds the ray.
-            name = f"{self.name}, then simplex"
-            set_options(self.highs, _SIMPLEX)
-            self.highs.run()
+            name = self._find_ray()
             found = self.highs.getModelStatus()
         status = _STATUS.get(found, LimitStatus.FAILED)
         said = self.highs.modelStatusToString(found)
@@ -85,6 +87,15 @@ class HighsSession:
         if status is LimitStatus.OPTIMAL:
             set_options(self.highs, self._warm)
         return Solution(status, columns, duals, said, name)
+
+    def _find_ray(self) -> str:
+        """Prove that there is no solution; return the name of what did.
+
+        The interior point method proves nothing: the simplex method finds the ray.
+        """
+        set_options(self.highs, _SIMPLEX)
+        self.highs.run()
+        return f"{self.name}, then simplex"
 
     def _has_ray(self) -> bool:
         _, there = self.highs.getDualRayExist()  # type: ignore[attr-defined]  # missing in its types

@@ -13,6 +13,9 @@ from drystone.statics.solvers.highs import HighsSession, set_options
 
 NAME = "HiGHS warm simplex"
 
+PIVOTS_FOR_A_RAY = 100
+"""Hardly any need one."""
+
 Statuses = tuple[highspy.HighsBasisStatus, ...]
 
 _BASIC = highspy.HighsBasisStatus.kBasic
@@ -84,19 +87,20 @@ class WarmSession(HighsSession):
         """Return the basis that the last call ended with, as HiGHS has it; see `read_basis`."""
         return self.highs.getBasis()
 
-    def _has_ray(self) -> bool:
+    def _find_ray(self) -> str:
         """Find the ray that the primal simplex method leaves out.
 
         Without costs its last basis is dual feasible, and the dual simplex method has the ray
-        without a pivot.  With them it may need seconds.
+        without a pivot.  With them it may need seconds, and so may numerical trouble, in which
+        HiGHS factors the basis again with every pivot: other solvers are quicker then.
         """
-        if not super()._has_ray():
-            columns = np.arange(len(self._costs), dtype=np.int32)
-            self._costs = np.zeros(len(columns))
-            self.highs.changeColsCost(len(columns), columns, self._costs)
-            set_options(self.highs, _DUAL)
-            self.highs.run()
-        return super()._has_ray()
+        columns = np.arange(len(self._costs), dtype=np.int32)
+        self._costs = np.zeros(len(columns))
+        self.highs.changeColsCost(len(columns), columns, self._costs)
+        set_options(self.highs, {**_DUAL, "simplex_iteration_limit": PIVOTS_FOR_A_RAY})
+        self.highs.run()
+        set_options(self.highs, {"simplex_iteration_limit": self.limit})
+        return self.name
 
 
 def read_basis(found: highspy.HighsBasis) -> Basis | None:

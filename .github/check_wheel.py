@@ -1,0 +1,54 @@
+"""Check an installed wheel: compiled kernels are there, and plan what those in NumPy plan.
+
+``python check_wheel.py [compiled|NumPy]``: which kernels must be in it, compiled ones unless said.
+Everything runs in processes of their own, as a user would run it.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+STONES = ("--count", "10", "--set", "width_px=120", "--set", "height_px=40", "--set", "courses=2")
+PLAN = ("--wall", "120x40", "--scale", "1", "--seed", "1", "--quiet")
+COMPLETE, INCOMPLETE = 0, 4
+
+
+def drystone(*words: str, kernels: str = "auto") -> str:
+    """Run the command line with some kernels; return what it prints."""
+    ran = subprocess.run(  # noqa: S603 - our own code
+        [sys.executable, "-m", "drystone", *words],
+        check=False,
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "DRYSTONE_KERNELS": kernels},
+    )
+    if ran.returncode not in (COMPLETE, INCOMPLETE):
+        raise SystemExit(f"drystone {' '.join(words)} ended with {ran.returncode}")
+    return ran.stdout
+
+
+def check(wanted: str, folder: Path) -> None:
+    """Plan a small wall by both methods and both kinds of kernels."""
+    version = drystone("--version").strip()
+    sys.stdout.write(version + "\n")
+    if f"kernels: {wanted})" not in version:
+        raise SystemExit(f"the kernels should be: {wanted}")
+    stones = str(folder / "stones.png")
+    drystone("generate", "rubble", "-o", stones, *STONES)
+    for method in ("paper", "best"):
+        plans = []
+        for kernels in ("auto", "numpy"):
+            output = folder / f"{method}-{kernels}"
+            words = (stones, *PLAN, "--method", method, "-o", str(output))
+            drystone("plan", *words, kernels=kernels)
+            plans.append([(output / name).read_bytes() for name in ("plan.json", "wall.png")])
+        if plans[0] != plans[1]:
+            raise SystemExit(f"{method}: the kernels do not plan the same wall")
+    sys.stdout.write("plans of both kinds of kernels are the same bytes\n")
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as name:
+        check(sys.argv[1] if sys.argv[1:] else "compiled", Path(name))

@@ -1,0 +1,1 @@
+"""Times of the package beside slow twins, in one run: ``python -m benchmarks``."""

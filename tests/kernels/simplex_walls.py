@@ -1,0 +1,185 @@
+"""Walls as the simplex kernel sees them, for its tests: what is added, step by step."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from drystone.kernels import simplex
+from drystone.kernels.simplex import Added, Answer, Cones, Tilt
+from drystone.kernels.simplex_growth import grown_tilt_numpy, solve_added_numpy
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
+from tests.statics.walls import Labels
+
+SIGNS = (1, -1)
+NOTHING = np.empty(0, np.int32)
+LENGTH_PX = 15.0
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """One of the two versions."""
+
+    name: str
+
+    def solve(self, tilt: Tilt, added: Added, max_pivots: int = simplex.MAX_PIVOTS) -> Answer:
+        if self.name == "numpy":
+            return solve_added_numpy(tilt, added, max_pivots)
+        return simplex.solve_added(tilt, added, max_pivots)
+
+    def grow(self, tilt: Tilt, added: Added, answer: Answer) -> Tilt:
+        if self.name == "numpy":
+            return grown_tilt_numpy(tilt, added, answer)
+        return simplex.grown_tilt(tilt, added, answer)
+
+
+def cones(first: Sequence[int], second: Sequence[int], entries: object) -> Cones:
+    table = np.ascontiguousarray(np.array(entries, float).reshape(-1, 6).T)
+    return Cones(np.array(first, np.int32), np.array(second, np.int32), table)
+
+
+def edges_of(
+    interfaces: Sequence[Interface], blocks: dict[int, tuple[int, Block]], mu: float
+) -> Cones:
+    """The two edges of the cone of every contact point."""
+    first, second, entries = [], [], []
+    for interface in interfaces:
+        normal_x, normal_y = interface.normal
+        for x, y in interface.points.tolist():
+            for along in (mu, -mu):
+                column: list[float] = []
+                force_x, force_y = normal_x + along * normal_y, normal_y - along * normal_x
+                for number, way in ((interface.block, 1.0), (interface.other, -1.0)):
+                    if number == GROUND:
+                        column += [0.0, 0.0, 0.0]
+                        continue
+                    centre_x, centre_y = blocks[number][1].centroid
+                    arm_x, arm_y = (x - centre_x) / LENGTH_PX, (y - centre_y) / LENGTH_PX
+                    moment = arm_x * force_y - arm_y * force_x
+                    column += [way * force_x, way * force_y, way * moment]
+                first.append(blocks[interface.block][0])
+                second.append(-1 if interface.other == GROUND else blocks[interface.other][0])
+                entries.append(column)
+    return cones(first, second, entries)
+
+
+def added_blocks(model: RigidBlockModel, placed: list[Block], new: Sequence[Block]) -> Added:
+    """Some blocks of a model on top of others, with all contacts to those and to each other."""
+    blocks = {block.id: (i, block) for i, block in enumerate([*placed, *new])}
+    ids = {block.id for block in new}
+    there = {GROUND, *blocks}
+    touching = [
+        i for i in model.interfaces if ids & {i.block, i.other} and {i.block, i.other} <= there
+    ]
+    weights = np.array([block.weight for block in new]) / LENGTH_PX**2
+    return Added(weights, edges_of(touching, blocks, model.mu), NOTHING)
+
+
+def steps(labels: Labels, candidates: int, at_once: int = 1) -> Iterator[list[Added]]:
+    """What may be added, step by step, from the lowest block up; the first one is chosen."""
+    model = model_from_labels(labels).model
+    rest = sorted(model.blocks, key=lambda block: block.centroid[1])
+    placed: list[Block] = []
+    while len(rest) >= at_once:
+        groups = [rest[:at_once], *([block] for block in rest[at_once : at_once + candidates - 1])]
+        yield [added_blocks(model, placed, group) for group in groups]
+        placed += rest[:at_once]
+        rest = rest[at_once:]
+
+
+def grown(
+    labels: Labels, kernel: Kernel, candidates: int = 1, at_once: int = 1
+) -> Iterator[tuple[dict[int, Tilt], list[Added]]]:
+    """The tilts of a wall that grows, and what may be added to it; ends when it falls."""
+    tilts = {sign: simplex.empty_tilt(sign) for sign in SIGNS}
+    for choices in steps(labels, candidates, at_once):
+        yield tilts, choices
+        answers = {sign: kernel.solve(tilts[sign], choices[0]) for sign in SIGNS}
+        if any(answer.status != simplex.OPTIMAL for answer in answers.values()):
+            return
+        tilts = {sign: kernel.grow(tilts[sign], choices[0], answers[sign]) for sign in SIGNS}
+
+
+def with_columns(added: Added, more: Cones) -> Added:
+    """The same with more columns."""
+    old = added.cones
+    return Added(
+        added.weights,
+        Cones(
+            np.concatenate((old.first, more.first)),
+            np.concatenate((old.second, more.second)),
+            np.ascontiguousarray(np.concatenate((old.entries, more.entries), axis=1)),
+        ),
+        added.closed,
+    )
+
+
+def some_columns(some: Cones, places: object) -> Cones:
+    """Some of the columns."""
+    entries = np.ascontiguousarray(some.entries[:, places])
+    return Cones(some.first[places], some.second[places], entries)
+
+
+def variants(tilt: Tilt, added: Added, seed: int) -> dict[str, Added]:
+    """What else could be added: degenerate, near to it, with contacts that go."""
+    rng = np.random.default_rng(seed)
+    new, old = added.cones, tilt.cones
+    found = {
+        "twice": with_columns(added, new),
+        "nothing": Added(added.weights, some_columns(new, np.arange(0)), NOTHING),
+        "a point": Added(added.weights, some_columns(new, np.arange(len(new.first))[:2]), NOTHING),
+        "heavy": Added(added.weights * 40.0, new, NOTHING),
+        "light": Added(added.weights / 1000.0, new, NOTHING),
+    }  # fmt: skip
+    for amount in (1e-6, 1e-9):
+        noise = 1.0 + amount * rng.standard_normal(new.entries.shape)
+        found[f"nearly twice, {amount}"] = with_columns(
+            added, Cones(new.first, new.second, new.entries * noise)
+        )
+    if len(old.first):
+        columns = np.sort(rng.choice(len(old.first), min(4, len(old.first)), replace=False))
+        basic = np.sort(tilt.basis.heads[tilt.basis.heads >= 0])[:3]
+        moved = some_columns(old, columns)
+        bent = moved.entries * (1.0 + 0.05 * rng.standard_normal(moved.entries.shape))
+        between = Cones(moved.first, moved.second, bent)
+        none = np.empty(0)
+        found["closed"] = Added(added.weights, new, columns.astype(np.int32))
+        found["closed, basic"] = Added(added.weights, new, basic.astype(np.int32))
+        found["only closed"] = Added(none, some_columns(new, np.arange(0)), basic.astype(np.int32))
+        found["only columns"] = Added(none, between, NOTHING)
+        found["columns below"] = with_columns(added, between)
+        found["nothing, columns below"] = Added(added.weights, between, NOTHING)
+    return found
+
+
+def settled(tilt: Tilt) -> Tilt:
+    """The same for both kernels, after its arrays were replaced."""
+    return simplex._native(tilt)
+
+
+def identical(one: Answer, other: Answer) -> bool:
+    """Equal, number by number."""
+    same = (one.status, one.pivots, one.restarts) == (other.status, other.pivots, other.restarts)
+    alpha = one.alpha == other.alpha or (np.isnan(one.alpha) and np.isnan(other.alpha))
+    forces = np.array_equal(one.forces, other.forces)
+    return bool(same and alpha and forces and np.array_equal(one.velocity, other.velocity))
+
+
+def differing(one: Tilt, other: Tilt) -> list[str]:
+    """Names of what is not equal in two tilts."""
+    names = [
+        name
+        for name in ("unit", "alpha_place", "heads", "levels", "rows", "cols", "rates", "ties")
+        if not np.array_equal(getattr(one.basis, name), getattr(other.basis, name))
+    ]
+    names += [
+        name
+        for name in ("sign", "alpha", "weights", "forces", "velocity")
+        if not np.array_equal(getattr(one, name), getattr(other, name))
+    ]
+    return names + [
+        name
+        for name in ("first", "second", "entries")
+        if not np.array_equal(getattr(one.cones, name), getattr(other.cones, name))
+    ]

@@ -1,0 +1,128 @@
+"""Figures of forces and mechanisms: compiled and NumPy against linear algebra."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels import certificate as module
+from drystone.kernels.backend import compiled
+from drystone.kernels.certificate import figures, figures_numpy
+from drystone.kernels.simplex_types import Added, Cones
+from tests.naive import columns as naive
+from tests.strategies import repeatable
+
+VERSIONS = ["numpy", "compiled"]
+
+
+@pytest.fixture(params=VERSIONS)
+def version(request, monkeypatch):
+    if request.param == "numpy":
+        monkeypatch.setattr(module, "_fast", None)
+    elif compiled("certificate") is None:
+        pytest.skip("kernels are not compiled here")
+
+
+def some_cones(rng, count, bodies):
+    first = rng.integers(0, bodies, count).astype(np.int32)
+    second = rng.integers(-1, bodies, count).astype(np.int32)
+    entries = rng.normal(size=(6, count)).round(2)  # what acts on the ground is of no interest
+    return Cones(first, second, np.ascontiguousarray(entries))
+
+
+def some_answer(seed, built, new):
+    """A program and anything that might be an answer; a third of the forces are 0."""
+    rng = np.random.default_rng(seed)
+    wall = some_cones(rng, int(rng.integers(0, 20)) if built else 0, max(built, 1))
+    gone = rng.random(len(wall.first)) < 0.2
+    closed = np.flatnonzero(gone).astype(np.int32)
+    extra = some_cones(rng, int(rng.integers(0, 9)), max(built + new, 1))
+    if not built + new:
+        extra = some_cones(rng, 0, 1)
+    added = Added(rng.random(new) + 0.5, extra, closed)
+    forces = rng.normal(size=len(wall.first) - len(closed) + len(extra.first))
+    forces[rng.random(len(forces)) < 1 / 3] = 0.0
+    velocity = rng.normal(size=3 * (built + new)).round(1)
+    return wall, rng.random(built) + 0.5, added, float(rng.normal()), forces, velocity
+
+
+answers = st.builds(some_answer, st.integers(0, 10**6), st.integers(0, 4), st.integers(0, 3))
+
+
+@pytest.mark.usefixtures("version")
+def test_figures_are_those_of_linear_algebra():
+    @repeatable(200)
+    @given(answers)
+    def check(answer):
+        *program, forces, velocity = answer
+        for carried in (forces, forces[:0]):
+            found = figures(*program, carried, velocity)
+            assert found == pytest.approx(naive.figures(*program, carried, velocity), abs=1e-12)
+            assert all(type(figure) is float for figure in found)
+
+    check()
+
+
+@pytest.mark.skipif(compiled("certificate") is None, reason="kernels are not compiled here")
+@given(answers)
+@repeatable(300)
+def test_both_versions_are_the_same_to_the_last_bit(answer):
+    *program, forces, velocity = answer
+    for carried in (forces, forces[:0]):
+        assert figures(*program, carried, velocity) == figures_numpy(*program, carried, velocity)
+
+
+@pytest.mark.usefixtures("version")
+def test_what_is_no_number_is_found_out_wherever_it_is():
+    """By one of the figures that a certificate looks at."""
+    wall, weights, added, alpha, forces, velocity = some_answer(3, 4, 2)
+    touched = set(naive.program(wall, weights, added)[0].any(axis=1).nonzero()[0].tolist())
+    nan = float("nan")
+    for k in range(len(forces)):
+        for wrong in (nan, math.inf, -math.inf):
+            spoilt = forces.copy()
+            spoilt[k] = wrong
+            found = figures(wall, weights, added, alpha, spoilt, velocity)
+            assert not found.residual < math.inf
+            assert not found.total < math.inf
+            assert math.isnan(found.residual) or not math.isnan(wrong)
+    for k in touched:
+        spoilt = velocity.copy()
+        spoilt[k] = nan
+        found = figures(wall, weights, added, alpha, forces, spoilt)
+        assert math.isnan(found.inadmissible)
+        assert math.isnan(found.largest)
+    found = figures(wall, weights, added, nan, forces, velocity)
+    assert math.isnan(found.residual)
+
+
+@pytest.mark.usefixtures("version")
+def test_every_row_and_every_column_counts():
+    wall, weights, added, _, forces, velocity = some_answer(3, 4, 2)
+    matrix, live, rhs = naive.program(wall, weights, added)
+    for column in range(matrix.shape[1]):
+        spoilt = np.zeros(len(forces))
+        spoilt[column] = -1e3
+        found = figures(wall, weights, added, 0.0, spoilt, velocity)
+        assert (found.violation, found.total) == (1e3, 1e3)
+        largest = np.abs(matrix @ spoilt - rhs).max()
+        assert found.residual == pytest.approx(largest)
+    for row in range(len(velocity)):
+        only = np.zeros(len(velocity))
+        only[row] = -2.0
+        found = figures(wall, weights, added, 0.0, forces, only)
+        assert found.largest == 2.0
+        assert found.inadmissible == pytest.approx(max(0.0, 2 * matrix[row].max(initial=0.0)))
+        assert (found.live, found.rhs) == pytest.approx((-2 * live[row], -2 * rhs[row]))
+
+
+@pytest.mark.usefixtures("version")
+def test_vectors_of_another_program_are_refused():
+    wall, weights, added, alpha, forces, velocity = some_answer(3, 4, 2)
+    for wrong in (forces[1:], np.append(forces, 0.0)):
+        with pytest.raises(ValueError, match="another program"):
+            figures(wall, weights, added, alpha, wrong, velocity)
+    with pytest.raises(ValueError, match="another program"):
+        figures(wall, weights, added, alpha, forces, velocity[3:])

@@ -1,0 +1,148 @@
+"""Slow twins of the simplex kernel: the whole program, written out and solved from the start."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linprog
+
+from drystone.kernels.simplex import Added, Answer, Tilt
+
+Floats = NDArray[np.float64]
+OPTIMAL, UNSTABLE, UNBOUNDED = 0, 1, 2
+
+
+@dataclass(frozen=True, eq=False)
+class Whole:
+    """matrix x + alpha live = rhs, x >= 0, alpha free."""
+
+    matrix: Floats
+    live: Floats
+    rhs: Floats
+
+
+def whole(tilt: Tilt, added: Added) -> Whole:
+    """The program of a wall with a stone, entry by entry, without what is closed."""
+    weights = [*tilt.weights, *added.weights]
+    rows = 3 * len(weights)
+    columns = []
+    for cones, closed in ((tilt.cones, set(added.closed.tolist())), (added.cones, set())):
+        for number, (first, second) in enumerate(zip(cones.first, cones.second, strict=True)):
+            if number in closed:
+                continue
+            column = np.zeros(rows)
+            for row in range(3):
+                column[3 * first + row] = cones.entries[row, number]
+                if second >= 0:
+                    column[3 * second + row] = cones.entries[3 + row, number]
+            columns.append(column)
+    live, rhs = np.zeros(rows), np.zeros(rows)
+    for body, weight in enumerate(weights):
+        live[3 * body], rhs[3 * body + 1] = weight, weight
+    return Whole(np.array(columns).reshape(-1, rows).T, live, rhs)
+
+
+def solved(program: Whole, sign: int) -> tuple[int, float | None]:
+    """Status and alpha, by HiGHS from the start."""
+    count = program.matrix.shape[1]
+    found = linprog(
+        np.append(np.zeros(count), -sign),
+        A_eq=np.column_stack((program.matrix, program.live)),
+        b_eq=program.rhs,
+        bounds=[(0, None)] * count + [(None, None)],
+        method="highs",
+        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+    )
+    status = {0: OPTIMAL, 2: UNSTABLE, 3: UNBOUNDED}[found.status]
+    return status, float(found.x[-1]) if status == OPTIMAL else None
+
+
+def exactly_solved(program: Whole, sign: int) -> tuple[int, Fraction | None]:
+    """Status and alpha in fractions, without rounding: alpha as the difference of two unknowns."""
+    live = program.live[:, None]
+    costs = [0] * program.matrix.shape[1] + [-sign, sign]
+    table = np.column_stack((program.matrix, live, -live))
+    status, value = exact_minimum(table, program.rhs, costs)
+    return status, None if value is None else -sign * value
+
+
+def exact_minimum(columns: Floats, rhs: Floats, costs: list[float]) -> tuple[int, Fraction | None]:
+    """Least costs . x for columns x = rhs, x >= 0: tableau, two phases, Bland's rule, fractions."""
+    rows, count = columns.shape
+    table = []
+    for i in range(rows):
+        flip = -1 if rhs[i] < 0 else 1
+        line = [flip * Fraction(float(v)) for v in columns[i]]
+        line += [Fraction(int(i == j)) for j in range(rows)]
+        table.append([*line, flip * Fraction(float(rhs[i]))])
+    heads = list(range(count, count + rows))
+    first = [Fraction(0)] * count + [Fraction(1)] * rows
+    _bland(table, heads, first, count + rows)
+    if any(table[i][-1] > 0 for i in range(rows) if heads[i] >= count):
+        return UNSTABLE, None
+    for i in range(rows):  # artificial ones that are left are 0, and go if they can
+        if heads[i] >= count:
+            for j in range(count):
+                if table[i][j] != 0:
+                    _pivot(table, heads, i, j)
+                    break
+    second = [Fraction(float(c)) for c in costs] + [Fraction(0)] * rows
+    if not _bland(table, heads, second, count):
+        return UNBOUNDED, None
+    return OPTIMAL, sum((second[h] * table[i][-1] for i, h in enumerate(heads)), Fraction(0))
+
+
+def _bland(
+    table: list[list[Fraction]], heads: list[int], costs: list[Fraction], allowed: int
+) -> bool:
+    while True:
+        rows = range(len(table))
+        entering = next(
+            (
+                j
+                for j in range(allowed)
+                if costs[j] - sum((costs[heads[i]] * table[i][j] for i in rows), Fraction(0)) < 0
+            ),
+            None,
+        )
+        if entering is None:
+            return True
+        able = [i for i in rows if table[i][entering] > 0]
+        if not able:
+            return False
+        leaving = min(able, key=lambda i: (table[i][-1] / table[i][entering], heads[i]))
+        _pivot(table, heads, leaving, entering)
+
+
+def _pivot(table: list[list[Fraction]], heads: list[int], row: int, column: int) -> None:
+    pivot = table[row][column]
+    table[row] = [v / pivot for v in table[row]]
+    for i, line in enumerate(table):
+        if i != row and line[column] != 0:
+            factor = line[column]
+            table[i] = [v - factor * w for v, w in zip(line, table[row], strict=True)]
+    heads[row] = column
+
+
+def errors(tilt: Tilt, added: Added, answer: Answer) -> dict[str, float]:
+    """What is wrong with the vectors of an answer, whatever it claims of itself."""
+    program, v = whole(tilt, added), answer.velocity
+    largest = max(1.0, np.abs(v).max())
+    opening = program.matrix.T @ v
+    if answer.status == UNSTABLE:
+        v, opening = v / np.abs(v).max(), opening / np.abs(v).max()
+        return {
+            "closes": max(0.0, -opening.min(initial=0.0)),
+            "live work": abs(program.live @ v),
+            "no fall": max(0.0, 1e-6 + program.rhs @ v),
+        }
+    x = answer.forces
+    balance = program.matrix @ x + answer.alpha * program.live - program.rhs
+    return {
+        "residual": np.abs(balance).max(),
+        "violation": max(0.0, -x.min(initial=0.0)),
+        "closes": max(0.0, -opening.min(initial=0.0)) / largest,
+        "power": abs(tilt.sign * (program.live @ v) - 1.0) / largest,
+        "gap": abs(tilt.sign * (program.rhs @ v) - answer.alpha),
+    }

@@ -1,0 +1,78 @@
+import numpy as np
+import pytest
+
+from drystone.planner.profile import StepTime
+from drystone.plotting.files import save
+from drystone.plotting.growth import (
+    LINES,
+    PART_COLOURS,
+    REST,
+    Claim,
+    PowerLaw,
+    Series,
+    plot_growth,
+    plot_step_times,
+    step_time_panels,
+)
+
+STEPS = [
+    StepTime(0, 4, 0.010, {"placement": 0.004, "limit analysis": 0.005}),
+    StepTime(1, 4, 0.020, {"placement": 0.006, "indices": 0.014}),
+]
+SERIES = (
+    Series("wall", ((10.0, 1.0), (100.0, 10.0)), PowerLaw(0.1, 1.0)),
+    Series("step", ((10.0, 0.5), (100.0, 0.7))),
+)
+CLAIMS = (Claim("paper: wall", 20.0, 9.0), Claim("paper: step", 90.0, 25.0, at_most=True))
+
+
+def test_parts_stand_on_top_of_each_other_and_reach_the_time_of_the_step():
+    ax = plot_step_times(STEPS, title="variant")
+    by_part = {bars.get_label(): bars.patches for bars in ax.containers}
+    assert list(by_part) == [*PART_COLOURS, REST]
+    for k, step in enumerate(STEPS):
+        foot = 0.0
+        for part, bars in by_part.items():
+            assert bars[k].get_y() == pytest.approx(foot)
+            if part != REST:
+                assert bars[k].get_height() == pytest.approx(1e3 * step.parts.get(part, 0.0))
+            foot += bars[k].get_height()
+        assert foot == pytest.approx(1e3 * step.seconds)
+    assert ax.get_title() == "variant"
+
+
+def test_parts_measured_longer_than_the_step_leave_no_rest():
+    ax = plot_step_times([StepTime(0, 1, 0.001, {"placement": 0.002})])
+    assert ax.containers[-1].patches[0].get_height() == 0.0
+
+
+def test_panels_have_the_walls_beside_each_other_and_one_legend():
+    figure = step_time_panels({"variant": STEPS, "full": STEPS[:1]})
+    left, right = figure.axes
+    assert (left.get_title(), right.get_title()) == ("variant", "full")
+    words = [text.get_text() for text in left.get_legend().get_texts()]
+    assert words == [*PART_COLOURS, REST]
+    assert right.get_legend() is None
+
+
+def test_points_laws_and_claims_are_drawn_where_they_are():
+    ax = plot_growth(SERIES, CLAIMS, size="pixels")
+    points, line, bare, wall, step = ax.get_lines()
+    assert points.get_xydata().tolist() == [[10.0, 1.0], [100.0, 10.0]]
+    np.testing.assert_allclose(line.get_xydata(), [[10.0, 1.0], [100.0, 10.0]])
+    assert bare.get_xydata().tolist() == [[10.0, 0.5], [100.0, 0.7]]
+    assert [wall.get_marker(), step.get_marker()] == ["x", "v"]
+    assert step.get_xydata().tolist() == [[90.0, 25.0]]
+    assert [points.get_color(), bare.get_color()] == [colour for colour, _ in LINES[:2]]
+    assert (ax.get_xscale(), ax.get_yscale(), ax.get_xlabel()) == ("log", "log", "pixels")
+
+
+def test_the_legend_tells_exponents_and_claims():
+    words = [text.get_text() for text in plot_growth(SERIES, CLAIMS).get_legend().get_texts()]
+    assert words == ["wall", "exponent 1.00", "step", "paper: wall", "paper: step"]
+
+
+def test_the_same_times_give_the_same_bytes(tmp_path):
+    for name in ("one.png", "two.png"):
+        save(plot_growth(SERIES, CLAIMS).figure, tmp_path / name, dpi=60)
+    assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()

@@ -1,0 +1,99 @@
+"""The program for the simplex kernel has the numbers of the one for HiGHS."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from drystone.statics.appending import OpenProgram, Units
+from drystone.statics.cone_program import ConeProgram
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.model import GROUND, Addition, RigidBlockModel
+from tests.naive import columns as naive
+from tests.statics.growth import empty, upwards, with_block
+from tests.statics.walls import coursed, irregular, stacked
+
+UNITS = Units(13.0, 170.0)
+
+
+def varied(labels):
+    """Heavier blocks, and other frictions here and there."""
+    model = model_from_labels(labels).model
+    blocks = [replace(b, density=(1.0, 2.5)[k % 2]) for k, b in enumerate(model.blocks)]
+    interfaces = [replace(i, mu=(None, 0.3, 0.0)[k % 3]) for k, i in enumerate(model.interfaces)]
+    return RigidBlockModel(tuple(blocks), tuple(interfaces), 0.7)
+
+
+def grown(whole, sizes=(1, 2)):
+    """Both programs and the model, block by block or two at once, an interface lost at times."""
+    cones, program, model = ConeProgram.empty(UNITS), OpenProgram.empty(UNITS), empty(whole.mu)
+    rest = list(whole.blocks)
+    while rest:
+        size = sizes[len(rest) % len(sizes)]
+        blocks, rest = rest[:size], rest[size:]
+        step = with_block(model, *blocks, whole=whole).added
+        closed = (2, 5) if len(rest) % 7 == 4 and len(model.interfaces) > 5 else ()
+        model = model.with_added(step.blocks, step.interfaces, closed)
+        if closed:
+            stay = np.isin(np.arange(len(model.added.base.interfaces)), closed, invert=True)
+            counts = [len(i.points) for i in model.added.base.interfaces]
+            program = program.with_points(np.repeat(stay, counts))
+        program = program.appended(model, model.added.blocks, model.added.interfaces)
+        cones = cones.appended(model.added, cones.columns_of(model.added, model.mu))
+        yield cones, program.program, model
+
+
+@pytest.mark.parametrize("labels", [coursed(5, 4, 90, 3), irregular(6, 14, 90, 60)])
+def test_it_grows_as_the_other_program_does(labels):
+    whole = varied(labels)
+    for cones, program, model in grown(whole):
+        count = len(model.blocks)
+        matrix = program.matrix.toarray()
+        assert np.array_equal(naive.dense(cones.cones, count), matrix[:, 1:])
+        assert np.array_equal(np.repeat(cones.weights, 3) * np.tile([1, 0, 0], count), matrix[:, 0])
+        assert np.array_equal(cones.weights, program.rhs[1::3])
+        places = [place for place, _, _ in cones.bodies.values() if place >= 0]
+        assert places == list(range(count))
+        assert list(cones.bodies)[1:] == list(program.block_ids)
+        assert cones.centroid_x.tolist() == [block.centroid[0] for block in model.blocks]
+        repeats = [2 * len(interface.points) for interface in model.interfaces]
+        expected = np.repeat(np.arange(len(repeats)), repeats)
+        assert cones.interfaces.tolist() == expected.tolist()
+
+
+def test_columns_of_contacts_that_closed_are_told_in_order():
+    *_, (cones, _, model) = grown(varied(coursed(5, 4, 90, 3)))
+    added = cones.columns_of(Addition(model, (), (), (1, 4)), model.mu)
+    ends = np.cumsum([0] + [2 * len(i.points) for i in model.interfaces])
+    assert added.closed.tolist() == [*range(ends[1], ends[2]), *range(ends[4], ends[5])]
+    assert added.closed.dtype == np.int32
+
+
+def test_what_was_there_does_not_change():
+    model = model_from_labels(stacked((20, 20, 0), (10, 10, 4))).model
+    first = with_block(empty(), model.blocks[0], whole=model)
+    nothing = ConeProgram.empty(UNITS)
+    before = nothing.appended(first.added, nothing.columns_of(first.added, 0.58))
+    entries = before.cones.entries.copy()
+    second = with_block(first, model.blocks[1], whole=model).added
+    after = before.appended(second, before.columns_of(second, 0.58))
+    assert np.array_equal(before.cones.entries, entries)
+    assert (list(nothing.bodies), list(before.bodies)) == ([GROUND], [GROUND, 1])
+    assert list(after.bodies) == [GROUND, 1, 2]
+
+
+def test_what_is_not_for_the_kernel_is_left_to_others():
+    whole, blocks = upwards(coursed(2, 3, 60))
+    *_, (cones, _, model) = grown(RigidBlockModel(tuple(blocks[:-1]), whole.interfaces, whole.mu))
+    added = with_block(model, blocks[-1], whole=whole).added
+    (stone,), (one, *others) = added.blocks, added.interfaces
+    assert cones.columns_of(added, whole.mu) is not None
+    for other in (
+        replace(added, blocks=(replace(stone, fixed=True),)),
+        replace(added, blocks=(replace(stone, held=("turn",)),)),
+        replace(added, blocks=(replace(stone, density=0.0),)),
+        replace(added, interfaces=(replace(one, block=GROUND), *others)),
+        replace(added, interfaces=(replace(one, other=999), *others)),
+        replace(added, interfaces=(replace(one, block=999), *others)),
+    ):
+        assert cones.columns_of(other, whole.mu) is None

@@ -1,0 +1,107 @@
+"""Answers of HiGHS, corrected by their last basis; small programs in standard form."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import linprog
+from scipy.sparse import csc_array
+
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.program import assemble
+from drystone.statics.result import LimitStatus
+from drystone.statics.solvers.refined import RefinedSession
+from drystone.statics.solvers.standard_form import least
+from drystone.statics.solvers.warm import Basis, WarmSession
+from tests.statics.walls import coursed, stacked
+from tests.strategies import repeatable
+
+PROGRAM = assemble(model_from_labels(coursed(5, 4, 90)).model)
+
+
+def ask(sign=1.0, program=PROGRAM):
+    session = RefinedSession(program)
+    session.start_from(Basis().appended(program.column_count, len(program.rhs)))
+    costs = np.zeros(program.column_count)
+    costs[0] = -sign
+    return session.minimise(costs), costs
+
+
+def errors(solution, costs):
+    left = PROGRAM.rhs - PROGRAM.matrix @ solution.columns
+    rates = costs - PROGRAM.matrix.T @ solution.duals
+    carry = solution.columns > 1e-6
+    return np.abs(left).max(), np.abs(rates[carry]).max(), -rates[1:].min()
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_drifted_is_put_right(sign, monkeypatch):
+    exact, costs = ask(sign)
+    honest = WarmSession.minimise
+
+    def drifted(session, costs):
+        solution = honest(session, costs)
+        rng = np.random.default_rng(0)
+        basic = solution.columns > 0
+        noise = 1e-6 * rng.normal(size=len(basic)) * basic
+        return replace(
+            solution,
+            columns=solution.columns + noise,
+            duals=solution.duals + 1e-6 * rng.normal(size=len(solution.duals)),
+        )
+
+    monkeypatch.setattr(WarmSession, "minimise", drifted)
+    refined, costs = ask(sign)
+    assert max(errors(refined, costs)) < 1e-12
+    assert refined.columns[0] == pytest.approx(exact.columns[0], abs=1e-12)
+    assert refined.columns == pytest.approx(exact.columns, abs=1e-10)
+    assert refined.duals == pytest.approx(exact.duals, abs=1e-10)
+    monkeypatch.setattr("drystone.statics.solvers.refined.RESIDUAL", 1.0)
+    assert errors(ask(sign)[0], costs)[0] > 1e-7
+
+
+def test_what_has_no_optimum_is_left_alone():
+    floating = np.zeros((30, 20), np.uint32)
+    floating[:10], floating[20:] = 1, 2
+    solution, _ = ask(1.0, assemble(model_from_labels(floating).model))
+    assert solution.status is LimitStatus.UNSTABLE
+    assert solution.duals is not None
+
+
+def test_slacks_that_are_basic_do_no_harm(monkeypatch):
+    """A column of two stones under weight alone leaves rows that nothing needs."""
+    program = assemble(model_from_labels(stacked((20, 20, 0), (20, 20, 0)), 0.0).model)
+    solution, _ = ask(1.0, program)
+    assert np.abs(program.matrix @ solution.columns - program.rhs).max() < 1e-11
+    monkeypatch.setattr("drystone.statics.solvers.refined.RESIDUAL", -1.0)
+    again, _ = ask(1.0, program)
+    assert again.columns == pytest.approx(solution.columns, abs=1e-12)
+    assert again.duals == pytest.approx(solution.duals, abs=1e-12)
+
+
+def standard(seed, rows, columns):
+    rng = np.random.default_rng(seed)
+    matrix = rng.integers(-2, 3, (rows, columns)).astype(float)
+    rhs = matrix @ rng.integers(0, 3, columns) if rng.random() < 0.7 else rng.normal(size=rows)
+    basic = np.zeros(columns, bool)
+    basic[rng.permutation(columns)[: int(rng.integers(0, rows + 1))]] = True
+    return rng.integers(-1, 4, columns).astype(float), matrix, rhs, basic
+
+
+@given(st.integers(0, 10**6), st.integers(1, 5), st.integers(1, 9))
+@repeatable(120)
+def test_small_programs_have_the_optimum_of_another_solver(seed, rows, columns):
+    """From any start, also from columns that depend on each other."""
+    costs, matrix, rhs, basic = standard(seed, rows, columns)
+    expected = linprog(costs, A_eq=matrix, b_eq=rhs)
+    for start in (None, basic):
+        found = least(costs, csc_array(matrix), rhs, start)
+        assert (found is None) == (expected.status != 0)
+        if found is not None:
+            assert costs @ found.unknowns == pytest.approx(expected.fun, abs=1e-9)
+            assert found.duals @ rhs == pytest.approx(expected.fun, abs=1e-9)
+            assert np.abs(matrix @ found.unknowns - rhs).max() < 1e-9
+            assert found.unknowns.min() > -1e-9
+            assert (costs - found.duals @ matrix).min() > -1e-9
