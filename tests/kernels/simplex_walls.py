@@ -4,12 +4,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import pytest
 
 from drystone.kernels import simplex
-from drystone.kernels.simplex import Added, Answer, Cones, Tilt
+from drystone.kernels.backend import compiled
+from drystone.kernels.simplex import OPTIMAL, Added, Answer, Cones, Tilt
 from drystone.kernels.simplex_growth import grown_tilt_numpy, solve_added_numpy
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
+from tests.naive import simplex as naive
 from tests.statics.walls import Labels
 
 SIGNS = (1, -1)
@@ -32,6 +35,25 @@ class Kernel:
         if self.name == "numpy":
             return grown_tilt_numpy(tilt, added, answer)
         return simplex.grown_tilt(tilt, added, answer)
+
+
+absent = pytest.mark.skipif(compiled("simplex") is None, reason="kernels are not compiled here")
+KERNELS = [
+    pytest.param(Kernel("numpy"), id="numpy"),
+    pytest.param(Kernel("compiled"), id="compiled", marks=absent),
+]
+NUMPY, COMPILED = Kernel("numpy"), Kernel("compiled")
+
+
+def assert_right(tilt: Tilt, added: Added, answer: Answer, *, anew: bool = True) -> None:
+    """As the certificate says, and as the whole program says from the start."""
+    assert max(naive.errors(tilt, added, answer).values()) <= 1e-9
+    if not anew:
+        return
+    status, alpha = naive.solved(naive.whole(tilt, added), tilt.sign)
+    assert answer.status == status
+    if status == OPTIMAL:
+        assert answer.alpha == pytest.approx(alpha, abs=1e-9)
 
 
 def cones(first: Sequence[int], second: Sequence[int], entries: object) -> Cones:

@@ -6,12 +6,19 @@ from hypothesis import strategies as st
 
 from drystone.kernels.backend import compiled
 from drystone.kernels.simplex import OPTIMAL
-from tests.kernels.simplex_walls import SIGNS, Kernel, differing, grown, identical, variants
+from tests.kernels.simplex_walls import (
+    COMPILED,
+    NUMPY,
+    SIGNS,
+    differing,
+    grown,
+    identical,
+    variants,
+)
 from tests.statics.walls import coursed, irregular
 from tests.strategies import label_images, repeatable
 
 pytestmark = pytest.mark.skipif(compiled("simplex") is None, reason="kernels are not compiled here")
-NUMPY, COMPILED = Kernel("numpy"), Kernel("compiled")
 
 
 @pytest.mark.parametrize("labels", [coursed(11, 5, 130, 2), irregular(12, 30, 110, 90)])

@@ -93,8 +93,9 @@ cdef void reopen(State *state) noexcept nogil:
         alpha = state.wall.levels[state.wall.alpha_place]
         for i in range(old, state.size):
             state.levels[i] -= state.live[i] * alpha
-    memcpy(state.rates, state.wall.rates, state.old.count * sizeof(double))
-    memcpy(state.ties, state.wall.ties, state.old.count * sizeof(double))
+    for j in range(state.old.count):
+        state.rates[j] = state.wall.rates[j]
+        state.ties[j] = state.wall.ties[j]
     scattered(state.old.count, more, state.ties + state.old.count)
     for j in range(state.old.count, state.columns):
         state.rates[j] = 0.0
