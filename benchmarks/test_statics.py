@@ -10,7 +10,7 @@ from benchmarks.conftest import Row, Timer
 from benchmarks.scenes import Scene, places, standing
 from drystone.model.placement import Placement
 from drystone.statics.contacts.blocks import model_from_labels, model_with
-from drystone.statics.contacts.interfaces import find_interfaces
+from drystone.statics.contacts.interfaces import PointContacts, find_interfaces
 
 ONE = "contacts of one more stone"
 ALL = "contacts of a whole image"
@@ -21,11 +21,12 @@ LOOPS = "loops over all pixels"
 def test_contacts(timer: Timer, scene: Scene) -> None:
     """Put each stone on the wall in turn."""
     model = model_from_labels(scene.wall.labels).model
+    points = PointContacts.of(model.interfaces)  # once a step, as the planner does
     found = [Placement(*place) for place in places(scene)]
 
     def call() -> None:
         for placement in found:
-            model_with(model, scene.wall.labels, placement)
+            model_with(model, scene.wall.labels, placement, points=points)
 
     each = fmean(placement.posed.mask.size for placement in found)
     item = "pixels of the stone's box"

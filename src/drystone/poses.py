@@ -144,7 +144,7 @@ class PoseBook:
         posed = self._poses.get(key)
         if posed is None:
             posed = _best_phase_pose(stone, key[1], self.scale)
-            posed = self._poses.keep(key, posed, _memory_bytes(posed))
+            posed = self._poses.keep(key, posed, memory_bytes(posed))
         return posed
 
     def initial_angle(self, stone: Stone) -> float:
@@ -228,7 +228,7 @@ def _best_phase_pose(stone: Stone, angle_deg: float, scale: float) -> PosedStone
     return PosedStone(stone, angle_deg, scale, mask, (phase[0] - col, phase[1] - row))
 
 
-def _memory_bytes(posed: PosedStone) -> int:
+def memory_bytes(posed: PosedStone) -> int:
     """Return about how much memory a pose takes with all that is worked out from it later.
 
     That is its mirror image, and a few numbers for each run of pixels, of which a row or column

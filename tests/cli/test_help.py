@@ -80,3 +80,15 @@ def test_wrong_options_end_with_one_line(arguments: list[str], said: str, run: R
     assert said in ran.err
     assert ran.err.endswith("--help` explains.\n")
     assert ran.err.count("\n") == 1
+
+
+def test_kernels_that_are_not_there_are_a_coded_error(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DRYSTONE_KERNELS", "fortran")
+    told = run("--version")
+    assert told.code == 2
+    assert "E143" in told.err
+    assert "fortran" in told.err
+    monkeypatch.setenv("DRYSTONE_KERNELS", "")
+    assert run("--version").code == 0

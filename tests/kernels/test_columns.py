@@ -157,6 +157,13 @@ def test_a_filling_that_would_fall_apart_is_none() -> None:
     assert joined[0].tolist() == [[i < 4, i > 2] for i in range(6)]
 
 
+@pytest.mark.parametrize("columns", [(0, -1), (-2, 3), (0, 4)])
+def test_columns_outside_are_refused(columns: tuple[int, int]) -> None:
+    """Of slices from the end NumPy would make something else."""
+    with pytest.raises(ValueError, match="columns"):
+        gap_filling(np.zeros((6, 6), bool), np.ones((2, 3), bool), 0, 0, columns, (1, 3))
+
+
 @pytest.mark.parametrize("at", [(-1, 0), (0, -1), (3, 0), (0, 4)])
 def test_a_mask_outside_is_refused(at: tuple[int, int]) -> None:
     occupied, mask = np.zeros((4, 5), bool), np.ones((2, 2), bool)

@@ -1,12 +1,10 @@
 """The landscape from both ends: mirrored views, true stones (DESIGN 4.7)."""
 
 import numpy as np
-import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
 from drystone.model.landscape import Box, Landscape
-from drystone.model.placement import Placement, Side
+from drystone.model.placement import Placement
 from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall
@@ -62,22 +60,6 @@ def test_places_found_from_the_right_hold_the_true_stone(wall: Wall) -> None:
         next_wall = wall.add(Placement(posed, spot.row, col, "right"))  # refuses any overlap
         window = next_wall.labels[next_wall.placements[-1].window]
         assert np.array_equal(window == L_STONE.id, L_STONE.mask)
-
-
-@pytest.mark.parametrize("side", ["left", "right"])
-def test_a_landscape_may_begin_with_the_boxes_of_the_one_before(side: Side) -> None:
-    @repeatable()
-    @given(wall=walls(), count=st.integers(0, 4))
-    def check(wall: Wall, count: int) -> None:
-        before = Landscape.of(Wall(wall.site, wall.labels, wall.groups[:count]), side)
-        landscape = Landscape.of(wall, side, before)
-        alone = Landscape.of(wall, side)
-        assert landscape.boxes == alone.boxes
-        assert np.array_equal(landscape.occupied, alone.occupied)
-        assert landscape.box_table.tolist() == [list(box) for box in alone.boxes]
-        assert landscape.box_table.shape == (len(wall.placements), 4)
-
-    check()
 
 
 def test_from_the_right_the_first_stone_stands_at_the_right_end() -> None:

@@ -43,7 +43,9 @@ def test_attempts_without_an_action_count_outside_of_steps(clock: list[float]) -
     with profile.part("indices"):
         clock[0] += 1.0
     profile.begin_step()
+    profile.end_without_action(4)
     assert profile.steps == []
+    assert profile.candidates == 4
     assert profile.total("indices") == 1.0
 
 

@@ -170,6 +170,7 @@ def test_any_other_model_is_answered_too(begin):
         replace(model, blocks=(replace(model.blocks[0], density=9.0), *model.blocks[1:])),
         replace(model, interfaces=model.interfaces[::-1]),
         replace(model, interfaces=model.interfaces[4:] + model.interfaces[:4]),
+        replace(analysis.model, mu=0.3).with_added(model.added.blocks, model.added.interfaces),
         analysis.model.with_added((held,), model.added.interfaces),
         analysis.model.with_added((weightless,), model.added.interfaces),
         model_from_labels(stacked((20, 40, 0))).model,
@@ -187,6 +188,7 @@ def test_nothing_free_carries_anything(begin):
     assert analysis.grown.resistance.right.status is LimitStatus.UNBOUNDED
     for model in (empty(), base, empty().with_added((), ()), analysis.model.with_added((), ())):
         assert analysis.resistance_with(model).resistance.right.status is LimitStatus.UNBOUNDED
+        assert not analysis.resistance_with(model).solved_cold
         assert analysis.extended(model).grown.resistance.left.status is LimitStatus.UNBOUNDED
     upright = {"id": 8, "polygon": [[0, 1], [1, 1], [1, 3], [0, 3]]}
     both = model_from_json({"blocks": [fixed, upright], "mu": 0.58})

@@ -2,16 +2,19 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from drystone.statics import growing_highs, growing_large
 from drystone.statics.appending import units_of
+from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import Interface, RigidBlockModel
 from drystone.statics.solvers.highs import HighsSession
 from drystone.statics.solvers.refined import RefinedSession
 from drystone.statics.solvers.warm import NAME as WARM
-from tests.statics.growth import Pivots, assert_same, implementation, wall_and_candidates
-from tests.statics.walls import coursed
+from tests.statics.growth import PX, Pivots, assert_same, implementation, wall_and_candidates
+from tests.statics.walls import coursed, stacked
 
 
 @pytest.mark.parametrize("name", ["large", "highs"])
@@ -54,3 +57,50 @@ def test_many_blocks_at_once_begin_with_an_interior_point(monkeypatch):
     assert_same(at_once.grown, analysis.model, {WARM})
     for model in candidates:
         assert_same(at_once.resistance_with(model), model, {WARM})
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_one_end_alone_is_found_from_its_own_basis(sign, monkeypatch):
+    analysis, candidates = wall_and_candidates(coursed(3, 5, 90), 14, growing_highs.begun)
+    pivots = Pivots(monkeypatch)
+    same = growing_highs.end(*analysis.prepared(analysis.model.with_added((), ())), sign)
+    assert (pivots.count, pivots.calls) == (0, 1)
+    side = "right" if sign > 0 else "left"
+    known = getattr(analysis.grown.resistance, side)
+    assert sign * same.alpha == pytest.approx(known.alpha, abs=1e-12)
+    compared = 0
+    for model in candidates:
+        end = growing_highs.end(*analysis.prepared(model), sign)
+        expected = lateral_resistance(model)
+        assert end.certificate.holds
+        if expected.stable:
+            assert end.falls is None
+            sought = getattr(expected, side)
+            assert sign * end.alpha == pytest.approx(sought.alpha, abs=1e-9)
+            compared += 1
+    assert compared > 3
+
+
+def test_an_end_beyond_0_is_a_fall():
+    """The upper block lies over the edge by more than half: it needs a push to the left."""
+    model = model_from_labels(stacked((20, 20, 0), (20, 20, 12)), 0.9).model
+    first = RigidBlockModel(model.blocks[:1], model.interfaces[:1], model.mu)
+    analysis = growing_highs.begun(first, PX)
+    over = analysis.model.with_added(model.blocks[1:], model.interfaces[1:])
+    greatest = growing_highs.end(*analysis.prepared(over), 1)
+    assert greatest.alpha == pytest.approx(-0.2)
+    assert greatest.falls.holds
+    assert greatest.falls.fall_work > 0
+    least = growing_highs.end(*analysis.prepared(over), -1)
+    assert least.falls is None
+
+
+def test_no_end_is_none():
+    """Between pins of the ground alpha has no end."""
+    floor = model_from_labels(stacked((20, 20, 0))).model
+    analysis = growing_highs.begun(RigidBlockModel((), (), 0.58), PX)
+    pins = [
+        Interface(1, 0, np.array([[x, 10.0]]), (side, 0.0)) for x, side in ((0, 1.0), (20, -1.0))
+    ]
+    pinned = analysis.model.with_added(floor.blocks, (*floor.interfaces, *pins))
+    assert growing_highs.end(*analysis.prepared(pinned), 1) is None

@@ -11,8 +11,9 @@ from drystone.statics import growing_large, neighbourhood
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.ends import no_alpha, optimum
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import Addition, RigidBlockModel
+from drystone.statics.model import Addition, Block, Interface, RigidBlockModel
 from drystone.statics.neighbourhood import guessed
+from drystone.statics.solvers.standard_form import least
 from tests.statics.growth import PX, upwards, wall_and_candidates, with_block
 from tests.statics.walls import coursed, irregular, stacked
 
@@ -123,17 +124,91 @@ def test_a_slender_stone_on_a_broad_wall_decides_alone():
         assert (found.alpha, found.falls) == (guess.alpha, None)
 
 
-def test_a_stone_that_changes_the_mechanism_is_for_others():
+def slender_stone():
+    """A stone five times as high as wide on a stone of the middle of the wall."""
+    whole = model_from_labels(coursed(1, 3, 160)).model
+    middle = [block for block in whole.blocks if 60 < block.centroid[0] < 100]
+    under = max(middle, key=lambda block: block.centroid[1])
+    (x, _), top = (
+        under.centroid,
+        max(
+            float(i.points[:, 1].max()) for i in whole.interfaces if under.id in (i.block, i.other)
+        ),
+    )
+    ends = np.array([[x - 3.0, top], [x + 3.0, top]])
+    stone = Block(999, 180.0, (x, top + 15.0))
+    analysis = growing_large.begun(whole, PX)
+    model = analysis.model.with_added((stone,), (Interface(999, under.id, ends, (0.0, 1.0)),))
+    return analysis, analysis.program.columns_of(model.added, model.mu), model
+
+
+def test_forces_far_from_a_stone_that_decides_alone_are_mixed_too():
+    analysis, added, model = slender_stone()
+    for tilt, other in both(analysis):
+        assert abs(tilt.alpha) > 0.3
+        guess = guessed(analysis.program, tilt, other, added)
+        assert guess.alpha == pytest.approx(tilt.sign * 0.2)
+        assert end(analysis, added, guess).falls is None
+    assert lateral_resistance(model).right.alpha == pytest.approx(0.2)
+
+
+def test_a_wall_that_stands_at_one_alpha_only_has_nothing_to_mix():
+    analysis, added, _ = slender_stone()
+    for tilt, _ in both(analysis):
+        same = tilt._replace(sign=-tilt.sign)
+        assert guessed(analysis.program, tilt, same, added) is None
+
+
+def test_contacts_that_closed_carry_nothing():
+    """Such as would carry some of the stone, and nothing without it."""
+    analysis, candidates = wall_of(coursed(1, 7, 150), 40)
+    program, guesses, proved = analysis.program, 0, 0
+    for model in candidates:
+        stone = model.added
+        for tilt, other in both(analysis):
+            guess = guessed(program, tilt, other, program.columns_of(stone, model.mu))
+            if guess is None or guess.alpha != tilt.alpha:
+                continue
+            loaded = (guess.forces[: len(tilt.forces)] > 0) & (tilt.forces == 0)
+            for gone in np.unique(program.interfaces[loaded]).tolist():
+                if tilt.forces[program.interfaces == gone].any():
+                    continue
+                closed = Addition(analysis.model, stone.blocks, stone.interfaces, (gone,))
+                added = program.columns_of(closed, model.mu)
+                without = guessed(program, tilt, other, added)
+                guesses += without is not None
+                proved += without is not None and end(analysis, added, without) is not None
+    assert proved == guesses > 5
+
+
+def test_a_stone_that_changes_the_mechanism_is_for_others(monkeypatch):
     """A pile of two blocks of which the upper one makes the lower one topple earlier."""
-    model = model_from_labels(stacked((20, 30, 0), (20, 30, 0))).model
+    asked = []
+    monkeypatch.setattr(neighbourhood, "least", lambda *args: asked.append(0) or least(*args))
+    model = model_from_labels(stacked((10, 30, 0), (10, 10, 0))).model
     analysis = growing_large.begun(
         RigidBlockModel(model.blocks[:1], model.interfaces[:1], model.mu), PX
     )
     whole = with_block(analysis.model, model.blocks[1], whole=model)
     added = analysis.program.columns_of(whole.added, model.mu)
     assert [guessed(analysis.program, *tilts, added) for tilts in both(analysis)] == [None, None]
+    assert len(asked) == 2  # without looking for forces
     grown = analysis.resistance_with(whole)
-    assert grown.resistance.right.alpha == pytest.approx(1 / 3)
+    assert grown.resistance.right.alpha == pytest.approx(1 / 4)
+
+
+def test_a_stone_that_goes_along_leaves_alpha_as_it_is():
+    """The lower block slides; the upper one, on a rougher joint, slides with it."""
+    model = model_from_labels(stacked((60, 20, 0), (40, 10, 10))).model
+    first = RigidBlockModel(model.blocks[:1], model.interfaces[:1], model.mu)
+    analysis = growing_large.begun(first, PX)
+    rough = tuple(replace(i, mu=0.8) for i in model.interfaces[1:])
+    added = analysis.program.columns_of(Addition(first, model.blocks[1:], rough), model.mu)
+    for tilt, other in both(analysis):
+        guess = guessed(analysis.program, tilt, other, added)
+        assert guess.alpha == tilt.alpha == pytest.approx(tilt.sign * 0.58)
+        assert guess.velocity[3:] == pytest.approx(tilt.velocity)
+        assert end(analysis, added, guess).alpha == tilt.alpha
 
 
 def test_no_stone_is_for_others():

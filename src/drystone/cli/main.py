@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from importlib import import_module
 
 from drystone.cli.parser import build_parser
-from drystone.errors import DrystoneError, ExitCode, InputError
+from drystone.errors import DrystoneError, ExitCode, InputError, UsageError
+from drystone.kernels.backend import CHOICES, VARIABLE, fault
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -14,6 +15,15 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     0 done, 2 usage, 3 bad input, 4 wall incomplete, 5 a check failed, 130 interrupted.
     """
+    if os.environ.get(VARIABLE) and (wrong := fault()) is not None:
+        error = UsageError(
+            "E143",
+            f"the kernels asked for are not there: {wrong}.",
+            where=VARIABLE,
+            cure=f"Set it to one of {', '.join(CHOICES)}, or install with a compiler.",
+        )
+        print(f"drystone: {error}", file=sys.stderr)
+        return int(error.exit_code)
     arguments = build_parser().parse_args(argv)
     # Commands are imported when they are called: --help must not wait for NumPy.
     command = import_module(f"drystone.cli.commands.{arguments.command}")

@@ -22,7 +22,7 @@ def profile_summary(result: PlanResult, jobs: int) -> dict[str, Any]:
         "seconds": result.seconds,
         "parts": parts,
         "steps": len(profile.steps),
-        "candidates": sum(step.candidates for step in profile.steps),
+        "candidates": profile.candidates,
         "longest_step": max((step.seconds for step in profile.steps), default=0.0),
         "jobs": jobs,
         "kernels": describe(),

@@ -26,7 +26,7 @@ def compiled(name: str) -> ModuleType | None:
     ImportError
         When compiled kernels are asked for and were not built, or the choice is unknown.
     """
-    choice = os.environ.get(VARIABLE, "auto")
+    choice = os.environ.get(VARIABLE) or "auto"
     if choice not in CHOICES:
         raise ImportError(f"{VARIABLE} is {choice!r}; it must be one of {', '.join(CHOICES)}")
     if choice == "numpy":
@@ -37,6 +37,16 @@ def compiled(name: str) -> ModuleType | None:
         if choice == "compiled":
             raise
         return None
+
+
+def fault() -> str | None:
+    """Say what is wrong with the choice that the environment makes; None when nothing is."""
+    try:
+        for name in kernel_names():
+            compiled(name)
+    except ImportError as error:
+        return str(error)
+    return None
 
 
 def kernel_names() -> list[str]:

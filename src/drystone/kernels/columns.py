@@ -126,9 +126,11 @@ def gap_filling(
     Raises
     ------
     ValueError
-        When the mask leaves the landscape.
+        When the mask leaves the landscape, or columns are not its own.
     """
     check_inside(occupied, mask, row, col)
+    if min(columns) < 0 or columns[1] > mask.shape[1]:
+        raise ValueError(f"columns {columns} of a mask that has {mask.shape[1]}")
     kernel = gap_filling_numpy if _fast is None else _fast.gap_filling
     filling: Filling | None = kernel(occupied, mask, row, col, columns, sizes)
     return filling

@@ -68,7 +68,7 @@ def cone_edges(
     if not len(bodies) == len(normals) == len(frictions) == len(points):
         raise ValueError("lists that tell of different interfaces")
     counts = list(map(len, points))
-    at = np.concatenate(points) if points else np.empty((0, 2))
+    at = np.concatenate(points, dtype=np.float64) if points else np.empty((0, 2))
     if at.shape[1] != 2:
         raise ValueError("points have two coordinates")
     if _fast is None:

@@ -124,7 +124,9 @@ def grown_tilt(tilt: Tilt, added: Added, answer: Answer) -> Tilt:
         raise ValueError("only an optimal answer makes a tilt")
     if _fast is None:
         return grown_tilt_numpy(tilt, added, answer)
-    return _native(grown_from(tilt, added, answer, Basis(*tilt.native.grown(added, answer.pivots))))
+    return _native(
+        grown_from(tilt, added, answer, Basis(*tilt.native.grown(added, answer.pivots + 1)))
+    )
 
 
 def _native(tilt: Tilt) -> Tilt:

@@ -36,7 +36,7 @@ def solve_added_numpy(tilt: Tilt, added: Added, max_pivots: int) -> Answer:
 def grown_tilt_numpy(tilt: Tilt, added: Added, answer: Answer) -> Tilt:
     """Twin of :func:`drystone.kernels.simplex.grown_tilt`, but for what is native to that."""
     state = State(tilt, added)
-    solve(state, answer.pivots)
+    solve(state, answer.pivots + 1)
     return grown_from(tilt, added, answer, _basis(state))
 
 

@@ -1,6 +1,6 @@
 """The small program of a new stone: how it stands on a wall that moves as it would without it.
 
-The twin of `compiled/simplex_start.pyx`; see :mod:`drystone.kernels.simplex`.
+The twin of `compiled/simplex_small.pyx`; see :mod:`drystone.kernels.simplex`.
 """
 
 from dataclasses import dataclass

@@ -60,28 +60,16 @@ class Landscape:
     side: Side = "left"
 
     @classmethod
-    def of(cls, wall: Wall, side: Side = "left", before: "Landscape | None" = None) -> "Landscape":
-        """Return the landscape of a wall.
-
-        Parameters
-        ----------
-        wall : Wall
-            What is built.
-        side : {"left", "right"}
-            Building side.
-        before : Landscape, optional
-            Of the same wall when it had fewer stones, from the same side: saves their boxes.
-        """
+    def of(cls, wall: Wall, side: Side = "left") -> "Landscape":
+        """Return the landscape of a wall."""
         occupied = wall.occupied if side == "left" else mirrored(wall.occupied)
         width, height = wall.site.width_px, wall.site.height_px
-        known = () if before is None else before.boxes
-        placed = (group.placement for group in wall.groups[len(known) :])
-        new = tuple(
+        boxes = tuple(
             view_box(p.posed, p.row, p.col if side == "left" else width - p.col - p.posed.width_px,
                      height)
-            for p in placed
+            for p in wall.placements
         )  # fmt: skip
-        return cls(occupied, known + new, side)
+        return cls(occupied, boxes, side)
 
     @property
     def height_px(self) -> int:

@@ -127,6 +127,8 @@ class Attempt:
         if new:
             with self._profile.part("limit analysis"):
                 _ = self.build.analysis  # before the threads ask for it, all at once
+            with self._profile.part("contacts"):
+                _ = self.build.points
         results = self._map(
             lambda p: self._evaluator.judge(self.build, self._landscapes[p.side], p),
             [proposals[k] for k in new],

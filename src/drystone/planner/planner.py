@@ -100,6 +100,7 @@ class Planner:
             self.callbacks.on_step(step)
             yield step
         self._count_solves(attempt)
+        self.profile.end_without_action(attempt.candidates)
         self.stopped = stopped
 
     def _attempt(self) -> Attempt:

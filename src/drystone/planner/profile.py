@@ -61,6 +61,7 @@ class Profile:
         self._pending: list[tuple[Part, float]] = []
         self._other: list[tuple[Part, float]] = []
         self._since = time.perf_counter()
+        self._candidates_in_vain = 0
 
     def part(self, name: Part) -> AbstractContextManager[object]:
         """Return a context whose duration counts for a part."""
@@ -77,6 +78,15 @@ class Profile:
         seconds = time.perf_counter() - self._since
         self.steps.append(StepTime(stones, candidates, seconds, _sums(self._pending)))
         self._pending = []
+
+    def end_without_action(self, candidates: int) -> None:
+        """Say that there is no further action, after so many candidates."""
+        self._candidates_in_vain += candidates
+
+    @property
+    def candidates(self) -> int:
+        """How many candidates were evaluated, those of attempts without an action included."""
+        return self._candidates_in_vain + sum(step.candidates for step in self.steps)
 
     def total(self, part: Part) -> float:
         """Return the seconds of a part, all steps and what is outside of steps together."""

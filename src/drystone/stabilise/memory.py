@@ -7,12 +7,13 @@ import numpy as np
 from drystone.kernels.raster import Mask
 from drystone.model.placement import Placement, Side, Wedge
 from drystone.model.pose import PosedStone
-from drystone.poses import PoseBook, RecentlyUsed
+from drystone.model.stone import Stone
+from drystone.poses import PoseBook, RecentlyUsed, memory_bytes
 from drystone.stabilise.settings import StabiliseSettings
 from drystone.stabilise.stabilise import Outcome, Stabilised, WedgeStock, falls_to, make_stable
 from drystone.stabilise.support import Pose
 
-Key = tuple[PosedStone, int, int, int, tuple[int, ...], bytes]
+Key = tuple[Stone, float, int, int, int, tuple[int, ...], bytes]
 
 MEMORY_BYTES = 1 << 28
 """Outcomes that are remembered at most, about: a hundred thousand."""
@@ -93,7 +94,10 @@ class StabiliseMemory:
         outcome: Outcome | None = None
         while True:
             part = window[:depth]
-            key = (*trial, depth, part.shape, np.packbits(part).tobytes())
+            posed, row, col = trial
+            # By angle, not by pose: a pose that the book has made again is the same.
+            place = posed.stone, posed.angle_deg, row, col
+            key = (*place, depth, part.shape, np.packbits(part).tobytes())
             found = self._outcomes.get(key)
             if found is None:
                 if outcome is None:
@@ -111,10 +115,10 @@ def _reach_px(posed: PosedStone) -> int:
 
 
 def _memory_bytes(key: Key, outcome: Outcome) -> int:
-    """Return about how much memory an outcome takes; poses are the book's or the planner's."""
+    """Return about how much memory an outcome takes; with the pose, which the book may forget."""
     size = len(key[-1]) + 1000
     if outcome.stabilised is not None:
-        size += outcome.stabilised.placement.posed.mask.nbytes
+        size += memory_bytes(outcome.stabilised.placement.posed)
         size += sum(wedge.mask.nbytes + 500 for wedge in outcome.stabilised.wedges)
     return size
 

@@ -68,4 +68,5 @@ def _useful_columns(pose: Pose, side: int, settings: StabiliseSettings) -> tuple
     x_c, margin = col + posed.anchor[0], settings.margin * posed.width_px
     if side > 0:  # the right edge of a column at the centre of mass, or beyond it by the margin
         return max(0, math.ceil(x_c + margin) - 1 - col), posed.width_px
-    return 0, min(posed.width_px, math.floor(x_c - margin) + 1 - col)
+    # A narrow stone may have none: its centre of mass is nearer to the end than the margin.
+    return 0, max(0, min(posed.width_px, math.floor(x_c - margin) + 1 - col))

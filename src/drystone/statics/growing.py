@@ -3,7 +3,7 @@
 A step of the planner asks for the resistance of the wall with each of many stones on top, and
 then places one of them.  A stone adds three equations and a few unknowns to the program of the
 wall, and the mechanism of the wall is close to that of the wall with the stone: each tilt is
-solved from where the same tilt of the wall ended.  Walls of loose stones, up to some two hundred,
+solved from where the same tilt of the wall ended.  Walls of loose stones, up to some hundred,
 are for a simplex method of our own (:mod:`drystone.statics.growing_simplex`); above that the
 neighbourhood of a stone is looked at first (:mod:`drystone.statics.growing_large`); fixed and
 guided blocks, and walls that fell, are for HiGHS (:mod:`drystone.statics.growing_highs`).

@@ -30,11 +30,11 @@ from drystone.statics.model import GROUND, RigidBlockModel
 
 NAME = "simplex"
 
-MANY_BLOCKS = 200
+MANY_BLOCKS = 120
 """Walls of more blocks are left to others.
 
-At 200 the two inverses take 11 MB, which all states that a plan goes back to keep; in time the
-break-even is about 400.
+At 120 the inverses of both tilts take 4 MB, and all states that a plan may go back to, which it
+keeps, 170 MB; at 200 it would be 800 MB.  In time the break-even is about 400.
 """
 
 

@@ -133,7 +133,7 @@ cdef class BitLandscape:
             self.first = min(self.first, top[row])
         self.words = (self.width + 63) // 64 + 1
         rows = self.height - self.first
-        self.tables = np.zeros((LEVELS, rows, self.words), np.uint64)
+        self.tables = np.zeros((LEVELS, max(1, rows), self.words), np.uint64)
         self.gaps = np.empty(rows, np.int32)
         with nogil:
             for row in range(rows):

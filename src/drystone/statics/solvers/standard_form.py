@@ -27,6 +27,7 @@ _OPTIONS: Mapping[str, Any] = {
     "simplex_initial_condition_check": False,
     "primal_feasibility_tolerance": TOLERANCE,
     "dual_feasibility_tolerance": TOLERANCE,
+    "simplex_iteration_limit": 10_000,  # it may cycle; what it gives up on is asked of the whole
 }
 _BASIC = highspy.HighsBasisStatus.kBasic
 _AT_ZERO = highspy.HighsBasisStatus.kLower
