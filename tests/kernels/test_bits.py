@@ -58,6 +58,41 @@ def test_rows_of_several_words_and_runs_longer_than_one(pack: Pack, stretch: int
     check()
 
 
+@twins
+def test_long_masks_between_thin_posts_under_a_roof(pack: Pack) -> None:
+    columns = st.integers(0, 299)
+    posts = st.lists(st.tuples(columns, st.integers(1, 9)), max_size=4)
+
+    @repeatable(150)
+    @given(
+        posts=posts, length=st.integers(1, 300), heel=st.integers(0, 99), foot=st.integers(1, 99)
+    )
+    def check(posts: list[tuple[int, int]], length: int, heel: int, foot: int) -> None:
+        occupied = np.zeros((12, 300), bool)
+        occupied[1] = True
+        for col, height in posts:
+            occupied[-height:, col] = True
+        mask = np.ones((3, length), bool)
+        mask[1:, :heel] = mask[1:, heel + 3 * foot :] = False
+        mask[1:, min(heel, length - 1)] = True
+        expected = naive.resting_by_areas(occupied, mask, slid)
+        assert resting(pack, occupied, mask).tolist() == [list(at) for at in expected]
+
+    check()
+
+
+@twins
+def test_a_mask_fits_where_it_was_carved_out(pack: Pack) -> None:
+    @repeatable(100)
+    @given(mask=masks(8), top=st.integers(0, 3), left=st.integers(0, 70))
+    def check(mask: Mask, top: int, left: int) -> None:
+        occupied = np.ones((mask.shape[0] + top + 1, mask.shape[1] + left + 2), bool)
+        occupied[top : top + mask.shape[0], left : left + mask.shape[1]] ^= mask
+        assert [top, left] in resting(pack, occupied, mask).tolist()
+
+    check()
+
+
 def fits(occupied: Mask, mask: Mask) -> bool:
     return mask.shape[0] <= occupied.shape[0] and mask.shape[1] <= occupied.shape[1]
 
@@ -97,12 +132,15 @@ def test_a_mask_that_is_too_large_has_no_position(pack: Pack) -> None:
 
 
 @twins
-def test_a_mask_as_large_as_the_image(pack: Pack) -> None:
-    occupied = np.zeros((4, 6), bool)
-    assert resting(pack, occupied, np.ones((4, 6), bool)).tolist() == [[0, 0]]
-    occupied[0, 0] = True
-    assert resting(pack, occupied, np.ones((4, 6), bool)).tolist() == []
-    assert resting(pack, np.ones((2, 2), bool), np.ones((1, 1), bool)).tolist() == []
+@pytest.mark.parametrize("width", [1, 6, 8, 64, 65, 128, 200])
+def test_a_mask_as_large_as_the_image(pack: Pack, width: int) -> None:
+    occupied, mask = np.zeros((4, width), bool), np.ones((4, width), bool)
+    assert resting(pack, occupied, mask).tolist() == [[0, 0]]
+    for col in (0, width // 2, width - 1):
+        occupied[0, col] = True
+        assert resting(pack, occupied, mask).tolist() == []
+        occupied[0, col] = False
+    assert resting(pack, mask, np.ones((1, 1), bool)).tolist() == []
 
 
 @twins

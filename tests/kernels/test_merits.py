@@ -59,7 +59,7 @@ def test_the_threshold_itself_counts_as_below() -> None:
     assert threshold(np.array([0.0, 0.7, 0.7000001, 1.0]), 0.7).tolist() == [0, 0, 0.7000001, 1.0]
 
 
-def test_without_a_box_there_is_no_score() -> None:
-    assert dice_score(np.array([0, 3], np.int32), 9, 0.0).tolist() == [0.0, 0.0]
-    half = dice_score(np.array([0, 4, 8], np.int32), 8, 80.0)
-    assert half == pytest.approx([0.0, 0.5 * 80 / 84, 1.0])
+def test_outside_between_and_inside_the_box() -> None:
+    found = dice_score(np.array([0, 4, 8], np.int32), 8, 80.0)
+    assert found == pytest.approx([0.0, 0.5 * 80 / 84, 1.0])
+    assert dice_score(np.array([0], np.int32), 8, 0.0).tolist() == [0.0]

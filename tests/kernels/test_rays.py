@@ -70,7 +70,7 @@ def test_empty_beside_is_counted_pixel_by_pixel(sums_of: SumsOf) -> None:
     occupied=landscapes(16),
     mask=masks(),
     wide=st.integers(1, 20),
-    high=st.integers(1, 4),
+    high=st.sampled_from([1, 3, 20]),
     seed=st.integers(0, 99),
 )
 def test_both_twins_agree_on_large_images(
@@ -86,6 +86,14 @@ def test_both_twins_agree_on_large_images(
     assert np.array_equal(fast.filled_share(outline, at), slow.filled_share(outline, at))
     assert np.array_equal(fast.empty_beside(outline, at), slow.empty_beside(outline, at))
     assert (fast.height, fast.width) == (slow.height, slow.width) == scene.shape
+
+
+@twins
+def test_high_walls(sums_of: SumsOf) -> None:
+    occupied = np.ones((602, 5), bool)
+    occupied[:2] = occupied[300] = False
+    found = sums_of(occupied, 2).filled_share(silhouette(np.ones((2, 2), bool)), np.array([[0, 3]]))
+    assert found.tolist() == [2 * 599 / (2 * 600 + 2 * 3)]
 
 
 @twins

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement
@@ -39,6 +40,44 @@ def test_eq12_takes_the_largest_value_then_the_lower_then_the_left(scene: Scene)
 
 
 @repeatable(40)
+@given(scene=posed_on_walls(), tries=st.integers(1, 9))
+def test_eq12_chooses_among_the_poses_too(scene: Scene, tries: int) -> None:
+    wall, posed, _, _ = scene
+    poses = [posed, PoseBook().pose(posed.stone, 90.0), block(2, 5)]
+    value = {
+        (k, *at): naive.eq12(wall.occupied, p.mask, p.anchor[0], at, 0.7)
+        for k, p in enumerate(poses)
+        for at in naive.resting_positions(wall.occupied, p.mask)
+    }
+    floors = [p.height_px for p in poses]
+    ranked = sorted(value, key=lambda s: (-round(value[s], 9), -s[1] - floors[s[0]], s[2], s[0]))
+    got = best_spots(Landscape.of(wall), poses, PlacementSettings(tries=tries))
+    assert [(spot.pose, spot.row, spot.col) for spot in got] == ranked[:tries]
+
+
+@repeatable(40)
+@given(scene=posed_on_walls())
+def test_snug_takes_the_least_weighted_cost(scene: Scene) -> None:
+    wall, posed, _, _ = scene
+    settings = PlacementSettings(rule="snug", reach="above", tries=5)
+    height, width = wall.occupied.shape
+
+    def cost(at: tuple[int, int]) -> float:
+        gap = naive.gap_beside(wall.occupied, posed.mask, at) / posed.area_px
+        return (
+            settings.height_weight * (height - at[0] - posed.height_px) / posed.height_px
+            + settings.void_weight * naive.void_below(wall.occupied, posed.mask, at) / posed.area_px
+            + settings.gap_weight * min(1.0, gap)
+            + settings.end_weight * at[1] / width
+        )
+
+    places = naive.positions_from_above(wall.occupied, posed.mask)
+    ranked = sorted(places, key=lambda at: (round(cost(at), 9), -at[0], at[1]))
+    got = best_spots(Landscape.of(wall), [posed], settings)
+    assert [(spot.row, spot.col) for spot in got] == ranked[:5]
+
+
+@repeatable(40)
 @given(scene=posed_on_walls())
 def test_lowest_takes_the_lowest_then_the_tightest_then_the_left(scene: Scene) -> None:
     wall, posed, _, _ = scene
@@ -64,8 +103,8 @@ def test_equal_merits_go_to_the_lower_place_then_to_the_building_side_then_to_th
 def test_a_lower_place_is_one_with_a_lower_underside_whatever_the_pose() -> None:
     settings = PlacementSettings(rule="lowest", tries=99)
     wall = Wall.empty(Site(10, 9)).add(Placement(block(2, 4), 7, 0))
-    spots = best_spots(Landscape.of(wall), [block(2, 3, 2), block(3, 2, 2)], settings)
-    undersides = [spot.row + (2, 3)[spot.pose] for spot in spots]
+    spots = best_spots(Landscape.of(wall), [block(2, 3, 2), block(6, 2, 2)], settings)
+    undersides = [spot.row + (2, 6)[spot.pose] for spot in spots]
     assert undersides == sorted(undersides, reverse=True)
 
 

@@ -50,9 +50,9 @@ def test_panels_have_the_walls_beside_each_other_and_one_legend():
     figure = step_time_panels({"variant": STEPS, "full": STEPS[:1]})
     left, right = figure.axes
     assert (left.get_title(), right.get_title()) == ("variant", "full")
-    words = [text.get_text() for text in left.get_legend().get_texts()]
-    assert words == [*PART_COLOURS, REST]
-    assert right.get_legend() is None
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == [*PART_COLOURS, REST]
+    assert left.get_legend() is right.get_legend() is None
 
 
 def test_points_laws_and_claims_are_drawn_where_they_are():

@@ -74,7 +74,7 @@ class Sizes:
     stones: int | None
     scales: tuple[float, ...] = SCALES
     counts: tuple[int, ...] = COUNTS
-    repeats: int = 3
+    repeats: int = 12
 
 
 @dataclass(frozen=True)

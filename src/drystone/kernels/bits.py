@@ -89,7 +89,7 @@ class BitLandscapeNumpy:
         width, cols = self._width, self._width - mask.width + 1
         highest = self._first - mask.height  # any higher, it meets nothing one row lower
         count = self._height - mask.height - highest + 1
-        if cols <= 0 or mask.height > self._height:
+        if cols <= 0:
             return np.zeros((0, 2), np.int64)
         # Bit 0 is for the corner in the first column of the row `highest`.
         hit = ((1 << width) - 1) << (count * width)

@@ -22,7 +22,7 @@ class SnugWeights(NamedTuple):
 
 
 def dice_score(inside: Ints, area: int, box_area: float) -> Floats:
-    """Return GDS for areas of a stone inside the box B; 0 when there is no box yet (Eq. 5).
+    """Return GDS for areas of a stone inside the box B (Eq. 5).
 
     Parameters
     ----------
@@ -36,8 +36,6 @@ def dice_score(inside: Ints, area: int, box_area: float) -> Floats:
     >>> dice_score(np.array([0, 8, 16]), 16, 80.0).round(3).tolist()
     [0.0, 0.455, 1.0]
     """
-    if box_area == 0:
-        return np.zeros(inside.shape)
     return np.asarray((inside / area) * (box_area / (box_area + area - inside)))
 
 

@@ -21,7 +21,7 @@ PART_COLOURS = {
 
 REST = "rest"
 PANEL_IN = (4.2, 3.2)
-GROWTH_IN = (6.0, 4.0)
+GROWTH_IN = (6.4, 4.0)
 LINES = ((CLUSTER_COLOURS[0], "o"), (WEDGE_COLOUR, "s"), (CLUSTER_COLOURS[12], "^"))
 """Colour and marker by series; the first three."""
 
@@ -118,8 +118,13 @@ def step_time_panels(runs: Mapping[str, Sequence[StepTime]]) -> Figure:
     panels = figure.subplots(1, len(runs), squeeze=False)[0]
     for ax, (title, steps) in zip(panels, runs.items(), strict=True):
         plot_step_times(steps, ax, title=title)
-    panels[0].legend(fontsize=7, framealpha=1.0, edgecolor="none")
+    handles, labels = panels[0].get_legend_handles_labels()
     figure.tight_layout()
+    # Above, where it hides no bar.
+    figure.legend(
+        handles, labels, fontsize=7, edgecolor="none", loc="lower center",
+        bbox_to_anchor=(0.5, 1.0), ncols=len(labels),
+    )  # fmt: skip
     return figure
 
 

@@ -95,7 +95,7 @@ cdef void look_up(
     cdef double inside, dice = 0.0
     cdef Py_ssize_t at
     for at in range(positions.shape[0]):
-        if box_area > 0.0 and (at == 0 or positions[at, 0] != positions[at - 1, 0]):
+        if at == 0 or positions[at, 0] != positions[at - 1, 0]:
             inside = area_from[max(0, min(box_top - positions[at, 0], height))]
             dice = inside / area * (box_area / (box_area + area - inside))
             dice = dice if dice > beta else 0.0
