@@ -40,6 +40,34 @@ def test_answers_of_highs_without_a_certificate_are_found_again_cold(name, monke
     assert analysis.extended(candidates[0]).grown.solved_cold
 
 
+@pytest.mark.parametrize("name", ["large", "highs"])
+def test_an_answer_without_a_certificate_is_found_again_from_its_basis(name, monkeypatch):
+    """Once, and without a pivot."""
+    begin = implementation(name, monkeypatch)
+    analysis, candidates = wall_and_candidates(coursed(1, 4, 80), 8, begin)
+    expected = analysis.resistance_with(candidates[0])
+    pivots = Pivots(monkeypatch)
+    honest, counts = RefinedSession.minimise, []
+
+    def drifts(session, costs):
+        before = pivots.count
+        solution = honest(session, costs)
+        counts.append(pivots.count - before)
+        first = len(counts) % 2
+        return replace(solution, columns=solution.columns * (1 + 1e-6)) if first else solution
+
+    monkeypatch.setattr(growing_large, "guessed", lambda *_: None)
+    monkeypatch.setattr(RefinedSession, "minimise", drifts)
+    grown = analysis.resistance_with(candidates[0])
+    assert not grown.solved_cold
+    assert len(counts) == 4
+    assert counts[1] == counts[3] == 0 < counts[0] + counts[2]
+    for side in ("left", "right"):
+        found, sought = (getattr(g.resistance, side) for g in (grown, expected))
+        assert found.certificate.holds
+        assert found.alpha == pytest.approx(sought.alpha, abs=1e-9)
+
+
 def test_many_blocks_at_once_begin_with_an_interior_point(monkeypatch):
     analysis, candidates = wall_and_candidates(coursed(3, 5, 90), 14)
     asked = []

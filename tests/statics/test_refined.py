@@ -12,7 +12,7 @@ from scipy.sparse import csc_array
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.program import assemble
 from drystone.statics.result import LimitStatus
-from drystone.statics.solvers.refined import RefinedSession
+from drystone.statics.solvers.refined import RefinedSession, corrected
 from drystone.statics.solvers.standard_form import least
 from drystone.statics.solvers.warm import Basis, WarmSession
 from tests.statics.walls import coursed, stacked
@@ -68,6 +68,34 @@ def test_what_drifted_is_put_right(program, sign, monkeypatch):
     assert refined.duals == pytest.approx(exact.duals, abs=1e-10)
     monkeypatch.setattr("drystone.statics.solvers.refined.RESIDUAL", 1.0)
     assert errors(program, ask(program, sign)[0], costs)[0] > 1e-7
+
+
+def test_duals_are_not_made_worse(monkeypatch):
+    """As factors without their last digits would."""
+    exact, costs, session = ask(WALL)
+    monkeypatch.setattr("drystone.statics.solvers.refined.RESIDUAL", -1.0)
+    highs = Worse(session.highs)
+    columns, duals = corrected(highs, (costs, WALL.matrix, WALL.rhs), exact.columns, exact.duals)
+    assert highs.asked == 1
+    assert duals is exact.duals
+    assert columns == pytest.approx(exact.columns, abs=1e-12)
+
+
+class Worse:
+    """HiGHS, but for one answer."""
+
+    def __init__(self, highs):
+        self.highs, self.asked = highs, 0
+
+    def getBasicVariables(self):  # noqa: N802 - as in HiGHS
+        return self.highs.getBasicVariables()
+
+    def getBasisSolve(self, left):  # noqa: N802
+        return self.highs.getBasisSolve(left)
+
+    def getBasisTransposeSolve(self, rates):  # noqa: N802
+        self.asked += 1
+        return None, np.full(len(rates), 1e-3)
 
 
 def test_what_has_no_optimum_is_left_alone():

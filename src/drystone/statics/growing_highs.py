@@ -124,8 +124,7 @@ def end(program: OpenProgram, starts: Bases, sign: int) -> End | None:
         1 for the greatest alpha, -1 for the least.
     """
     session = RefinedSession(program.program)
-    session.start_from(starts.greatest if sign > 0 else starts.least)
-    answer = answered(program.program, session, float(sign))
+    answer = _asked(program.program, session, starts.greatest if sign > 0 else starts.least, sign)
     solution, certificate = answer.solution, answer.certificate
     if certificate is None or solution.duals is None or answer.status is LimitStatus.FAILED:
         return None
@@ -152,13 +151,28 @@ class Tilts:
 def _tilted(program: EquilibriumProgram, starts: Bases) -> Tilts:
     """Solve each tilt from its own basis, both in a solver that knows nothing else."""
     session = RefinedSession(program)
-    session.start_from(starts.greatest)
-    greatest = answered(program, session, 1.0)
+    greatest = _asked(program, session, starts.greatest, 1)
     upper = session.basis()
     if greatest.status is LimitStatus.UNSTABLE:  # no alpha holds the blocks up
         return Tilts(greatest, greatest, upper, upper)
-    session.start_from(starts.least)
-    return Tilts(answered(program, session, -1.0), greatest, session.basis(), upper)
+    least = _asked(program, session, starts.least, -1)
+    return Tilts(least, greatest, session.basis(), upper)
+
+
+def _asked(program: EquilibriumProgram, session: RefinedSession, start: Basis, sign: int) -> Answer:
+    """Solve one tilt from a basis; once more from the last one if there is no certificate.
+
+    Thousands of blocks can cost the factors of the basis their last digits; then they are made
+    anew.
+    """
+    session.start_from(start)
+    answer = answered(program, session, float(sign))
+    last = read_basis(session.basis())
+    unproved = answer.status is LimitStatus.FAILED and answer.solution.status is LimitStatus.OPTIMAL
+    if last is None or not unproved:
+        return answer
+    session.start_from(last)
+    return answered(program, session, float(sign))
 
 
 def _told(model: RigidBlockModel, program: EquilibriumProgram, tilts: Tilts) -> Grown:
