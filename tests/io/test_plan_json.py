@@ -87,7 +87,7 @@ def test_keys_are_those_of_the_contract_in_its_order() -> None:
     assert wedge["polygon"] == [[1.0, 0.0], [3.0, 0.0], [3.0, 2.0]]
     assert list(data["metrics"]) == [
         "F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH", "alpha_left", "alpha_right",
-        "wedge_area",
+        "wedge_area", "F_LR_half", "F_LR_double",
     ]  # fmt: skip
 
 

@@ -9,9 +9,11 @@ from drystone.model.landscape import Landscape
 from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone.planner.attempt import Attempt
-from drystone.planner.build import Build, Proposal
-from drystone.planner.evaluate import Evaluator, Trial
+from drystone.planner.build import Proposal
+from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
+from drystone.planner.profile import Profile
+from drystone.planner.proposing import RasterProposer, Trial
 from drystone.planner.settings import PlannerSettings
 from drystone.statics.growing import GrowingAnalysis
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
@@ -25,12 +27,12 @@ class _Calls:
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.proposed: Counter[Key] = Counter()
         self.judged: Counter[Key] = Counter()
-        propose, judge = Evaluator.propose, Evaluator.judge
+        propose, judge = RasterProposer.propose, Evaluator.judge
 
-        def propose_once(this: Evaluator, build: Build, trial: Trial) -> object:
+        def propose_once(this: RasterProposer, trial: Trial) -> object:
             posed = trial.poses[0]
             self.proposed[posed.stone.id, posed.angle_deg, trial.landscape.side] += 1
-            return propose(this, build, trial)
+            return propose(this, trial)
 
         def judge_once(
             this: Evaluator, wall: Wall, analysis: GrowingAnalysis, proposal: Proposal
@@ -38,7 +40,7 @@ class _Calls:
             self.judged[proposal.stone_id, proposal.trial_angle_deg, proposal.side] += 1
             return judge(this, wall, analysis, proposal)
 
-        monkeypatch.setattr(Evaluator, "propose", propose_once)
+        monkeypatch.setattr(RasterProposer, "propose", propose_once)
         monkeypatch.setattr(Evaluator, "judge", judge_once)
 
 
@@ -55,7 +57,7 @@ def _attempt(settings: PlannerSettings, built: int = 2) -> Attempt:
     [
         PlannerSettings(sampling="twofold", two_sided=True),
         PlannerSettings(sampling="uniform", orientations="quarter"),
-        greedy(),
+        greedy({"geometry": "raster"}),
     ],
     ids=["two-fold", "quarter", "best"],
 )
@@ -144,10 +146,10 @@ def test_a_stone_that_turns_out_of_reach_from_above_is_not_proposed(
     stones = blocks({1: (20, 10), 2: (20, 10)})
     settings = greedy()
     planner = Planner(stones, Site(60, 30), settings=settings)
-    evaluator = Evaluator(settings, planner.workshop.memory, planner.workshop.stock)
+    proposer = RasterProposer(planner.workshop, settings, planner.build, Profile())
     posed = planner.workshop.poses(1)[0]
     landscape = Landscape.of(planner.build.wall)
     trial = Trial((posed,), landscape, planner.workshop.rest(planner.build))
-    assert evaluator.propose(planner.build, trial) is not None
-    monkeypatch.setattr("drystone.planner.evaluate.can_be_lowered", lambda *_: False)
-    assert evaluator.propose(planner.build, trial) is None
+    assert proposer.propose(trial) is not None
+    monkeypatch.setattr("drystone.planner.proposing.can_be_lowered", lambda *_: False)
+    assert proposer.propose(trial) is None

@@ -14,9 +14,11 @@ from drystone.model.plan import StoneStep
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.build import Build, Candidate, Proposal
-from drystone.planner.evaluate import Evaluator, Trial
+from drystone.planner.evaluate import Evaluator
 from drystone.planner.plan_wall import mean_top, plan_wall, working_scale
 from drystone.planner.planner import Planner
+from drystone.planner.profile import Profile
+from drystone.planner.proposing import RasterProposer, Trial
 from drystone.planner.settings import PlannerSettings
 from drystone.verify import check_plan
 from tests.planner.scenes import blocks, bricks, greedy, rubble, stones_of_masks
@@ -78,7 +80,12 @@ def _scene(
         posed = workshop.initial(stone_id)
         wall = wall.add(Placement(posed, height - bottom - posed.height_px, left))
     planner.restore(wall, {})
-    return planner, Evaluator(settings, workshop.memory, workshop.stock)
+    return planner, Evaluator(settings, workshop.stock)
+
+
+def _proposed(planner: Planner, build: Build, stone_id: int) -> Proposal | None:
+    proposer = RasterProposer(planner.workshop, planner.settings, build, Profile())
+    return proposer.propose(_trial(planner, stone_id))
 
 
 def _judged(evaluator: Evaluator, build: Build, proposal: Proposal) -> Candidate:
@@ -90,11 +97,13 @@ def _trial(planner: Planner, stone_id: int) -> Trial:
     return Trial(workshop.poses(stone_id), Landscape.of(build.wall), workshop.rest(build))
 
 
-@pytest.mark.parametrize("settings", [PlannerSettings(), greedy()], ids=["paper", "best"])
+@pytest.mark.parametrize(
+    "settings", [PlannerSettings(), greedy({"geometry": "raster"})], ids=["paper", "best"]
+)
 def test_a_stone_bridges_two_pillars_without_a_wedge(settings: PlannerSettings) -> None:
     sizes = {1: (20, 20), 2: (20, 20), 3: (60, 8)}
     planner, evaluator = _scene(sizes, {1: (0, 0), 2: (40, 0)}, settings)
-    proposal = evaluator.propose(planner.build, _trial(planner, 3))
+    proposal = _proposed(planner, planner.build, 3)
     assert proposal is not None
     placement = proposal.stabilised.placement
     assert (placement.row, placement.col, placement.rotation_moves) == (12, 0, 0)
@@ -111,7 +120,7 @@ def _half_supported(ids: tuple[int, int, int]) -> Build:
     settings = PlannerSettings().updated({"stabilise": {"method": "wedge"}})
     sizes = {high: (20, 20), low: (20, 16), slab: (60, 8)}
     planner, evaluator = _scene(sizes, {high: (0, 0), low: (40, 0)}, settings)
-    proposal = evaluator.propose(planner.build, _trial(planner, slab))
+    proposal = _proposed(planner, planner.build, slab)
     assert proposal is not None
     return planner.build.add(_judged(evaluator, planner.build, proposal))
 
@@ -135,7 +144,7 @@ def test_two_wedges_get_two_ids() -> None:
     build = planner.build
     for slab in (3, 6):
         planner.build = build
-        proposal = evaluator.propose(build, _trial(planner, slab))
+        proposal = _proposed(planner, build, slab)
         assert proposal is not None
         build = build.add(_judged(evaluator, build, proposal))
     assert [wedge.id for wedge in build.wall.wedges] == [7, 8]

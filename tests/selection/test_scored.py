@@ -10,10 +10,10 @@ NOTHING = Craft(**dict.fromkeys((field.name for field in dataclasses.fields(Craf
 
 
 @pytest.mark.parametrize("name", [field.name for field in dataclasses.fields(Craft)])
-def test_each_cost_has_its_own_weight_and_area_is_a_bonus(name: str) -> None:
+def test_each_cost_has_its_own_weight_and_bulk_is_a_bonus(name: str) -> None:
     weights = ScoreSettings(**{name: 3.0})  # type: ignore[arg-type]
     cost = craft_cost(dataclasses.replace(NOTHING, **{name: 2.0}), weights)
-    assert cost == (-6.0 if name == "area" else 6.0)
+    assert cost == (-6.0 if name in ("area", "thickness") else 6.0)
 
 
 def test_equal_costs_go_by_their_keys() -> None:

@@ -8,7 +8,7 @@ from shapely import affinity
 from drystone.model.placement import Placement
 from drystone.model.stone import Stone
 from drystone.poses import PoseBook
-from drystone.verify.overlap import SPACING_PX, deepest_overlap, overlap_depth
+from drystone.verify.overlap import SPACING_PX, deepest_overlap, overlap_depth, real_outline
 from tests.strategies import repeatable
 
 
@@ -70,8 +70,9 @@ def test_deepest_overlap_names_the_pair_in_source_px() -> None:
     stones = {i: Stone(i, np.ones((8, 16), bool)) for i in (4, 2, 9)}
     at = {4: (6, 0), 2: (2, 1), 9: (6, 7)}  # rows and columns of a site of 10 working px
     placements = [Placement(book.pose(stones[i], 0.0), *at[i]) for i in (4, 2, 9)]
-    depth, pair = deepest_overlap(placements, 10)
+    outlines = [(p.stone_id, real_outline(p, 10)) for p in placements]
+    depth, pair = deepest_overlap(outlines)
     assert pair == (4, 9)
     assert depth == pytest.approx(2.0, abs=SPACING_PX)
-    assert deepest_overlap(placements[:2], 10) == (0.0, None)
-    assert deepest_overlap([], 10) == (0.0, None)
+    assert deepest_overlap(outlines[:2]) == (0.0, None)
+    assert deepest_overlap([]) == (0.0, None)

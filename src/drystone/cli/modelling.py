@@ -60,7 +60,7 @@ def modelled(wall: GivenWall, arguments: argparse.Namespace) -> Modelled:
     """Make the model that the options ask for."""
     mu = _mu(wall, arguments)
     if wall.blocks is not None:
-        found = _given(wall.blocks, mu, arguments)
+        found = _given(wall, wall.blocks, mu, arguments)
     else:
         assert wall.labels is not None  # noqa: S101 - a wall without blocks has an image
         found = _drawn(wall, wall.labels, mu, arguments)
@@ -79,7 +79,9 @@ def _mu(wall: GivenWall, arguments: argparse.Namespace) -> float:
     return wall.mu
 
 
-def _given(blocks: dict[str, Any], mu: float, arguments: argparse.Namespace) -> Modelled:
+def _given(
+    wall: GivenWall, blocks: dict[str, Any], mu: float, arguments: argparse.Namespace
+) -> Modelled:
     if arguments.close_gaps is not None or arguments.contacts != "pixels":
         raise UsageError(
             "E138",
@@ -88,7 +90,12 @@ def _given(blocks: dict[str, Any], mu: float, arguments: argparse.Namespace) -> 
         )
     if arguments.mu is not None:
         blocks = {**blocks, "mu": mu}
-    return Modelled(model_from_json(blocks), polygons_from_json(blocks), "block")
+    return Modelled(
+        model_from_json(blocks),
+        polygons_from_json(blocks),
+        "block" if wall.plan is None else "stone",
+        wall.wedge_ids,
+    )
 
 
 def _drawn(wall: GivenWall, labels: Labels, mu: float, arguments: argparse.Namespace) -> Modelled:

@@ -102,9 +102,16 @@ def _planning(command: argparse.ArgumentParser) -> None:
     group.add_argument("--stabilise", choices=["both", "rotation", "wedge", "none"])
     group.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
     group.add_argument(
-        "--geometry", choices=["raster"],
-        help="raster: stones are their pixels at the working resolution",
+        "--geometry", choices=["exact", "raster"],
+        help="exact: stones settle on their outlines; raster: they are their pixels",
     )  # fmt: skip
+    group.add_argument(
+        "--settle", choices=["energy", "pivot"],
+        help="with exact geometry: down to the least energy, or rolling as in the paper",
+    )  # fmt: skip
+    group.add_argument(
+        "--budget", type=_count, metavar="N", help="walls that are tried: 1 is a single pass"
+    )
     group.add_argument(
         "--skip-too-large", action="store_true", default=None,
         help="leave out stones that fit into the wall in no orientation",
@@ -175,6 +182,15 @@ def _measure(command: argparse.ArgumentParser) -> None:
 def _check(command: argparse.ArgumentParser) -> None:
     command.add_argument("plan", metavar="PLAN.json", help="plan to verify, or its folder")
     command.add_argument("--stones", metavar="STONES", help="what the plan was made from")
+    command.add_argument(
+        "--physics", action="store_true",
+        help="build the wall in a rigid-body engine too, and tilt it (extra `physics`)",
+    )  # fmt: skip
+    command.add_argument(
+        "--picture", metavar="FILE.png",
+        help="draw it, whatever was found (else check.png beside the plan when something fails)",
+    )  # fmt: skip
+    _overwriting(command, "replace the picture")
     command.add_argument("--json", action="store_true", help="print as JSON")
 
 

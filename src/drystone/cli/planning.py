@@ -13,6 +13,7 @@ from drystone.cli.progress import step_bar
 from drystone.cli.settings import settings_from
 from drystone.cli.timing import print_profile, profile_summary
 from drystone.errors import ExitCode, UsageError
+from drystone.io.blocks_json import write_blocks
 from drystone.io.plan_json import read_plan, write_plan
 from drystone.io.wall_image import write_wall_image
 from drystone.model.plan import Plan
@@ -70,6 +71,7 @@ def write_result(result: PlanResult, stones: StoneSet, folder: Path) -> None:
     """Write plan.json, settings.toml, wall.png, the pictures and the report."""
     write_plan(result.plan, folder / "plan.json")
     (folder / "settings.toml").write_bytes(tomli_w.dumps(dict(result.plan.settings)).encode())
+    write_blocks(result.wall, result.model, folder)
     written = write_wall_image(result.wall.labels, folder)
     for name in {"wall.png", "wall.tif"} - {written.name}:
         # One that an earlier run left would belong to another wall.
@@ -149,6 +151,8 @@ def _summary(result: PlanResult, folder: Path) -> dict[str, Any]:
         "F_AV": metrics.F_AV,
         "F_AH": metrics.F_AH,
         "F_LR": metrics.F_LR,
+        "F_LR_half": metrics.F_LR_half,
+        "F_LR_double": metrics.F_LR_double,
         "T_LEVEL": metrics.T_LEVEL,
         "E_FLUSH": metrics.E_FLUSH,
         "alpha_left": metrics.alpha_left,
@@ -157,6 +161,15 @@ def _summary(result: PlanResult, folder: Path) -> dict[str, Any]:
         "working_scale": result.plan.working_scale,
         "seconds": result.seconds,
     }
+
+
+def _by_tolerance(result: PlanResult) -> list[tuple[str, str]]:
+    """Say what the lateral resistance is with other contact tolerances."""
+    metrics = result.metrics
+    if result.wall.outlines is None:
+        return []
+    half, double = number(metrics.F_LR_half), number(metrics.F_LR_double)
+    return [("", f"{half} and {double} at half and twice the contact tolerance")]
 
 
 def _print_summary(result: PlanResult, folder: Path) -> None:
@@ -171,6 +184,7 @@ def _print_summary(result: PlanResult, folder: Path) -> None:
             ("F_AV", f"{number(metrics.F_AV, 2)}  vertical arrangement, higher is better"),
             ("F_AH", f"{number(metrics.F_AH, 2)}  horizontal arrangement, lower is better"),
             ("F_LR", f"{number(metrics.F_LR)}  lateral resistance / mu, higher is better"),
+            *_by_tolerance(result),
             ("T_LEVEL", f"{number(metrics.T_LEVEL)}  unevenness of the top"),
             ("E_FLUSH", f"{number(metrics.E_FLUSH)}  unevenness of the ends"),
             ("alpha", f"left {number(metrics.alpha_left)}, right {number(metrics.alpha_right)}"),

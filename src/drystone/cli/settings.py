@@ -21,6 +21,10 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
             changes[name] = value
     placement = {"rule": arguments.placement, "reach": arguments.reach}
     changes["placement"] = {k: v for k, v in placement.items() if v is not None}
+    if arguments.settle is not None:
+        changes["settle"] = {"method": arguments.settle}
+    if arguments.budget is not None:
+        changes["rework"] = {"rounds": arguments.budget - 1}
     if arguments.stabilise is not None:
         changes["stabilise"] = {"method": arguments.stabilise}
     return settings.updated(changes)

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from drystone.errors import InputError, Notice
+from drystone.io.blocks_json import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
 from drystone.model.plan import Plan
 from drystone.model.wall import Labels
-from drystone.statics.contacts.given_parts import read_mu
+from drystone.statics.contacts.given_parts import read_list, read_mu
 from drystone.statics.contacts.joints import loose_blocks
 from drystone.statics.model import RigidBlockModel
 
@@ -28,7 +29,7 @@ class GivenWall:
     plan : Plan or None
         When the file was a plan; its image is the wall image beside it.
     blocks : mapping or None
-        A block model as it was written.
+        A block model as it was written, also that of a plan on outlines.
     """
 
     labels: Labels | None
@@ -73,7 +74,19 @@ def read_wall(path: Path) -> GivenWall:
             where=str(path),
             cure="Keep the files of a plan together, or give the label image itself.",
         )
-    return GivenWall(labels, plan)
+    if plan.settings.get("geometry") != "exact":
+        return GivenWall(labels, plan)
+    blocks = _read_json(path.with_name(BLOCKS))
+    if not isinstance(blocks, dict) or {b.get("id") for b in read_list(blocks, "blocks")} != set(
+        _ids(plan)
+    ):
+        raise InputError(
+            "E133",
+            f"the {BLOCKS} beside the plan has other stones than the plan.",
+            where=str(path),
+            cure="Keep the files of a plan together.",
+        )
+    return GivenWall(labels, plan, blocks)
 
 
 def image_name(plan: Plan) -> str:

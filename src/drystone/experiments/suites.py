@@ -14,6 +14,10 @@ SUITES = {
     "growth": ("time of a step, by part, against pixels and stones (Fig. 28, Fig. 29)", "growth"),
     "shear": ("shear tests of dry-joint walls, predicted over measured", "shear"),
     "tilt": ("walls tilted in a rigid-body engine beside the limit analysis", "tilt"),
+    "exact": ("walls planned on outlines beside walls planned on pixels", "exact"),
+    "engine": ("walls planned on outlines, built up and tilted in a rigid-body engine", "engine"),
+    "settling": ("milliseconds of a settling, and what becomes of proposals", "settlings"),
+    "passes": ("single passes of best on outlines, medians over twenty seeds", "passes"),
 }
 """What each one is about, and the module of this package whose `run` does it."""
 

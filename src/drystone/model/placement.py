@@ -6,10 +6,31 @@ from typing import Literal
 
 import numpy as np
 
+from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
 from drystone.model.pose import PosedStone
 
 Side = Literal["left", "right"]
+
+
+@dataclass(frozen=True, eq=False)
+class Settled:
+    """Where a stone lies exactly, on its outline (DESIGN 4.9).
+
+    Parameters
+    ----------
+    x_px, y_px : float
+        Its centroid in the wall frame, *source* px.
+    corners : (n, 2) float array
+        Its outline there, counter-clockwise, source px.
+    """
+
+    x_px: float
+    y_px: float
+    corners: Points
+
+    def __post_init__(self) -> None:
+        self.corners.flags.writeable = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,13 +40,15 @@ class Placement:
     Parameters
     ----------
     posed : PosedStone
-        The stone, turned.
+        The stone, turned.  Of a settled stone its pixels are those of the wall that it fills.
     row, col : int
         Top-left corner of its mask in the wall image (row 0 at the top of the site).
     side : {"left", "right"}
         The end of the wall from which it was placed.
     rotation_moves : int
-        How many pivots stabilisation turned it about.
+        How many pivots stabilisation turned it about; 1 for a stone that turned as it settled.
+    settled : Settled or None
+        Where it lies exactly; None when the stones of the wall are their pixels.
     """
 
     posed: PosedStone
@@ -33,6 +56,7 @@ class Placement:
     col: int
     side: Side = "left"
     rotation_moves: int = 0
+    settled: Settled | None = None
 
     @property
     def stone_id(self) -> int:
@@ -49,6 +73,9 @@ class Placement:
 
     def centroid(self, site_height_px: int) -> tuple[float, float]:
         """Centroid (x, y) in the wall frame, working px, y up from the ground."""
+        if self.settled is not None:
+            scale = self.posed.scale
+            return self.settled.x_px * scale, self.settled.y_px * scale
         bottom = site_height_px - self.row - self.posed.height_px
         return self.col + self.posed.anchor[0], bottom + self.posed.anchor[1]
 
@@ -67,6 +94,9 @@ class Wedge:
         Its pixels, cropped, row 0 at the top.
     row, col : int
         Top-left corner of the mask in the wall image.
+    corners : (n, 2) float array or None
+        Its outline in the wall frame, counter-clockwise, *source* px, when stones are outlines;
+        it may then fill no pixel.
     """
 
     id: int
@@ -74,6 +104,7 @@ class Wedge:
     mask: Mask
     row: int
     col: int
+    corners: Points | None = None
 
     def __post_init__(self) -> None:
         self.mask.flags.writeable = False

@@ -89,7 +89,11 @@ class WedgeStep:
 
 @dataclass(frozen=True)
 class PlanMetrics:
-    """The figures of merit of a finished wall (§5.2); None when one cannot be computed."""
+    """The figures of merit of a finished wall (§5.2); None when one cannot be computed.
+
+    F_LR of a wall of outlines is that at the contact tolerance of its settings; F_LR_half and
+    F_LR_double are those at half and at twice this tolerance (DESIGN 4.9), None for pixels.
+    """
 
     F_SF: float
     F_AV: float | None
@@ -100,6 +104,8 @@ class PlanMetrics:
     alpha_left: float | None
     alpha_right: float | None
     wedge_area: float
+    F_LR_half: float | None = None
+    F_LR_double: float | None = None
 
 
 @dataclass(frozen=True)

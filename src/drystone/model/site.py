@@ -1,7 +1,7 @@
 """The place where the wall goes up, and the lengths that turn it into pixels."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from drystone.errors import UsageError
 
@@ -24,6 +24,8 @@ class Site:
         Working resolution over source resolution.
     px_per_m : float or None
         Source px in a metre, when a scale is known.
+    source_px : (float, float) or None
+        Width and height in source px; None when they are those of the working px.
 
     Examples
     --------
@@ -35,6 +37,7 @@ class Site:
     height_px: int
     scale: float = 1.0
     px_per_m: float | None = None
+    source_px: tuple[float, float] | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         if self.width_px < 1 or self.height_px < 1:
@@ -58,7 +61,13 @@ class Site:
         cls, width: float, height: float, scale: float = 1.0, px_per_m: float | None = None
     ) -> "Site":
         """Make the site of a wall given in source px: working size floor(size * scale + .5)."""
-        return cls(working_px(width, scale), working_px(height, scale), scale, px_per_m)
+        size = working_px(width, scale), working_px(height, scale)
+        return cls(*size, scale, px_per_m, (width, height))
+
+    @property
+    def extent_px(self) -> tuple[float, float]:
+        """Width and height in source px: what outlines must stay within."""
+        return self.source_px or (self.width_px / self.scale, self.height_px / self.scale)
 
     @property
     def units_per_px(self) -> float:

@@ -6,12 +6,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from skimage import measure
 
 from drystone.errors import Notice, PlanError
 from drystone.kernels.hull import pixel_hull
+from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
+from drystone.model.outline import stone_outline
 
 OUTLINE_TOLERANCE_PX = 0.35
 """How far the outline may stay away from the contour of the pixels (DESIGN 4.9)."""
@@ -75,23 +75,40 @@ class Stone:
         x, y = self.local_centroid
         return self.left_px + x, self.bottom_px + y
 
-    @cached_property
-    def outline(self) -> NDArray[np.float64]:
-        """Simplified contour, (n, 2) points (x, y) relative to the centroid, counter-clockwise."""
-        contour = max(
-            measure.find_contours(np.pad(self.mask, 1).astype(float), 0.5, fully_connected="high"),
-            key=len,
-        )
-        contour = measure.approximate_polygon(contour, OUTLINE_TOLERANCE_PX)[:-1]
-        # find_contours works on pixel centres of the padded mask, row first.
-        x = contour[:, 1] - 0.5 - self.local_centroid[0]
-        y = self.mask.shape[0] - (contour[:, 0] - 0.5) - self.local_centroid[1]
-        points = np.column_stack([x, y])
-        twice_area = float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
-        return points if twice_area > 0 else points[::-1].copy()
+    @property
+    def outline(self) -> Points:
+        """Simplified contour, as of :meth:`outline_within` at `OUTLINE_TOLERANCE_PX`."""
+        return self.outline_within(OUTLINE_TOLERANCE_PX)
+
+    def outline_within(self, tolerance_px: float) -> Points:
+        """Return the outline that stays within a tolerance of the contour of the pixels.
+
+        Parameters
+        ----------
+        tolerance_px : float
+            How far it may stay away from the contour, 0 or more.
+
+        Returns
+        -------
+        corners : (n, 2) float array
+            A simple polygon (x, y) relative to the centroid, counter-clockwise; area and centroid
+            are those of the pixels (:func:`drystone.model.outline.stone_outline`).  It is worked
+            out once for each tolerance.
+        """
+        outline = self._outlines.get(tolerance_px)
+        if outline is None:
+            outline = stone_outline(self.mask, tolerance_px)
+            outline.flags.writeable = False
+            self._outlines[tolerance_px] = outline
+        return outline
 
     @cached_property
-    def hull(self) -> NDArray[np.float64]:
+    def _outlines(self) -> dict[float, Points]:
+        """Outlines that were asked for, by tolerance: a memory, like any cached property."""
+        return {}
+
+    @cached_property
+    def hull(self) -> Points:
         """Corners of the convex hull of the pixel squares, (n, 2), relative to the centroid."""
         return np.asarray(pixel_hull(self.mask) - self.local_centroid)
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.kernels.raster import Mask
+from drystone.model.outlines import Outlined, Outlines
 from drystone.model.placement import Placement, Wedge
 from drystone.model.site import Site
 
@@ -41,33 +42,52 @@ class Wall:
         0 where nothing is, otherwise the id of a stone or wedge; row 0 at the top.
     groups : tuple of Group
         What was placed, in order.
+    outlines : Outlines or None
+        Of what was placed; None when the stones of the wall are their pixels.
     """
 
     site: Site
     labels: Labels
     groups: tuple[Group, ...] = ()
+    outlines: Outlines | None = None
 
     def __post_init__(self) -> None:
         self.labels.flags.writeable = False
 
     @classmethod
-    def empty(cls, site: Site) -> "Wall":
-        """Return the wall before the first stone."""
-        return cls(site, np.zeros((site.height_px, site.width_px), np.uint32))
+    def empty(cls, site: Site, *, exact: bool = False) -> "Wall":
+        """Return the wall before the first stone.
+
+        Parameters
+        ----------
+        site : Site
+            Its place.
+        exact : bool
+            Stones are their outlines, and all placements settled ones.
+        """
+        outlines = Outlines.empty(site) if exact else None
+        return cls(site, np.zeros((site.height_px, site.width_px), np.uint32), outlines=outlines)
 
     def add(self, placement: Placement, wedges: tuple[Wedge, ...] = ()) -> "Wall":
         """Return the wall with one more stone and its wedges.
 
+        With outlines, a pixel belongs to the stone or wedge that covers most of it, where all
+        together cover at least half (DESIGN 4.9).
+
         Raises
         ------
         ValueError
-            When something overlaps or leaves the site.
+            When pixels overlap or leave the site.
         """
+        groups = (*self.groups, Group(placement, wedges))
+        if self.outlines is not None:
+            outlines = self.outlines.added(outlined(placement, wedges), self.site.scale)
+            return Wall(self.site, outlines.shares.labels, groups, outlines)
         labels = self.labels.copy()
         _paint(labels, placement.window, placement.posed.mask, placement.stone_id)
         for wedge in wedges:
             _paint(labels, wedge.window, wedge.mask, wedge.id)
-        return Wall(self.site, labels, (*self.groups, Group(placement, wedges)))
+        return Wall(self.site, labels, groups)
 
     @property
     def placements(self) -> tuple[Placement, ...]:
@@ -97,6 +117,13 @@ class Wall:
         """Area of the placed stones (source resolution, no wedges) over the wall's area."""
         area = sum(p.posed.stone.area_px for p in self.placements) * self.site.scale**2
         return area / (self.site.width_px * self.site.height_px)
+
+
+def outlined(placement: Placement, wedges: tuple[Wedge, ...]) -> list[Outlined]:
+    """Return ids and outlines of a settled stone and its wedges."""
+    assert placement.settled is not None  # noqa: S101 - all stones of the wall are outlines
+    blocks = [(placement.stone_id, placement.settled.corners)]
+    return blocks + [(wedge.id, wedge.corners) for wedge in wedges if wedge.corners is not None]
 
 
 def _paint(labels: Labels, window: tuple[slice, slice], mask: Mask, value: int) -> None:

@@ -1,5 +1,6 @@
 """A tilting table in a rigid-body engine (pymunk): blocks on a ground, gravity that turns."""
 
+from collections.abc import Iterable
 from importlib import import_module
 from math import atan, cos, sin, sqrt
 from typing import Any, Self
@@ -29,6 +30,8 @@ class TiltingTable:
         The blocks; their order is that of the engine.
     settings : EngineSettings
         How the engine is driven.
+    placed : iterable of int, optional
+        Blocks that stand on it from the beginning; all of them unless given.
 
     Raises
     ------
@@ -36,30 +39,64 @@ class TiltingTable:
         E305 when pymunk is not installed.
     """
 
-    def __init__(self, scene: Scene, settings: EngineSettings) -> None:
-        engine = load_engine()
-        self.ids = tuple(block for block in scene.shapes if block not in scene.fixed)
+    def __init__(
+        self, scene: Scene, settings: EngineSettings, placed: Iterable[int] | None = None
+    ) -> None:
+        self.ids: tuple[int, ...] = ()
         self._settings = settings
-        self._space = engine.Space()
+        self._space = load_engine().Space()
         self._space.iterations = settings.iterations
         self._space.collision_slop = settings.slop
         self._space.collision_bias = settings.overlap_left
-        reaches = []
-        for block, shape in scene.shapes.items():
-            centre = np.array(shape.centroid.coords[0])
-            corners = (shapely.get_coordinates(shape)[:-1] - centre) / scene.length
-            if block in scene.fixed:
-                body = engine.Body(body_type=engine.Body.STATIC)
-            else:
-                mass = shape.area / scene.length**2 * scene.density(block)
-                body = engine.Body(mass, engine.moment_for_poly(mass, corners.tolist()))
-                reaches.append(float(np.hypot(*corners.T).max()))
-            body.position = tuple(((centre - (0.0, scene.ground_y)) / scene.length).tolist())
-            self._space.add(body)
-            for part in convex_parts(corners):
-                self._add_shape(body, part, scene.mu)
-        self._reaches = np.array(reaches)
+        self._reaches: Floats = np.zeros(0)
+        for block in scene.shapes if placed is None else placed:
+            self.place(scene, block)
         self._add_ground(scene)
+
+    def place(self, scene: Scene, block: int) -> float:
+        """Put a block where its scene has it, whatever the others have done since.
+
+        Parameters
+        ----------
+        scene : Scene
+            That of the table.
+        block : int
+            Its id.
+
+        Returns
+        -------
+        float
+            How deep it lies in others, or in the ground, before the engine pushes them apart.
+        """
+        engine = load_engine()
+        shape = scene.shapes[block]
+        centre = np.array(shape.centroid.coords[0])
+        corners = (shapely.get_coordinates(shape)[:-1] - centre) / scene.length
+        if block in scene.fixed:
+            body = engine.Body(body_type=engine.Body.STATIC)
+        else:
+            mass = shape.area / scene.length**2 * scene.density(block)
+            body = engine.Body(mass, engine.moment_for_poly(mass, corners.tolist()))
+            self.ids += (block,)
+            self._reaches = np.append(self._reaches, np.hypot(*corners.T).max())
+        body.position = tuple(((centre - (0.0, scene.ground_y)) / scene.length).tolist())
+        self._space.add(body)
+        for part in convex_parts(corners):
+            self._add_shape(body, part, scene.mu)
+        return self._depth(body)
+
+    def _depth(self, body: Any) -> float:
+        """Return how deep a body lies in others, as the engine sees its parts."""
+        return max(
+            (
+                -point.distance
+                for part in body.shapes
+                for hit in self._space.shape_query(part)
+                if hit.shape is not None and hit.shape.body is not body
+                for point in hit.contact_point_set.points
+            ),
+            default=0.0,
+        )
 
     def _add_shape(self, body: Any, corners: Points, mu: float) -> None:
         inner = shapely.Polygon(corners).buffer(-self._settings.corner_radius, join_style="mitre")

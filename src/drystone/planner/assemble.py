@@ -1,5 +1,6 @@
 """Turn what was built into a plan: steps, metrics, units (DESIGN 2)."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -7,10 +8,12 @@ from typing import Any
 import numpy as np
 
 from drystone.kernels.outline import pixel_polygon
+from drystone.kernels.polygons import area_and_centroid
 from drystone.metrics.measure import measure_labels
-from drystone.model.placement import Wedge
+from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.model.site import Site
+from drystone.model.wall import Wall
 from drystone.planner.build import Build, Candidate
 from drystone.planner.events import Stopped
 from drystone.planner.workshop import Workshop
@@ -38,6 +41,25 @@ class Frame:
         unit = self.site.units_per_px
         return x * unit, y * unit
 
+    def source_point(self, x_px: float, y_px: float) -> tuple[float, float]:
+        """Turn a point of the wall frame in source px into plan units."""
+        px_per_m = self.site.px_per_m or 1.0
+        return x_px / px_per_m, y_px / px_per_m
+
+    def centroid(self, placement: Placement) -> tuple[float, float]:
+        """Return where the centroid of a stone is, in plan units."""
+        if placement.settled is not None:
+            return self.source_point(placement.settled.x_px, placement.settled.y_px)
+        return self.point(*placement.centroid(self.site.height_px))
+
+    def polygon(self, wedge: Wedge) -> tuple[tuple[float, float], ...]:
+        """Return the corners of a wedge, in plan units."""
+        if wedge.corners is not None:
+            return tuple(self.source_point(x, y) for x, y in wedge.corners.tolist())
+        bottom = self.site.height_px - wedge.row - wedge.mask.shape[0]
+        corners = pixel_polygon(wedge.mask) + np.array([wedge.col, bottom])
+        return tuple(self.point(float(x), float(y)) for x, y in corners)
+
 
 def plan_steps(
     build: Build, frame: Frame, clusters: Mapping[int, int]
@@ -58,8 +80,25 @@ def plan_steps(
     return tuple(steps)
 
 
-def plan_metrics(build: Build, frame: Frame, resistance: LateralResistance) -> PlanMetrics:
-    """Return the figures of merit of what is built (DESIGN 5)."""
+def plan_metrics(
+    build: Build,
+    frame: Frame,
+    resistance: LateralResistance,
+    by_tolerance: tuple[float | None, float | None] = (None, None),
+) -> PlanMetrics:
+    """Return the figures of merit of what is built (DESIGN 5).
+
+    Parameters
+    ----------
+    build : Build
+        The wall.
+    frame : Frame
+        Lengths.
+    resistance : LateralResistance
+        Of the wall.
+    by_tolerance : (float or None, float or None)
+        F_LR at half and at twice the contact tolerance, of a wall of outlines.
+    """
     scale = frame.site.scale
     wall = build.wall
     if not wall.groups:
@@ -71,7 +110,6 @@ def plan_metrics(build: Build, frame: Frame, resistance: LateralResistance) -> P
         stone_area_px=sum(p.posed.stone.area_px for p in wall.placements) * scale**2,
         lateral_resistance=resistance.value,
     )
-    wedge_px = sum(wedge.area_px for wedge in wall.wedges)
     return PlanMetrics(
         F_SF=measured.F_SF,
         F_AV=measured.F_AV,
@@ -81,8 +119,18 @@ def plan_metrics(build: Build, frame: Frame, resistance: LateralResistance) -> P
         E_FLUSH=measured.E_FLUSH,
         alpha_left=resistance.left.alpha,
         alpha_right=resistance.right.alpha,
-        wedge_area=wedge_px * frame.site.units_per_px**2,
+        wedge_area=wedge_area(wall) / (frame.site.px_per_m or 1.0) ** 2,
+        F_LR_half=by_tolerance[0],
+        F_LR_double=by_tolerance[1],
     )
+
+
+def wedge_area(wall: Wall) -> float:
+    """Return the area of all wedges in source px."""
+    if wall.outlines is None:
+        return sum(wedge.area_px for wedge in wall.wedges) / wall.site.scale**2
+    corners = (wedge.corners for wedge in wall.wedges if wedge.corners is not None)
+    return math.fsum(area_and_centroid(polygon)[0] for polygon in corners)
 
 
 def assemble_plan(
@@ -155,7 +203,7 @@ def _stone_step(
         stone=action.stone_id,
         angle_deg=placement.posed.angle_deg,
         source_centroid=placement.posed.stone.centroid,
-        centroid=frame.point(*placement.centroid(frame.site.height_px)),
+        centroid=frame.centroid(placement),
         side=action.side,
         cluster=clusters[action.stone_id],
         rotation_moves=placement.rotation_moves,
@@ -169,13 +217,11 @@ def _stone_step(
 def _wedge_step(
     number: int, wedge: Wedge, frame: Frame, alphas: tuple[float | None, float | None]
 ) -> WedgeStep:
-    bottom = frame.site.height_px - wedge.row - wedge.mask.shape[0]
-    corners = pixel_polygon(wedge.mask) + np.array([wedge.col, bottom])
     return WedgeStep(
         step=number,
         id=wedge.id,
         under=wedge.under,
-        polygon=tuple(frame.point(float(x), float(y)) for x, y in corners),
+        polygon=frame.polygon(wedge),
         alpha_left=alphas[0],
         alpha_right=alphas[1],
     )

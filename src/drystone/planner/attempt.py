@@ -14,15 +14,17 @@ from drystone.model.placement import Side
 from drystone.model.pose import PosedStone
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.choose import better_side, choose_by_algorithm2, choose_by_score
-from drystone.planner.evaluate import Evaluator, Trial
+from drystone.planner.evaluate import Evaluator
 from drystone.planner.profile import Profile
+from drystone.planner.proposing import Proposer, RasterProposer, Trial
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.settling import ExactProposer
 from drystone.planner.workshop import Workshop
 from drystone.selection.sampling import sample_stones, second_fold
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-Key = tuple[int, float, Side]
+Key = tuple[int, float, Side, int]
 
 TASKS = 16
 """Into how many tasks the candidates of a step are divided for an executor."""
@@ -57,19 +59,24 @@ class Attempt:
         profile: Profile | None = None,
     ) -> None:
         self.build = build
-        self.candidates = 0
         self.failed_solves = 0
         self.cold_solves = 0
         self._workshop = workshop
         self._settings = settings
         self._executor = executor
         self._profile = profile or Profile()
-        self._evaluator = Evaluator(settings, workshop.memory, workshop.stock, self._profile)
+        kind = RasterProposer if settings.geometry == "raster" else ExactProposer
+        self._proposer: Proposer = kind(workshop, settings, build, self._profile)
+        self._evaluator = Evaluator(settings, workshop.stock, self._profile)
         sides: tuple[Side, ...] = ("left", "right") if settings.two_sided else ("left",)
         self._landscapes = {side: Landscape.of(build.wall, side) for side in sides}
         self._rest = workshop.rest(build) if settings.weighs_craft else None
-        self._proposed: dict[Key, Proposal | None] = {}
         self._judged: dict[Key, Candidate] = {}
+
+    @property
+    def candidates(self) -> int:
+        """How many candidates were looked at."""
+        return self._proposer.tried
 
     def choose(self, rng: np.random.Generator) -> Candidate | None:
         """Sample a candidate set and return the best action; None when there is none."""
@@ -92,27 +99,20 @@ class Attempt:
         return better_side(found, self.build, self._settings.selection)
 
     def _select(self, landscapes: Sequence[Landscape], stones: Sequence[int]) -> Candidate | None:
-        proposals = [p for view in landscapes for p in self._proposals(view, stones)]
+        proposals = self._proposals(landscapes, stones)
         if self._settings.selection_rule == "score":
             return choose_by_score(proposals, self._judge, self._settings.score)
         return choose_by_algorithm2(proposals, self._judge, self._settings.selection)
 
-    def _proposals(self, landscape: Landscape, stones: Sequence[int]) -> list[Proposal]:
-        """Place and stabilise the candidates of one side (lines 7-16)."""
+    def _proposals(self, landscapes: Sequence[Landscape], stones: Sequence[int]) -> list[Proposal]:
+        """Place and stabilise the candidates of some sides (lines 7-15)."""
         groups = self._groups(stones)
-        keys = [(poses[0].stone.id, poses[0].angle_deg, landscape.side) for poses in groups]
-        new = [k for k, key in enumerate(keys) if key not in self._proposed]
-        trials = [Trial(groups[k], landscape, self._rest) for k in new]
-        results = self._map(lambda trial: self._evaluator.propose(self.build, trial), trials)
-        self._proposed.update(zip([keys[k] for k in new], results, strict=True))
-        self.candidates += len(new)
+        trials = [Trial(poses, view, self._rest) for view in landscapes for poses in groups]
         heights = _course_heights(groups)
-        found = []
-        for key in keys:
-            proposal = self._proposed[key]
-            if proposal is not None:
-                found.append(replace(proposal, course_height_px=heights[proposal.stone_id]))
-        return found
+        return [
+            replace(proposal, course_height_px=heights[proposal.stone_id])
+            for proposal in self._proposer.proposals(trials, self._map)
+        ]
 
     def _groups(self, stones: Sequence[int]) -> list[tuple[PosedStone, ...]]:
         """Return the poses of each candidate: one each, or all of a stone for the rule to pick."""
@@ -122,13 +122,13 @@ class Attempt:
         return [(posed,) for stone_id in stones for posed in poses(stone_id)]
 
     def _judge(self, proposals: Sequence[Proposal]) -> list[Candidate]:
-        keys = [(p.stone_id, p.trial_angle_deg, p.side) for p in proposals]
+        keys = [(p.stone_id, p.trial_angle_deg, p.side, p.spot) for p in proposals]
         new = [k for k, key in enumerate(keys) if key not in self._judged]
         if new:
             with self._profile.part("limit analysis"):
                 _ = self.build.analysis  # before the threads ask for it, all at once
             with self._profile.part("contacts"):
-                _ = self.build.points
+                _ = None if self.build.wall.outlines else self.build.points
         results = self._map(
             lambda p: self._evaluator.judge(self.build, self._landscapes[p.side], p),
             [proposals[k] for k in new],

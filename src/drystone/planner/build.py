@@ -29,12 +29,15 @@ class Proposal:
         Mean height of the other candidates of the step (Eq. 8); None when there are none.
     cost : float
         Weighted craft cost (:mod:`drystone.selection.scored`); 0 when no rule asks for it.
+    spot : int
+        Which of the places that were tried with this pose.
     """
 
     stabilised: Stabilised
     trial_angle_deg: float
     course_height_px: float | None = None
     cost: float = 0.0
+    spot: int = 0
 
     @property
     def stone_id(self) -> int:
@@ -116,7 +119,7 @@ class Build:
     before: "Build | None" = None
 
     @classmethod
-    def empty(cls, site: Site, mu: float, stone_area_px: float) -> "Build":
+    def empty(cls, site: Site, mu: float, stone_area_px: float, *, exact: bool = False) -> "Build":
         """Return the state before the first stone.
 
         Parameters
@@ -128,10 +131,13 @@ class Build:
         stone_area_px : float
             Mean area of the stones of the set, working px: the unit of weight of the limit
             analysis, whatever is built.
+        exact : bool
+            Stones are their outlines, in source px, instead of pixels.
         """
+        area = stone_area_px / site.scale**2 if exact else stone_area_px
         model = RigidBlockModel((), (), mu)
-        analysis = growing(model, Units(stone_area_px**0.5, stone_area_px))
-        return cls(Wall.empty(site), model, grown_from=analysis)
+        analysis = growing(model, Units(area**0.5, area))
+        return cls(Wall.empty(site, exact=exact), model, grown_from=analysis)
 
     @cached_property
     def analysis(self) -> GrowingAnalysis:

@@ -57,7 +57,7 @@ def choose_by_score(
 
     Proposals are analysed from the cheapest on, in batches, until enough of them stand.
     """
-    keys = [(p.stone_id, p.trial_angle_deg, float(p.side != "left")) for p in proposals]
+    keys = [(p.stone_id, p.trial_angle_deg, float(p.side != "left"), p.spot) for p in proposals]
     order = cheapest_first([p.cost for p in proposals], keys)
     standing: list[Candidate] = []
     for start in range(0, len(order), settings.analysed):

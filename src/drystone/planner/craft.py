@@ -50,4 +50,5 @@ def action_craft(landscape: Landscape, stabilised: Stabilised, stock: Stock, res
         upright=max(0.0, 1.0 - posed.width_px / posed.height_px),
         joint=1.0 - third,
         area=posed.area_px / stock.mean_area_px,
+        thickness=min(posed.width_px, posed.height_px) / stock.mean_height_px,
     )

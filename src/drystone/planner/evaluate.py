@@ -1,4 +1,4 @@
-"""Trial placement, stabilisation and indices of one candidate (Algorithm 1, lines 7-16)."""
+"""Resistance and indices of one candidate (Algorithm 1, line 16)."""
 
 from dataclasses import dataclass, field, replace
 
@@ -12,50 +12,26 @@ from drystone.indices.shape_factor import shape_factor
 from drystone.indices.values import Indices
 from drystone.model.landscape import Landscape, view_box
 from drystone.model.placement import Placement
-from drystone.model.pose import PosedStone
-from drystone.placement.best import best_spots
-from drystone.placement.feasible import can_be_lowered
+from drystone.model.wall import outlined
 from drystone.planner.build import Build, Candidate, Proposal
-from drystone.planner.craft import action_craft
 from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.stock import Rest, Stock
-from drystone.selection.scored import craft_cost
-from drystone.stabilise.memory import StabiliseMemory
+from drystone.planner.stock import Stock
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.contacts.blocks import model_with
+from drystone.statics.contacts.settled import model_with_outlines
+from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
-    """What is to be tried: one stone, from one side.
-
-    Parameters
-    ----------
-    poses : tuple of PosedStone
-        The stone as it may be turned for the trial; the placement rule picks one.
-    landscape : Landscape
-        What is built, seen from the side.
-    rest : Rest or None
-        What the stones that are left could fill; None when no choice depends on it.
-    """
-
-    poses: tuple[PosedStone, ...]
-    landscape: Landscape
-    rest: Rest | None
-
-
-@dataclass(frozen=True, eq=False)
 class Evaluator:
-    """Turns trials into proposals, and proposals into candidates.
+    """Turns proposals into candidates.
 
     Parameters
     ----------
     settings : PlannerSettings
         Of the planner.
-    memory : StabiliseMemory
-        Stabilises stones.
     stock : Stock
         Sizes of the set.
     profile : Profile
@@ -63,47 +39,8 @@ class Evaluator:
     """
 
     settings: PlannerSettings
-    memory: StabiliseMemory
     stock: Stock
     profile: Profile = field(default_factory=Profile)
-
-    def propose(self, build: Build, trial: Trial) -> Proposal | None:
-        """Return the best stable placement of a stone; None when there is none (lines 8-15).
-
-        Of the best positions by the placement rule, the first at which the stone can be made
-        stable is taken; with `tries` = 1 that is the paper's single trial.  With `compare` = True
-        all of them are stabilised, and the one of the least craft cost is taken.
-        """
-        landscape = trial.landscape
-        with self.profile.part("placement"):
-            views = [landscape.view(posed) for posed in trial.poses]
-            spots = best_spots(landscape, views, self.settings.placement)
-        best: Proposal | None = None
-        for spot in spots:
-            posed = trial.poses[spot.pose]
-            with self.profile.part("stabilisation"):
-                stabilised = self.memory.stabilise(
-                    build.wall.occupied,
-                    (posed, spot.row, landscape.view_col(posed, spot.col)),
-                    landscape.side,
-                    self.stock.largest_id + len(build.wall.wedges) + 1,
-                )
-            if stabilised is None or not self._reached(landscape, stabilised):
-                continue
-            proposal = self._proposal(trial, posed.angle_deg, stabilised)
-            if not self.settings.placement.compare:
-                return proposal
-            if best is None or proposal.cost < best.cost - 1e-12:
-                best = proposal
-        return best
-
-    def _reached(self, landscape: Landscape, stabilised: Stabilised) -> bool:
-        """Say whether a stone that was turned can still be put where it is."""
-        if self.settings.placement.reach == "any":
-            return True
-        placement = stabilised.placement
-        posed, col = placement.posed, landscape.view_col(placement.posed, placement.col)
-        return can_be_lowered(landscape, landscape.view(posed), placement.row, col)
 
     def judge(self, build: Build, landscape: Landscape, proposal: Proposal) -> Candidate:
         """Return the candidate of a proposal: all indices, with the wall's resistance after it.
@@ -119,13 +56,7 @@ class Evaluator:
         """
         stabilised, analysis = proposal.stabilised, build.analysis
         with self.profile.part("contacts"):
-            model = model_with(
-                analysis.model,
-                build.wall.labels,
-                stabilised.placement,
-                stabilised.wedges,
-                build.points,
-            )
+            model = self._model(build, stabilised)
         with self.profile.part("limit analysis"):
             grown = analysis.resistance_with(model)
         with self.profile.part("indices"):
@@ -140,6 +71,16 @@ class Evaluator:
             proposal, indices, course_height, model, grown.resistance, grown.solved_cold
         )
 
+    def _model(self, build: Build, stabilised: Stabilised) -> RigidBlockModel:
+        """Return the model of the wall with an action done."""
+        placement, wedges = stabilised.placement, stabilised.wedges
+        model, wall = build.analysis.model, build.wall
+        if wall.outlines is None:
+            return model_with(model, wall.labels, placement, wedges, build.points)
+        blocks = outlined(placement, wedges)
+        tolerance_px = self.settings.settle.contact_px
+        return model_with_outlines(model, blocks, wall.outlines, tolerance_px)
+
     def compared(self, landscape: Landscape, proposal: Proposal, judged: Candidate) -> Candidate:
         """Return a candidate that was judged before, compared with other candidates (Eq. 8)."""
         if proposal.course_height_px == judged.proposal.course_height_px:
@@ -149,15 +90,6 @@ class Evaluator:
         )
         indices = replace(judged.indices, NHR=nhr)
         return replace(judged, proposal=proposal, indices=indices, course_height_px=course_height)
-
-    def _proposal(self, trial: Trial, trial_angle_deg: float, stabilised: Stabilised) -> Proposal:
-        cost = 0.0
-        if self.settings.weighs_craft:
-            assert trial.rest is not None  # noqa: S101 - the attempt gives it then
-            with self.profile.part("indices"):
-                craft = action_craft(trial.landscape, stabilised, self.stock, trial.rest)
-            cost = craft_cost(craft, self.settings.score)
-        return Proposal(stabilised, trial_angle_deg, cost=cost)
 
 
 def action_indices(

@@ -17,12 +17,15 @@ from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame, assemble_plan, plan_metrics
+from drystone.planner.build import Build
 from drystone.planner.events import Callbacks, Round, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
 from drystone.planner.rework import rework
 from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 
 TYPICAL_STONE_PX = 40
@@ -53,6 +56,8 @@ class PlanResult:
         The plan's figures of merit.
     wall : Wall
         The wall at the working resolution.
+    model : RigidBlockModel
+        Its blocks and contacts, in working px; in source px when the geometry is exact.
     resistance : LateralResistance
         With both mechanisms.
     clusters : dict of int to int
@@ -72,6 +77,7 @@ class PlanResult:
     plan: Plan
     metrics: PlanMetrics
     wall: Wall
+    model: RigidBlockModel
     resistance: LateralResistance
     clusters: dict[int, int]
     seconds: float
@@ -226,7 +232,9 @@ def finish(
     """Judge what a planner has built and write the plan."""
     build = planner.build
     resistance = lateral_resistance(build.model, mechanism=True)
-    metrics = plan_metrics(build, frame, resistance)
+    metrics = plan_metrics(
+        build, frame, resistance, resistance_by_tolerance(build, planner.settings)
+    )
     plan = assemble_plan(planner.workshop, frame, build, stopped, metrics, provenance)
     status = "complete"
     if stopped.reason == "interrupted":
@@ -240,11 +248,27 @@ def finish(
         plan=plan,
         metrics=metrics,
         wall=build.wall,
+        model=build.model,
         resistance=resistance,
         clusters=planner.workshop.clusters,
         seconds=seconds,
         profile=planner.profile,
     )
+
+
+def resistance_by_tolerance(
+    build: Build, settings: PlannerSettings
+) -> tuple[float | None, float | None]:
+    """Return F_LR at half and at twice the contact tolerance; None for a wall of pixels."""
+    outlines = build.wall.outlines
+    if outlines is None:
+        return None, None
+    models = [
+        model_of_outlines(outlines, settings.mu, share * settings.settle.contact_px)
+        for share in (0.5, 2.0)
+    ]
+    half, double = (lateral_resistance(model).value for model in models)
+    return half, double
 
 
 def mean_top(wall: Wall) -> float:

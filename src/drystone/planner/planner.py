@@ -15,6 +15,7 @@ from drystone.planner.evaluate import Evaluator
 from drystone.planner.events import Callbacks, Step, Stopped
 from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.vary import varied
 from drystone.planner.workshop import Workshop
 from drystone.stabilise.stabilise import Stabilised
 
@@ -71,6 +72,10 @@ class Planner:
         with self.profile.part("preparation"):
             self.workshop = workshop or Workshop.prepare(stones, site, self.settings)
         self.executor = executor
+        # Every wall has weights of its own, all its steps the same.
+        rng = np.random.default_rng([seed, 2_000_000])
+        spread = self.settings.vary
+        self._weighted = varied(self.settings, spread, rng) if spread else self.settings
         self.build = self._empty()
         self.stopped: Stopped | None = None
         self.failed_solves = 0
@@ -105,14 +110,18 @@ class Planner:
 
     def _attempt(self) -> Attempt:
         self.profile.begin_step()
-        return Attempt(self.workshop, self.settings, self.build, self.executor, self.profile)
+        return Attempt(self.workshop, self._weighted, self.build, self.executor, self.profile)
 
     def _count_solves(self, attempt: Attempt) -> None:
         self.failed_solves += attempt.failed_solves
         self.cold_solves += attempt.cold_solves
 
     def _empty(self) -> Build:
-        return Build.empty(self.workshop.site, self.settings.mu, self.workshop.stock.mean_area_px)
+        workshop = self.workshop
+        exact = self.settings.geometry == "exact"
+        return Build.empty(
+            workshop.site, self.settings.mu, workshop.stock.mean_area_px, exact=exact
+        )
 
     def _added(self, build: Build, action: Candidate) -> Build:
         """Return the state after an action; rework goes back to the one before."""
@@ -142,7 +151,7 @@ class Planner:
             For stones that began a course: the height that Eq. 8 compared with.
         """
         workshop = self.workshop
-        evaluator = Evaluator(self.settings, workshop.memory, workshop.stock, self.profile)
+        evaluator = Evaluator(self.settings, workshop.stock, self.profile)
         build = self._empty()
         for group in wall.groups:
             placement = group.placement

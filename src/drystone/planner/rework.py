@@ -7,14 +7,13 @@ again with other weights, and the better wall is kept.
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from drystone.metrics.measure import measure_labels
 from drystone.planner.planner import Planner
-from drystone.planner.settings import PlannerSettings
-from drystone.selection.scored import ScoreSettings
+from drystone.planner.vary import varied
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,23 +56,23 @@ def rework(planner: Planner) -> Iterator[Incumbent]:
         states = best.planner.build.states()
         deepest = max(1, math.ceil(settings.deepest * (len(states) - 1)))
         back = int(rng.integers(1, deepest + 1))
-        varied = Planner(
+        trial = Planner(
             planner.workshop.stones,
             planner.workshop.site,
             seed=int(rng.integers(2**31)),
-            settings=_varied(planner.settings, rng),
+            settings=varied(planner.settings, settings.spread, rng),
             executor=planner.executor,
             workshop=planner.workshop,
             profile=planner.profile,
         )
-        varied.build = states[max(0, len(states) - 1 - back)]
-        for _ in varied.steps():
+        trial.build = states[max(0, len(states) - 1 - back)]
+        for _ in trial.steps():
             pass
-        merit = wall_merit(varied)
-        planner.failed_solves += varied.failed_solves
-        planner.cold_solves += varied.cold_solves
+        merit = wall_merit(trial)
+        planner.failed_solves += trial.failed_solves
+        planner.cold_solves += trial.cold_solves
         if merit > best.merit + 1e-12:
-            best = Incumbent(varied, merit)
+            best = Incumbent(trial, merit)
         yield best
 
 
@@ -102,14 +101,3 @@ def wall_merit(planner: Planner) -> float:
             -weights.flush * measured.E_FLUSH,
         ]
     )
-
-
-def _varied(settings: PlannerSettings, rng: np.random.Generator) -> PlannerSettings:
-    """Multiply every craft weight by a random factor."""
-    score = settings.score
-    weights = {
-        field.name: getattr(score, field.name) * math.exp(settings.rework.spread * rng.normal())
-        for field in fields(ScoreSettings)
-        if field.name != "analysed"
-    }
-    return replace(settings, score=replace(score, **weights))

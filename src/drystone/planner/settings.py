@@ -14,6 +14,7 @@ from drystone.poses import orientation_step_deg
 from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.sampling import Sampling
 from drystone.selection.scored import ScoreSettings
+from drystone.settle.settings import SettleSettings
 from drystone.stabilise.settings import StabiliseSettings
 
 
@@ -75,8 +76,9 @@ class PlannerSettings:
 
     Parameters
     ----------
-    geometry : {"raster"}
-        Stones are their pixels at the working resolution.
+    geometry : {"raster", "exact"}
+        Stones are their pixels at the working resolution, or settle on the outlines of the source
+        image (DESIGN 4.9).
     orientations : str
         ``"sf"``, ``"quarter"``, or a step such as ``"10deg"`` (DESIGN 4.2).
     orientation_choice : {"candidates", "placement"}
@@ -91,23 +93,28 @@ class PlannerSettings:
         Build from both ends (Eq. 29).
     mu : float
         Coefficient of friction.
+    vary : float
+        Standard deviation of the logarithm of random factors, drawn from the seed, on the craft
+        weights of a wall.
     skip_too_large : bool
         Leave out stones that fit into the wall in no orientation instead of refusing them.
-    clusters, placement, stabilise, selection, score, rework, stop
+    clusters, placement, stabilise, settle, selection, score, rework, stop
         Settings of the stages.
     """
 
-    geometry: Literal["raster"] = "raster"
+    geometry: Literal["raster", "exact"] = "raster"
     orientations: str = "sf"
     orientation_choice: Literal["candidates", "placement"] = "candidates"
     sampling: Sampling = "variant"
     selection_rule: Literal["algorithm2", "score"] = "algorithm2"
     two_sided: bool = False
     mu: float = 0.58
+    vary: float = 0.0
     skip_too_large: bool = False
     clusters: ClusterSettings = field(default_factory=ClusterSettings)
     placement: PlacementSettings = field(default_factory=PlacementSettings)
     stabilise: StabiliseSettings = field(default_factory=StabiliseSettings)
+    settle: SettleSettings = field(default_factory=SettleSettings)
     selection: SelectionSettings = field(default_factory=SelectionSettings)
     score: ScoreSettings = field(default_factory=ScoreSettings)
     rework: ReworkSettings = field(default_factory=ReworkSettings)
@@ -116,12 +123,16 @@ class PlannerSettings:
     def __post_init__(self) -> None:
         check_finite(self)
         orientation_step_deg(self.orientations)
+        if self.geometry not in ("raster", "exact"):
+            raise ValueError(f"unknown geometry {self.geometry!r}")
         if self.sampling not in get_args(Sampling):
             raise ValueError(f"unknown sampling {self.sampling!r}")
         if self.orientation_choice not in ("candidates", "placement"):
             raise ValueError(f"unknown orientation choice {self.orientation_choice!r}")
         if self.selection_rule not in ("algorithm2", "score"):
             raise ValueError(f"unknown selection rule {self.selection_rule!r}")
+        if self.vary < 0:
+            raise ValueError("vary must not be negative")
         if not self.mu > 0:
             raise ValueError("mu must be positive")
 
@@ -154,12 +165,15 @@ METHODS: Mapping[str, PlannerSettings] = types.MappingProxyType(
     {
         "paper": PlannerSettings(),
         "best": PlannerSettings(
+            geometry="exact",
             orientations="quarter",
-            sampling="twofold",
+            sampling="full",
             two_sided=True,
             selection_rule="score",
+            vary=0.3,
             placement=PlacementSettings(rule="snug", reach="above", tries=4, compare=True),
             stabilise=StabiliseSettings(margin=0.1),
+            score=ScoreSettings(thickness=1.5, llc=4.0),
             rework=ReworkSettings(rounds=8),
         ),
     }

@@ -11,6 +11,7 @@ from drystone.planner.build import Build
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, Sides, Stock
 from drystone.poses import PoseBook
+from drystone.settle.book import OutlineBook
 from drystone.stabilise.memory import StabiliseMemory
 
 
@@ -37,7 +38,9 @@ class Workshop:
     sides : Sides
         Of the stones that fit.
     memory : StabiliseMemory
-        Stabilises stones.
+        Stabilises stones that are pixels.
+    outlines : OutlineBook
+        Turned outlines, for stones that settle on them.
     """
 
     stones: StoneSet
@@ -49,6 +52,7 @@ class Workshop:
     stock: Stock
     sides: Sides
     memory: StabiliseMemory
+    outlines: OutlineBook
 
     @classmethod
     def prepare(cls, stones: StoneSet, site: Site, settings: PlannerSettings) -> "Workshop":
@@ -73,9 +77,11 @@ class Workshop:
         sides = stock.sides.without(book.pose(s, book.initial_angle(s)) for s in unfit)
         clusters = cluster_stones(stones, book, settings.clusters)
         memory = StabiliseMemory(book, stock.mean_height_px, settings.stabilise)
+        outlines = OutlineBook(settings.settle.outline_px, 1.0 / site.scale)
         return cls(
-            stones, site, book, clusters, settings.orientations, fitting, stock, sides, memory
-        )
+            stones, site, book, clusters, settings.orientations, fitting, stock, sides, memory,
+            outlines,
+        )  # fmt: skip
 
     def poses(self, stone_id: int) -> tuple[PosedStone, ...]:
         """Return the candidate poses of a stone that fit into the wall."""
@@ -91,6 +97,10 @@ class Workshop:
         """Return the ids of the stones that are left and fit into the wall, Omega_i."""
         placed = {action.stone_id for action in build.actions}
         return tuple(i for i in self.fitting if i not in placed)
+
+    def next_wedge(self, build: Build) -> int:
+        """Return the id of the next wedge: after the largest of a stone and those of wedges."""
+        return self.stock.largest_id + len(build.wall.wedges) + 1
 
     def rest(self, build: Build) -> Rest:
         """Return what the stones that are left could still fill."""

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure, SubFigure
 
 from drystone.model.wall import Wall
 from drystone.plotting.mechanism import plot_mechanism
-from drystone.plotting.outlines import Loop
+from drystone.plotting.outlines import Loop, source_outlines
 from drystone.plotting.wall import plot_wall
 from drystone.statics.model import Direction
 from drystone.statics.result import LateralResistance, LimitStatus
@@ -107,7 +107,8 @@ def write_pictures(
             path.unlink(missing_ok=True)
             continue
         side = None if result.status is LimitStatus.UNSTABLE else result.direction
-        ax = plot_mechanism(wall.labels, result.mechanism, side, result.alpha)
+        shown = wall.labels if wall.outlines is None else source_outlines(wall.outlines)
+        ax = plot_mechanism(shown, result.mechanism, side, result.alpha)
         save(ax.figure, path, dpi)
         written.append(path)
     return tuple(written)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.kernels.raster import Mask, turn
+from drystone.model.outlines import Outlines
 from drystone.model.wall import Labels, Wall
 
 Loop = NDArray[np.float64]
@@ -198,7 +199,7 @@ def wall_outlines(wall: Wall) -> dict[int, Loop]:
     """Return the outline of each stone and wedge in the wall frame, in the plan's units.
 
     A stone's is its own outline from the source image, turned and moved; a wedge's follows its
-    pixels.
+    pixels, unless the wall is one of outlines.
 
     Returns
     -------
@@ -206,6 +207,9 @@ def wall_outlines(wall: Wall) -> dict[int, Loop]:
         In the order of placement.
     """
     site = wall.site
+    if wall.outlines is not None:
+        px_per_m = site.px_per_m or 1.0
+        return {block: loop / px_per_m for block, loop in source_outlines(wall.outlines).items()}
     outlines: dict[int, Loop] = {}
     for group in wall.groups:
         placement = group.placement
@@ -217,3 +221,8 @@ def wall_outlines(wall: Wall) -> dict[int, Loop]:
             loop = max(pixel_loops(wedge.mask), key=len) + corner
             outlines[wedge.id] = loop * site.units_per_px
     return outlines
+
+
+def source_outlines(outlines: Outlines) -> dict[int, Loop]:
+    """Return outlines by id, in source px."""
+    return dict(outlines.blocks)

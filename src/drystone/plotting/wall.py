@@ -14,7 +14,7 @@ from drystone.plotting.canvas import (
     fit_axes,
     write_number,
 )
-from drystone.plotting.outlines import Loop, label_regions
+from drystone.plotting.outlines import Loop, label_regions, wall_outlines
 from drystone.plotting.palette import GREY, PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour
 
 
@@ -40,7 +40,7 @@ def plot_wall(
         Where to draw; None makes a figure.
     outlines : mapping of int to (n, 2) float array, optional
         Polygons to draw instead of the pixels, by id, wall frame, plan's units; for example
-        from :func:`drystone.plotting.wall_outlines`.
+        from :func:`drystone.plotting.wall_outlines`, which are drawn of a wall of outlines.
     title : str
         Written above.
 
@@ -82,6 +82,8 @@ def plot_wall(
 
 def _loops(wall: Wall, outlines: Mapping[int, Loop] | None) -> dict[int, tuple[Loop, ...]]:
     """Return the boundary of every stone and wedge in the plan's units."""
+    if outlines is None and wall.outlines is not None:
+        outlines = wall_outlines(wall)
     if outlines is not None:
         return {label: (np.asarray(points, float),) for label, points in outlines.items()}
     units = wall.site.units_per_px

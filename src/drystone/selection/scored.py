@@ -13,7 +13,7 @@ from dataclasses import dataclass, fields
 
 @dataclass(frozen=True)
 class Craft:
-    """How well a stone sits, in costs of about 0 to 1, all but the last best at 0.
+    """How well a stone sits, in costs of about 0 to 1, all but the last two best at 0.
 
     Parameters
     ----------
@@ -37,6 +37,9 @@ class Craft:
         1 - IWR, or 1 - IS for a boundary stone.
     area : float
         Of the stone, in mean stone areas; its weight is a bonus for large stones.
+    thickness : float
+        Shorter side of the stone's box, in mean stone heights; its weight is a bonus for stones
+        that do not fit into what is left below the wall's top in the end.
     """
 
     height: float
@@ -49,6 +52,7 @@ class Craft:
     upright: float
     joint: float
     area: float
+    thickness: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,6 +65,8 @@ class ScoreSettings:
         Weight of each cost.
     area : float
         Bonus for a stone of mean area.
+    thickness : float
+        Bonus for a stone whose shorter side is the mean height.
     llc : float
         Bonus for LLC = 1.
     analysed : int
@@ -77,6 +83,7 @@ class ScoreSettings:
     upright: float = 0.7
     joint: float = 0.4
     area: float = 1.8
+    thickness: float = 0.0
     llc: float = 1.3
     analysed: int = 4
 
@@ -90,9 +97,10 @@ def craft_cost(craft: Craft, settings: ScoreSettings) -> float:
     terms = [
         getattr(settings, field.name) * getattr(craft, field.name)
         for field in fields(Craft)
-        if field.name != "area"
+        if field.name not in ("area", "thickness")
     ]
-    return math.fsum([*terms, -settings.area * craft.area])
+    bonus = [settings.area * craft.area, settings.thickness * craft.thickness]
+    return math.fsum([*terms, *(-one for one in bonus)])
 
 
 def cheapest_first(costs: Sequence[float], keys: Sequence[tuple[float, ...]]) -> list[int]:

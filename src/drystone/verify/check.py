@@ -1,17 +1,14 @@
 """Check a plan: build its wall again and verify every claim (DESIGN 2, 4.9)."""
 
-from collections.abc import Sequence
-
 import numpy as np
+import shapely
 
-from drystone.errors import UsageError
-from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, PlanMetrics, WedgeStep
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
-from drystone.placement.feasible import can_be_lowered
-from drystone.planner.settings import PlannerSettings
+from drystone.statics.model import RigidBlockModel
+from drystone.verify.buried import is_buried
 from drystone.verify.claims import (
     Reference,
     check_indices,
@@ -21,11 +18,11 @@ from drystone.verify.claims import (
     check_unused,
     recompute_metrics,
 )
-from drystone.verify.overlap import deepest_overlap
+from drystone.verify.overlap import deepest_overlap, real_outline, shape_of
 from drystone.verify.replay import Replay, Stage, replay_plan
 from drystone.verify.report import CheckReport, Problem
 from drystone.verify.stability import Standing, check_stability, prefix_alphas
-from drystone.verify.wedges import check_polygon, check_wedge
+from drystone.verify.wedges import check_polygon, check_settled_wedge, check_wedge
 
 
 def check_plan(plan: Plan, stones: StoneSet, *, wall_labels: Labels | None = None) -> CheckReport:
@@ -57,30 +54,26 @@ def check_plan(plan: Plan, stones: StoneSet, *, wall_labels: Labels | None = Non
     and wedges are inside the site and overlap by no pixel at the working resolution; the source
     centroids, clusters and turns of stones; the rules of wedging; that the wall stands after
     every stone with its wedges, with the load multipliers claimed; all indices; the metrics.
-    Overlap of the real outlines, stones that cannot be lowered in from above, and the deviation
-    of pixel areas from the stones' own are reported and are no failure on the raster.
+    On exact geometry outlines are what is judged: how deep they lie in each other and beyond the
+    edges of the wall, and the limit analysis on their contacts, with the tolerance of the plan.
+    Stones that cannot be lowered in from above, the deviation of pixel areas from the stones' own
+    and, on the raster, overlap of the real outlines are reported and are no failure.
     """
-    settings, problems = _settings(plan)
-    problems += check_source(plan, stones) + check_unused(plan, stones)
     replay = replay_plan(plan, stones)
-    problems += replay.problems
-    reference = Reference.of(stones, settings, plan.working_scale)
-    for piece in replay.pieces:
-        if piece.step.kind == "stone":
-            problems += check_stone_claims(piece.step, reference)
-        elif isinstance(piece.item, Wedge):
-            problems += check_polygon(piece.step, piece.item, replay.site)
-    standing = check_stability(replay.stages, settings.mu)
+    reference = Reference.of(stones, replay.settings, plan.working_scale)
+    standing = check_stability(replay.stages, replay.settings)
+    problems = [*check_source(plan, stones), *check_unused(plan, stones), *replay.problems]
+    problems += _check_pieces(replay, reference)
     problems += standing.problems + tuple(_check_stages(replay, standing, reference))
     if wall_labels is not None:
         problems += _check_image(replay, wall_labels)
     metrics: PlanMetrics | None = None
-    if replay.broken_at is None and None not in standing.resistances:
-        metrics = recompute_metrics(plan, replay, standing.model)
+    if replay.broken_at is None and None not in standing.models:
+        model = standing.models[-1] if standing.models else None
+        metrics = recompute_metrics(plan, replay, model)
         problems += check_metrics(plan.metrics, metrics)
-    placements = [p.item for p in replay.pieces if isinstance(p.item, Placement)]
-    depth, depth_at = deepest_overlap(placements, replay.site.height_px)
-    area_error, area_error_at = _worst_area(placements)
+    depth, depth_at = deepest_overlap(_outlines(replay))
+    area_error, area_error_at = _worst_area(replay)
     return CheckReport(
         problems=tuple(sorted(problems, key=lambda p: (p.step is not None, p.step or 0, p.code))),
         overlap_depth=depth,
@@ -91,41 +84,49 @@ def check_plan(plan: Plan, stones: StoneSet, *, wall_labels: Labels | None = Non
         prefixes=prefix_alphas(replay.stages, standing.resistances),
         metrics=metrics,
         notes=tuple(_notes(plan, stones, replay, wall_labels)),
+        geometry=replay.settings.geometry,
     )
 
 
-def is_buried(stage: Stage) -> bool:
-    """Say whether a stone cannot be lowered to its place from straight above."""
-    placement = stage.group.placement
-    before = Landscape.of(stage.before)
-    return not can_be_lowered(before, placement.posed, placement.row, placement.col)
-
-
-def _settings(plan: Plan) -> tuple[PlannerSettings, list[Problem]]:
-    """Return the plan's settings; the package's own, and E217, when they are not usable."""
-    try:
-        return PlannerSettings().updated(plan.settings), []
-    except UsageError as error:
-        return PlannerSettings(), [Problem("E217", None, f"the settings cannot be used: {error}")]
+def _check_pieces(replay: Replay, reference: Reference) -> list[Problem]:
+    """Verify what each step says by itself."""
+    problems = []
+    for piece in replay.pieces:
+        if piece.step.kind == "stone":
+            problems += check_stone_claims(piece.step, reference)
+        elif isinstance(piece.item, Wedge) and not replay.exact:
+            problems += check_polygon(piece.step, piece.item, replay.site)
+    return problems
 
 
 def _check_stages(replay: Replay, standing: Standing, reference: Reference) -> list[Problem]:
     """Verify indices and wedges of every stage."""
     problems = []
     unit = replay.site.units_per_px
-    wedge_steps = {p.id: p.step for p in replay.pieces if isinstance(p.step, WedgeStep)}
-    for stage, resistance in zip(replay.stages, standing.resistances, strict=True):
+    steps = {p.id: p.step for p in replay.pieces if isinstance(p.step, WedgeStep)}
+    stages = zip(replay.stages, standing.resistances, standing.models, strict=True)
+    for stage, resistance, model in stages:
         if resistance is not None:
             problems += check_indices(stage, resistance, reference, unit)
         for wedge in stage.group.wedges:
-            problems += check_wedge(
-                wedge_steps[wedge.id],
-                wedge,
-                stage.after.labels,
-                reference.settings.stabilise,
-                reference.stock.mean_height_px,
-            )
+            problems += _check_wedge(stage, (steps[wedge.id], wedge), model, reference)
     return problems
+
+
+def _check_wedge(
+    stage: Stage,
+    wedge_and_step: tuple[WedgeStep, Wedge],
+    model: RigidBlockModel | None,
+    reference: Reference,
+) -> list[Problem]:
+    """Verify the rules of wedging on the geometry of the plan."""
+    step, wedge = wedge_and_step
+    limits, height = reference.settings.stabilise, reference.stock.mean_height_px
+    if wedge.corners is None:
+        return check_wedge(step, wedge, stage.after.labels, limits, height)
+    touching = model or RigidBlockModel((), (), reference.settings.mu)
+    scale = stage.after.site.scale
+    return check_settled_wedge(step, wedge.corners, touching, limits, height, scale)
 
 
 def _check_image(replay: Replay, wall_labels: Labels) -> list[Problem]:
@@ -151,15 +152,33 @@ def _check_image(replay: Replay, wall_labels: Labels) -> list[Problem]:
     return problems
 
 
-def _worst_area(placements: Sequence[Placement]) -> tuple[float, int | None]:
-    """Return the largest share by which a mask's area is not the stone's own, and its id."""
+def _outlines(replay: Replay) -> list[tuple[int, shapely.Geometry]]:
+    """Return what the outlines of a plan are; wedges of pixels are left out, they fit their gap."""
+    height = replay.site.height_px
+    found = []
+    for piece in replay.pieces:
+        if piece.corners is not None:
+            found.append((piece.id, shape_of(piece.corners)))
+        elif isinstance(piece.item, Placement):
+            found.append((piece.id, real_outline(piece.item, height)))
+    return found
+
+
+def _worst_area(replay: Replay) -> tuple[float, int | None]:
+    """Return the largest share by which a stone's pixels miss its own area, and its id."""
+    ids, counts = np.unique(replay.labels, return_counts=True)
+    seen = dict(zip(ids.tolist(), counts.tolist(), strict=True))
     worst, at = 0.0, None
-    for placement in placements:
-        posed = placement.posed
+    for piece in replay.pieces:
+        if not isinstance(piece.item, Placement):
+            continue
+        posed = piece.item.posed
         own = posed.stone.area_px * posed.scale**2
-        error = abs(posed.area_px - own) / own
+        # Pixels that two outlines share go to the one that covers more.
+        area = seen.get(piece.id, 0) if replay.exact else posed.area_px
+        error = abs(area - own) / own
         if at is None or error > worst:
-            worst, at = error, posed.stone.id
+            worst, at = error, piece.id
     return worst, at
 
 

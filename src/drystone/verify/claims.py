@@ -10,6 +10,7 @@ from drystone.model.stone import StoneSet
 from drystone.planner.assemble import Frame, plan_metrics
 from drystone.planner.build import Build
 from drystone.planner.evaluate import action_indices
+from drystone.planner.plan_wall import resistance_by_tolerance
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
 from drystone.poses import PoseBook, orientation_step_deg
@@ -26,10 +27,10 @@ TOLERANCE = 1e-9
 
 ANGLE_TOLERANCE_DEG = 1e-6
 
-_OPTIONAL_METRICS = ("T_LEVEL", "E_FLUSH")
+_OPTIONAL_METRICS = ("T_LEVEL", "E_FLUSH", "F_LR_half", "F_LR_double")
 """Plans of other hands need not claim these."""
 
-_BY_STATICS = ("LLC", "F_LR", "alpha_left", "alpha_right")
+_BY_STATICS = ("LLC", "F_LR", "F_LR_half", "F_LR_double", "alpha_left", "alpha_right")
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +162,7 @@ def check_indices(
     return problems
 
 
-def recompute_metrics(plan: Plan, replay: Replay, model: RigidBlockModel) -> PlanMetrics:
+def recompute_metrics(plan: Plan, replay: Replay, model: RigidBlockModel | None) -> PlanMetrics:
     """Return the figures of merit of a rebuilt wall.
 
     Parameters
@@ -170,12 +171,15 @@ def recompute_metrics(plan: Plan, replay: Replay, model: RigidBlockModel) -> Pla
         Gives the size of the wall.
     replay : Replay
         Not broken.
-    model : RigidBlockModel
-        Of the whole wall.
+    model : RigidBlockModel or None
+        Of the whole wall; None when nothing is placed.
     """
+    model = model or RigidBlockModel((), (), replay.settings.mu)
     source_px = plan.px_per_m or 1.0
     frame = Frame(plan.width * source_px, plan.height * source_px, replay.site)
-    return plan_metrics(Build(replay.wall, model), frame, lateral_resistance(model))
+    build = Build(replay.wall, model)
+    by_tolerance = resistance_by_tolerance(build, replay.settings)
+    return plan_metrics(build, frame, lateral_resistance(model), by_tolerance)
 
 
 def check_metrics(claimed: PlanMetrics, found: PlanMetrics) -> list[Problem]:
@@ -194,15 +198,13 @@ def check_metrics(claimed: PlanMetrics, found: PlanMetrics) -> list[Problem]:
 
 def _wrong_turning(step: StoneStep, reference: Reference) -> str | None:
     """Say why angle, rotation moves and side cannot come from the settings; None when they can."""
-    settings, limits = reference.settings, reference.settings.stabilise
+    settings = reference.settings
     if step.side == "right" and not settings.two_sided:
         return "side is right by the plan, but its settings build from the left only."
     moves = step.rotation_moves
-    if moves > (limits.max_pivots if limits.method in ("both", "rotation") else 0):
+    most, low, high = _allowed_turns(moves, settings)
+    if moves > most:
         return f"rotation_moves is {moves} by the plan, more than its settings allow."
-    low, high = 0.0, limits.max_turn_deg if moves else 0.0
-    if moves == 1:
-        low = limits.step_deg  # about one point it only turns one way
     turns = [
         abs((step.angle_deg - angle + 180.0) % 360.0 - 180.0)
         for angle in _orientation_angles(step.stone, reference)
@@ -213,6 +215,18 @@ def _wrong_turning(step: StoneStep, reference: Reference) -> str | None:
         f"angle_deg {step.angle_deg} after {moves} rotation moves is {min(turns):.6g} degrees from "
         f"the nearest orientation of the set {settings.orientations!r}."
     )
+
+
+def _allowed_turns(moves: int, settings: PlannerSettings) -> tuple[int, float, float]:
+    """Return the most rotation moves, and the least and largest turn after some of them."""
+    limits = settings.stabilise
+    turns = limits.method in ("both", "rotation")
+    if settings.geometry == "exact":
+        # A stone that turns as it settles counts as one that was moved once, however far.
+        return int(turns), 0.0, settings.settle.max_turn_deg if moves else 0.0
+    # About one point it only turns one way.
+    low = limits.step_deg if moves == 1 else 0.0
+    return limits.max_pivots if turns else 0, low, limits.max_turn_deg if moves else 0.0
 
 
 def _orientation_angles(stone_id: int, reference: Reference) -> Sequence[float]:

@@ -1,26 +1,34 @@
-"""What the real outlines say: how deep two stones of a plan lie in each other (DESIGN 4.9)."""
+"""How deep two stones of a plan lie in each other, by their real outlines (DESIGN 4.9)."""
 
 from collections.abc import Sequence
 
 import numpy as np
 import shapely
 
+from drystone.kernels.polygons import Points
 from drystone.kernels.raster import turn
 from drystone.model.placement import Placement
 
-SPACING_PX = 0.05
-"""Distance of the points at which depth is measured; it is known to half of that."""
+SPACING_PX = 0.02
+"""Distance of the points at which depth is measured: it falls short by half of that at most."""
 
 NO_AREA_PX = 1e-9
 """A common area below this, in square px, is rounding: the two only touch."""
 
 
-def real_outline(placement: Placement, site_height_px: int) -> shapely.Polygon:
+def real_outline(placement: Placement, site_height_px: int) -> shapely.Geometry:
     """Return the outline of a placed stone in the wall frame, source px."""
+    if placement.settled is not None:
+        return shape_of(placement.settled.corners)
     x, y = placement.centroid(site_height_px)
     scale = placement.posed.scale
     points = turn(placement.posed.stone.outline, placement.posed.angle_deg)
-    outline = shapely.Polygon(points + np.array([x, y]) / scale)
+    return shape_of(points + np.array([x, y]) / scale)
+
+
+def shape_of(corners: Points) -> shapely.Geometry:
+    """Return the area of a polygon; rounding may have made a very fine corner cross itself."""
+    outline = shapely.Polygon(corners)
     return outline if outline.is_valid else shapely.make_valid(outline)
 
 
@@ -61,31 +69,28 @@ def overlap_depth(first: shapely.Geometry, second: shapely.Geometry) -> float:
 
 
 def deepest_overlap(
-    placements: Sequence[Placement], site_height_px: int
+    outlines: Sequence[tuple[int, shapely.Geometry]],
 ) -> tuple[float, tuple[int, int] | None]:
-    """Return the largest overlap depth of the real outlines of two placed stones.
+    """Return the largest overlap depth of two of many outlines.
 
     Parameters
     ----------
-    placements : sequence of Placement
-        The stones; wedges are left out, they are cut to fit.
-    site_height_px : int
-        Height of the site, working px.
+    outlines : sequence of (int, shapely geometry)
+        Id and area of each, in the order of placement.
 
     Returns
     -------
     depth : float
-        Source px.
+        In the unit of the outlines.
     at : (int, int) or None
-        Ids of the two stones, the one placed first coming first; None when no two overlap.
+        Ids of the two, the one placed first coming first; None when no two overlap.
     """
-    outlines = [real_outline(placement, site_height_px) for placement in placements]
     if len(outlines) < 2:
         return 0.0, None
-    tree = shapely.STRtree(outlines)
+    shapes = [shape for _, shape in outlines]
     deepest, at = 0.0, None
-    first, second = tree.query(outlines, predicate="intersects")
+    first, second = shapely.STRtree(shapes).query(shapes, predicate="intersects")
     for a, b in sorted(zip(first.tolist(), second.tolist(), strict=True)):
-        if a < b and (depth := overlap_depth(outlines[a], outlines[b])) > deepest:
-            deepest, at = depth, (placements[a].stone_id, placements[b].stone_id)
+        if a < b and (depth := overlap_depth(shapes[a], shapes[b])) > deepest:
+            deepest, at = depth, (outlines[a][0], outlines[b][0])
     return deepest, at

@@ -2,7 +2,7 @@
 
 import dataclasses
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from drystone.model.plan import PlanMetrics
 
@@ -56,10 +56,10 @@ class CheckReport:
     problems : tuple of Problem
         Every claim that does not hold; empty when the plan is what it says.
     overlap_depth : float
-        How deep real outlines of two stones lie in each other at most, source px; see
-        :func:`drystone.verify.overlap.deepest_overlap`.
+        How deep real outlines of two stones (on exact geometry also of wedges) lie in each other
+        at most, source px; see :func:`drystone.verify.overlap.overlap_depth`.
     overlap_depth_at : (int, int) or None
-        Ids of the two stones; None when no two outlines overlap.
+        Ids of the two; None when no two outlines overlap.
     buried : tuple of int
         Ids of stones that cannot be lowered in from above; no failure.
     area_error : float
@@ -72,6 +72,8 @@ class CheckReport:
         Recomputed; None when the wall could not be built to its end.
     notes : tuple of str
         What was not or could not be checked, and what is worth knowing.
+    geometry : {"raster", "exact"}
+        What the plan was verified on: the pixels or the outlines of its stones.
     """
 
     problems: tuple[Problem, ...]
@@ -83,6 +85,7 @@ class CheckReport:
     prefixes: tuple[PrefixAlpha, ...]
     metrics: PlanMetrics | None
     notes: tuple[str, ...]
+    geometry: Literal["raster", "exact"] = "raster"
 
     @property
     def ok(self) -> bool:

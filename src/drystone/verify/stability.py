@@ -4,10 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from drystone.model.plan import StoneStep, WedgeStep
-from drystone.model.wall import Labels
+from drystone.model.wall import Labels, Wall
+from drystone.planner.settings import PlannerSettings
 from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import RigidBlockModel
+from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LateralResistance
 from drystone.verify.replay import Stage
 from drystone.verify.report import PrefixAlpha, Problem
@@ -24,38 +26,44 @@ class Standing:
     ----------
     resistances : tuple of LateralResistance or None
         After each stage; None where the wall hangs in the air.
-    model : RigidBlockModel
-        Of the last wall.
+    models : tuple of RigidBlockModel or None
+        Of the same walls.
     problems : tuple of Problem
         E230: it does not stand; E231: another load multiplier is claimed.
     """
 
     resistances: tuple[LateralResistance | None, ...]
-    model: RigidBlockModel
+    models: tuple[RigidBlockModel | None, ...]
     problems: tuple[Problem, ...]
 
 
-def check_stability(stages: Sequence[Stage], mu: float) -> Standing:
-    """Analyse every prefix of the plan from its image alone.
+def check_stability(stages: Sequence[Stage], settings: PlannerSettings) -> Standing:
+    """Analyse every prefix of the plan, from its image or its outlines alone.
 
     Parameters
     ----------
     stages : sequence of Stage
         A stone and its wedges are one stage: only the wall with all of them must stand.
-    mu : float
-        Coefficient of friction.
+    settings : PlannerSettings
+        Of the plan: friction, and with outlines the contact tolerance.
     """
-    found: list[LateralResistance | None] = []
+    models = [wall_model(stage.after, settings) for stage in stages]
+    found = [None if model is None else lateral_resistance(model) for model in models]
     problems: list[Problem] = []
-    model = RigidBlockModel((), (), mu)
-    for stage in stages:
-        resistance = None
-        if stands_on_ground(stage.after.labels):
-            model = model_from_labels(stage.after.labels, mu).model
-            resistance = lateral_resistance(model)
-        found.append(resistance)
+    for stage, resistance in zip(stages, found, strict=True):
         problems += _judge(stage, resistance)
-    return Standing(tuple(found), model, tuple(problems))
+    return Standing(tuple(found), tuple(models), tuple(problems))
+
+
+def wall_model(wall: Wall, settings: PlannerSettings) -> RigidBlockModel | None:
+    """Return the model of a wall on its geometry; None when nothing stands on the ground."""
+    if wall.outlines is None:
+        if not stands_on_ground(wall.labels):
+            return None
+        return model_from_labels(wall.labels, settings.mu).model
+    model = model_of_outlines(wall.outlines, settings.mu, settings.settle.contact_px)
+    grounded = any(interface.other == GROUND for interface in model.interfaces)
+    return model if grounded else None
 
 
 def prefix_alphas(

@@ -1,17 +1,24 @@
 """Wedges touch what they hold and what holds them, and have the size of wedges (§3.7)."""
 
+from itertools import pairwise
+
 import numpy as np
 
+from drystone.kernels.polygons import Points
 from drystone.model.placement import Wedge
 from drystone.model.plan import WedgeStep
 from drystone.model.site import Site
 from drystone.model.wall import Labels
 from drystone.stabilise.settings import StabiliseSettings
-from drystone.verify.replay import working_points
+from drystone.statics.model import RigidBlockModel
+from drystone.verify.lengths import working_points
 from drystone.verify.report import Problem
 
 AREA_TOLERANCE_PX = 1e-6
 """Between the area of a wedge's polygon and of its pixels, working px."""
+
+SIZE_TOLERANCE_PX = 1e-6
+"""Of the size of a wedge with an outline, source px: rounding only."""
 
 
 def check_wedge(
@@ -36,14 +43,10 @@ def check_wedge(
     mean_height_px : float
         Mean height of the stones, which limits the wedge's.
     """
-    problems = []
     above, below = _neighbours(wedge, labels)
-    if not (above == wedge.under).any():
-        message = f"wedge {wedge.id} does not touch stone {wedge.under} from below."
-        problems.append(Problem("E223", step.step, message))
-    if not np.isin(below, (0, wedge.id, wedge.under), invert=True).any():
-        message = f"wedge {wedge.id} stands on nothing."
-        problems.append(Problem("E223", step.step, message))
+    holds = bool((above == wedge.under).any())
+    stands = bool(np.isin(below, (0, wedge.id, wedge.under), invert=True).any())
+    problems = _touching(step, holds=holds, stands=stands)
     heights = wedge.mask.sum(axis=0)
     smallest = settings.min_wedge_px
     largest = max(smallest, settings.max_wedge_height * mean_height_px)
@@ -57,6 +60,70 @@ def check_wedge(
     return problems
 
 
+def check_settled_wedge(
+    step: WedgeStep,
+    corners: Points,
+    model: RigidBlockModel,
+    settings: StabiliseSettings,
+    mean_height_px: float,
+    scale: float,
+) -> list[Problem]:
+    """Verify the rules of wedging for a wedge that is an outline: E223 and E224.
+
+    Parameters
+    ----------
+    step : WedgeStep
+        Names the wedge.
+    corners : (n, 2) float array
+        Its outline, source px.
+    model : RigidBlockModel
+        Of the wall with the stone and its wedges: says what touches what.
+    settings : StabiliseSettings
+        Smallest size, in working px, and largest height.
+    mean_height_px : float
+        Mean height of the stones, working px, which limits the wedge's.
+    scale : float
+        Working resolution over source resolution.
+    """
+    above, below = _supports(step.id, model)
+    stands = bool(below - {step.under})
+    problems = _touching(step, holds=step.under in above, stands=stands)
+    width, high = np.ptp(corners, axis=0).tolist()
+    low = thinnest(corners)
+    smallest = settings.min_wedge_px / scale
+    largest = max(smallest, settings.max_wedge_height * mean_height_px / scale)
+    if min(low, width) < smallest - SIZE_TOLERANCE_PX or high > largest + SIZE_TOLERANCE_PX:
+        message = (
+            f"wedge {step.id} is {width:.6g} source px wide and {low:.6g} to {high:.6g} high; the "
+            f"settings allow {smallest:.6g} to a height of {largest:.6g}."
+        )
+        problems.append(Problem("E224", step.step, message))
+    return problems
+
+
+def thinnest(corners: Points) -> float:
+    """Return the smallest height of a polygon over any of its columns.
+
+    Examples
+    --------
+    >>> thinnest(np.array([[0.0, 0.0], [4.0, 1.0], [4.0, 3.0], [0.0, 5.0]]))
+    2.0
+    """
+    starts, ends = corners, np.roll(corners, -1, axis=0)
+    x = np.unique(corners[:, 0])
+    heights = []
+    for left, right in pairwise(x.tolist()):
+        # Edges from end to end of the column, from the lowest to the highest, in pairs.
+        spans = np.minimum(starts[:, 0], ends[:, 0]) <= left
+        spans &= np.maximum(starts[:, 0], ends[:, 0]) >= right
+        run = ends[spans] - starts[spans]
+        slope = run[:, 1] / run[:, 0]
+        at = [starts[spans, 1] + slope * (end - starts[spans, 0]) for end in (left, right)]
+        order = np.argsort(at[0] + at[1])
+        heights += [float((y[order][1::2] - y[order][::2]).min()) for y in at]
+    return min(heights)
+
+
 def check_polygon(step: WedgeStep, wedge: Wedge, site: Site) -> list[Problem]:
     """Verify that a wedge's polygon is that of its pixels, counter-clockwise (E222)."""
     x, y = working_points(step.polygon, site).T
@@ -68,6 +135,31 @@ def check_polygon(step: WedgeStep, wedge: Wedge, site: Site) -> list[Problem]:
         f"clockwise), its pixels {wedge.area_px}."
     )
     return [Problem("E222", step.step, message)]
+
+
+def _touching(step: WedgeStep, *, holds: bool, stands: bool) -> list[Problem]:
+    """Say what a wedge does not touch (E223)."""
+    missing = {
+        f"wedge {step.id} does not touch stone {step.under} from below.": holds,
+        f"wedge {step.id} stands on nothing.": stands,
+    }
+    return [Problem("E223", step.step, said) for said, touches in missing.items() if not touches]
+
+
+def _supports(block: int, model: RigidBlockModel) -> tuple[set[int], set[int]]:
+    """Return the ids of what touches a block from above and from below."""
+    above, below = set(), set()
+    for interface in model.interfaces:
+        if block not in (interface.block, interface.other):
+            continue
+        mine = interface.block == block
+        up = interface.normal[1] if mine else -interface.normal[1]
+        other = interface.other if mine else interface.block
+        if up > 0.0:
+            below.add(other)
+        elif up < 0.0:
+            above.add(other)
+    return above, below
 
 
 def _neighbours(wedge: Wedge, labels: Labels) -> tuple[Labels, Labels]:

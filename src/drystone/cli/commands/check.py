@@ -1,21 +1,34 @@
 """`drystone check`: re-derive a wall and verify every claim of its plan."""
 
 import argparse
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from drystone.cli.output import print_json, print_table
+from drystone.cli.check_physics import physics_of
+from drystone.cli.checked import Checked
+from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_of
 from drystone.cli.walls import read_image_of
 from drystone.errors import ExitCode, PlanError
 from drystone.io.plan_json import read_plan
 from drystone.io.read_stones import read_stones
 from drystone.model.plan import Plan
+from drystone.physics.table import load_engine
 from drystone.verify.check import check_plan
+from drystone.verify.outlines import plan_polygons
+
+if TYPE_CHECKING:
+    from drystone.cli.check_picture import Drawn
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
-    """Print whether the plan holds, and each problem."""
+    """Print whether the plan holds, and each problem; draw what fails."""
+    if arguments.picture:
+        prepare_picture(Path(arguments.picture), overwrite=arguments.overwrite)
+    if arguments.physics:
+        load_engine()
     path = Path(arguments.plan)
     if path.is_dir():
         path /= "plan.json"
@@ -24,22 +37,34 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     # The image of a plan without stones is no picture of stones.
     labels = read_image_of(plan, path.parent) if plan.steps else None
     stones = read_stones(source, settings=reading_of(plan.source))
-    report = check_plan(plan, stones, wall_labels=labels)
+    checked = Checked(
+        plan,
+        stones,
+        check_plan(plan, stones, wall_labels=labels),
+        plan_polygons(plan, stones),
+        asked_physics=arguments.physics,
+    )
+    if arguments.physics:
+        found = physics_of(plan, checked.groups, checked.report.metrics, quiet=arguments.json)
+        checked = replace(checked, physics=found)
+    picture = _picture(checked, arguments, path.parent)
     if arguments.json:
-        print_json(report.as_dict())
+        print_json({**checked.as_dict(), **({"picture": picture.path} if picture else {})})
     else:
-        print_table(
-            f"{path}: {'holds' if report.ok else 'does not hold'}",
-            [
-                ("stones", f"{len(plan.stone_steps)} placed, {len(plan.wedge_steps)} wedges"),
-                ("overlap", f"{report.overlap_depth:.2f} source px deep by the outlines"),
-                ("area", f"the pixels of a stone miss its area by {report.area_error:.1%} at most"),
-                ("buried", ", ".join(map(str, report.buried)) or "none"),
-                *[("note", note) for note in report.notes],
-                *[("problem", str(problem)) for problem in report.problems],
-            ],
-        )
-    return ExitCode.DONE if report.ok else ExitCode.CHECK_FAILED
+        drawn = [("picture", picture.words)] if picture else []
+        print_table(f"{path}: {checked.verdict}", checked.rows() + drawn)
+    return ExitCode.DONE if checked.ok else ExitCode.CHECK_FAILED
+
+
+def _picture(checked: Checked, arguments: argparse.Namespace, folder: Path) -> "Drawn | None":
+    """Draw what fails beside the plan, or whatever there is where it was asked for."""
+    if checked.ok and not arguments.picture:
+        return None
+    from drystone.cli.check_picture import draw_asked, draw_failures  # noqa: PLC0415 - slow import
+
+    if arguments.picture:
+        return draw_asked(checked, Path(arguments.picture))
+    return draw_failures(checked, folder)
 
 
 def _find_stones(plan: Plan, folder: Path) -> Path:

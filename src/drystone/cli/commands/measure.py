@@ -2,7 +2,7 @@
 
 import argparse
 import sys
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from drystone.cli.lengths import parse_wall
@@ -13,6 +13,7 @@ from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 
 
@@ -22,7 +23,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if wall.labels is None:
         raise UsageError("E134", "a block model has no pixels to measure.", where="measure")
     labels = reduce_labels(wall.labels, arguments.scale) if arguments.scale != 1 else wall.labels
-    metrics = _measured(GivenWall(labels, wall.plan), labels, arguments)
+    metrics = _measured(GivenWall(labels, wall.plan, wall.blocks), labels, arguments)
     if arguments.output is not None:
         whole = wall.plan is None and arguments.wall is None
         width_px = None if whole else metrics.width
@@ -57,7 +58,10 @@ def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) ->
         # The pixels of reduced stones are off by a little; the plan knows their real area.
         stone_area_px = wall.plan.metrics.F_SF * wall_px[0] * wall_px[1]
     mu = wall.mu if arguments.mu is None else arguments.mu
-    model = model_from_labels(labels, mu).model
+    if wall.blocks is not None:  # pixels misread a wall of outlines
+        model = replace(model_from_json(wall.blocks), mu=mu)
+    else:
+        model = model_from_labels(labels, mu).model
     resistance = lateral_resistance(model)
     loose = None if resistance.stable else unsupported(model)
     if loose is not None:

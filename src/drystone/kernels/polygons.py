@@ -1,0 +1,137 @@
+"""Simple polygons in one array: the outlines of placed stones, ready for kernels."""
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Points = NDArray[np.float64]
+
+GRID = 1 << 20
+"""Settled stones and wedges have their coordinates on a grid of so many points in a source px."""
+
+
+class Polygons(NamedTuple):
+    """Simple polygons, counter-clockwise, one after the other.
+
+    Parameters
+    ----------
+    corners : (n, 2) float array
+        x to the right, y up; not closed.
+    first : (k + 1,) int32 array
+        Polygon i has the corners from ``first[i]`` to before ``first[i + 1]``.
+    boxes : (k, 4) float array
+        Left, bottom, right and top of each.
+    edges : (n, 3) float array
+        Unit vector (x, y) from each corner to the next one of its polygon, and their distance.
+    """
+
+    corners: Points
+    first: NDArray[np.int32]
+    boxes: Points
+    edges: Points
+
+    def __len__(self) -> int:
+        """Return how many polygons there are."""
+        return len(self.first) - 1
+
+    def polygon(self, index: int) -> Points:
+        """Return the corners of one polygon."""
+        return self.corners[self.first[index] : self.first[index + 1]]
+
+    def added(self, polygons: Iterable[Points]) -> "Polygons":
+        """Return these polygons with more after them."""
+        new = [np.ascontiguousarray(polygon, np.float64) for polygon in polygons]
+        sizes = np.array([len(polygon) for polygon in new], np.int64)
+        ends = self.first[-1] + np.cumsum(sizes)
+        boxes = [np.concatenate([polygon.min(axis=0), polygon.max(axis=0)]) for polygon in new]
+        return Polygons(
+            np.concatenate([self.corners, *new]),
+            np.concatenate([self.first, ends.astype(np.int32)]),
+            np.vstack([self.boxes, *boxes]),
+            np.concatenate([self.edges, *map(polygon_edges, new)]),
+        )
+
+    def leading(self, count: int) -> "Polygons":
+        """Return the first so many polygons, without a copy."""
+        end = int(self.first[count])
+        return Polygons(
+            self.corners[:end], self.first[: count + 1], self.boxes[:count], self.edges[:end]
+        )
+
+    def mirrored(self, width: float) -> "Polygons":
+        """Return the mirror images about the middle of a wall of a given width.
+
+        Corners are given in reverse, so that polygons are counter-clockwise again.
+        """
+        return no_polygons().added(
+            mirrored_polygon(self.polygon(i), width) for i in range(len(self))
+        )
+
+
+def on_grid(points: Points) -> Points:
+    """Return the nearest points whose coordinates are multiples of 2^-20.
+
+    Those are the same again after they were written in another unit and read back, so that walls
+    can be rebuilt bit by bit.
+
+    Examples
+    --------
+    >>> metres = on_grid(np.array([[0.1, 700.7]])) / 437.3
+    >>> (on_grid(metres * 437.3) == on_grid(np.array([[0.1, 700.7]]))).all()
+    True
+    """
+    return np.asarray(np.floor(points * GRID + 0.5) / GRID)
+
+
+def no_polygons() -> Polygons:
+    """Return an empty collection."""
+    return Polygons(np.zeros((0, 2)), np.zeros(1, np.int32), np.zeros((0, 4)), np.zeros((0, 3)))
+
+
+def polygon_edges(corners: Points) -> Points:
+    """Return the edges of a polygon as rows (unit vector x, y, length), from each corner on.
+
+    Examples
+    --------
+    >>> polygon_edges(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]])).round(3).tolist()
+    [[1.0, 0.0, 2.0], [0.0, 1.0, 1.0], [-0.894, -0.447, 2.236]]
+    """
+    along = np.roll(corners, -1, axis=0) - corners
+    length = np.sqrt(along[:, 0] * along[:, 0] + along[:, 1] * along[:, 1])
+    return np.column_stack([along[:, 0] / length, along[:, 1] / length, length])
+
+
+def mirrored_polygon(corners: Points, width: float) -> Points:
+    """Return the mirror image of one polygon about the middle of a wall of a given width.
+
+    Examples
+    --------
+    >>> mirrored_polygon(np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]), 10.0).tolist()
+    [[10.0, 1.0], [8.0, 0.0], [10.0, 0.0]]
+    """
+    return np.column_stack([width - corners[::-1, 0], corners[::-1, 1]])
+
+
+def area_and_centroid(corners: Points) -> tuple[float, float, float]:
+    """Return the area and the centroid (x, y) of a counter-clockwise polygon.
+
+    Examples
+    --------
+    >>> area_and_centroid(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]))
+    (2.0, 1.0, 0.5)
+    """
+    # From the first corner, so that polygons far from the origin keep their digits; in plain
+    # floats, which for some dozen corners are quicker than arrays.
+    points = (corners - corners[0]).tolist()
+    twice = sum_x = sum_y = 0.0
+    before_x, before_y = points[-1]
+    for x, y in points:
+        cross = before_x * y - x * before_y
+        twice += cross
+        sum_x += (before_x + x) * cross
+        sum_y += (before_y + y) * cross
+        before_x, before_y = x, y
+    scale = 3.0 * twice
+    return twice / 2.0, float(corners[0, 0]) + sum_x / scale, float(corners[0, 1]) + sum_y / scale

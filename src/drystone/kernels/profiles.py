@@ -1,0 +1,213 @@
+"""Height profiles of polygons, column by column: of what is built, and of a stone over it.
+
+Columns are half open, [j c, (j + 1) c) for a column width c, and conservative: whatever part of a
+column a polygon is over, the whole column counts.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.kernels.backend import compiled
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+EDGE = 1e-9
+"""What reaches into a column by less than this share of its width is not over it."""
+
+OVER = 0.25
+"""A polygon is not over its outermost columns if it reaches into them by less than this share.
+
+Otherwise a gap would have to be two columns wider than a stone that fits into it; whoever lets a
+stone go moves it aside by what it may overlap.
+"""
+
+GROUND = -1
+"""Owner of a column over which there is nothing."""
+
+_fast = compiled("profiles")
+
+
+class HeightProfile(NamedTuple):
+    """How high a wall is over each column.
+
+    Parameters
+    ----------
+    tops : (columns,) float array
+        The highest y of anything over the column; 0 for bare ground.
+    owners : (columns,) int32 array
+        Index of the polygon that is highest there, of equals the one that came first; -1 for the
+        ground.
+    boxes : (k, 4) float array
+        Left, bottom, right and top of the polygons, by their index; zeros where there is none.
+    """
+
+    tops: Floats
+    owners: Ints
+    boxes: Floats
+
+
+class StoneProfile(NamedTuple):
+    """A polygon over columns that start at its left end.
+
+    Parameters
+    ----------
+    bottoms, tops : (n,) float arrays
+        The lowest and the highest y of the polygon over each column, measured from the origin of
+        its corners, which is a stone's centroid.
+    left, bottom, right, top : float
+        Its box, from the same origin.
+    """
+
+    bottoms: Floats
+    tops: Floats
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+
+def bare(columns: int) -> HeightProfile:
+    """Return the profile of the ground.
+
+    Examples
+    --------
+    >>> bare(2)[:2]
+    (array([0., 0.]), array([-1, -1], dtype=int32))
+    """
+    return HeightProfile(np.zeros(columns), np.full(columns, GROUND, np.int32), np.zeros((0, 4)))
+
+
+def raised(profile: HeightProfile, corners: Floats, index: int, cell_px: float) -> HeightProfile:
+    """Return a profile with one more polygon.
+
+    Parameters
+    ----------
+    profile : HeightProfile
+        Stays as it is.
+    corners : (n, 2) float array
+        Of the polygon where it is placed, source px; what is beside the profile is ignored.
+    index : int
+        Of the polygon, for `owners` and `boxes`; not negative.
+    cell_px : float
+        Width of a column, source px.
+
+    Raises
+    ------
+    ValueError
+        When the index is negative.
+
+    Examples
+    --------
+    >>> raised(bare(4), np.array([[1.0, 0.0], [4.0, 0.0], [4.0, 3.0]]), 0, 2.0)[:2]
+    (array([1., 3., 0., 0.]), array([ 0,  0, -1, -1], dtype=int32))
+    """
+    if index < 0:
+        raise ValueError(f"polygon {index}")
+    tops = extremes(corners, 0.0, cell_px, profile.tops.size)[1]
+    left, right = float(corners[:, 0].min()) / cell_px, float(corners[:, 0].max()) / cell_px
+    first, last = math.floor(left + OVER), math.ceil(right - OVER)
+    tops[: max(0, first)] = tops[max(0, last) :] = -np.inf
+    higher = tops > profile.tops
+    boxes = np.zeros((max(len(profile.boxes), index + 1), 4))
+    boxes[: len(profile.boxes)] = profile.boxes
+    boxes[index, :2], boxes[index, 2:] = corners.min(axis=0), corners.max(axis=0)
+    return HeightProfile(
+        np.where(higher, tops, profile.tops),
+        np.where(higher, np.int32(index), profile.owners),
+        boxes,
+    )
+
+
+def hanging(corners: Floats, cell_px: float) -> StoneProfile:
+    """Return the profile of a polygon that is moved so that its left end lies on a column edge.
+
+    The last column is left out if the polygon reaches into it by less than `OVER`.
+
+    Parameters
+    ----------
+    corners : (n, 2) float array
+        Relative to the centroid, source px.
+    cell_px : float
+        Width of a column, source px.
+
+    Raises
+    ------
+    ValueError
+        When the polygon has no width.
+
+    Examples
+    --------
+    >>> hanging(np.array([[-1.0, -1.0], [2.0, -1.0], [-1.0, 2.0]]), 2.0)[:2]
+    (array([-1., -1.]), array([2., 0.]))
+    """
+    left, bottom = corners.min(axis=0).tolist()
+    right, top = corners.max(axis=0).tolist()
+    if not right > left:
+        raise ValueError("a polygon without width has no profile")
+    columns = max(1, math.ceil((right - left) / cell_px - OVER))
+    bottoms, tops = extremes(corners, left, cell_px, columns)
+    return StoneProfile(bottoms, tops, left, bottom, right, top)
+
+
+def extremes(
+    corners: Floats, left_px: float, cell_px: float, columns: int
+) -> tuple[Floats, Floats]:
+    """Return the lowest and the highest y of a polygon over each of some columns.
+
+    Parameters
+    ----------
+    corners : (n, 2) float array
+        Of the polygon.
+    left_px : float
+        Where the first column starts.
+    cell_px : float
+        Width of a column, positive.
+    columns : int
+        How many there are.
+
+    Returns
+    -------
+    bottoms, tops : (columns,) float arrays
+        +inf and -inf where the polygon is not over a column.
+
+    Raises
+    ------
+    ValueError
+        When columns have no width, or corners are not pairs.
+    """
+    if not cell_px > 0:
+        raise ValueError(f"columns {cell_px} px wide")
+    if corners.ndim != 2 or corners.shape[1] != 2:
+        raise ValueError(f"corners of shape {corners.shape}")
+    kernel = extremes_numpy if _fast is None else _fast.extremes
+    found: tuple[Floats, Floats] = kernel(corners, left_px, cell_px, columns)
+    return found
+
+
+def extremes_numpy(
+    corners: Floats, left_px: float, cell_px: float, columns: int
+) -> tuple[Floats, Floats]:
+    """Return what :func:`extremes` returns, by NumPy."""
+    x, y = corners[:, :1] - left_px, corners[:, 1:]
+    next_x, next_y = np.roll(x, -1, axis=0), np.roll(y, -1, axis=0)
+    forward = x <= next_x
+    start_x, end_x = np.where(forward, x, next_x), np.where(forward, next_x, x)
+    start_y, end_y = np.where(forward, y, next_y), np.where(forward, next_y, y)
+    run = end_x - start_x
+    slope = np.divide(end_y - start_y, run, out=np.zeros_like(run), where=run > 0.0)
+    number = np.arange(columns)
+    over = (np.floor(start_x / cell_px + EDGE) <= number) & (
+        number <= np.ceil(end_x / cell_px - EDGE) - 1.0
+    )
+    # An edge is highest and lowest at the ends of its piece over a column.
+    left, right = number * cell_px, (number + 1) * cell_px
+    one = np.where(start_x >= left, start_y, start_y + (left - start_x) * slope)
+    two = np.where(end_x <= right, end_y, start_y + (right - start_x) * slope)
+    bottoms = np.where(over, np.minimum(one, two), np.inf).min(axis=0, initial=np.inf)
+    tops = np.where(over, np.maximum(one, two), -np.inf).max(axis=0, initial=-np.inf)
+    # Zeros have no sign: minima of +0 and -0 depend on the order.
+    return bottoms + 0.0, tops + 0.0

@@ -1,0 +1,162 @@
+"""A stone as a simple polygon with the area and the centroid of its pixels (DESIGN 4.9)."""
+
+import math
+
+import numpy as np
+import shapely
+from skimage import measure
+
+from drystone.kernels.polygons import Points, area_and_centroid
+from drystone.kernels.raster import Mask
+
+HALVINGS = 6
+"""How often the tolerance is halved before the contour is taken as it is."""
+
+STRAIGHT = 1e-9
+"""Sine of the turn below which a corner is none."""
+
+
+def stone_outline(mask: Mask, tolerance_px: float) -> Points:
+    """Return the outline of some pixels as a simple polygon about their centroid.
+
+    Parameters
+    ----------
+    mask : (h, w) bool array
+        One 8-connected piece with its holes filled, row 0 at the top.
+    tolerance_px : float
+        How far the polygon may stay away from the contour of the pixels, 0 or more, before it is
+        shifted and scaled.
+
+    Returns
+    -------
+    corners : (n, 2) float array
+        x to the right and y up from the centroid, counter-clockwise, not closed; it neither
+        crosses nor touches itself, and no corner is repeated or on a line with its neighbours.
+
+    Raises
+    ------
+    ValueError
+        When there is no pixel, or the tolerance is below 0.
+
+    Notes
+    -----
+    The contour at level 1/2 goes through the midpoints of pixel edges.  It cuts off every corner
+    of a pixel, so a brick would get eight corners: where the cut is between two sides along pixel
+    edges the corner (√2/4 px from the contour) is put back.  Steps of one pixel, of which slopes
+    consist, have no such sides.  Then the contour is simplified after Douglas and Peucker.  Where
+    that makes it cross or touch itself the tolerance is halved, and in the end the contour is
+    taken as it is.
+
+    Pixels that touch at a corner only are joined there by a neck of √2/2 px, as they are one
+    stone when an image is read.  What they close in is a hole, and of several pieces the
+    largest counts; masks as they are read have neither.
+
+    At last the polygon is shifted and scaled about its centroid, by a factor of about 1 unless
+    there are only a few pixels, so that its area and its centroid are those of the pixels.  A
+    stone then has one weight and one centre of mass: images, outlines and statics agree on
+    where it balances, and no pose has to carry two centroids.
+
+    Examples
+    --------
+    >>> stone_outline(np.ones((2, 4), bool), 0.35).tolist()
+    [[2.0, 1.0], [-2.0, 1.0], [-2.0, -1.0], [2.0, -1.0]]
+    """
+    if tolerance_px < 0.0:
+        raise ValueError(f"the tolerance must be 0 or more, not {tolerance_px}")
+    if not mask.any():
+        raise ValueError("the mask has no pixel")
+    contour = _contour(mask)
+    area_px = float(np.count_nonzero(mask))
+    mended = _mended(contour)
+    for halving in range(HALVINGS):
+        corners = _without_straight_ones(_simplified(mended, tolerance_px / 2.0**halving))
+        if len(corners) > 2 and shapely.Polygon(corners).is_valid:
+            return _fitted(corners, area_px)
+    return _fitted(_without_straight_ones(contour), area_px)
+
+
+def second_moments(corners: Points) -> tuple[float, float, float]:
+    """Return the second moments of area of a simple polygon about its centroid.
+
+    Parameters
+    ----------
+    corners : (n, 2) float array
+        Counter-clockwise.
+
+    Returns
+    -------
+    xx, yy, xy : float
+        Integrals of x x, y y and x y over the area, from the centroid; xx + yy is the polar one.
+
+    Examples
+    --------
+    >>> second_moments(np.array([[0.0, 0.0], [6.0, 0.0], [6.0, 2.0], [0.0, 2.0]]))
+    (36.0, 4.0, 0.0)
+    """
+    _, *centre = area_and_centroid(corners)
+    x, y = (corners - np.array(centre)).T
+    x1, y1 = np.roll(x, -1), np.roll(y, -1)
+    cross = x * y1 - x1 * y
+    xx = float(((x * x + x * x1 + x1 * x1) * cross).sum()) / 12.0
+    yy = float(((y * y + y * y1 + y1 * y1) * cross).sum()) / 12.0
+    xy = float(((x * y1 + 2.0 * (x * y + x1 * y1) + x1 * y) * cross).sum()) / 24.0
+    return xx, yy, xy
+
+
+def _contour(mask: Mask) -> Points:
+    """Return the contour of the largest piece, counter-clockwise, not closed."""
+    found = measure.find_contours(np.pad(mask, 1).astype(float), 0.5, fully_connected="high")
+    # On pixel centres of the padded mask, row first; x, y from the mask's bottom-left corner.
+    rings = [np.column_stack([c[:-1, 1] - 0.5, mask.shape[0] + 0.5 - c[:-1, 0]]) for c in found]
+    areas = [area_and_centroid(ring)[0] for ring in rings]
+    largest = max(range(len(rings)), key=lambda i: abs(areas[i]))
+    return np.asarray(rings[largest] if areas[largest] > 0.0 else rings[largest][::-1])
+
+
+def _mended(contour: Points) -> Points:
+    """Add the corners of pixels that a contour cuts off between two sides along pixel edges."""
+    steps = np.roll(contour, -1, axis=0) - contour
+    slant = (steps != 0.0).all(axis=1)
+    before, after = np.roll(steps, 1, axis=0), np.roll(steps, -1, axis=0)
+    alone = slant & ~np.roll(slant, 1) & ~np.roll(slant, -1)
+    cut = np.flatnonzero(alone & (_cross(before, after) != 0.0))
+    corners = contour[cut] + 0.5 * before[cut]
+    # Both sides of a neck between pixels have the same corner: they stay apart.
+    _, place, uses = np.unique(corners, axis=0, return_inverse=True, return_counts=True)
+    once = uses[place.ravel()] == 1
+    return np.insert(contour, cut[once] + 1, corners[once], axis=0)
+
+
+def _simplified(ring: Points, tolerance_px: float) -> Points:
+    """Leave out corners as long as the ring stays within the tolerance.
+
+    It begins at the point that is furthest from the middle: that one stays in any case.
+    """
+    away = ring - ring.mean(axis=0)
+    ring = np.roll(ring, -int(np.argmax((away * away).sum(axis=1))), axis=0)
+    return np.asarray(measure.approximate_polygon(np.vstack([ring, ring[:1]]), tolerance_px)[:-1])
+
+
+def _without_straight_ones(corners: Points) -> Points:
+    """Leave out corners that are repeated or on a line with their neighbours."""
+    while len(corners) > 2:
+        before, after = (
+            corners - np.roll(corners, 1, axis=0),
+            np.roll(corners, -1, axis=0) - corners,
+        )
+        bent = np.abs(_cross(before, after)) > STRAIGHT * np.hypot(*before.T) * np.hypot(*after.T)
+        if bent.all():
+            break
+        corners = corners[bent]
+    return corners
+
+
+def _cross(first: Points, second: Points) -> Points:
+    """Return the cross products of vectors."""
+    return np.asarray(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+
+
+def _fitted(corners: Points, area_px: float) -> Points:
+    """Shift and scale a polygon: the centroid at the origin, and the area that it must have."""
+    area, *centre = area_and_centroid(corners)
+    return np.asarray((corners - np.array(centre)) * math.sqrt(area_px / area))

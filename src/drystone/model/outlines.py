@@ -1,0 +1,57 @@
+"""The outlines of everything that is placed, for walls that stand on them (DESIGN 4.9)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from drystone.kernels.coverage import coverage
+from drystone.kernels.polygons import Points, Polygons, no_polygons
+from drystone.model.shares import Shares
+from drystone.model.site import Site
+
+Outlined = tuple[int, Points]
+"""Id and corners of a stone or wedge."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outlines:
+    """Outlines in the wall frame, source px; immutable.
+
+    Parameters
+    ----------
+    polygons : Polygons
+        Of stones and wedges, in the order of placement.
+    ids : tuple of int
+        Of each.
+    shares : Shares
+        How much of each working px they cover.
+    """
+
+    polygons: Polygons
+    ids: tuple[int, ...]
+    shares: Shares
+
+    @classmethod
+    def empty(cls, site: Site) -> "Outlines":
+        """Return the outlines of nothing."""
+        return cls(no_polygons(), (), Shares.empty(site.height_px, site.width_px))
+
+    @property
+    def blocks(self) -> list[Outlined]:
+        """Ids and corners, in the order of placement."""
+        return [(block, self.polygons.polygon(i)) for i, block in enumerate(self.ids)]
+
+    def added(self, blocks: Sequence[Outlined], scale: float) -> "Outlines":
+        """Return these outlines with a stone and its wedges.
+
+        Parameters
+        ----------
+        blocks : sequence of (int, (n, 2) float array)
+            Id and corners of each.
+        scale : float
+            Working resolution over source resolution.
+        """
+        shares = self.shares
+        for block_id, corners in blocks:
+            shares = shares.added(block_id, *coverage(corners * scale))
+        polygons = self.polygons.added(corners for _, corners in blocks)
+        return Outlines(polygons, (*self.ids, *(block_id for block_id, _ in blocks)), shares)

@@ -1,0 +1,97 @@
+"""How much of every cell of a site the placed blocks cover (DESIGN 4.9)."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.kernels.coverage import FILLED, ROUNDING, Grid, newly_filled, windows
+from drystone.kernels.raster import Mask
+
+
+@dataclass(frozen=True, eq=False)
+class Shares:
+    """What exact outlines cover of the cells of a site, immutable; :meth:`added` gives the next.
+
+    Parameters
+    ----------
+    total : (height_px, width_px) float64 array
+        Share of each cell that all blocks together cover, row 0 at the top.
+    largest : (height_px, width_px) float64 array
+        The largest share that one block covers.
+    owners : (height_px, width_px) uint32 array
+        The id of that block, of equals the one placed first; 0 where there is none.
+
+    Examples
+    --------
+    >>> shares = Shares.empty(1, 3).added(7, np.array([[1.0, 0.3]]), 0, 0)
+    >>> shares.added(8, np.array([[0.2, 1.0]]), 1, 0).labels.tolist()
+    [[7, 7, 8]]
+    """
+
+    total: Grid
+    largest: Grid
+    owners: NDArray[np.uint32]
+
+    def __post_init__(self) -> None:
+        for array in (self.total, self.largest, self.owners):
+            array.flags.writeable = False
+
+    @classmethod
+    def empty(cls, height_px: int, width_px: int) -> "Shares":
+        """Return the shares of a site where nothing is placed yet."""
+        shape = height_px, width_px
+        return cls(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.uint32))
+
+    def added(self, block_id: int, shares: Grid, left: int, bottom: int) -> "Shares":
+        """Return the shares with one more block.
+
+        Parameters
+        ----------
+        block_id : int
+            Id of the stone or wedge, positive.
+        shares : (h, w) float array
+            What it covers, of :func:`drystone.kernels.coverage.coverage`; cells outside of the
+            site do not count.
+        left, bottom : int
+            The cell corner of their bottom-left corner, from the site's own.
+        """
+        inside, part = windows(self.total.shape, shares.shape, self._row(shares, bottom), left)
+        total, largest, owners = self.total.copy(), self.largest.copy(), self.owners.copy()
+        new = shares[part]
+        total[inside] += new
+        more = new > largest[inside] + ROUNDING
+        largest[inside][more] = new[more]
+        owners[inside][more] = block_id
+        return Shares(total, largest, owners)
+
+    @cached_property
+    def labels(self) -> NDArray[np.uint32]:
+        """The site as an image: where at least half is covered, the id of who covers most."""
+        labels = np.where(self.total >= FILLED, self.owners, np.uint32(0))
+        labels.flags.writeable = False
+        return labels
+
+    def fresh(self, shares: Grid, left: int, bottom: int) -> tuple[Mask, int, int] | None:
+        """Return the cells that a new block would fill, as it becomes part of the image.
+
+        Parameters
+        ----------
+        shares, left, bottom
+            As for :meth:`added`.
+
+        Returns
+        -------
+        mask : (h, w) bool array
+            Cropped: cells of which less than half was covered, and now at least half is.
+        row, col : int
+            Its top-left corner in the site image.
+
+        None when there is none, or when one of them is outside of the site.
+        """
+        return newly_filled(self.total, shares, self._row(shares, bottom), left)
+
+    def _row(self, shares: Grid, bottom: int) -> int:
+        """Return the row of the site image in which the top of some shares is."""
+        return len(self.total) - bottom - len(shares)

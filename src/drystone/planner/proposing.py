@@ -1,0 +1,161 @@
+"""Trial placement and stabilisation of candidates (Algorithm 1, lines 8-15)."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from drystone.model.landscape import Landscape
+from drystone.model.placement import Side
+from drystone.model.pose import PosedStone
+from drystone.placement.best import best_spots
+from drystone.placement.feasible import can_be_lowered
+from drystone.planner.build import Build, Proposal
+from drystone.planner.craft import action_craft
+from drystone.planner.profile import Profile
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.stock import Rest
+from drystone.planner.workshop import Workshop
+from drystone.selection.scored import craft_cost
+from drystone.stabilise.stabilise import Stabilised
+
+Key = tuple[int, float, Side]
+"""A trial: stone, angle of its first pose, side."""
+
+Apply = Callable[[Callable[[Any], Any], Sequence[Any]], list[Any]]
+"""Applies a function to all items, in their order."""
+
+
+def one_by_one(work: Callable[[Any], Any], items: Sequence[Any]) -> list[Any]:
+    """Do work one item after the other."""
+    return [work(item) for item in items]
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """What is to be tried: one stone, from one side.
+
+    Parameters
+    ----------
+    poses : tuple of PosedStone
+        The stone as it may be turned for the trial; the placement rule picks one.
+    landscape : Landscape
+        What is built, seen from the side.
+    rest : Rest or None
+        What the stones that are left could fill; None when no choice depends on it.
+    """
+
+    poses: tuple[PosedStone, ...]
+    landscape: Landscape
+    rest: Rest | None
+
+    @property
+    def key(self) -> Key:
+        """What tells it from the others of a step."""
+        return self.poses[0].stone.id, self.poses[0].angle_deg, self.landscape.side
+
+
+class Proposer(Protocol):
+    """Places and stabilises candidates on one state of construction; remembers what it tried."""
+
+    @property
+    def tried(self) -> int:
+        """How many candidates were looked at."""
+        ...
+
+    def proposals(self, trials: Sequence[Trial], apply: Apply) -> list[Proposal]:
+        """Return where the stones of some trials could stand, in the order of the trials.
+
+        Parameters
+        ----------
+        trials : sequence of Trial
+            Candidates that are compared with each other.
+        apply : callable
+            Does independent work, on several threads if there are any.
+        """
+        ...
+
+
+class RasterProposer:
+    """Stones are their pixels at the working resolution.
+
+    Parameters
+    ----------
+    workshop : Workshop
+        Stones and site.
+    settings : PlannerSettings
+        All parameters.
+    build : Build
+        What is built.
+    profile : Profile
+        Told where the time goes.
+    """
+
+    def __init__(
+        self, workshop: Workshop, settings: PlannerSettings, build: Build, profile: Profile
+    ) -> None:
+        self._workshop = workshop
+        self._settings = settings
+        self._build = build
+        self._profile = profile
+        self._proposed: dict[Key, Proposal | None] = {}
+
+    @property
+    def tried(self) -> int:
+        """See :class:`Proposer`."""
+        return len(self._proposed)
+
+    def proposals(self, trials: Sequence[Trial], apply: Apply) -> list[Proposal]:
+        """See :class:`Proposer`."""
+        new = [trial for trial in trials if trial.key not in self._proposed]
+        found = apply(self.propose, new)
+        self._proposed.update(zip([trial.key for trial in new], found, strict=True))
+        mine = (self._proposed[trial.key] for trial in trials)
+        return [proposal for proposal in mine if proposal is not None]
+
+    def propose(self, trial: Trial) -> Proposal | None:
+        """Return the best stable placement of a stone; None when there is none (lines 8-15).
+
+        Of the best positions by the placement rule, the first at which the stone can be made
+        stable is taken; with `tries` = 1 that is the paper's single trial.  With `compare` = True
+        all of them are stabilised, and the one of the least craft cost is taken.
+        """
+        landscape, build = trial.landscape, self._build
+        with self._profile.part("placement"):
+            views = [landscape.view(posed) for posed in trial.poses]
+            spots = best_spots(landscape, views, self._settings.placement)
+        best: Proposal | None = None
+        for spot in spots:
+            posed = trial.poses[spot.pose]
+            with self._profile.part("stabilisation"):
+                stabilised = self._workshop.memory.stabilise(
+                    build.wall.occupied,
+                    (posed, spot.row, landscape.view_col(posed, spot.col)),
+                    landscape.side,
+                    self._workshop.next_wedge(build),
+                )
+            if stabilised is None or not self._reached(landscape, stabilised):
+                continue
+            proposal = self._proposal(trial, posed.angle_deg, stabilised)
+            if not self._settings.placement.compare:
+                return proposal
+            if best is None or proposal.cost < best.cost - 1e-12:
+                best = proposal
+        return best
+
+    def _reached(self, landscape: Landscape, stabilised: Stabilised) -> bool:
+        """Say whether a stone that was turned can still be put where it is."""
+        if self._settings.placement.reach == "any":
+            return True
+        placement = stabilised.placement
+        posed, col = placement.posed, landscape.view_col(placement.posed, placement.col)
+        return can_be_lowered(landscape, landscape.view(posed), placement.row, col)
+
+    def _proposal(self, trial: Trial, trial_angle_deg: float, stabilised: Stabilised) -> Proposal:
+        cost = 0.0
+        if self._settings.weighs_craft:
+            assert trial.rest is not None  # noqa: S101 - the attempt gives it then
+            with self._profile.part("indices"):
+                stock = self._workshop.stock
+                craft = action_craft(trial.landscape, stabilised, stock, trial.rest)
+            cost = craft_cost(craft, self._settings.score)
+        return Proposal(stabilised, trial_angle_deg, cost=cost)

@@ -1,0 +1,76 @@
+"""Settled stones and wedges in the wall: the pixels that they fill there (DESIGN 4.9)."""
+
+import numpy as np
+
+from drystone.kernels.coverage import coverage
+from drystone.kernels.polygons import Points
+from drystone.model.outlines import Outlines
+from drystone.model.placement import Placement, Settled, Side, Wedge
+from drystone.model.pose import PosedStone
+from drystone.model.site import Site
+from drystone.model.stone import Stone
+
+NOTHING = np.zeros((0, 0), bool)
+
+
+def settled_placement(
+    outlines: Outlines,
+    site: Site,
+    stone: Stone,
+    angle_deg: float,
+    settled: Settled,
+    side: Side,
+    rotation_moves: int,
+) -> Placement | None:
+    """Return the placement of a settled stone; None when it fills no pixel of the wall.
+
+    Its pixels are those that become half full by it (DESIGN 4.9): they depend on what is there.
+
+    Parameters
+    ----------
+    outlines : Outlines
+        Of the wall without it.
+    site : Site
+        Of the wall.
+    stone : Stone
+        The stone.
+    angle_deg : float
+        Counter-clockwise from the source image.
+    settled : Settled
+        Where it lies.
+    side : {"left", "right"}
+        The end of the wall from which it was placed.
+    rotation_moves : int
+        1 when it turned while it settled, otherwise 0.
+    """
+    fresh = outlines.shares.fresh(*coverage(settled.corners * site.scale))
+    if fresh is None:
+        return None
+    mask, row, col = fresh
+    bottom = site.height_px - row - mask.shape[0]
+    anchor = (settled.x_px * site.scale - col, settled.y_px * site.scale - bottom)
+    posed = PosedStone(stone, angle_deg, site.scale, mask, anchor)
+    return Placement(posed, row, col, side, rotation_moves, settled)
+
+
+def settled_wedge(
+    outlines: Outlines, site: Site, wedge_id: int, under: int, corners: Points
+) -> Wedge:
+    """Return a wedge with the pixels that it fills, which may be none.
+
+    Parameters
+    ----------
+    outlines : Outlines
+        Of the wall without it, but with what was placed before it.
+    site : Site
+        Of the wall.
+    wedge_id : int
+        Its id.
+    under : int
+        Id of the stone that it supports.
+    corners : (n, 2) float array
+        Counter-clockwise, source px.
+    """
+    fresh = outlines.shares.fresh(*coverage(corners * site.scale))
+    mask, row, col = (NOTHING.copy(), site.height_px, 0) if fresh is None else fresh
+    return Wedge(wedge_id, under, mask, row, col, corners)

@@ -1,0 +1,211 @@
+"""Letting a stone go above others until it rests (§3.7 without pixels; DESIGN 4.9)."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from drystone.kernels.polygons import (
+    Points,
+    Polygons,
+    mirrored_polygon,
+    on_grid,
+    polygon_edges,
+)
+from drystone.kernels.raster import turn
+from drystone.kernels.settling import Rules, Settling, Status, settle
+from drystone.model.placement import Settled, Side
+from drystone.settle.settings import SettleSettings
+
+NEAR, FAR = 0.04, 0.08
+"""First and largest radius of a step, over the size of the stone."""
+
+CORNER = 30.0
+"""Corners nearer than this meet with a face, in clearances."""
+
+GAIN = 4e-6
+"""Settling ends where a step would go down by less, over the size of the stone."""
+
+OVERLAP_PX = 0.5
+"""So deep, source px, a stone may overlap where it is let go; it is brought apart first."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What a stone meets, seen so that the building side is on the left.
+
+    Parameters
+    ----------
+    polygons : Polygons
+        Outlines of stones and wedges in the view, source px.
+    width_px : float
+        Of the wall, source px; its ends block but carry nothing.
+    side : {"left", "right"}
+        Which end of the wall is on the left of the view.
+    mu : float
+        Coefficient of friction.
+    """
+
+    polygons: Polygons
+    width_px: float
+    side: Side
+    mu: float
+
+    @classmethod
+    def of(cls, polygons: Polygons, width_px: float, side: Side, mu: float) -> "Scene":
+        """Return the scene of outlines in the wall frame."""
+        seen = polygons if side == "left" else polygons.mirrored(width_px)
+        return cls(seen, width_px, side, mu)
+
+
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """The outline of a stone in a pose, as a scene sees it; the pose itself is the stone's.
+
+    Parameters
+    ----------
+    outline : (n, 2) float array
+        Of the stone, not turned, relative to its centroid, source px.
+    angle_deg : float
+        By which it is turned in the wall frame.
+    side : {"left", "right"}
+        Of the scene.
+    corners : (n, 2) float array
+        Turned, and mirrored where the scene is.
+    edges : (n, 3) float array
+        Of the corners.
+    size_px : float
+        Root of the stone's area.
+    """
+
+    outline: Points
+    angle_deg: float
+    side: Side
+    corners: Points
+    edges: Points
+    size_px: float
+
+    @classmethod
+    def of(cls, outline: Points, angle_deg: float, side: Side, size_px: float) -> "Turned":
+        """Turn an outline."""
+        corners = turn(outline, angle_deg)
+        if side == "right":
+            corners = mirrored_polygon(corners, 0.0)
+        return cls(outline, angle_deg, side, corners, polygon_edges(corners), size_px)
+
+
+@dataclass(frozen=True, eq=False)
+class Repose:
+    """Where a stone came to rest.
+
+    Parameters
+    ----------
+    settled : Settled
+        Where, in the wall frame.
+    angle_deg : float
+        Turned by so much from the source image.
+    turned : bool
+        Whether it turned while it settled.
+    margin : float
+        How far gravity may lean until it moves, over mu; below the least margin of the settings
+        it does not rest.
+    """
+
+    settled: Settled
+    angle_deg: float
+    turned: bool
+    margin: float
+
+
+def come_to_rest(
+    stone: Turned,
+    scene: Scene,
+    start: tuple[float, float],
+    settings: SettleSettings,
+    *,
+    turns: bool = True,
+) -> Repose | None:
+    """Let a stone go, and return where it rests; None when it does not rest nearby.
+
+    Parameters
+    ----------
+    stone : Turned
+        As the scene sees it.
+    scene : Scene
+        What is there.
+    start : (float, float)
+        Centroid where it is let go, in the view.
+    settings : SettleSettings
+        How it settles.
+    turns : bool
+        Whether it may turn.
+    """
+    for rules in ways(stone, scene, settings, turns=turns):
+        found = settle(
+            stone.corners, stone.edges, (*start, 0.0), scene.polygons, scene.width_px, rules
+        )
+        if found.status == Status.RESTS and found.margin >= settings.margin:
+            return repose(stone, scene, found)
+    return None
+
+
+def touch_down(
+    stone: Turned, scene: Scene, start: tuple[float, float], settings: SettleSettings
+) -> Repose | None:
+    """Lower a stone without turning it until nothing is gained; None when it slides away.
+
+    Whether it rests there, its margin says.
+    """
+    rules = ways(stone, scene, settings, turns=False)[-1]._replace(lean=0.0, stop=-1.0)
+    found = settle(stone.corners, stone.edges, (*start, 0.0), scene.polygons, scene.width_px, rules)
+    if found.status not in (Status.RESTS, Status.FALLS):
+        return None
+    return repose(stone, scene, found)
+
+
+def ways(
+    stone: Turned, scene: Scene, settings: SettleSettings, *, turns: bool = True
+) -> tuple[Rules, ...]:
+    """Return the ways of settling that are tried, one after the other."""
+    size = stone.size_px
+    plain = Rules(
+        lean=settings.lean,
+        stop=-1.0,
+        mu=scene.mu,
+        clearance=settings.clearance_px,
+        # What carries a stone must do so at half the contact tolerance as well.
+        tolerance=0.5 * settings.contact_px,
+        corner=CORNER * settings.clearance_px,
+        near=NEAR * size,
+        far=FAR * size,
+        turn=math.radians(settings.max_turn_deg),
+        shift=settings.max_shift * size,
+        gain=GAIN * size,
+        overlap=OVERLAP_PX,
+        sticks=False,
+        turns=turns,
+        steps=settings.max_steps,
+    )
+    if settings.method == "pivot":
+        return (plain._replace(lean=0.0, stop=settings.margin, sticks=True),)
+    # What slides away when it is pushed may rest where it is let go.
+    return plain, plain._replace(lean=0.0), plain._replace(lean=0.0, stop=settings.margin)
+
+
+def repose(stone: Turned, scene: Scene, found: Settling) -> Repose:
+    """Return where a settling ended, in the wall frame."""
+    sign = 1.0 if scene.side == "left" else -1.0
+    x = found.x if scene.side == "left" else scene.width_px - found.x
+    angle_deg = stone.angle_deg + sign * math.degrees(found.angle)
+    angle_deg = (angle_deg + 180.0) % 360.0 - 180.0
+    x, y = on_grid(np.array([x, found.y])).tolist()
+    corners = placed_outline(stone.outline, angle_deg, x, y)
+    return Repose(Settled(x, y, corners), angle_deg, found.angle != 0.0, found.margin)
+
+
+def placed_outline(outline: Points, angle_deg: float, x_px: float, y_px: float) -> Points:
+    """Return an outline turned by an angle, with its centroid at a place of the wall frame."""
+    corners = turn(outline, angle_deg)
+    corners[:, 0] += x_px
+    corners[:, 1] += y_px
+    return corners

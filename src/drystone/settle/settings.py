@@ -1,0 +1,70 @@
+"""Settings of exact settling."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+Method = Literal["energy", "pivot"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SettleSettings:
+    """How stones settle on the outlines of others (§3.7; DESIGN 4.9).
+
+    Lengths in source px; `size` is the root of a stone's area.
+
+    Parameters
+    ----------
+    method : {"energy", "pivot"}
+        ``"energy"``: down to the least energy without friction, gravity leaning to the building
+        side; ``"pivot"``: as the paper words it, a stone rolls about its supporting point without
+        slipping until it rests.
+    outline_px : float
+        How far outlines may stay away from the contour of the pixels.
+    clearance_px : float
+        Gap that settled stones keep.
+    contact_px : float
+        Gaps up to this one are contacts, in the rest test and in the limit analysis.
+    lean : float
+        Gravity to the building side over gravity downwards, for ``"energy"``.
+    margin : float
+        How far gravity may lean at least until the settled stone moves on rigid neighbours, over
+        mu.
+    max_turn_deg : float
+        Largest turn while settling.
+    max_shift : float
+        Largest shift aside, over the stone's size.
+    max_steps : int
+        Most steps.
+    spots : int
+        Places that are proposed for each pose.
+    apart : float
+        Least distance between these, over the stone's size.
+    shortlist : int
+        Proposals that are settled in a step, the cheapest ones.
+    per_stone : int
+        Most of them of one stone.
+    """
+
+    method: Method = "energy"
+    outline_px: float = 0.35
+    clearance_px: float = 0.01
+    contact_px: float = 0.1
+    lean: float = 0.3
+    margin: float = 0.2
+    max_turn_deg: float = 12.0
+    max_shift: float = 0.5
+    max_steps: int = 60
+    spots: int = 3
+    apart: float = 0.2
+    shortlist: int = 24
+    per_stone: int = 4
+
+    def __post_init__(self) -> None:
+        if self.method not in ("energy", "pivot"):
+            raise ValueError(f"unknown way of settling {self.method!r}")
+        if not 0 < 2 * self.clearance_px <= self.contact_px or self.outline_px <= 0:
+            raise ValueError("clearance must be above 0, contact_px at least twice as much")
+        if min(self.lean, self.margin, self.max_turn_deg, self.max_shift, self.apart) < 0:
+            raise ValueError("lean, margin and limits must not be negative")
+        if min(self.max_steps, self.spots, self.shortlist, self.per_stone) < 1:
+            raise ValueError("steps, spots and the shortlist must be positive")

@@ -1,0 +1,116 @@
+"""The stones and wedges of a plan as polygons, from its poses alone."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import shapely
+
+from drystone.errors import PlanError
+from drystone.kernels.polygons import Points
+from drystone.model.plan import Plan, WedgeStep
+from drystone.model.site import Site
+from drystone.model.stone import OUTLINE_TOLERANCE_PX, StoneSet
+from drystone.verify.exact_replay import settled_stone
+from drystone.verify.lengths import plan_settings, plan_site, source_points
+from drystone.verify.overlap import NO_AREA_PX, shape_of
+from drystone.verify.pieces import Step, grouped, piece_id
+
+Group = tuple[tuple[int, Points], ...]
+"""A stone and its wedges, the stone first: ids and corners."""
+
+
+def plan_polygons(plan: Plan, stones: StoneSet) -> tuple[Group, ...]:
+    """Return every stone with its wedges where the plan puts them.
+
+    A stone is its outline, also when the plan was made on the raster; what overlaps is not
+    pushed apart.
+
+    Parameters
+    ----------
+    plan : Plan
+        What to build.
+    stones : StoneSet
+        The stones that it was made from.
+
+    Returns
+    -------
+    tuple of tuple of (int, (n, 2) float array)
+        In the order of placement: ids and corners in the wall frame, source px,
+        counter-clockwise, not closed.  Steps that place nothing are left out: stones that are
+        not there (E212), ids that came before (E213), polygons without an area (E222).
+
+    Raises
+    ------
+    PlanError
+        E215: the wall is too large or too small to be an image.
+    """
+    settings, _ = plan_settings(plan)
+    exact = settings.geometry == "exact"
+    outline_px = settings.settle.outline_px if exact else OUTLINE_TOLERANCE_PX
+    site = plan_site(plan)
+    found: list[Group] = []
+    used: set[int] = set()
+    for steps in grouped(plan.steps)[0]:
+        group = []
+        for step in steps:
+            corners = None
+            if piece_id(step) not in used:
+                corners = _corners(step, stones, site, outline_px)
+            if corners is not None:
+                used.add(piece_id(step))
+                group.append((piece_id(step), corners))
+        if group:
+            found.append(tuple(group))
+    return tuple(found)
+
+
+def common_areas(polygons: Mapping[int, Points], blocks: Sequence[int]) -> tuple[Points, ...]:
+    """Return what some blocks have in common with any others, as polygons.
+
+    Parameters
+    ----------
+    polygons : mapping of int to (n, 2) float array
+        All blocks.
+    blocks : sequence of int
+        Those that are asked for.
+
+    Examples
+    --------
+    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
+    >>> [len(area) for area in common_areas({1: square, 2: square + [1, 1]}, [2])]
+    [4]
+    """
+    shapes = {block: shape_of(corners) for block, corners in polygons.items()}
+    areas = []
+    for block in blocks:
+        for other, shape in shapes.items():
+            # Of two that are both asked for only one comes first.
+            if other != block and not (other in blocks and other < block):
+                common = shapely.get_parts(shapely.intersection(shapes[block], shape))
+                areas += [part for part in common if part.area > NO_AREA_PX]
+    return tuple(_ring(area) for area in areas if isinstance(area, shapely.Polygon))
+
+
+def _corners(step: Step, stones: StoneSet, site: Site, outline_px: float) -> Points | None:
+    """Return the polygon of a step; None when there is none."""
+    if isinstance(step, WedgeStep):
+        return _simple(source_points(step.polygon, site)) if len(step.polygon) > 2 else None
+    try:
+        return _simple(settled_stone(step, stones, site, outline_px).corners)
+    except PlanError:
+        # E201: the plan names a stone that is not there; the caller sees that it is missing.
+        return None
+
+
+def _simple(corners: Points) -> Points | None:
+    """Return the polygon, or the largest part of one that crosses itself."""
+    shape = shapely.Polygon(corners)
+    if shape.is_valid and shape.exterior.is_ccw:
+        return corners
+    parts = [p for p in shapely.get_parts(shape_of(corners)) if isinstance(p, shapely.Polygon)]
+    largest = max(parts, key=lambda part: part.area, default=None)
+    return None if largest is None or largest.area < NO_AREA_PX else _ring(largest)
+
+
+def _ring(shape: shapely.Polygon) -> Points:
+    return np.asarray(shapely.get_coordinates(shapely.orient_polygons(shape).exterior)[:-1])

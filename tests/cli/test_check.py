@@ -1,0 +1,244 @@
+"""`drystone check` in the engine, and its pictures of what fails."""
+
+import json
+import sys
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+from matplotlib.image import imread
+
+from drystone.cli import check_physics, check_picture
+from drystone.cli.main import main
+from drystone.physics.building import ROUNDED, BuildSettings, build_up, tilt_of
+from drystone.physics.scatter import Variation
+from drystone.physics.tilt import TiltSettings
+from tests.cli.conftest import Run
+
+NO_ENGINE = "pymunk is not installed (extra `physics`)"
+
+Tamper = Callable[[dict[str, Any]], Any]
+
+
+def change(folder: Path, tamper: Tamper) -> None:
+    """Rewrite the plan in a folder."""
+    path = folder / "plan.json"
+    plan = json.loads(path.read_text(encoding="utf-8"))
+    tamper(plan)
+    path.write_text(json.dumps(plan), encoding="utf-8")
+
+
+def lift(plan: dict[str, Any]) -> None:
+    """Let the last stone hang in the air, under a higher sky."""
+    plan["steps"][-1]["centroid"][1] += 3.0
+    plan["wall"]["height"] += 9.0
+
+
+def push(plan: dict[str, Any]) -> None:
+    """Push the second stone into its neighbours."""
+    plan["steps"][1]["centroid"][0] += 4.0
+
+
+def is_picture(path: Path) -> bool:
+    """Read it; an all-white one is none."""
+    picture = imread(path)
+    return picture.ndim == 3 and bool(picture[..., :3].std() > 0.01)
+
+
+def test_a_wall_that_stands(plan_copy: Path, run: Run) -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    report = run("check", plan_copy, "--physics", "--json").json()
+    physics, metrics = report["physics"], report["metrics"]
+    assert (report["ok"], physics["fallen"], physics["first_fall"]) == (True, [], None)
+    assert 0.0 < physics["largest_move"] < 3.0
+    for side in ("left", "right"):
+        assert physics[f"alpha_{side}"] == metrics[f"alpha_{side}"]
+        # The same physics, by forces and by motion; on the raster not quite the same joints.
+        assert physics[f"tilt_{side}"] == pytest.approx(metrics[f"alpha_{side}"], rel=0.15)
+    placed = [s["stone"] for s in json.loads((plan_copy / "plan.json").read_text())["steps"]]
+    assert [move["id"] for move in physics["moves"]] == placed
+    assert not (plan_copy / "check.png").exists()
+
+
+def test_a_wall_that_stands_in_words(
+    plan_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    rough = Variation("rough", ROUNDED, TiltSettings(coarse=0.3, fine=0.3))
+    monkeypatch.setattr(check_physics, "tilt_of", partial(tilt_of, variations=(rough,)))
+    ran = run("check", plan_copy, "--physics")
+    assert ran.code == 0
+    assert ": holds\n" in ran.out
+    assert "in the engine          stands; nothing moves by more than " in ran.out
+    metrics = json.loads((plan_copy / "plan.json").read_text())["metrics"]
+    for side in ("left", "right"):
+        (tilted,) = (row for row in ran.out.splitlines() if f"tilted to the {side}" in row)
+        assert "falls at alpha = 0.450; " in tilted
+        assert f"limit analysis {metrics[f'alpha_{side}']:.3f}" in tilted
+
+
+def test_a_stone_that_falls_is_named_and_drawn(
+    plan_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A fall is a failed check only where the engine was asked."""
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    # By this measure the stone that settles by a px has fallen.
+    strict = partial(build_up, settings=BuildSettings(moved_share=0.03))
+    monkeypatch.setattr(check_physics, "build_up", strict)
+    assert run("check", plan_copy).code == 0
+    assert not (plan_copy / "check.png").exists()
+    ran = run("check", plan_copy, "--physics")
+    assert ran.code == 5
+    assert ": holds, but falls in the engine\n" in ran.out
+    assert "  falls                stone " in ran.out
+    assert "not tilted" in ran.out
+    assert f"{plan_copy / 'check.png'}\n" in ran.out
+    assert is_picture(plan_copy / "check.png")
+    again = run("check", plan_copy, "--physics", "--json")
+    report = again.json()
+    assert (again.code, report["ok"]) == (5, False)
+    assert report["problems"] == []
+    assert report["picture"] == str(plan_copy / "check.png")
+    physics = report["physics"]
+    assert physics["fallen"]
+    assert f"after step {physics['first_fall']}\n" in ran.out
+    assert [move["id"] for move in physics["moves"] if move["fell"]] == physics["fallen"]
+    assert (physics["tilt_left"], physics["tilt_right"]) == (None, None)
+
+
+def test_what_hangs_in_the_air_falls(plan_copy: Path, run: Run) -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    change(plan_copy, lift)
+    last = json.loads((plan_copy / "plan.json").read_text())["steps"][-1]
+    report = run("check", plan_copy, "--physics", "--json").json()
+    assert report["physics"]["fallen"] == [last["stone"]]
+    assert report["physics"]["first_fall"] == last["step"]
+
+
+def test_a_wall_with_a_stone_missing_is_not_built(plan_copy: Path, run: Run) -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    change(plan_copy, lambda plan: plan["steps"][0].update(stone=99))
+    ran = run("check", plan_copy, "--physics")
+    assert ran.code == 5
+    assert "not built there, as a step of the plan places nothing" in ran.out
+    assert run("check", plan_copy, "--physics", "--json").json()["physics"] is None
+
+
+def test_without_the_engine(plan_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pymunk", None)
+    ran = run("check", plan_copy, "--physics")
+    assert ran.code == 2
+    assert "E305" in ran.err
+    assert ran.out == ""
+    assert run("check", plan_copy).code == 0
+
+
+@pytest.mark.parametrize(("tamper", "code"), [(push, "E221"), (lift, "E230")])
+def test_what_fails_is_drawn(tamper: Tamper, code: str, plan_copy: Path, run: Run) -> None:
+    change(plan_copy, tamper)
+    ran = run("check", plan_copy)
+    path = plan_copy / "check.png"
+    assert ran.code == 5
+    assert code in ran.out
+    assert f"picture  {path}\n" in ran.out
+    assert is_picture(path)
+    assert (
+        f"picture  {path} (in place of that of an earlier check)\n" in run("check", plan_copy).out
+    )
+
+
+def test_views_of_an_overlap(plan_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    views = _views(plan_copy, push, run, monkeypatch)
+    second = json.loads((plan_copy / "plan.json").read_text())["steps"]
+    assert views[0].title.startswith("E221 step ")
+    # What is named by the problem, with what it has in common with its neighbours.
+    assert set(views[0].concerned) < {step["stone"] for step in second}
+    assert views[0].concerned
+    assert views[0].common
+    assert views[0].size == (100.0, 36.0)
+    assert len(views[0].planned) == len(second)
+
+
+def test_views_of_a_wall_that_does_not_stand(
+    plan_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    views = _views(plan_copy, lift, run, monkeypatch)
+    last = json.loads((plan_copy / "plan.json").read_text())["steps"][-1]["stone"]
+    view = next(view for view in views if view.title.startswith("E230 step "))
+    # An unstable wall may fall in many ways; in any of them this stone goes down.
+    assert last in view.concerned
+    down = view.ended[last] - view.planned[last]
+    assert (down[:, 1] < -1.0).all()
+    assert "begins to fall" in view.title
+
+
+def _views(
+    folder: Path, tamper: Tamper, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> list[check_picture.FailureView]:
+    """Return what a check draws of a tampered plan."""
+    seen: list[check_picture.FailureView] = []
+    draw = check_picture.plot_failures
+
+    def keep(views: list[check_picture.FailureView]) -> object:
+        seen.extend(views)
+        return draw(views)
+
+    monkeypatch.setattr(check_picture, "plot_failures", keep)
+    change(folder, tamper)
+    assert run("check", folder).code == 5
+    return seen
+
+
+def test_claims_that_cannot_be_seen_are_not_drawn(plan_copy: Path, run: Run) -> None:
+    change(plan_copy, lambda plan: plan["metrics"].update(F_LR=0.99))
+    ran = run("check", plan_copy)
+    assert ran.code == 5
+    assert "picture" not in ran.out
+    assert not (plan_copy / "check.png").exists()
+    assert "picture" not in run("check", plan_copy, "--json").json()
+
+
+def test_a_picture_where_it_is_asked_for(plan_copy: Path, tmp_path: Path, run: Run) -> None:
+    path = tmp_path / "new" / "wall.png"
+    ran = run("check", plan_copy, "--picture", path)
+    assert ran.code == 0
+    assert f"picture  {path}\n" in ran.out
+    assert is_picture(path)
+    refused = run("check", plan_copy, "--picture", path)
+    assert (refused.code, refused.out) == (2, "")
+    assert "E129" in refused.err
+    assert run("check", plan_copy, "--picture", path, "--overwrite").code == 0
+    assert "E139" in run("check", plan_copy, "--picture", tmp_path / "wall.jpg").err
+    change(plan_copy, push)
+    before = path.read_bytes()
+    assert run("check", plan_copy, "--picture", path, "--overwrite").code == 5
+    assert path.read_bytes() != before
+    assert not (plan_copy / "check.png").exists()
+
+
+def test_a_folder_that_takes_no_picture(
+    plan_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    change(plan_copy, push)
+    monkeypatch.setattr(check_picture, "save", refuse)
+    ran = run("check", plan_copy)
+    assert ran.code == 5
+    assert "E221" in ran.out
+    assert "picture  not written: " in ran.out
+    assert "Permission denied; give a place with --picture" in ran.out
+    report = run("check", plan_copy, "--json").json()
+    assert report["picture"] is None
+
+
+def test_a_plan_without_stones_has_no_picture(plan_copy: Path, tmp_path: Path, run: Run) -> None:
+    change(plan_copy, lambda plan: plan.update(steps=[]))
+    path = tmp_path / "none.png"
+    ran = run("check", plan_copy, "--picture", path)
+    assert ran.code == 5
+    assert not path.exists()
+    assert main(["check", str(plan_copy)]) == 5

@@ -1,0 +1,258 @@
+"""Shares of cells, compiled and NumPy, against the common area with every cell."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels import coverage as kernel_module
+from drystone.kernels.backend import compiled
+from drystone.kernels.coverage import (
+    Grid,
+    coverage,
+    coverage_numpy,
+    newly_filled,
+    newly_filled_numpy,
+    windows,
+)
+from drystone.kernels.polygons import Points
+from drystone.kernels.raster import turn
+from tests.naive import coverage as naive
+from tests.polygons import random_polygon, simple_polygons
+from tests.strategies import repeatable
+
+FAST = compiled("coverage")
+WITHOUT = pytest.mark.skipif(FAST is None, reason="kernels are not compiled here")
+KERNELS = [pytest.param(None, id="numpy"), pytest.param(FAST, id="compiled", marks=WITHOUT)]
+
+PLACES = st.one_of(
+    st.integers(-4, 4).map(float), st.floats(-30, 30), st.sampled_from([-1e-300, 1e-9, 2e5 + 0.3])
+)
+
+
+@pytest.fixture(autouse=True, scope="module", params=KERNELS)
+def kernel(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Everything here by NumPy, then by the compiled kernels."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(kernel_module, "_fast", request.param)
+        yield
+
+
+@repeatable(120)
+@given(polygon=simple_polygons(max_size=9.0), x=PLACES, y=PLACES)
+def test_shares_are_the_areas_in_common_with_each_cell(polygon: Points, x: float, y: float) -> None:
+    corners = polygon + np.array([x, y])
+    shares, left, bottom = coverage(corners)
+    expected, *corner = naive.coverage(corners)
+    assert (left, bottom) == tuple(corner)
+    # Far from the origin the corners themselves have fewer digits.
+    np.testing.assert_allclose(shares, expected, rtol=0, atol=1e-12 + 1e-15 * abs(x + 1j * y))
+
+
+@repeatable(60)
+@given(seed=st.integers(0, 10**6), corners=st.integers(3, 60), size=st.floats(20, 90))
+def test_shares_of_large_stones_add_up_to_their_area(seed: int, corners: int, size: float) -> None:
+    polygon = random_polygon(np.random.default_rng(seed), corners, size)
+    shares, _, _ = coverage(polygon)
+    assert shares.sum() == pytest.approx(shapely.Polygon(polygon).area, rel=1e-11)
+    assert shares.min() >= 0.0
+    assert shares.max() <= 1.0
+
+
+@repeatable(60)
+@given(polygon=simple_polygons(max_size=12.0), angle=st.floats(-180, 180), at=st.floats(0.1, 0.9))
+def test_two_parts_of_a_polygon_cover_what_it_covers(
+    polygon: Points, angle: float, at: float
+) -> None:
+    """Cut along a line: nothing is counted twice, nothing is lost."""
+    whole = turn(polygon, angle)
+    low, high = whole[:, 0].min(), whole[:, 0].max()
+    x = low + at * (high - low)
+    halves = (shapely.box(low - 1, -99, x, 99), shapely.box(x, -99, high + 1, 99))
+    total, left, bottom = coverage(whole)
+    found = np.zeros_like(total)
+    for half in halves:
+        parts = shapely.intersection(shapely.Polygon(whole), half)
+        for part in shapely.get_parts(parts):
+            if part.geom_type != "Polygon":
+                continue
+            ring = shapely.get_coordinates(part.exterior)[:-1]
+            ring = ring if part.exterior.is_ccw else ring[::-1]
+            shares, col, row = coverage(ring)
+            top = len(total) - (row - bottom) - len(shares)
+            found[top : top + len(shares), col - left : col - left + shares.shape[1]] += shares
+    np.testing.assert_allclose(found, total, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize(("x", "y"), [(0, 0), (-7, 3), (120, -45)])
+def test_cells_inside_are_full_and_cells_outside_empty_to_the_last_bit(x: int, y: int) -> None:
+    angle = np.arange(50) * (2.0 * np.pi / 50)
+    corners = np.column_stack([18.3 * np.cos(angle) + 0.1 + x, 11.7 * np.sin(angle) + 0.7 + y])
+    shares, left, bottom = coverage(corners)
+    shape = shapely.Polygon(corners)
+    for row in range(shares.shape[0]):
+        for col in range(shares.shape[1]):
+            cell = shapely.box(0, 0, 1, 1)
+            cell = shapely.transform(
+                cell,
+                lambda p, c=col, r=row: p + np.array([left + c, bottom + len(shares) - 1 - r]),
+            )
+            assert (shares[row, col] == 1.0) == shape.contains(cell)
+            assert (shares[row, col] == 0.0) == (shape.intersection(cell).area < 1e-12)
+
+
+def test_a_box_on_cell_edges_fills_its_cells() -> None:
+    shares, left, bottom = coverage(np.array([[3.0, -1.0], [5.0, -1.0], [5.0, 2.0], [3.0, 2.0]]))
+    assert (shares.tolist(), left, bottom) == ([[1.0, 1.0]] * 3, 3, -1)
+
+
+def test_row_0_is_at_the_top_and_column_0_on_the_left() -> None:
+    shares, left, bottom = coverage(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.0, 2.0]]))
+    assert (left, bottom) == (0, 0)
+    np.testing.assert_allclose(shares, [[1 / 3], [11 / 12]], atol=1e-15)
+    wide, _, _ = coverage(np.array([[0.0, 0.0], [2.0, 0.0], [0.0, 0.5]]))
+    np.testing.assert_allclose(wide, [[0.375, 0.125]], atol=1e-15)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1e-9, 1e-160])
+def test_a_speck_has_one_cell(size: float) -> None:
+    shares, left, bottom = coverage(size * np.array([[0.1, 0.2], [0.9, 0.2], [0.5, 0.8]]))
+    assert (shares.shape, left, bottom) == ((1, 1), 0, 0)
+    assert shares[0, 0] == pytest.approx(0.24 * size**2, abs=1e-12)
+
+
+@pytest.mark.parametrize("swap", [False, True])
+def test_a_polygon_without_area_covers_nothing(swap: bool) -> None:
+    flat = np.array([[0.0, 2.0], [3.0, 2.0], [1.5, 2.0]])
+    shares, *_ = coverage(flat[:, ::-1] if swap else flat)
+    assert shares.shape == ((3, 1) if swap else (1, 3))
+    assert not shares.any()
+
+
+def test_integers_are_corners_too() -> None:
+    assert coverage(np.array([[0, 0], [1, 0], [1, 1], [0, 1]]))[0].tolist() == [[1.0]]
+
+
+@pytest.mark.parametrize(
+    ("corners", "message"),
+    [
+        ([[0.0, 0.0], [1.0, 0.0]], "three corners"),
+        ([[0.0, 0.0, 1.0]] * 3, "three corners"),
+        ([0.0, 1.0, 2.0], "three corners"),
+        ([[0.0, 0.0], [1.0, 0.0], [np.nan, 1.0]], "finite"),
+        ([[0.0, 0.0], [1.0, -np.inf], [0.0, 1.0]], "finite"),
+    ],
+)
+def test_what_is_no_polygon_is_refused(corners: list[list[float]], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        coverage(np.array(corners))
+
+
+@WITHOUT
+@repeatable(300)
+@given(
+    polygon=simple_polygons(max_size=40.0),
+    angle=st.one_of(st.sampled_from([0.0, 45.0, 90.0]), st.floats(-180, 180)),
+    x=PLACES,
+    y=PLACES,
+)
+def test_compiled_shares_have_the_same_bits(
+    polygon: Points, angle: float, x: float, y: float
+) -> None:
+    corners = turn(polygon, angle) + np.array([x, y])
+    assert FAST is not None
+    fast, slow = FAST.coverage(corners), coverage_numpy(corners)
+    assert (fast[0].dtype, fast[0].shape) == (slow[0].dtype, slow[0].shape)
+    assert fast[0].tobytes() == slow[0].tobytes()
+    assert fast[1:] == slow[1:]
+
+
+Scene = tuple[Grid, Grid, int, int]
+
+
+@st.composite
+def scenes(draw: st.DrawFn) -> Scene:
+    """Shares on a grid, sums of quarters often, and a window anywhere about it."""
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    grid = draw(st.tuples(st.integers(1, 9), st.integers(1, 9)))
+    shape = draw(st.tuples(st.integers(1, 6), st.integers(1, 6)))
+    total, shares = rng.uniform(0.0, 1.0, grid), rng.uniform(0.0, 1.0, shape)
+    if draw(st.booleans()):
+        total, shares = np.floor(4.0 * total) / 4.0, np.floor(4.0 * shares) / 4.0
+    shares *= draw(st.sampled_from([1.0, 0.5, 0.1]))
+    return total, shares, draw(st.integers(-7, 10)), draw(st.integers(-7, 10))
+
+
+@repeatable(300)
+@given(scene=scenes())
+def test_newly_filled_cells_are_those_that_turn_to_half(scene: Scene) -> None:
+    total, _, _, _ = scene
+    expected = naive.newly_filled(*scene)
+    inside = all(0 <= r < total.shape[0] and 0 <= c < total.shape[1] for r, c in expected)
+    found = newly_filled(*scene)
+    if found is None:
+        assert not expected or not inside
+        return
+    mask, row, col = found
+    assert inside
+    assert {(row + i, col + j) for i, j in np.argwhere(mask).tolist()} == expected
+    assert mask[[0, -1]].any(axis=1).all()
+    assert mask[:, [0, -1]].any(axis=0).all()
+
+
+@WITHOUT
+@repeatable(300)
+@given(scene=scenes())
+def test_compiled_cells_are_the_same(scene: Scene) -> None:
+    assert FAST is not None
+    fast, slow = FAST.newly_filled(*scene), newly_filled_numpy(*scene)
+    assert (fast is None) == (slow is None)
+    if slow is not None:
+        assert fast[0].dtype == slow[0].dtype
+        np.testing.assert_array_equal(fast[0], slow[0])
+        assert fast[1:] == slow[1:]
+
+
+def test_half_is_filled_and_what_was_half_is_not_new() -> None:
+    total = np.array([[0.25, 0.5, 0.25, 0.0]])
+    shares = np.array([[0.25, 0.5, 0.24, 0.5]])
+    found = newly_filled(total, shares, 0, 0)
+    assert found is not None
+    assert (found[0].tolist(), found[1:]) == ([[True, False, False, True]], (0, 0))
+    third = np.full((1, 1), 1.0 / 3.0)
+    assert newly_filled(third, np.full((1, 1), 0.5 - 1.0 / 3.0 - 1e-13), 0, 0) is not None
+
+
+@pytest.mark.parametrize(("row", "col"), [(-1, 0), (0, -1), (2, 0), (0, 2)])
+def test_nothing_new_when_a_cell_outside_is_filled(row: int, col: int) -> None:
+    assert newly_filled(np.zeros((3, 3)), np.ones((2, 2)), row, col) is None
+
+
+@pytest.mark.parametrize(("row", "col"), [(-1, 1), (2, 1), (1, -1), (1, 2)])
+def test_a_little_outside_does_not_matter(row: int, col: int) -> None:
+    shares = np.full((2, 2), 0.4)
+    shares[int(row < 1), int(col < 1)] = 0.6
+    found = newly_filled(np.zeros((3, 3)), shares, row, col)
+    assert found is not None
+    assert (found[0].tolist(), found[1:]) == ([[True]], (max(row, 0), max(col, 0)))
+
+
+@repeatable(100)
+@given(
+    grid=st.tuples(st.integers(0, 6), st.integers(0, 6)),
+    shape=st.tuples(st.integers(0, 6), st.integers(0, 6)),
+    row=st.integers(-9, 9),
+    col=st.integers(-9, 9),
+)
+def test_windows_are_what_both_have(
+    grid: tuple[int, int], shape: tuple[int, int], row: int, col: int
+) -> None:
+    cells = np.arange(grid[0] * grid[1]).reshape(grid)
+    inside, part = windows(grid, shape, row, col)
+    wide = np.pad(cells, 20, constant_values=-1)
+    seen = wide[20 + row : 20 + row + shape[0], 20 + col : 20 + col + shape[1]]
+    np.testing.assert_array_equal(cells[inside], seen[part])
+    assert cells[inside].size == (seen >= 0).sum()

@@ -1,0 +1,254 @@
+"""The free space under a polygon: compiled and NumPy, against upright lines and shapely."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from drystone.kernels.backend import compiled
+from drystone.kernels.crevice import Crevice, between, crevice, crevice_numpy, gap_polygon, slabs
+from drystone.kernels.polygons import Points, Polygons, mirrored_polygon, no_polygons
+from tests.naive.crevice import gap_at
+from tests.settle.piles import WIDTH, moved, piles
+from tests.strategies import repeatable
+
+Kernel = Callable[[Points, Polygons, float], Crevice]
+
+CLEARANCE = 0.01
+
+
+def kernels() -> list[object]:
+    absent = pytest.mark.skipif(compiled("crevice") is None, reason="kernels are not compiled here")
+    return [
+        pytest.param(crevice_numpy, id="numpy"),
+        pytest.param(crevice, id="compiled", marks=absent),
+    ]
+
+
+def box(left: float, low: float, right: float, high: float) -> Points:
+    return np.array([[left, low], [right, low], [right, high], [left, high]])
+
+
+def extent(polygon: Points) -> tuple[float, float]:
+    return float(polygon[:, 0].min()), float(polygon[:, 0].max())
+
+
+def at(chain: Points, x: float) -> float:
+    """y of a chain at an x where it has no corner."""
+    stop = int(np.searchsorted(chain[:, 0], x))
+    (x0, y0), (x1, y1) = chain[stop - 1], chain[stop]
+    return float(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
+
+
+def away_from_corners(stone: Points, around: Polygons, share: float) -> float:
+    """An x below the stone that is not that of any corner."""
+    left, right = extent(stone)
+    x = left + share * (right - left)
+    assume(np.abs(np.concatenate([stone, around.corners])[:, 0] - x).min() > 1e-6)
+    return x
+
+
+def bodies(around: Polygons) -> shapely.Geometry:
+    ground = shapely.box(-100.0, -50.0, 200.0, 0.0)
+    return shapely.union_all(
+        [ground, *(shapely.Polygon(around.polygon(i)) for i in range(len(around)))]
+    )
+
+
+@pytest.mark.skipif(compiled("crevice") is None, reason="kernels are not compiled here")
+@repeatable(150)
+@given(
+    st.one_of(piles(6), piles(6, 0.0)), st.sampled_from([0.0, CLEARANCE, 0.5]), st.floats(0.0, 12.0)
+)
+def test_compiled_and_numpy_give_the_same_bits(
+    pile: tuple[Points, Polygons], clearance: float, sunk: float
+) -> None:
+    stone, around = pile
+    for y in (0.0, sunk):  # also where the stone stands in others
+        one = crevice(moved(stone, 0.0, -y), around, clearance)
+        two = crevice_numpy(moved(stone, 0.0, -y), around, clearance)
+        assert np.array_equal(one.lid, two.lid)
+        assert np.array_equal(one.floor, two.floor)
+
+
+@pytest.mark.parametrize("kernel", kernels())
+def test_boundaries_are_what_upright_lines_meet(kernel: Kernel) -> None:
+    @repeatable(100)
+    @given(piles(), st.lists(st.floats(0.001, 0.999), min_size=4, max_size=4))
+    def check(pile: tuple[Points, Polygons], shares: list[float]) -> None:
+        stone, around = pile
+        space = kernel(stone, around, 0.0)
+        for share in shares:
+            x = away_from_corners(stone, around, share)
+            floor, lid = gap_at(stone, around, x)
+            assert at(space.lid, x) == pytest.approx(lid, abs=1e-9)
+            assert at(space.floor, x) == pytest.approx(floor, abs=1e-9)
+
+    check()
+
+
+@pytest.mark.parametrize("kernel", kernels())
+def test_keeps_its_distance_and_gives_nothing_away(kernel: Kernel) -> None:
+    @repeatable(100)
+    @given(piles(), st.floats(0.0, 0.9), st.floats(0.02, 1.0), st.integers(0, 2**32 - 1))
+    def check(pile: tuple[Points, Polygons], start: float, run: float, seed: int) -> None:
+        stone, around = pile
+        left, right = extent(stone)
+        x = left + start * (right - left)
+        ends = x, min(x + run * (right - left), right)
+        piece = between(kernel(stone, around, CLEARANCE), *ends)
+        if piece is None:
+            return
+        shape, held, below = shapely.Polygon(piece), shapely.Polygon(stone), bodies(around)
+        assert shape.is_valid
+        assert shapely.LinearRing(piece).is_ccw
+        assert extent(piece) == ends
+        assert shape.distance(held) >= 0.9999 * CLEARANCE
+        assert shape.distance(below) >= 0.9999 * CLEARANCE
+        # What is a little further from both, all around, belongs to it.
+        rng = np.random.default_rng(seed)
+        reach = 1.4143 * CLEARANCE
+        around_it = reach * np.array([[np.cos(a), np.sin(a)] for a in np.arange(8) * np.pi / 4])
+        inside = ends[0] + 2 * reach, ends[1] - 2 * reach
+        for x in rng.uniform(*inside, 4) if inside[0] < inside[1] else ():
+            floor, lid = gap_at(stone, around, x)
+            point = np.array([x, rng.uniform(floor, lid)])
+            gaps = [(p, gap_at(stone, around, p[0])) for p in point + around_it]
+            if all(low < p[1] < high for p, (low, high) in gaps):
+                assert shape.intersects(shapely.Point(point).buffer(1e-9))
+
+    check()
+
+
+@pytest.mark.parametrize("kernel", kernels())
+def test_corners_are_near_what_they_belong_to(kernel: Kernel) -> None:
+    @repeatable(60)
+    @given(piles())
+    def check(pile: tuple[Points, Polygons]) -> None:
+        stone, around = pile
+        space = kernel(stone, around, CLEARANCE)
+        free = crevice(stone, around, 0.0)
+        for chain, body in ((space.lid, shapely.Polygon(stone)), (space.floor, bodies(around))):
+            before, after = np.roll(chain[:, 0], 1), np.roll(chain[:, 0], -1)
+            # Below an overhang a step is not at a face.
+            plain = (np.abs(before - chain[:, 0]) > 1e-6) & (np.abs(after - chain[:, 0]) > 1e-6)
+            steps = np.concatenate([c[:-1][np.diff(c[:, 0]) < 1e-9] for c in free])
+            for x, y in chain[plain][1:-1]:
+                if len(steps) == 0 or np.abs(steps[:, 0] - x).min() > 3 * CLEARANCE:
+                    assert shapely.distance(body, shapely.Point(x, y)) <= 1.4143 * CLEARANCE
+
+    check()
+
+
+@repeatable(60)
+@given(piles())
+def test_a_mirrored_scene_gives_the_mirrored_space(pile: tuple[Points, Polygons]) -> None:
+    stone, around = pile
+    left, right = extent(stone)
+    ends = left + 0.3 * (right - left), left + 0.8 * (right - left)
+    one = gap_polygon(stone, around, *ends, CLEARANCE)
+    other = gap_polygon(
+        mirrored_polygon(stone, WIDTH), around.mirrored(WIDTH), WIDTH - ends[1], WIDTH - ends[0],
+        CLEARANCE,
+    )  # fmt: skip
+    assert (one is None) == (other is None)
+    if one is not None and other is not None:
+        shapes = [shapely.Polygon(one), shapely.Polygon(mirrored_polygon(other, WIDTH))]
+        assert shapely.hausdorff_distance(*shapes) < 1e-9
+
+
+def test_a_corner_of_the_stone_gets_a_corner_of_the_wedge() -> None:
+    stone = np.array([[0.0, 4.0], [3.0, 3.0], [6.0, 4.0], [6.0, 9.0], [0.0, 9.0]])
+    piece = gap_polygon(stone, no_polygons(), 1.0, 5.0, 0.1)
+    assert piece is not None
+    fall = 0.1 * np.hypot(1.0, 1.0 / 3.0)  # of an edge of slope 1/3 moved along its normal
+    expected = [
+        [1.0, 0.1], [5.0, 0.1], [5.0, 3.0 + 2.0 / 3.0 - fall], [3.0, 3.0 - fall],
+        [1.0, 3.0 + 2.0 / 3.0 - fall],
+    ]  # fmt: skip
+    assert piece == pytest.approx(np.array(expected))
+
+
+def test_a_step_below_is_kept_as_a_step() -> None:
+    """One corner stands out and stays at a distance on both of its sides, one does not."""
+    piece = gap_polygon(box(0, 5, 6, 8), no_polygons().added([box(0, 0, 3, 2)]), 1.0, 5.0, 0.1)
+    assert piece is not None
+    expected = [[1, 2.1], [3.1, 2.1], [3.1, 0.1], [5, 0.1], [5, 4.9], [1, 4.9]]
+    assert piece == pytest.approx(np.array(expected))
+
+
+def test_an_acute_corner_is_cut_off() -> None:
+    """The tip of a stone below, 26.6 degrees: moved edges would meet 4.2 clearances from it."""
+    spike = np.array([[3.0, 0.0], [5.0, 0.0], [4.0, 2.0]])
+    space = crevice(box(0, 5, 8, 8), no_polygons().added([spike]), 0.1)
+    top = space.floor[space.floor[:, 1] > 2.0]
+    assert len(top) == 2
+    assert shapely.distance(shapely.Polygon(spike), shapely.points(top)).max() < 0.1415
+    assert shapely.distance(shapely.Polygon(spike), shapely.LineString(top)) >= 0.1
+
+
+def test_only_what_is_met_first_counts() -> None:
+    """A shelf hides what is below it; what is above the stone or in a hollow of it is not below."""
+    shelf, lid, hidden = box(0, 3, 4, 4), box(0, 20, 9, 21), box(1, 0, 3, 2)
+    arch = np.array([[0, 6], [2, 6], [2, 9], [6, 9], [6, 6], [8, 6], [8, 12], [0, 12]], float)
+    in_it = box(3, 7, 5, 8)
+    scene = no_polygons().added([shelf, lid, hidden, in_it])
+    space = crevice(arch, scene, 0.0)
+    assert space.floor.tolist() == [[0, 4], [3, 4], [3, 8], [5, 8], [5, 0], [8, 0]]
+    assert space.lid.tolist() == [[0, 6], [2, 6], [2, 9], [6, 9], [6, 6], [8, 6]]
+
+
+def test_edges_that_go_on_in_a_line_need_no_corner_more() -> None:
+    """A corner of another polygon far below leaves no trace in the chains."""
+    space = crevice(box(0, 5, 6, 8), no_polygons().added([box(0, 1, 6, 2), box(2, 0, 4, 0.5)]), 0.0)
+    assert space.lid.tolist() == [[0, 5], [6, 5]]
+    assert space.floor.tolist() == [[0, 2], [6, 2]]
+
+
+def test_no_piece_where_the_space_closes() -> None:
+    stone = np.array([[0.0, 2.0], [3.0, 0.5], [6.0, 2.0], [6.0, 5.0], [0.0, 5.0]])
+    assert gap_polygon(stone, no_polygons(), 0.5, 5.5, 0.1) is not None
+    assert gap_polygon(stone, no_polygons(), 0.5, 5.5, 0.3) is None
+    assert gap_polygon(stone, no_polygons(), 0.5, 2.0, 0.3) is not None
+    assert gap_polygon(moved(stone, 0.0, -0.6), no_polygons(), 0.5, 5.5, 0.0) is None
+
+
+def test_no_piece_in_a_polygon() -> None:
+    """A stone that stands in another has no space there, though there is some further down."""
+    table = np.array([[0, 3], [6, 3], [6, 5], [0, 5]], float)
+    assert gap_polygon(box(1, 4, 5, 7), no_polygons().added([table]), 2.0, 4.0, 0.0) is None
+    assert gap_polygon(box(1, 6, 5, 7), no_polygons().added([table]), 2.0, 4.0, 0.0) is not None
+
+
+def test_two_halves_that_meet_in_a_point_are_no_piece() -> None:
+    """At one x the floor rises to the height down to which the lid falls."""
+    stone = np.array([[0, 2], [3, 2], [3, 5], [6, 5], [6, 9], [0, 9]], float)
+    scene = no_polygons().added([box(3, 0, 7, 2)])
+    assert gap_polygon(stone, scene, 1.0, 5.0, 0.0) is None
+    assert gap_polygon(stone, no_polygons().added([box(3, 0, 7, 1.9)]), 1.0, 5.0, 0.0) is not None
+
+
+def test_what_stands_just_beside_a_line_keeps_its_distance() -> None:
+    """A post whose face is half a clearance left of the piece, and one beside the stone's end."""
+    posts = no_polygons().added([box(0, 0, 2, 3), box(8.05, 0, 9, 3)])
+    piece = gap_polygon(box(0, 4, 8, 6), posts, 2.05, 8.0, 0.1)
+    assert piece is not None
+    assert shapely.Polygon(piece).distance(bodies(posts)) == pytest.approx(0.1)
+
+
+def test_lines_must_be_below_the_stone_and_in_order() -> None:
+    for ends in ((-0.1, 2.0), (1.0, 4.1), (2.0, 2.0), (3.0, 1.0)):
+        with pytest.raises(ValueError, match="not in order below"):
+            gap_polygon(box(0, 1, 4, 2), no_polygons(), *ends, 0.1)
+
+
+def test_slabs_are_cut_at_all_corners() -> None:
+    stone = np.array([[0.0, 4.0], [3.0, 3.0], [6.0, 4.0], [6.0, 9.0], [0.0, 9.0]])
+    space = crevice(stone, no_polygons().added([box(2, 0, 9, 1)]), 0.0)
+    x, low, high = slabs(space, 1.0, 5.0)
+    assert x.tolist() == [1, 2, 3, 5]
+    assert low.tolist() == [[0, 0], [1, 1], [1, 1]]
+    assert high == pytest.approx(np.array([[11, 10], [10, 9], [9, 11]]) / 3.0)

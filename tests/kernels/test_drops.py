@@ -1,0 +1,378 @@
+"""Stones dropped onto height profiles, compiled and NumPy, against loops over all columns."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels import drops as module
+from drystone.kernels.backend import compiled
+from drystone.kernels.drops import DropTerms, drops, drops_numpy
+from drystone.kernels.polygons import Points, mirrored_polygon
+from drystone.kernels.profiles import HeightProfile, StoneProfile, bare, hanging, raised
+from tests.naive.drops import all_drops, craft
+from tests.polygons import random_polygon
+from tests.strategies import Draw, repeatable
+
+FAST = compiled("drops")
+KERNELS = [
+    pytest.param(None, id="numpy"),
+    pytest.param(
+        FAST,
+        id="compiled",
+        marks=pytest.mark.skipif(FAST is None, reason="kernels are not compiled here"),
+    ),
+]
+WEIGHTS = ("height", "void", "gap", "slot", "headroom", "step", "joint", "unbalanced")
+
+
+@pytest.fixture(autouse=True, scope="module", params=KERNELS)
+def kernel(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Everything here by NumPy, then by the compiled kernel."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "_fast", request.param)
+        yield
+
+
+def block(left: float, bottom: float, width: float, height: float) -> Points:
+    right, top = left + width, bottom + height
+    return np.array([[left, bottom], [right, bottom], [right, top], [left, top]], np.float64)
+
+
+def moved(polygon: Points, x: float, y: float) -> Points:
+    return np.asarray(polygon + np.array([x, y]))
+
+
+def wall_of(polygons: list[Points], columns: int, cell: float) -> HeightProfile:
+    profile = bare(columns)
+    for index, polygon in enumerate(polygons):
+        profile = raised(profile, polygon, index, cell)
+    return profile
+
+
+def terms_of(**changes: object) -> DropTerms:
+    """A wall of 40 x 20 px, nothing of which the others could fill; only what is given costs."""
+    terms = DropTerms(
+        2.0, 40.0, 20.0, 0.0, 0.0, 5.0, 4.0, 32.0, *[0.0] * 8, np.arange(21), np.arange(11)
+    )
+    return terms._replace(**changes)
+
+
+Scene = tuple[HeightProfile, StoneProfile, DropTerms]
+
+
+@st.composite
+def scenes(draw: Draw) -> Scene:
+    """A wall of a few stones that were dropped at random, another stone, and random weights.
+
+    Half the walls are of bricks on the grid, which makes equal costs.
+    """
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    cell = draw(st.sampled_from([0.5, 1.0, 2.0, 1 / 0.35]))
+    columns = draw(st.integers(1, 30))
+    bricks = draw(st.booleans())
+    profile = bare(columns)
+    for index in range(draw(st.integers(0, 7))):
+        polygon = _stone(rng, cell, bricks)
+        hung = hanging(polygon, cell)
+        n = len(hung.bottoms)
+        if n <= columns:
+            place = int(rng.integers(0, columns - n + 1))
+            lift = float((profile.tops[place : place + n] - hung.bottoms).max())
+            profile = raised(profile, moved(polygon, place * cell - hung.left, lift), index, cell)
+    weights = rng.choice([0.0, 0.5, 1.5], 8)
+    if draw(st.integers(0, 3)) == 0:
+        weights[rng.integers(0, 8)] = -0.5
+    high = float(max(profile.tops.max(), 4.0 * cell))
+    rest = rng.integers(0, 9, (2, 40))
+    terms = DropTerms(
+        cell,
+        (columns - draw(st.sampled_from([0.0, 0.4]))) * cell,
+        high * draw(st.sampled_from([0.7, 1.3, 2.0])),
+        draw(st.sampled_from([0.0, 1.0])) * cell,
+        draw(st.sampled_from([0.0, 0.02])),
+        *(rng.choice([0.5, 3.0]) * cell, 4.0 * cell, 16.0 * cell**2),
+        *weights.tolist(),
+        rest[0, : draw(st.integers(1, 40))],
+        rest[1, : draw(st.integers(1, 40))],
+    )
+    return profile, hanging(_stone(rng, cell, bricks), cell), terms
+
+
+def _stone(rng: np.random.Generator, cell: float, brick: bool) -> Points:
+    if brick:
+        width, height = rng.integers(1, 7, 2) * cell
+        return block(-width / 2, -height / 2, width, height)
+    return random_polygon(rng, int(rng.integers(3, 12)), float(rng.uniform(1.5, 12.0)) * cell)
+
+
+@repeatable(250)
+@given(
+    scene=scenes(), constant=st.floats(-2.0, 2.0), count=st.integers(0, 5), apart=st.integers(0, 6)
+)
+def test_the_cheapest_places_are_those_of_a_loop_over_all(
+    scene: Scene, constant: float, count: int, apart: int
+) -> None:
+    profile, stone, terms = scene
+    cell = terms.cell_px
+    found = drops(profile, stone, terms, constant, count, apart * cell)
+    known = dict(enumerate(all_drops(profile, stone, terms, constant)))
+    free = {place: drop for place, drop in known.items() if drop is not None}
+    for x, y, cost, lean in found.tolist():
+        place = round(x / cell)
+        assert x == place * cell
+        lift, expected, leaning = free[place]
+        assert y == lift + terms.clearance_px
+        assert (cost, lean) == pytest.approx((expected, leaning), abs=1e-9)
+        assert cost <= min(drop[1] for drop in free.values()) + 1e-9
+        free = {other: d for other, d in free.items() if abs(other - place) >= max(1, apart)}
+    assert len(found) == count or not free
+
+
+@pytest.mark.skipif(FAST is None, reason="kernels are not compiled here")
+@repeatable(150)
+@given(scene=scenes(), count=st.integers(0, 40), apart=st.integers(1, 6))
+def test_both_kernels_give_the_same_bits(scene: Scene, count: int, apart: int) -> None:
+    profile, stone, terms = scene
+    places = len(all_drops(profile, stone, terms, 0.25))
+    if not places:
+        return
+    for part in (*profile, stone.bottoms, stone.tops):
+        part.flags.writeable = False
+    expected = drops_numpy(profile, stone, terms, 0.25, (places, apart, count))
+    found = FAST.drops(profile, stone, terms, 0.25, (places, apart, count))
+    assert found.shape == expected.shape
+    assert found.tobytes() == expected.tobytes()
+
+
+def test_views_from_the_end_are_read_as_they_are() -> None:
+    profile = wall_of([block(0, 0, 6, 4), block(10, 0, 4, 3)], 20, 2.0)
+    turned = HeightProfile(profile.tops[::-1], profile.owners[::-1], profile.boxes)
+    copied = HeightProfile(*(part.copy() for part in turned))
+    stone = hanging(block(-4, -3, 8, 6), 2.0)
+    terms = terms_of(**dict.fromkeys(WEIGHTS, 1.0))
+    found = drops(turned, stone, terms, 0.0, 20, 0.0)
+    assert found.tolist() == drops(copied, stone, terms, 0.0, 20, 0.0).tolist()
+
+
+# On columns 2 px wide: A, then bare ground, B, bare ground, C up to the end of the wall.
+A, B, C = block(0, 0, 10, 8), block(20, 0, 4, 2), block(28, 0, 12, 6)
+
+# Of a block of 8 x 6 px at three places, for stones 4 px high and of 32 px.
+COSTS = {
+    # On the ground between A, which is 2 px away and 2 px higher, and C, 8 px away.
+    12.0: {"height": 3 / 4, "void": 0.0, "gap": 6 * 2 / 32, "slot": 4 * 2 * 6 / 32,
+           "headroom": 7 * 2 * 8 / 32, "step": 2 / 4, "joint": 0.5, "unbalanced": 0.0},
+    # Half on B, its top level with A's, which is 6 px away; B sticks out under neither end.
+    16.0: {"height": 5 / 4, "void": 2 * 4 / 32, "gap": 1.0, "slot": 2 * 2 * 6 / 32,
+           "headroom": 6 * 2 * 8 / 32, "step": 0.0, "joint": 0.0, "unbalanced": 0.0},
+    # Two px of it on C; A shares too few rows with it; joints at 24 (of B) and at 28 (of C).
+    22.0: {"height": 9 / 4, "void": 2 * (4 + 6 + 6) / 32, "gap": 1.0, "slot": 5 * 2 * 6 / 32,
+           "headroom": 4 * 2 * 8 / 32, "step": 0.0, "joint": 1 - (2 / 4 + 2 / 12) / 2,
+           "unbalanced": 2 / 8},
+    # At the end of the wall.
+    0.0: {"height": 11 / 4, "void": 0.0, "gap": 0.0, "slot": 16 * 2 * 6 / 32,
+          "headroom": 3 * 2 * 8 / 32, "step": 0.0, "joint": 1.0, "unbalanced": 0.0},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("x", COSTS)
+@pytest.mark.parametrize("name", WEIGHTS)
+def test_a_cost_is_what_one_finds_by_hand(name: str, x: float) -> None:
+    profile = wall_of([A, B, C], 20, 2.0)
+    stone = hanging(block(-4, -3, 8, 6), 2.0)
+    found = drops(profile, stone, terms_of(**{name: 1.0}), 0.0, 20, 0.0).tolist()
+    assert {row[0]: row[2] for row in found}[x] == pytest.approx(COSTS[x][name], abs=1e-12)
+    weighted = drops(profile, stone, terms_of(**{name: 2.0}), 0.5, 20, 0.0).tolist()
+    cost = {row[0]: row[2] for row in weighted}[x]
+    assert cost == pytest.approx(0.5 + 2.0 * COSTS[x][name], abs=1e-12)
+
+
+def test_costs_of_the_slow_twin_are_those_found_by_hand() -> None:
+    profile = wall_of([A, B, C], 20, 2.0)
+    stone = hanging(block(-4, -3, 8, 6), 2.0)
+    for x, expected in COSTS.items():
+        lift = {12.0: 3.0, 16.0: 5.0, 22.0: 9.0, 0.0: 11.0}[x]
+        assert craft(profile, stone, terms_of(), int(x / 2), lift)[0] == pytest.approx(expected)
+
+
+def cost_at(x: float, polygons: list[Points], name: str) -> float:
+    """One cost of a block of 8 x 6 px that comes down with its left end at x."""
+    profile, stone = wall_of(polygons, 20, 2.0), hanging(block(-4, -3, 8, 6), 2.0)
+    terms = terms_of(**{name: 1.0}, mean_height_px=1.0, height_px=40.0)
+    places = {row[0]: row for row in drops(profile, stone, terms, 0.0, 20, 0.0).tolist()}
+    return float(places[x][2])
+
+
+def test_the_gap_ends_at_what_is_as_high_as_the_middle() -> None:
+    assert cost_at(6.0, [block(0, 0, 4, 3)], "gap") == 6 * 2 / 32
+    assert cost_at(6.0, [block(0, 0, 4, 2.5)], "gap") == (6 * 2 + 3.5 * 4) / 32
+
+
+def test_a_neighbour_may_end_below_the_middle() -> None:
+    def tall(foot_px: float) -> list[Points]:
+        end = 14.0 + foot_px
+        return [
+            np.array([[10.0, 0.0], [end, 0.0], [end, 2.0], [14.0, 2.0], [14.0, 9.0], [10.0, 9.0]])
+        ]
+
+    assert cost_at(16.0, tall(6.0), "step") == 1.0
+    assert cost_at(16.0, tall(6.1), "step") == 0.0
+
+
+def test_of_neighbours_that_end_at_one_place_the_highest_counts() -> None:
+    low, high = block(0, 0, 10, 4), block(4, 4, 6, 3)
+    assert cost_at(10.0, [low, high], "step") == cost_at(10.0, [high, low], "step") == 1.0
+    assert cost_at(10.0, [low], "step") == 2.0
+
+
+def test_a_stone_less_than_half_a_pixel_up_stands_on_the_ground() -> None:
+    assert cost_at(16.0, [block(16, 0, 12, 0.9)], "joint") == 0.5
+    assert cost_at(16.0, [block(16, 0, 12, 1)], "joint") == 1 - (1.0 + 8 / 12) / 2
+
+
+def test_joints_up_to_the_middle_of_the_stone_count() -> None:
+    under = block(14, 0, 20, 2)
+    assert cost_at(16.0, [under, block(8, 0, 6, 5)], "joint") == 1 - (2 / 6 + 10 / 20) / 2
+    assert cost_at(16.0, [under, block(8, 0, 6, 5.1)], "joint") == 1 - (18 / 20 + 10 / 20) / 2
+
+
+def test_of_joints_equally_near_that_of_the_first_stone_counts() -> None:
+    one, two, three = block(14, 0, 8, 2), block(22, 0, 4, 2), block(26, 0, 8, 2)
+    assert cost_at(16.0, [one, two, three], "joint") == 1 - (6 / 8 + 2 / 4) / 2
+    assert cost_at(16.0, [one, three, two], "joint") == 1 - (6 / 8 + 2 / 8) / 2
+    one, two, three = block(8, 0, 6, 2), block(14, 0, 4, 2), block(18, 0, 12, 2)
+    assert cost_at(16.0, [one, two, three], "joint") == 1 - (2 / 6 + 6 / 12) / 2
+    assert cost_at(16.0, [two, one, three], "joint") == 1 - (2 / 4 + 6 / 12) / 2
+
+
+def test_a_column_and_a_half_above_something_is_not_on_it() -> None:
+    assert cost_at(12.0, [block(10, 0, 4, 3)], "unbalanced") == 2 / 8
+    assert cost_at(12.0, [block(10, 0, 4, 2.9)], "unbalanced") == 0.0
+
+
+def test_of_equal_costs_the_lower_place_comes_first_then_the_one_further_left() -> None:
+    profile = wall_of([block(0, 0, 8, 3), block(20, 0, 4, 3)], 20, 2.0)
+    stone = hanging(block(-4, -3, 8, 6), 2.0)
+    found = drops(profile, stone, terms_of(clearance_px=0.02), 0.75, 20, 4.0)
+    assert found.tolist() == [
+        [8.0, 3.02, 0.75, 0.0],
+        [12.0, 3.02, 0.75, 0.0],
+        [24.0, 3.02, 0.75, 0.0],
+        [28.0, 3.02, 0.75, 0.0],
+        [32.0, 3.02, 0.75, 0.0],
+        [0.0, 6.02, 0.75, 0.0],
+        [4.0, 6.02, 0.75, -0.0],
+        [16.0, 6.02, 0.75, 0.0],
+        [20.0, 6.02, 0.75, 0.0],
+    ]
+
+
+def test_equal_costs_of_different_kinds_are_in_order_too() -> None:
+    """At 0 all of the cost is void, at 12, where the stone lies higher, all of it is gap."""
+    profile = wall_of([block(0, 0, 4, 8), block(12, 0, 8, 10)], 20, 2.0)
+    terms = terms_of(void=1.0, gap=1.0)
+    found = drops(profile, hanging(block(-4, -3, 8, 6), 2.0), terms, 0.0, 20, 0.0)
+    rows = {row[0]: row[1:3] for row in found.tolist()}
+    assert (rows[0.0], rows[12.0]) == ([11.0, 1.0], [13.0, 1.0])
+    assert list(rows).index(0.0) < list(rows).index(12.0)
+
+
+@pytest.mark.parametrize(("apart", "expected"), [(0.0, 17), (2.0, 17), (2.1, 9), (8.0, 5), (99, 1)])
+def test_places_are_so_far_apart(apart: float, expected: int) -> None:
+    stone = hanging(block(-4, -3, 8, 6), 2.0)
+    found = drops(bare(20), stone, terms_of(), 0.0, 99, apart)
+    assert len(found) == expected
+    assert found[:, 0].tolist() == sorted(found[:, 0].tolist())
+    assert (np.diff(found[:, 0]) >= apart).all()
+
+
+@pytest.mark.parametrize(
+    ("width", "expected"), [(38.0, [0.0, 2.0]), (40.0, [0.0]), (40.0 + 1e-10, [0.0]), (40.1, [])]
+)
+def test_a_stone_fits_between_the_ends_of_the_wall(width: float, expected: list[float]) -> None:
+    stone = hanging(block(-width / 2, -3.0, width, 6.0), 2.0)
+    found = drops(bare(20), stone, terms_of(), 0.0, 9, 0.0)
+    assert found.shape == (len(expected), 4)
+    assert found[:, 0].tolist() == expected
+    assert drops(bare(19), stone, terms_of(), 0.0, 9, 0.0).shape == (len(expected[1:]), 4)
+
+
+def test_the_wall_may_end_within_a_column() -> None:
+    stone = hanging(block(-4.0, -3.0, 7.5, 6.0), 2.0)
+    found = drops(bare(20), stone, terms_of(width_px=39.5), 0.0, 99, 0.0)
+    assert found[:, 0].max() == 32.0
+    found = drops(bare(20), stone, terms_of(width_px=39.4), 0.0, 99, 0.0)
+    assert found[:, 0].max() == 30.0
+
+
+@pytest.mark.parametrize(("height", "slack", "fits"), [(20, 0, 1), (21, 0, 0), (21, 1, 1)])
+def test_a_stone_ends_below_the_walls_height(height: float, slack: float, fits: int) -> None:
+    stone = hanging(block(-4, -3, 8, height), 2.0)
+    # What stands out has no room over it.
+    terms = terms_of(slack_px=slack, headroom=1.0)
+    assert drops(bare(20), stone, terms, 0.0, 1, 0.0)[:, 2].tolist() == [0.0] * fits
+
+
+def test_a_stone_on_one_end_leans_to_the_other() -> None:
+    profile = wall_of([block(10, 0, 4, 10)], 20, 2.0)
+    terms = terms_of(height_px=40.0, unbalanced=2.0)
+    stone = hanging(block(-4.0, -3.0, 8.0, 6.0), 2.0)
+    found = {row[0]: row[2:] for row in drops(profile, stone, terms, 0.0, 20, 0.0).tolist()}
+    assert found[12.0] == [2.0 * 2 / 8, 2 / 8]
+    assert found[10.0] == [0.0, 0.0]
+    assert found[4.0] == [2.0 * 2 / 8, -2 / 8]
+    # Its own right end carries a stone that ends within a column.
+    short = hanging(block(-3.5, -3.0, 4.5, 6.0), 2.0)
+    found = {row[0]: row[3] for row in drops(bare(20), short, terms, 0.0, 20, 0.0).tolist()}
+    assert set(found.values()) == {0.0}
+    beside = short._replace(left=-5.0, right=-0.5)
+    found = {row[0]: row[3] for row in drops(bare(20), beside, terms, 0.0, 20, 0.0).tolist()}
+    assert set(found.values()) == {0.5 / 4.5}
+
+
+def test_of_the_last_column_only_the_part_under_the_stone_is_void() -> None:
+    profile = wall_of([block(0, 0, 4, 3)], 20, 2.0)
+    stone = hanging(block(-3.5, -3.0, 7.5, 6.0), 2.0)
+    found = drops(profile, stone, terms_of(void=1.0), 0.0, 20, 0.0).tolist()
+    assert {row[0]: row[2] for row in found}[0.0] == 3.0 * 3.5 / 32
+
+
+@repeatable(60)
+@given(seed=st.integers(0, 2**32 - 1), count=st.integers(0, 6))
+def test_the_mirrored_stone_in_the_mirrored_scene_costs_the_same(seed: int, count: int) -> None:
+    """Where costs know no building side, and the stone is so many columns wide."""
+    rng, cell, columns = np.random.default_rng(seed), 2.0, 25
+    width = columns * cell
+    polygons = []
+    for _ in range(count):
+        polygon = random_polygon(rng, 8, 20.0)
+        polygons.append(moved(polygon, rng.uniform(8.0, 42.0), rng.uniform(8.0, 20.0)))
+    corners = random_polygon(rng, 9, 20.0)
+    extent = float(np.ptp(corners[:, 0]))
+    corners = corners * [np.ceil(extent / cell) * cell / extent, 1.0]
+    weights = dict.fromkeys(("height", "void", "headroom", "joint", "unbalanced"), 1.0)
+    terms = terms_of(width_px=width, height_px=40.0, rest_height_px=np.arange(30), **weights)
+    seen = drops(wall_of(polygons, columns, cell), hanging(corners, cell), terms, 0.0, 99, 0.0)
+    turned = [mirrored_polygon(polygon, width) for polygon in polygons]
+    stone = hanging(mirrored_polygon(corners, 0.0), cell)
+    mirrored = drops(wall_of(turned, columns, cell), stone, terms, 0.0, 99, 0.0)
+    mirrored[:, 0] = width - mirrored[:, 0] - np.ceil(extent / cell) * cell
+    mirrored[:, 3] *= -1.0
+    seen, mirrored = (places[np.argsort(places[:, 0])] for places in (seen, mirrored))
+    assert mirrored == pytest.approx(seen, abs=1e-9)
+
+
+def test_what_cannot_be_is_refused() -> None:
+    stone, terms = hanging(block(-4, -3, 8, 6), 2.0), terms_of(joint=1.0)
+    tops, owners = np.zeros(20), np.full(20, 3, np.int32)
+    with pytest.raises(ValueError, match="polygon 3"):
+        drops(HeightProfile(tops, owners, np.zeros((3, 4))), stone, terms, 0.0, 1, 0.0)
+    with pytest.raises(ValueError, match="19 tops have 20 owners"):
+        drops(HeightProfile(tops[1:], owners, np.ones((4, 4))), stone, terms, 0.0, 1, 0.0)
+    for name in ("rest_width_px", "rest_height_px"):
+        nothing = terms._replace(**{name: np.zeros(0, np.int64)})
+        with pytest.raises(ValueError, match="not known for any length"):
+            drops(bare(20), stone, nothing, 0.0, 1, 0.0)

@@ -1,0 +1,212 @@
+"""Gaps between polygons: both versions against shapely's distances."""
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels import crossings, gaps
+from drystone.kernels.backend import compiled
+from drystone.kernels.polygons import no_polygons, polygon_edges
+from tests.naive.settling import distances, placed
+from tests.polygons import simple_polygons
+from tests.strategies import repeatable
+
+absent = pytest.mark.skipif(compiled("gaps") is None, reason="kernels are not compiled here")
+VERSIONS = [
+    pytest.param(gaps.gaps_python, id="python"),
+    pytest.param(gaps.gaps_around, id="compiled", marks=absent),
+]
+CROSSINGS = [
+    pytest.param(crossings.crosses_any_python, id="python"),
+    pytest.param(crossings.crosses_any, id="compiled", marks=absent),
+]
+WIDTH = 60.0
+SQUARE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
+
+
+def at(outline, x, y):
+    return outline + np.array([x, y])
+
+
+@st.composite
+def scenes(draw):
+    """A polygon among up to four others, apart or over each other, on a grid or not."""
+    coarse = draw(st.booleans())
+
+    def somewhere():
+        x, y = (draw(st.integers(0, 30)) for _ in range(2))
+        turn = 0.0 if coarse else draw(st.floats(-3.0, 3.0))
+        shift = 0.0 if coarse else draw(st.floats(0.0, 1.0))
+        return placed(draw(simple_polygons()), (15.0 + x + shift, 10.0 + y / 2.0, turn))
+
+    others = [somewhere() for _ in range(draw(st.integers(0, 4)))]
+    return np.ascontiguousarray(somewhere()), no_polygons().added(others)
+
+
+@pytest.mark.parametrize("gaps_around", VERSIONS)
+def test_the_smallest_gap_is_the_distance(gaps_around):
+    apart = [0]
+
+    @repeatable(150)
+    @given(scenes())
+    def check(scene):
+        corners, around = scene
+        expected = distances(corners, around, WIDTH)
+        found = gaps_around(corners, polygon_edges(corners), around, WIDTH, 8.0, 0.0)
+        shape = shapely.Polygon(corners)
+        for number in range(len(around)):
+            if shape.intersects(shapely.Polygon(around.polygon(number))):
+                continue
+            apart[0] += 1
+            near = [gap.gap for gap in found if gap.other == number]
+            if expected[number] < 7.999:
+                assert min(near) == pytest.approx(expected[number], abs=1e-9)
+            assert all(gap <= 8.0 for gap in near)
+        for number, own in ((gaps.GROUND, expected[-3:-2]), (gaps.END, expected[-2:])):
+            near = [gap.gap for gap in found if gap.other == number]
+            assert min(near, default=8.0) == pytest.approx(min(8.0, *own, math.inf), abs=1e-9)
+
+    check()
+    assert apart[0] > 100
+
+
+@pytest.mark.parametrize("gaps_around", VERSIONS)
+def test_a_small_shift_along_the_normal_closes_a_gap(gaps_around):
+    @repeatable(60)
+    @given(scenes())
+    def check(scene):
+        corners, around = scene
+        found = gaps_around(corners, polygon_edges(corners), around, WIDTH, 3.0, 0.3)
+        for gap in found:
+            assert math.hypot(gap.normal_x, gap.normal_y) == pytest.approx(1.0)
+            assert gap.away >= gap.gap - 1e-9
+            if gap.other < 0 or not gap.away == gap.gap > 1e-6:
+                continue
+            # The corner is the moving polygon's, or the other's: one way leads to the other one.
+            own = np.hypot(*(corners - (gap.x, gap.y)).T).min() == 0.0
+            other = shapely.Polygon(around.polygon(gap.other)).exterior
+            target = other if own else shapely.Polygon(corners).exterior
+            way = -gap.gap if own else gap.gap
+            end = shapely.Point(gap.x + way * gap.normal_x, gap.y + way * gap.normal_y)
+            assert target.distance(end) == pytest.approx(0.0, abs=1e-9)
+
+    check()
+
+
+@absent
+@repeatable(200)
+@given(scenes(), st.sampled_from([0.1, 1.0, 4.0, 30.0]), st.sampled_from([0.0, 0.3, 2.0]))
+def test_both_versions_agree(scene, reach, corner):
+    corners, around = scene
+    args = corners, polygon_edges(corners), around, WIDTH, reach, corner
+    assert gaps.gaps_around(*args) == gaps.gaps_python(*args)
+    pair = corners, around
+    assert crossings.crosses_any(*pair) == crossings.crosses_any_python(*pair)
+
+
+@pytest.mark.parametrize("crosses_any", CROSSINGS)
+def test_crossings_are_those_of_shapely(crosses_any):
+    seen = set()
+
+    @repeatable(200)
+    @given(scenes())
+    def check(scene):
+        corners, around = scene
+        shape = shapely.Polygon(corners)
+        others = [shapely.Polygon(around.polygon(i)) for i in range(len(around))]
+        common = max((shape.intersection(other).area for other in others), default=0.0)
+        if 0.0 < common < 1e-9 or (common == 0.0 and any(map(shape.intersects, others))):
+            return  # a touch may count either way
+        seen.add(common > 0.0)
+        assert crosses_any(corners, around) == (common > 0.0)
+
+    check()
+    assert seen == {True, False}
+
+
+@pytest.mark.parametrize("crosses_any", CROSSINGS)
+def test_what_lies_inside_crosses(crosses_any):
+    inner = no_polygons().added([SQUARE])
+    outer = 3.0 * SQUARE - 2.0
+    assert crosses_any(outer, inner)
+    assert crosses_any(SQUARE, no_polygons().added([outer]))
+    assert not crosses_any(SQUARE + 5.0, inner)
+    assert not crosses_any(SQUARE, no_polygons())
+    bar = np.array([[-3.0, 0.9], [5.0, 0.9], [5.0, 1.1], [-3.0, 1.1]])
+    assert crosses_any(bar, inner)
+
+
+@pytest.mark.parametrize("gaps_around", VERSIONS)
+def test_of_the_edges_around_a_corner_inside_only_the_nearest_counts(gaps_around):
+    sliver = np.array([[0.0, 4.0], [20.0, 4.0], [20.0, 6.0], [0.0, 6.0]])
+    around = no_polygons().added([sliver])
+    wedge = np.array([[10.0, 5.7], [12.0, 9.0], [8.0, 9.0]])
+    found = gaps_around(wedge, polygon_edges(wedge), around, WIDTH, 3.5, 0.3)
+    assert [(gap.gap, gap.normal_y) for gap in found if gap.gap < 0] == [(pytest.approx(-0.3), 1.0)]
+
+
+@pytest.mark.parametrize("gaps_around", VERSIONS)
+def test_bricks_meet_with_their_faces_at_their_corners(gaps_around):
+    around = no_polygons().added([SQUARE + 1.0])
+    above = at(SQUARE, 2.99, 3.02)
+    found = gaps_around(above, polygon_edges(above), around, WIDTH, 0.5, 0.3)
+    assert {(round(gap.gap, 9), gap.normal_y) for gap in found} == {(0.02, 1.0)}
+    beside = at(SQUARE, 3.1, 3.02)
+    found = gaps_around(beside, polygon_edges(beside), around, WIDTH, 0.5, 0.3)
+    # Both faces part them; the one across does better, and the corners are further apart.
+    assert all(gap.gap == pytest.approx(0.1) and gap.normal_x == 1.0 for gap in found)
+    assert all(gap.away == pytest.approx(math.hypot(0.1, 0.02)) for gap in found)
+    assert found
+    # Far corners meet along what parts them.
+    found = gaps_around(beside, polygon_edges(beside), around, WIDTH, 0.5, 0.05)
+    assert all(gap.gap == gap.away for gap in found)
+
+
+@pytest.mark.parametrize("gaps_around", VERSIONS)
+def test_edges_without_length_change_nothing(gaps_around):
+    doubled = np.repeat(SQUARE, [1, 2, 1, 3], axis=0)
+    with np.errstate(invalid="ignore"):
+        around = no_polygons().added([doubled + 1.0])
+    for shift in ((0.5, 3.1), (3.2, 3.3), (2.9, 3.05), (-1.0, 0.8), (0.5, 2.9)):
+        corners = SQUARE + shift + 0.0
+        edges = polygon_edges(corners)
+        plain = gaps_around(corners, edges, no_polygons().added([SQUARE + 1.0]), WIDTH, 1.0, 0.3)
+        found = gaps_around(corners, edges, around, WIDTH, 1.0, 0.3)
+        assert set(found) == set(plain)
+
+
+@pytest.mark.parametrize("gaps_around", VERSIONS)
+def test_a_corner_on_an_edge_touches_it(gaps_around):
+    # Rounding may put it on either side.
+    corners = np.array([[1.0, 0.0], [0.1, 0.7], [-0.2, -0.4]])
+    for share in np.linspace(0.01, 0.99, 99):
+        touch = corners[0] + share * (corners[1] - corners[0])
+        body = touch + np.array([[0.0, 0.0], [2.0, 1.3], [1.4, 1.9]])
+        around = no_polygons().added([corners + 5.0])
+        found = gaps_around(body + 5.0, polygon_edges(body + 5.0), around, WIDTH, 0.5, 0.0)
+        assert min(gap.gap for gap in found) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("gaps_around", VERSIONS)
+def test_a_notch_has_no_region_behind_it(gaps_around):
+    bent = np.array([[-9.0, 0.0], [0.0, -4.0], [9.0, 0.0], [9.0, 1.0], [0.0, -3.0], [-9.0, 1.0]])
+    below = np.array([[0.0, -4.5], [-4.0, -9.0], [4.0, -9.0]])
+    around = no_polygons().added([at(bent, 20.0, 20.0)])
+    corners = at(below, 20.0, 20.0)
+    found = gaps_around(corners, polygon_edges(corners), around, WIDTH, 3.0, 0.0)
+    # Both outer corners see each other; the apex below is seen from the notch, too.
+    assert sorted(gap.gap for gap in found) == [0.5, 0.5, 1.5]
+    assert {gap[1:5] for gap in found} == {(0.0, -1.0, 20.0, 15.5)}
+
+
+@pytest.mark.parametrize("gaps_around", VERSIONS)
+def test_corners_in_one_point_meet_along_the_line_between_their_edges(gaps_around):
+    around = no_polygons().added([SQUARE + 5.0])
+    corners = SQUARE + 7.0 + 1e-12
+    found = gaps_around(corners, polygon_edges(corners), around, WIDTH, 1.0, 0.0)
+    half = math.sqrt(0.5)
+    assert [gap[:3] for gap in found] == 2 * [pytest.approx((0.0, half, half))]

@@ -1,0 +1,409 @@
+"""Contacts of a placed polygon: compiled and NumPy, against what shapely measures, and by hand."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels import meetings as module
+from drystone.kernels.backend import compiled
+from drystone.kernels.meetings import meetings, meetings_numpy
+from drystone.kernels.polygons import no_polygons
+from drystone.kernels.raster import turn
+from tests.polygons import simple_polygons
+from tests.strategies import Draw, repeatable
+
+TOLERANCE = 0.1
+
+brick = np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 20.0], [0.0, 20.0]])
+spike = np.array([[0.0, 0.0], [5.0, 30.0], [-5.0, 30.0]])
+notch = np.array([[-40.0, 5.0], [40.0, 5.0], [40.0, 80.0], [0.0, 40.0], [-40.0, 80.0]])
+diamond = turn(np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]]), 45.0)
+
+only_compiled = pytest.mark.parametrize("version", ["compiled"], indirect=True)
+
+
+@pytest.fixture(params=["numpy", "compiled"], autouse=True)
+def version(request, monkeypatch):
+    """Which of the two runs."""
+    if request.param == "numpy":
+        monkeypatch.setattr(module, "_fast", None)
+    elif compiled("meetings") is None:
+        pytest.skip("kernels are not compiled here")
+    return request.param
+
+
+def at(x, y):
+    return np.array([x, y])
+
+
+def told(corners, *others, tolerance=TOLERANCE, ndigits=6):
+    """The contacts as tuples (other, points, normal), rounded."""
+    found = meetings(corners, no_polygons().added(others), tolerance)
+    points = [p[:n] for p, n in zip(found.points, found.counts, strict=True)]
+    return [
+        (other, np.round(p, ndigits).tolist(), (np.round(normal, ndigits) + 0.0).tolist())
+        for other, p, normal in zip(found.others.tolist(), points, found.normals, strict=True)
+    ]
+
+
+def near(corners, other, angle, gap):
+    """A polygon moved towards another one in a direction, until the gap is as given."""
+    direction = np.array([np.cos(angle), np.sin(angle)])
+    solid = shapely.Polygon(other)
+
+    def distance(away):
+        return shapely.Polygon(corners + away * direction).distance(solid)
+
+    inner, outer = 0.0, 1000.0
+    for _ in range(60):
+        middle = (inner + outer) / 2
+        inner, outer = (middle, outer) if distance(middle) < gap else (inner, middle)
+    return corners + outer * direction
+
+
+@st.composite
+def pairs(draw: Draw):
+    """Two polygons up in the air with a gap of .001 to .12 between them."""
+    other, corners = 10.0 * draw(simple_polygons()), 10.0 * draw(simple_polygons())
+    angle = draw(st.sampled_from([0.0, np.pi / 2, np.pi]) | st.floats(0.0, 6.28))
+    gap = draw(st.sampled_from([0.01, 0.02, 0.05]) | st.floats(0.001, 0.12))
+    up = np.array([draw(st.floats(-30.0, 30.0)), 600.0])
+    return near(corners, other, angle, gap) + up, other + up
+
+
+@st.composite
+def heaps(draw: Draw):
+    """Some polygons anywhere, overlapping as they like, on the ground or below it."""
+    step = st.floats(-12.0, 12.0) | st.sampled_from([-4.0, 0.0, 0.5, 5.0])
+    around = [
+        draw(simple_polygons()) + at(draw(step), 4.0 + draw(step))
+        for _ in range(draw(st.integers(0, 4)))
+    ]
+    corners = draw(simple_polygons()) + at(draw(step), 4.0 + draw(step))
+    return corners, no_polygons().added(around), draw(st.sampled_from([0.02, 0.1, 0.7]))
+
+
+def same(one, other):
+    return all(
+        a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+        for a, b in zip(one, other, strict=True)
+    )
+
+
+@only_compiled
+@given(heaps())
+@repeatable(300)
+def test_both_versions_are_the_same_to_the_last_bit(heap):
+    assert same(module.Meetings(*compiled("meetings").meetings(*parts(heap))), python(heap))
+
+
+@only_compiled
+@given(pairs())
+@repeatable(300)
+def test_both_versions_are_the_same_for_polygons_that_touch(pair):
+    heap = (pair[0], no_polygons().added([pair[1]]), TOLERANCE)
+    assert same(module.Meetings(*compiled("meetings").meetings(*parts(heap))), python(heap))
+
+
+def parts(heap):
+    corners, around, tolerance = heap
+    return corners, around.corners, around.first, around.boxes, tolerance
+
+
+def python(heap):
+    return meetings_numpy(*heap)
+
+
+def test_a_contact_is_where_the_gap_is(version):
+    @given(pairs())
+    @repeatable(200 if version == "compiled" else 60)
+    def check(pair):
+        corners, other = pair
+        ring, solid = shapely.LinearRing(corners), shapely.Polygon(other)
+        found = meetings(corners, no_polygons().added([other]), TOLERANCE)
+        gap = ring.distance(solid)
+        assert len(found) > 0 or gap > 0.99 * TOLERANCE
+        assert len(found) == 0 or gap < 1.01 * TOLERANCE
+        for count, points, normal in zip(found.counts, found.points, found.normals, strict=True):
+            assert np.hypot(*normal) == pytest.approx(1.0, abs=1e-12)
+            assert count == 2 or (points[0] == points[1]).all()
+            for point in points[:count]:
+                here = shapely.Point(point)
+                assert here.distance(ring) < 1e-9
+                assert here.distance(solid) < 1.01 * TOLERANCE
+                assert normal @ (point - nearest(solid, point)) > -0.051 * TOLERANCE
+
+    check()
+
+
+def nearest(solid, point):
+    """The point of a polygon that is nearest to a point."""
+    return shapely.get_coordinates(shapely.shortest_line(solid, shapely.Point(point)))[0]
+
+
+@given(pairs())
+@repeatable(150)
+def test_where_the_gap_is_smallest_there_is_a_contact(pair):
+    corners, other = pair
+    solid, here = shapely.Polygon(other), shapely.Polygon(corners)
+    gap = solid.distance(here)
+    if gap > 0.95 * TOLERANCE:
+        return
+    found = meetings(corners, no_polygons().added([other]), TOLERANCE)
+    points = np.concatenate([p[:n] for p, n in zip(found.points, found.counts, strict=True)])
+    assert min(shapely.distance(shapely.points(points), solid)) < gap + 0.03
+
+
+@given(pairs(), st.floats(0.0, 360.0), st.integers(0, 5))
+@repeatable(150)
+def test_contacts_move_with_the_polygons(pair, angle, first):
+    corners, other = pair
+    up = np.array([7.0, 500.0])
+    turned = [turn(np.roll(c, first, axis=0), angle) + up for c in pair]
+    before = meetings(corners, no_polygons().added([other]), TOLERANCE)
+    after = meetings(turned[0], no_polygons().added([turned[1]]), TOLERANCE)
+    if corners_meet(before, other):
+        return  # of equally good faces the most level one is taken
+    assert len(before) == len(after)
+    order = lambda found, x: sorted(  # noqa: E731 - by place, whichever corner is the first
+        range(len(found)), key=lambda k: x[k].round(3).tolist()
+    )
+    there = turn(before.points.reshape(-1, 2), angle).reshape(-1, 2, 2) + up
+    normals = turn(before.normals, angle)
+    one, two = order(before, there.mean(axis=1)), order(after, after.points.mean(axis=1))
+    assert after.points[two] == pytest.approx(there[one], abs=1e-6)
+    assert after.normals[two] == pytest.approx(normals[one], abs=1e-6)
+
+
+def corners_meet(found, other):
+    points = found.points[found.counts == 1][:, 0]
+    away = points[:, None] - other[None]
+    return bool((np.hypot(away[..., 0], away[..., 1]) < 2 * TOLERANCE).any())
+
+
+@pytest.mark.parametrize("gap", [-0.05, 0.0, 0.01, 0.099])
+def test_a_brick_on_the_ground(gap):
+    expected = [(-1, [[0.0, gap], [40.0, gap]], [0.0, 1.0])]
+    assert told(brick + at(0.0, gap)) == expected
+    assert told(np.roll(brick, 2, axis=0) + at(0.0, gap)) == expected
+
+
+def test_out_of_reach():
+    assert told(brick + at(0.0, 0.101)) == []
+    assert told(brick + at(0.0, 30.0), brick + at(0.0, 50.11), brick + at(40.11, 30.0)) == []
+
+
+def test_the_ground_comes_first_then_others_in_their_order():
+    # A neighbour on each side, and one that stands on top.
+    found = told(
+        brick + at(0.0, 0.01),
+        brick + at(40.01, 0.01),
+        brick + at(300.0, 0.01),
+        brick + at(-10.0, 20.02),
+        brick + at(-40.01, 0.01),
+    )
+    assert found == [
+        (-1, [[0.0, 0.01], [40.0, 0.01]], [0.0, 1.0]),
+        (0, [[40.0, 0.01], [40.0, 20.01]], [-1.0, 0.0]),
+        (2, [[30.0, 20.01], [0.0, 20.01]], [0.0, -1.0]),
+        (3, [[0.0, 20.01], [0.0, 0.01]], [1.0, 0.0]),
+    ]
+
+
+def test_contacts_with_one_polygon_are_in_order_along_the_placed_one():
+    comb = np.array([[0, 0], [90, 0], [90, 20], [60, 20], [60, 10], [30, 10], [30, 20], [0, 20.0]])
+    plank = np.array([[0.0, 0.0], [90.0, 0.0], [90.0, 5.0], [0.0, 5.0]])
+    assert [p for _, p, _ in told(comb + at(0.0, 50.0), plank + at(0.0, 70.01))] == [
+        [[90.0, 70.0], [60.0, 70.0]],
+        [[30.0, 70.0], [0.0, 70.0]],
+    ]
+    # And where the edge of the placed one is the long one, along this edge.
+    assert [p for _, p, _ in told(plank + at(0.0, 70.01), comb + at(0.0, 50.0))] == [
+        [[0.0, 70.01], [30.0, 70.01]],
+        [[60.0, 70.01], [90.0, 70.01]],
+    ]
+
+
+def test_half_a_brick_on_a_brick():
+    low = brick + at(0.0, 30.0)
+    assert told(brick + at(20.0, 50.01), low) == [(0, [[20.0, 50.01], [40.0, 50.01]], [0.0, 1.0])]
+
+
+def test_a_short_overlap_is_one_point():
+    low = brick + at(0.0, 30.0)
+    assert told(brick + at(39.95, 50.01), low) == [(0, [[39.95, 50.01]], [0.0, 1.0])]
+    assert told(brick + at(39.85, 50.01), low) == [(0, [[39.85, 50.01], [40.0, 50.01]], [0.0, 1.0])]
+
+
+def test_corners_beside_each_other_touch_on_the_face_that_separates_them_most():
+    low = brick + at(0.0, 30.0)
+    assert told(brick + at(40.005, 50.02), low) == [(0, [[40.005, 50.02]], [0.0, 1.0])]
+    assert told(brick + at(40.05, 50.02), low) == [(0, [[40.05, 50.02]], [1.0, 0.0])]
+    assert told(brick + at(40.08, 50.08), low) == []  # .113 apart
+    # Equal: the level one, also when rounding says otherwise, and mirrored.
+    for right in (40.02, 40.0202, 40.0198):
+        assert told(brick + at(right, 50.02), low) == [(0, [[right, 50.02]], [0.0, 1.0])]
+        assert told(brick + at(-right, 50.02), low) == [
+            (0, [[round(40 - right, 6), 50.02]], [0.0, 1.0])
+        ]
+
+
+def test_a_corner_beside_a_corner_on_the_face_of_the_placed_one():
+    # An edge that ends just beyond a spike: the point is on the edge, over the tip.
+    tip = np.array([[-5.0, -30.0], [5.0, -30.0], [0.0, 0.0]]) + at(0.0, 60.0)
+    assert told(brick + at(-0.05, 60.01), tip) == [(0, [[0.0, 60.01]], [0.0, 1.0])]
+    assert told(brick + at(-39.95, 60.01), tip) == [(0, [[0.0, 60.01]], [0.0, 1.0])]
+    assert told(brick + at(-0.5, 60.01), tip) == [(0, [[0.0, 60.01]], [0.0, 1.0])]
+
+
+def test_corners_that_no_face_separates_do_not_touch():
+    low = brick + at(0.0, 30.0)
+    assert told(spike[::-1] * [1.0, -1.0] + at(40.05, 50.05), low) == []
+
+
+@pytest.mark.parametrize(("angle", "length"), [(0.05, 39.5), (0.5, 8.313), (2.0, 0.577)])
+def test_edges_that_lean_touch_where_the_gap_is_small(angle, length):
+    ((_, points, normal),) = told(turn(brick, angle) + at(0.5, 50.01), brick + at(0.0, 30.0))
+    assert points[0] == [0.5, 50.01]
+    assert np.hypot(*np.subtract(points[1], points[0])) == pytest.approx(length, rel=0.1)
+    assert normal == [0.0, 1.0]
+
+
+@pytest.mark.parametrize("angle", [2.9, 3.0, 10.0, 60.0])
+@pytest.mark.parametrize("width", [0.5, 1.0, 40.0])
+def test_edges_at_an_angle_touch_at_the_corner(angle, width):
+    flat = brick * [width / 40.0, 1.0]
+    found = told(turn(flat, angle) + at(0.2, 50.01), brick + at(0.0, 30.0))
+    assert found == [(0, [[0.2, 50.01]], [0.0, 1.0])]
+
+
+def test_a_face_shrinks_to_its_corner_without_a_jump():
+    lengths = []
+    for angle in np.linspace(0.0, 3.2, 3201):
+        ((_, points, _),) = told(turn(brick, angle) + at(0.5, 50.01), brick + at(0.0, 30.0))
+        assert points[0] == [0.5, 50.01] or len(points) == 1
+        lengths.append(np.hypot(*np.subtract(points[-1], points[0])))
+    assert lengths[0] == pytest.approx(39.5)
+    assert lengths[-1] == 0.0
+    steps = np.diff(lengths)
+    assert steps.max() <= 1e-6
+    # What is shorter than the tolerance is a point.
+    assert steps.min() > -1.0
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_the_normal_is_that_of_the_edge_under_the_nearer_end(sign):
+    long, short = brick * [3.0, 1.0] - at(60.0, 0.0), brick * [0.1, 1.0] - at(2.0, 0.0)
+    lean = sign * 0.5
+    ((_, _, normal),) = told(turn(short, lean) + at(0.0, 70.04), long + at(0.0, 50.0))
+    assert normal == [0.0, 1.0]
+    ((_, _, normal),) = told(turn(long, lean) + at(0.0, 70.04), short + at(0.0, 50.0))
+    assert normal == pytest.approx(turn(np.array([[0.0, 1.0]]), lean)[0].tolist(), abs=1e-6)
+
+
+def test_a_spike_on_a_face_and_a_face_on_a_spike():
+    assert told(spike + at(10.0, 50.03), brick + at(0.0, 30.0)) == [
+        (0, [[10.0, 50.03]], [0.0, 1.0])
+    ]
+    assert told(spike + at(10.0, 0.03)) == [(-1, [[10.0, 0.03]], [0.0, 1.0])]
+    found = told(brick + at(0.0, 10.0), spike + at(10.0, 30.02))
+    assert found == [(0, [[10.0, 30.0]], [0.0, -1.0])]
+
+
+def test_a_dent_above_a_face_is_no_contact():
+    hollow = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [10.0, 0.05], [0.0, 20.0]])
+    # The bottom touches all along; the dent, .05 above it, does not.
+    assert told(hollow + at(0.0, 50.01), brick + at(0.0, 30.0)) == [
+        (0, [[0.0, 50.01], [20.0, 50.01]], [0.0, 1.0])
+    ]
+
+
+def test_a_square_in_a_notch_touches_both_faces():
+    s = 0.5**0.5
+    found = told(diamond + at(0.0, 40.0 + 0.01 / s), notch)
+    assert [(len(p), n) for _, p, n in found] == [
+        (2, [-0.707107, 0.707107]),
+        (2, [0.707107, 0.707107]),
+    ]
+
+
+def test_a_spike_in_a_notch_touches_both_faces_at_one_point():
+    tip = [0.0, 40.014]
+    assert told(spike + tip, notch) == [
+        (0, [tip], [-0.707107, 0.707107]),
+        (0, [tip], [0.707107, 0.707107]),
+    ]
+
+
+def test_a_flat_bend_is_told_once():
+    bent = np.array([[-10.0, 10.0], [10.0, 10.0], [10.0, 30.0], [0.0, 30.3], [-10.0, 30.0]])
+    ((_, points, normal),) = told(spike + at(0.0, 30.31), bent)
+    assert points == [[0.0, 30.31]]
+    assert normal[1] > 0.999
+    shallow = np.array([[-10.0, 10.0], [10.0, 10.0], [10.0, 30.3], [0.0, 30.0], [-10.0, 30.3]])
+    assert len(told(spike + at(0.0, 30.02), shallow)) == 1
+
+
+SETTLED = [
+    (brick + at(0.0, 0.01), []),
+    (brick + at(20.0, 20.02), [brick + at(0.0, 0.01), brick + at(40.01, 0.01)]),
+    (
+        brick + at(40.01, 20.02),
+        [brick + at(0.0, 0.01), brick + at(40.01, 0.01), brick + at(0.0, 20.02)],
+    ),
+    (brick + at(0.0, 20.02), [brick + at(0.0, 0.01)]),
+    (turn(brick, 0.03) + at(0.0, 20.02), [brick + at(0.0, 0.01)]),
+    (turn(brick, 1.0) + at(0.0, 20.02), [brick + at(0.0, 0.01)]),
+    (turn(brick, 3.0) + at(0.0, 20.02), [brick + at(0.0, 0.01)]),
+    (turn(brick, -3.0) + at(0.0, 25.0), [brick * [2.0, 1.0] + at(0.0, 0.01)]),
+    (diamond + at(0.0, 40.0142), [notch]),
+    (spike + at(0.0, 40.0142), [notch]),
+    (spike + at(40.0, 20.02), [brick + at(0.0, 0.01), brick + at(40.01, 0.01)]),
+]
+
+
+@pytest.mark.parametrize(("corners", "others"), SETTLED)
+def test_nothing_jumps_when_a_stone_hardly_moves(corners, others):
+    around = no_polygons().added(others)
+    still = meetings(corners, around, TOLERANCE)
+    rng = np.random.default_rng(1)
+    centre = corners.mean(axis=0)
+    for _ in range(40):
+        moved = turn(corners - centre, rng.uniform(-1e-9, 1e-9)) + centre
+        found = meetings(moved + rng.uniform(-1e-9, 1e-9, 2), around, TOLERANCE)
+        assert found.others.tolist() == still.others.tolist()
+        assert found.counts.tolist() == still.counts.tolist()
+        assert found.points == pytest.approx(still.points, abs=1e-6)
+        assert found.normals == pytest.approx(still.normals, abs=1e-6)
+
+
+def test_bad_input():
+    with pytest.raises(ValueError, match="three corners"):
+        meetings(brick[:2], no_polygons(), 0.1)
+    with pytest.raises(ValueError, match="three corners"):
+        meetings(brick.ravel(), no_polygons(), 0.1)
+    for tolerance in (0.0, -1.0, float("nan")):
+        with pytest.raises(ValueError, match="above 0"):
+            meetings(brick, no_polygons(), tolerance)
+
+
+def test_any_array_will_do():
+    assert told(brick.astype(int)) == told(brick)
+    assert told(np.asfortranarray(brick)) == told(brick)
+
+
+@pytest.mark.parametrize("lean", [-0.3, 0.3])
+def test_of_edges_beyond_each_other_the_corner_that_is_nearer_decides(lean):
+    """Half a brick further: one end is a corner of the upper one, the other of the lower one."""
+    leaning = turn(brick, lean) + at(20.0, 50.01 if lean > 0.0 else 50.13)
+    ((_, _, normal),) = told(leaning, brick + at(0.0, 30.0))
+    across = turn(np.array([[0.0, 1.0]]), lean if lean < 0.0 else 0.0)[0]
+    assert normal == pytest.approx(across.tolist(), abs=1e-6)
+
+
+def test_corners_that_overlap_have_one_contact():
+    low = brick + at(0.0, 30.0)
+    assert told(brick + at(39.92, 49.93), low) == [(0, [[39.92, 49.93]], [0.0, 1.0])]
+    assert told(brick + at(39.93, 49.92), low) == [(0, [[39.93, 49.92]], [1.0, 0.0])]

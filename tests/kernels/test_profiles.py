@@ -1,0 +1,169 @@
+"""Height profiles, compiled and NumPy, against cutting polygons into columns."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels import profiles
+from drystone.kernels.backend import compiled
+from drystone.kernels.polygons import Points, mirrored_polygon
+from drystone.kernels.profiles import HeightProfile, bare, extremes, extremes_numpy, hanging, raised
+from tests.naive.drops import column_span, height_profile
+from tests.polygons import simple_polygons
+from tests.strategies import repeatable
+
+FAST = compiled("profiles")
+KERNELS = [
+    pytest.param(None, id="numpy"),
+    pytest.param(
+        FAST,
+        id="compiled",
+        marks=pytest.mark.skipif(FAST is None, reason="kernels are not compiled here"),
+    ),
+]
+CELLS = st.sampled_from([0.5, 1.0, 2.0, 1 / 0.35, 40.0])
+
+
+@pytest.fixture(autouse=True, scope="module", params=KERNELS)
+def kernel(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Everything here by NumPy, then by the compiled kernel."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(profiles, "_fast", request.param)
+        yield
+
+
+def block(left: float, bottom: float, width: float, height: float) -> Points:
+    right, top = left + width, bottom + height
+    return np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
+
+
+@repeatable(80)
+@given(polygon=simple_polygons(), cell=CELLS, left=st.floats(-20.0, 20.0))
+def test_extremes_are_those_of_the_polygon_cut_into_columns(
+    polygon: Points, cell: float, left: float
+) -> None:
+    columns = 9
+    bottoms, tops = extremes(polygon, left, cell, columns)
+    for column, low, high in zip(range(columns), bottoms, tops, strict=True):
+        span = column_span(polygon, left + column * cell, left + (column + 1) * cell)
+        assert (low, high) == pytest.approx(span or (np.inf, -np.inf), abs=1e-8)
+
+
+@repeatable(60)
+@given(data=st.data(), cell=CELLS)
+def test_a_profile_is_raised_where_a_polygon_is_higher(data: st.DataObject, cell: float) -> None:
+    at = st.tuples(st.floats(-10.0, 40.0), st.floats(0.0, 20.0))
+    polygons = [
+        polygon + np.array(shift) - [0.0, polygon[:, 1].min()]
+        for polygon, shift in data.draw(st.lists(st.tuples(simple_polygons(), at), max_size=4))
+    ]
+    profile = bare(12)
+    for index, polygon in enumerate(polygons):
+        before = HeightProfile(*(part.copy() for part in profile))
+        after = raised(profile, polygon, index, cell)
+        for old, kept in zip(before, profile, strict=True):
+            assert old.tobytes() == kept.tobytes()
+        profile = after
+    tops, owners = height_profile(polygons, 12, cell)
+    assert profile.tops == pytest.approx(np.array(tops), abs=1e-8)
+    assert profile.owners.dtype == np.int32
+    assert profile.owners.tolist() == owners
+    boxes = [[*polygon.min(axis=0), *polygon.max(axis=0)] for polygon in polygons]
+    assert profile.boxes.tolist() == [[float(x) for x in box] for box in boxes]
+
+
+@repeatable(40)
+@given(polygon=simple_polygons(), cell=CELLS)
+def test_a_hanging_polygon_starts_on_a_column_edge(polygon: Points, cell: float) -> None:
+    stone = hanging(polygon, cell)
+    left, bottom = polygon.min(axis=0)
+    right, top = polygon.max(axis=0)
+    assert stone[2:] == (left, bottom, right, top)
+    assert len(stone.bottoms) == len(stone.tops) == np.ceil((right - left) / cell - 1e-9)
+    assert (stone.bottoms.min(), stone.tops.max()) == (bottom, top)
+    assert np.isfinite(stone.bottoms).all()
+    assert np.isfinite(stone.tops).all()
+    for column in range(len(stone.bottoms)):
+        x = np.linspace(left + column * cell, min(right, left + (column + 1) * cell), 7)[1:-1]
+        for at in x:
+            span = column_span(polygon, at - 1e-6, at + 1e-6)
+            assert span is None or stone.bottoms[column] <= span[0] + 1e-8
+            assert span is None or stone.tops[column] >= span[1] - 1e-8
+
+
+@pytest.mark.skipif(FAST is None, reason="kernels are not compiled here")
+@repeatable(60)
+@given(polygon=simple_polygons(), cell=CELLS, columns=st.integers(0, 12), left=st.floats(-9.0, 9.0))
+def test_both_kernels_give_the_same_bits(
+    polygon: Points, cell: float, columns: int, left: float
+) -> None:
+    expected = extremes_numpy(polygon, left, cell, columns)
+    found = FAST.extremes(np.asfortranarray(polygon), left, cell, columns)
+    assert [part.tobytes() for part in found] == [part.tobytes() for part in expected]
+
+
+@repeatable(40)
+@given(polygon=simple_polygons(), at=st.floats(0.0, 30.0))
+def test_the_mirror_image_has_the_mirrored_profile(polygon: Points, at: float) -> None:
+    cell, columns = 2.0, 20
+    placed = polygon + np.array([at, 20.0])
+    seen = raised(bare(columns), placed, 0, cell)
+    mirrored = raised(bare(columns), mirrored_polygon(placed, columns * cell), 0, cell)
+    assert mirrored.tops[::-1] == pytest.approx(seen.tops, abs=1e-9)
+    assert mirrored.owners[::-1].tolist() == seen.owners.tolist()
+
+
+def test_a_polygon_that_ends_on_a_column_edge_is_not_over_the_next_column() -> None:
+    profile = raised(bare(6), block(2.0, 0.0, 4.0, 3.0), 0, 2.0)
+    assert profile.tops.tolist() == [0.0, 3.0, 3.0, 0.0, 0.0, 0.0]
+    tiny = raised(bare(6), block(2.0 - 1e-10, 0.0, 4.0 + 2e-10, 3.0), 0, 2.0)
+    assert tiny.tops.tolist() == profile.tops.tolist()
+    over = raised(bare(6), block(2.0 - 1e-6, 0.0, 4.0 + 2e-6, 3.0), 0, 2.0)
+    assert over.tops.tolist() == [3.0, 3.0, 3.0, 3.0, 0.0, 0.0]
+
+
+def test_of_equal_heights_the_first_owns_the_column() -> None:
+    profile = raised(bare(2), block(0.0, 0.0, 4.0, 3.0), 0, 2.0)
+    profile = raised(profile, block(2.0, 1.0, 2.0, 2.0), 1, 2.0)
+    assert profile.owners.tolist() == [0, 0]
+    assert raised(bare(1), block(0.0, -1.0, 1.0, 1.0), 0, 2.0).owners.tolist() == [-1]
+
+
+def test_polygons_may_come_in_any_order() -> None:
+    profile = raised(bare(4), block(2.0, 0.0, 4.0, 3.0), 2, 2.0)
+    profile = raised(profile, block(0.0, 0.0, 2.0, 1.0), 0, 2.0)
+    assert profile.owners.tolist() == [0, 2, 2, -1]
+    assert profile.boxes.tolist() == [[0.0, 0.0, 2.0, 1.0], [0.0] * 4, [2.0, 0.0, 6.0, 3.0]]
+
+
+def test_what_is_beside_the_columns_is_ignored() -> None:
+    for left in (-1e300, -50.0, 50.0, 1e300):
+        profile = raised(bare(4), block(left, 0.0, 3.0, 3.0), 0, 2.0)
+        assert profile.tops.tolist() == [0.0] * 4
+    profile = raised(bare(4), block(-3.0, 0.0, 20.0, 3.0), 0, 2.0)
+    assert profile.tops.tolist() == [3.0] * 4
+    assert profile.boxes.tolist() == [[-3.0, 0.0, 17.0, 3.0]]
+
+
+@pytest.mark.parametrize("zero", [0.0, -0.0])
+def test_zeros_have_no_sign(zero: float) -> None:
+    """Which of +0 and -0 is the smaller depends on the order."""
+    standing = np.array([[0.0, zero], [2.0, -zero], [2.0, 3.0]])
+    assert not np.signbit(extremes(standing, 0.0, 2.0, 1)[0]).any()
+    hung = np.array([[0.0, -3.0], [2.0, zero], [0.0, -zero]])
+    assert not np.signbit(extremes(hung, 0.0, 2.0, 1)[1]).any()
+
+
+def test_a_polygon_needs_a_width_and_columns_too() -> None:
+    with pytest.raises(ValueError, match="without width"):
+        hanging(np.array([[1.0, 0.0], [1.0, 2.0], [1.0, 3.0]]), 2.0)
+    for cell in (0.0, -1.0, float("nan")):
+        with pytest.raises(ValueError, match="columns"):
+            extremes(block(0.0, 0.0, 1.0, 1.0), 0.0, cell, 3)
+    with pytest.raises(ValueError, match="shape"):
+        extremes(np.zeros((3, 3)), 0.0, 1.0, 3)
+    with pytest.raises(ValueError, match="polygon -1"):
+        raised(bare(1), block(0.0, 0.0, 1.0, 1.0), -1, 1.0)

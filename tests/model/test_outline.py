@@ -1,0 +1,286 @@
+"""Outlines of pixels: simple, exact in area and centroid, near the contour, with its corners."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import ndimage
+
+from drystone.io.read_stones import read_stones
+from drystone.kernels.outline import pixel_polygon, rasterise_polygon
+from drystone.kernels.polygons import Points, area_and_centroid
+from drystone.kernels.raster import Mask, turn
+from drystone.model.outline import (
+    _contour,
+    _mended,
+    _simplified,
+    _without_straight_ones,
+    second_moments,
+    stone_outline,
+)
+from drystone.model.stone import OUTLINE_TOLERANCE_PX, Stone
+from tests.polygons import simple_polygons
+from tests.strategies import blobs, masks, repeatable
+
+TOLERANCE = OUTLINE_TOLERANCE_PX
+TOLERANCES = [0.0, 0.1, TOLERANCE, 1.0, 4.0]
+WITH_CORNERS = np.ones((3, 3))
+
+
+def pixels(*rows: str) -> Mask:
+    return np.array([[cell == "#" for cell in row] for row in rows])
+
+
+TOUCHING = {
+    "pixel": pixels("#"),
+    "two pixels": pixels("##"),
+    "upright bar": pixels("#", "#", "#", "#", "#"),
+    "lying bar": np.ones((1, 40), bool),
+    "diagonal": pixels("#..", ".#.", "..#"),
+    "other diagonal": pixels("...#", "..#.", ".#..", "#..."),
+    "zigzag": pixels("#.#.#", ".#.#."),
+    "blocks at a corner": pixels("####....", "####....", "####....", "....####", "....####"),
+    "chequered": pixels("##..##", "##..##", "..##..", "..##..", "##..##", "##..##"),
+    "closed by a corner": pixels("###.", "#..#", "####"),
+    "plus": pixels(".#.", "###", ".#."),
+    "comb": pixels("#########", "#.#.#.#.#", "#.#.#.#.#", "#.#.#.#.#"),
+    "hook": pixels("#######", "#.....#", "#.###.#", "#...#.#", "#####.#"),
+}
+
+
+@st.composite
+def joined_masks(draw: st.DrawFn) -> Mask:
+    """A piece that may be joined by corners only, as it is read: holes filled."""
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    shape = draw(st.tuples(st.integers(1, 12), st.integers(1, 12)))
+    labels, count = ndimage.label(rng.random(shape) < draw(st.floats(0.2, 0.8)), WITH_CORNERS)
+    if count == 0:
+        return np.ones((1, 1), bool)
+    largest = int(np.argmax(np.bincount(labels.ravel())[1:])) + 1
+    return ndimage.binary_fill_holes(labels == largest)
+
+
+def check(corners: Points, mask: Mask) -> None:
+    """An outline is simple, counter-clockwise, without straight corners; area and centroid fit."""
+    shape = shapely.Polygon(corners)
+    assert shape.is_valid
+    assert shape.exterior.is_ccw
+    assert shape.area == pytest.approx(mask.sum(), rel=1e-12)
+    assert (shape.centroid.x, shape.centroid.y) == pytest.approx((0.0, 0.0), abs=1e-9)
+    ahead = np.roll(corners, -1, axis=0) - corners
+    behind = np.roll(ahead, 1, axis=0)
+    sine = (behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]) / np.prod(
+        [np.hypot(*behind.T), np.hypot(*ahead.T)], axis=0
+    )
+    assert np.abs(sine).min() > 1e-9
+
+
+@repeatable(150)
+@given(
+    mask=st.one_of(masks(max_px=9), joined_masks(), blobs()), tolerance=st.sampled_from(TOLERANCES)
+)
+def test_outlines_are_simple_and_weigh_what_the_pixels_do(mask: Mask, tolerance: float) -> None:
+    check(stone_outline(mask, tolerance), mask)
+
+
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("name", TOUCHING)
+def test_thin_and_touching_pixels_have_outlines(name: str, tolerance: float) -> None:
+    check(stone_outline(TOUCHING[name], tolerance), TOUCHING[name])
+
+
+@repeatable(60)
+@given(mask=st.one_of(masks(max_px=9), blobs()))
+def test_the_centroid_of_the_pixels_is_the_origin(mask: Mask) -> None:
+    """The outline put to the pixels' centroid lies on the pixels, not beside them."""
+    stone = Stone(1, mask)
+    shape = shapely.Polygon(stone.outline + np.array(stone.local_centroid))
+    squares = shapely.Polygon(pixel_polygon(mask)).buffer(0)
+    common = shape.intersection(squares).area
+    # A square pixel on its own becomes one on its tip: .83 in common.
+    assert common >= 0.8 * squares.area
+
+
+@pytest.mark.parametrize("tolerance", TOLERANCES[:3])
+@pytest.mark.parametrize(("width", "height"), [(2, 2), (2, 9), (3, 2), (36, 12), (200, 35)])
+def test_a_brick_is_its_rectangle(width: int, height: int, tolerance: float) -> None:
+    corners = stone_outline(np.ones((height, width), bool), tolerance)
+    x, y = width / 2, height / 2
+    expected = {(-x, -y), (x, -y), (x, y), (-x, y)}
+    assert {tuple(corner) for corner in corners.round(12).tolist()} == expected
+    assert len(corners) == 4
+
+
+def test_an_l_keeps_its_inner_corner() -> None:
+    mask = np.zeros((30, 20), bool)
+    mask[:, :6] = True
+    mask[-6:, :] = True
+    stone = Stone(1, mask)
+    found = (stone.outline + stone.local_centroid).round(9)
+    expected = {(0, 0), (20, 0), (20, 6), (6, 6), (6, 30), (0, 30)}
+    assert {tuple(corner) for corner in found.tolist()} == expected
+
+
+def test_blocks_that_touch_at_a_corner_are_joined_by_a_neck() -> None:
+    """Six corners of pixels, and the four ends of a neck half a pixel's diagonal wide."""
+    corners = stone_outline(TOUCHING["blocks at a corner"], TOLERANCE)
+    assert len(corners) == 10
+    distances = np.hypot(*(corners[:, None] - corners[None]).T)
+    np.testing.assert_allclose(np.sort(distances[distances > 0])[0], 0.5**0.5, rtol=0.02)
+
+
+def test_corners_are_put_back_where_two_sides_meet_not_on_slopes() -> None:
+    """A slope of one pixel across for two up; only the corners at its foot and its head are."""
+    mask = np.tri(60, 30, dtype=bool)[np.arange(60) // 2]
+    contour = _contour(mask)
+    assert len(_mended(contour)) == len(contour) + 2
+    assert {tuple(point) for point in _mended(contour).tolist()} >= {(0.0, 0.0), (30.0, 0.0)}
+
+
+def test_a_slope_of_45_degrees_is_one_side() -> None:
+    assert len(stone_outline(np.tri(40, dtype=bool), TOLERANCE)) <= 5
+
+
+@repeatable(40)
+@given(
+    mask=blobs(min_px=14, max_px=40),
+    tolerance=st.sampled_from([0.1, TOLERANCE, 1.0]),
+)
+def test_outlines_stay_near_the_contour(mask: Mask, tolerance: float) -> None:
+    """√2/4 px for a corner that is put back or cut off, and a little for area and centroid."""
+    stone = Stone(1, mask)
+    outline = shapely.LinearRing(stone.outline_within(tolerance) + np.array(stone.local_centroid))
+    squares = shapely.LinearRing(pixel_polygon(mask))
+    assert outline.hausdorff_distance(squares) <= 2.0**0.5 / 4 + tolerance + 0.15 * tolerance
+    assert squares.hausdorff_distance(outline) <= 2.0**0.5 / 4 + tolerance + 0.15 * tolerance
+
+
+@repeatable(25)
+@given(angle=st.floats(-90, 90), width=st.floats(30, 60), height=st.floats(12, 25))
+def test_a_turned_brick_is_found_again(angle: float, width: float, height: float) -> None:
+    box = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([width, height]) / 2
+    brick = turn(box, angle)
+    mask, left, bottom = rasterise_polygon(brick)
+    stone = Stone(1, mask)
+    found = shapely.Polygon(
+        stone.outline + np.array(stone.local_centroid) + np.array([left, bottom])
+    )
+    apart = found.symmetric_difference(shapely.Polygon(brick)).area
+    # Rasterising moves a side by up to half a pixel.
+    assert apart <= 0.5 * found.length
+
+
+def test_coarser_tolerances_have_fewer_corners() -> None:
+    rng = np.random.default_rng(5)
+    angle = np.linspace(0.0, 2.0 * np.pi, 90, endpoint=False)
+    radius = 40.0 * (1.0 + 0.04 * rng.standard_normal(90))
+    mask, _, _ = rasterise_polygon(
+        np.column_stack([np.cos(angle), np.sin(angle)]) * radius[:, None]
+    )
+    mask = ndimage.binary_fill_holes(mask)
+    tolerances = (0.0, TOLERANCE, 0.75, 1.5, 4.0)
+    counts = [len(stone_outline(mask, tolerance)) for tolerance in tolerances]
+    assert counts == sorted(set(counts), reverse=True)
+    assert counts[-1] < counts[1] / 2
+
+
+@pytest.mark.parametrize(
+    ("mask", "tolerance", "message"),
+    [(np.zeros((2, 2), bool), 0.35, "no pixel"), (np.ones((2, 2), bool), -0.1, "0 or more")],
+)
+def test_what_has_no_outline_is_refused(mask: Mask, tolerance: float, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        stone_outline(mask, tolerance)
+
+
+def test_the_tolerance_is_halved_until_nothing_crosses() -> None:
+    mask = pixels("###", "..#", "##.")
+    coarse = _without_straight_ones(_simplified(_mended(_contour(mask)), 1.4))
+    assert len(coarse) == 4
+    assert not shapely.Polygon(coarse).is_valid
+    np.testing.assert_array_equal(stone_outline(mask, 1.4), stone_outline(mask, 0.7))
+    assert len(stone_outline(mask, 0.7)) < len(stone_outline(mask, 0.35))
+
+
+@pytest.mark.parametrize("flip", [(1, 1), (-1, 1), (1, -1), (-1, -1)])
+def test_of_several_pieces_the_largest_counts(flip: tuple[int, int]) -> None:
+    mask = pixels("##.......", "##.######", "...######", "...######")[:: flip[0], :: flip[1]]
+    corners = stone_outline(mask, TOLERANCE)
+    width, height = np.ptp(corners, axis=0).tolist()
+    assert (len(corners), width / height) == (4, pytest.approx(2.0))
+    assert width * height == pytest.approx(mask.sum())
+
+
+def test_a_stone_remembers_its_outlines() -> None:
+    stone = Stone(1, np.ones((5, 9), bool))
+    assert stone.outline is stone.outline
+    assert stone.outline_within(TOLERANCE) is stone.outline
+    rough = np.tri(20, dtype=bool)
+    slope = Stone(2, rough)
+    assert slope.outline_within(0.0) is slope.outline_within(0.0)
+    np.testing.assert_array_equal(slope.outline_within(0.7), stone_outline(rough, 0.7))
+    np.testing.assert_array_equal(slope.outline, stone_outline(rough, TOLERANCE))
+    with pytest.raises(ValueError, match="read-only"):
+        stone.outline[0, 0] = 1.0
+
+
+@repeatable(60)
+@given(mask=masks(max_px=9))
+def test_second_moments_are_those_of_the_pixels(mask: Mask) -> None:
+    rows, cols = np.nonzero(mask)
+    x, y = cols - cols.mean(), rows.mean() - rows
+    own = len(rows) / 12.0  # of unit squares about their own centres
+    expected = float((x * x).sum()) + own, float((y * y).sum()) + own, float((x * y).sum())
+    assert second_moments(pixel_polygon(mask)) == pytest.approx(expected, abs=1e-9)
+
+
+@repeatable(60)
+@given(polygon=simple_polygons(), angle=st.floats(-180, 180), far=st.floats(-1e3, 1e3))
+def test_second_moments_turn_and_move_as_tensors_do(
+    polygon: Points, angle: float, far: float
+) -> None:
+    xx, yy, xy = second_moments(polygon)
+    assert second_moments(polygon + far) == pytest.approx((xx, yy, xy), rel=1e-6, abs=1e-6)
+    axes = turn(np.eye(2), angle).T
+    tensor = axes @ np.array([[xx, xy], [xy, yy]]) @ axes.T
+    turned = second_moments(turn(polygon, angle))
+    expected = (tensor[0, 0], tensor[1, 1], tensor[0, 1])
+    assert turned == pytest.approx(expected, rel=1e-9, abs=1e-9 * (xx + yy))
+
+
+def test_second_moments_in_closed_form() -> None:
+    triangle = np.array([[0.0, 0.0], [6.0, 0.0], [0.0, 3.0]])
+    expected = 3.0 * 6.0**3 / 36, 6.0 * 3.0**3 / 36, -(6.0**2) * 3.0**2 / 72
+    assert second_moments(triangle) == pytest.approx(expected)
+    brick = np.array([[1.0, 5.0], [9.0, 5.0], [9.0, 8.0], [1.0, 8.0]])
+    assert second_moments(brick) == pytest.approx((3 * 8**3 / 12, 8 * 3**3 / 12, 0.0))
+
+
+@repeatable(40)
+@given(mask=blobs(min_px=20, max_px=40))
+def test_second_moments_of_outlines_are_nearly_those_of_the_pixels(mask: Mask) -> None:
+    """Area and centroid are exact; what is left is below a percent of the polar moment."""
+    outline, squares = stone_outline(mask, TOLERANCE), pixel_polygon(mask)
+    pairs = zip(second_moments(outline), second_moments(squares), strict=True)
+    polar = sum(second_moments(squares)[:2])
+    assert max(abs(a - b) for a, b in pairs) < 0.01 * polar
+
+
+@pytest.mark.parametrize(
+    ("name", "mean_corners"), [("R", 4.0), ("PR", 33.0)], ids=["bricks", "rubble"]
+)
+def test_published_stones(data_dir: Path, name: str, mean_corners: float) -> None:
+    """The stones of R are rectangles of pixels; those of PR are followed to a fraction of one."""
+    stones = read_stones(data_dir / "almeida" / f"{name}.png")
+    corners = []
+    for stone in stones:
+        check(stone.outline, stone.mask)
+        shape = shapely.Polygon(stone.outline + np.array(stone.local_centroid))
+        squares = shapely.Polygon(pixel_polygon(stone.mask))
+        assert shape.exterior.hausdorff_distance(squares.exterior) <= 0.75
+        assert area_and_centroid(stone.outline)[0] == pytest.approx(stone.area_px)
+        corners.append(len(stone.outline))
+    assert np.mean(corners) <= mean_corners

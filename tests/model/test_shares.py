@@ -1,0 +1,148 @@
+"""Who covers how much of each cell, against adding up cell by cell."""
+
+from collections import defaultdict
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels.coverage import Grid, coverage
+from drystone.kernels.polygons import Points
+from drystone.model.shares import Shares
+from tests.polygons import simple_polygons
+from tests.strategies import repeatable
+
+Block = tuple[int, Grid, int, int]
+
+
+@st.composite
+def blocks(draw: st.DrawFn, count: int = 5) -> list[Block]:
+    """Shares of blocks anywhere about a small site, quarters often, so that some are equal."""
+    made = []
+    for block_id in draw(st.permutations(range(1, 1 + count))):
+        rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+        shape = draw(st.tuples(st.integers(1, 5), st.integers(1, 5)))
+        shares = rng.uniform(0.0, 1.0, shape)
+        if draw(st.booleans()):
+            shares = np.floor(5.0 * shares) / 4.0
+        left, bottom = draw(st.integers(-6, 9)), draw(st.integers(-6, 7))
+        made.append((70_000 * block_id, shares, left, bottom))
+    return made
+
+
+def by_cells(made: list[Block], height: int, width: int) -> dict[tuple[int, int], list[float]]:
+    """The shares of each cell (x, y) of a site, from its bottom-left corner, by block."""
+    cells = defaultdict(list)
+    for number, (_, shares, left, bottom) in enumerate(made):
+        for (row, col), share in np.ndenumerate(shares):
+            x, y = left + col, bottom + len(shares) - 1 - row
+            if 0 <= x < width and 0 <= y < height:
+                cells[x, y] += [0.0] * (number - len(cells[x, y])) + [float(share)]
+    return cells
+
+
+def built(made: list[Block], height: int, width: int) -> Shares:
+    shares = Shares.empty(height, width)
+    for block in made:
+        shares = shares.added(*block)
+    return shares
+
+
+@repeatable(80)
+@given(made=blocks(), height=st.integers(1, 7), width=st.integers(1, 9))
+def test_each_cell_has_the_sum_the_largest_and_its_owner(
+    made: list[Block], height: int, width: int
+) -> None:
+    shares = built(made, height, width)
+    cells = by_cells(made, height, width)
+    assert shares.total.shape == shares.largest.shape == shares.owners.shape == (height, width)
+    for x in range(width):
+        for y in range(height):
+            at, each = (height - 1 - y, x), cells[x, y]
+            largest = max(each, default=0.0)
+            owner = made[each.index(largest)][0] if largest > 0.0 else 0
+            assert shares.total[at] == pytest.approx(sum(each))
+            assert shares.largest[at] == largest
+            assert shares.owners[at] == owner
+            assert shares.labels[at] == (owner if sum(each) >= 0.5 - 1e-12 else 0)
+
+
+@repeatable(80)
+@given(made=blocks(), height=st.integers(1, 7), width=st.integers(1, 9))
+def test_fresh_cells_are_those_that_become_part_of_the_image(
+    made: list[Block], height: int, width: int
+) -> None:
+    shares = built(made[:-1], height, width)
+    block_id, new, left, bottom = made[-1]
+    appear = (shares.labels == 0) & (shares.added(block_id, new, left, bottom).labels > 0)
+    fresh = shares.fresh(new, left, bottom)
+    outside = {
+        (left + col, bottom + len(new) - 1 - row) for row, col in np.argwhere(new >= 0.5).tolist()
+    }
+    outside = {(x, y) for x, y in outside if not (0 <= x < width and 0 <= y < height)}
+    if fresh is None:
+        assert outside or not appear.any()
+        return
+    mask, row, col = fresh
+    assert not outside
+    image = np.zeros((height, width), bool)
+    image[row : row + mask.shape[0], col : col + mask.shape[1]] = mask
+    np.testing.assert_array_equal(image, appear)
+
+
+@repeatable(40)
+@given(first=simple_polygons(max_size=12.0), second=simple_polygons(max_size=12.0))
+def test_labels_of_polygons_follow_their_areas(first: Points, second: Points) -> None:
+    placed = [(7, first + np.array([6.0, 6.0])), (8, second + np.array([19.2, 5.7]))]
+    shares = Shares.empty(12, 25)
+    for block_id, corners in placed:
+        shares = shares.added(block_id, *coverage(corners))
+    shapes = {block_id: shapely.Polygon(corners) for block_id, corners in placed}
+    for (row, col), label in np.ndenumerate(shares.labels):
+        cell = shapely.box(col, 11 - row, col + 1, 12 - row)
+        areas = {block_id: shape.intersection(cell).area for block_id, shape in shapes.items()}
+        if abs(sum(areas.values()) - 0.5) < 1e-9:
+            continue
+        most = max(areas.values())
+        expected = {i for i, area in areas.items() if area > most - 1e-9}
+        assert label in (expected if sum(areas.values()) > 0.5 else {0})
+
+
+def test_of_equal_shares_the_first_keeps_the_cell_whatever_the_rounding() -> None:
+    first = Shares.empty(1, 2).added(9, np.array([[0.5, 0.3]]), 0, 0)
+    both = first.added(3, np.array([[0.5 + 1e-14, 0.3 + 1e-9]]), 0, 0)
+    assert both.owners.tolist() == [[9, 3]]
+    assert both.labels.tolist() == [[9, 3]]
+
+
+def test_rounding_does_not_empty_a_cell_that_is_half_covered() -> None:
+    shares = Shares.empty(1, 2).added(4, np.array([[0.5 - 1e-13, 0.5 - 1e-11]]), 0, 0)
+    assert shares.labels.tolist() == [[4, 0]]
+
+
+def test_shares_do_not_change() -> None:
+    empty = Shares.empty(2, 3)
+    one = empty.added(5, np.ones((1, 1)), 1, 0)
+    assert empty.total.sum() == 0.0
+    assert empty.owners.dtype == np.uint32
+    assert one.labels.tolist() == [[0, 0, 0], [0, 5, 0]]
+    for array in (one.total, one.largest, one.owners, one.labels):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0, 0] = 1
+
+
+def test_a_block_beside_the_site_adds_nothing() -> None:
+    shares = Shares.empty(2, 3)
+    for left, bottom in ((3, 0), (-2, 0), (0, 2), (0, -1)):
+        beside = shares.added(5, np.ones((1, 2)), left, bottom)
+        assert beside.total.sum() == 0.0
+        assert shares.fresh(np.ones((1, 2)), left, bottom) is None
+
+
+def test_fresh_is_in_rows_from_the_top() -> None:
+    shares = Shares.empty(5, 6)
+    fresh = shares.fresh(np.array([[0.1, 0.7], [0.6, 0.2]]), 2, 1)
+    assert fresh is not None
+    assert (fresh[0].tolist(), fresh[1:]) == ([[False, True], [True, False]], (2, 2))

@@ -1,0 +1,35 @@
+"""Slow twins of drystone.kernels.coverage: one cell after the other."""
+
+import math
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+Grid = NDArray[np.float64]
+
+
+def coverage(corners: Grid) -> tuple[Grid, int, int]:
+    """The area that a polygon and each cell of its box have in common."""
+    shape = shapely.Polygon(corners)
+    left, bottom = (math.floor(value) for value in shape.bounds[:2])
+    right, top = (math.ceil(value) for value in shape.bounds[2:])
+    shares = np.zeros((max(top - bottom, 1), max(right - left, 1)))
+    for row in range(shares.shape[0]):
+        for col in range(shares.shape[1]):
+            x, y = left + col, bottom + shares.shape[0] - 1 - row
+            shares[row, col] = shapely.box(x, y, x + 1, y + 1).intersection(shape).area
+    return shares, left, bottom
+
+
+def newly_filled(total: Grid, shares: Grid, row: int, col: int) -> set[tuple[int, int]]:
+    """The cells (row, col) of the grid that change from less than half to at least half."""
+    cells = set()
+    for i in range(shares.shape[0]):
+        for j in range(shares.shape[1]):
+            at = row + i, col + j
+            inside = 0 <= at[0] < total.shape[0] and 0 <= at[1] < total.shape[1]
+            before = float(total[at]) if inside else 0.0
+            if before < 0.5 - 1e-12 <= before + float(shares[i, j]):
+                cells.add(at)
+    return cells

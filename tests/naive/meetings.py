@@ -1,0 +1,78 @@
+"""Slow, obvious twin of drystone.kernels.meetings: a contact wherever polygons are near."""
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from drystone.kernels.polygons import Points, area_and_centroid
+from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
+
+FAR = 1e4
+GROUND_POLYGON = np.array([[-FAR, -1.0], [FAR, -1.0], [FAR, 0.0], [-FAR, 0.0]])
+
+
+def edges(corners: Points) -> list[tuple[Points, Points]]:
+    """Both ends of every edge."""
+    return [(corners[i - 1], corners[i]) for i in range(len(corners))]
+
+
+def samples(corners: Points, other: Points, step: float) -> Points:
+    """Points on the boundary: the corners, what is nearest to corners of the other, and between."""
+    ring = shapely.LinearRing(corners)
+    places = [ring.project(shapely.Point(corner)) for corner in (*corners, *other)]
+    places += np.arange(0.0, ring.length, step).tolist()
+    return shapely.get_coordinates([ring.interpolate(place) for place in sorted(set(places))])
+
+
+def touching(
+    corners: Points, other: Points, tolerance: float, step: float
+) -> list[tuple[Points, Points]]:
+    """Samples within the tolerance of the other polygon, with the normal there.
+
+    The normal is that of the other one's edge where the nearest point lies inside it, otherwise
+    that of the edge the sample lies inside; a corner near a corner has none.
+    """
+    solid = shapely.Polygon(other)
+    found = []
+    for point in samples(corners, other, step):
+        if shapely.Point(point).distance(solid) > tolerance:
+            continue
+        away = shapely.Point(point).distance
+        nearest = min(edges(other), key=lambda edge: away(shapely.LineString(edge)))
+        normal = outward(nearest) if is_inside(point, nearest) else None
+        if normal is None:
+            own = min(edges(corners), key=lambda edge: away(shapely.LineString(edge)))
+            normal = -outward(own) if is_inside(point, own) else None
+        if normal is not None:
+            found.append((point, normal))
+    return found
+
+
+def outward(edge: tuple[Points, Points]) -> Points:
+    """The outward unit normal of an edge of a counter-clockwise polygon."""
+    x, y = edge[1] - edge[0]
+    return np.array([y, -x]) / np.hypot(x, y)
+
+
+def is_inside(point: Points, edge: tuple[Points, Points]) -> bool:
+    """Whether a point projects into an edge, away from its ends."""
+    step = edge[1] - edge[0]
+    share = float((point - edge[0]) @ step / (step @ step))
+    return 1e-6 < share < 1 - 1e-6
+
+
+def model(
+    polygons: list[NDArray[np.float64]], mu: float, tolerance: float, step: float
+) -> RigidBlockModel:
+    """A wall of blocks 1, 2, ... with a contact at every sample that is near another block."""
+    blocks, interfaces = [], []
+    for number, corners in enumerate(polygons, start=1):
+        area, x, y = area_and_centroid(corners)
+        blocks.append(Block(number, area, (x, y)))
+        around = [(GROUND, GROUND_POLYGON), *enumerate(polygons[: number - 1], start=1)]
+        for other, outline in around:
+            interfaces += [
+                Interface(number, other, point[None], (float(normal[0]), float(normal[1])))
+                for point, normal in touching(corners, outline, tolerance, step)
+            ]
+    return RigidBlockModel(tuple(blocks), tuple(interfaces), mu)

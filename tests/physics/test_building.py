@@ -1,0 +1,253 @@
+"""Walls built up stone by stone: piles stand or fall, and what falls is named."""
+
+import sys
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from drystone.errors import InputError, UsageError
+from drystone.physics.building import (
+    ROUNDED,
+    BuildSettings,
+    build_up,
+    tilt_of,
+)
+from drystone.physics.scatter import Variation
+from drystone.physics.scene import EngineSettings, Points, Scene
+from drystone.physics.table import TiltingTable
+from drystone.physics.tilt import TiltSettings
+
+pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
+
+Rectangle = tuple[float, float, float, float]
+Group = list[tuple[int, Points]]
+
+
+def rectangle(x: float, y: float, width: float, height: float) -> Points:
+    return np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height]], float)
+
+
+def single(*rectangles: Rectangle) -> list[Group]:
+    """One stone a group, numbered from 1."""
+    return [[(number, rectangle(*r))] for number, r in enumerate(rectangles, 1)]
+
+
+COURSES = single(
+    *((40.0 * i, 0.0, 40.0, 20.0) for i in range(3)),
+    *((20.0 + 40.0 * i, 20.0, 40.0, 20.0) for i in range(2)),
+    (40.0, 40.0, 40.0, 20.0),
+)
+
+
+def test_a_pile_stands_and_stays_where_it_is() -> None:
+    built = build_up(COURSES)
+    assert built.stands
+    assert built.rests
+    assert (built.fallen, built.first_fall, built.restless) == ((), None, ())
+    assert [move.id for move in built.moves] == [1, 2, 3, 4, 5, 6]
+    assert [move.group for move in built.moves] == [1, 2, 3, 4, 5, 6]
+    # Blocks sink by the overlap that the engine leaves, a thousandth of 28 px each.
+    assert max(move.move_px for move in built.moves) < 0.1
+    assert max(built.found_moved_px) < 0.1
+    assert built.found_moved_px[0] == 0.0
+    for block, corners in built.planned.items():
+        assert np.abs(corners - COURSES[block - 1][0][1]).max() < 1e-9
+        assert np.abs(corners - built.outlines[block]).max() < 0.1
+
+
+def test_an_overhanging_stone_falls_and_is_named() -> None:
+    groups = single((0, 0, 40, 20), (50, 0, 40, 20), (22, 20, 40, 20), (60, 40, 40, 20))
+    built = build_up(groups)
+    assert built.fallen == (4,)
+    assert built.first_fall == 4
+    top = built.moves[-1]
+    assert top.fell
+    assert top.turn_deg > 10
+    assert top.share == pytest.approx(top.move_px / np.sqrt(800))
+    # It went down at its right end.
+    assert built.outlines[4][:, 1].min() < 30
+    assert tilt_of(built) is None
+
+
+def test_the_first_fall_may_be_of_a_stone_that_stood() -> None:
+    """A stone on the end of another tips it; the step that brings it down is that one."""
+    groups = single((0, 0, 40, 20), (16, 20, 40, 10), (46, 30, 20, 20))
+    built = build_up(groups)
+    assert built.first_fall == 3
+    assert set(built.fallen) == {2, 3}
+
+
+def test_the_order_of_placement_matters() -> None:
+    """The counterweight must come before what it holds."""
+    base, counterweight = (1, rectangle(0, 0, 40, 20)), (3, rectangle(10, 40, 20, 40))
+    long = (2, rectangle(10, 20, 70, 20))
+    late = build_up([[base], [long], [counterweight]])
+    assert late.first_fall == 2
+    together = build_up([[base], [long, counterweight]])
+    assert together.stands
+
+
+def test_a_wall_built_from_the_right_stands_too() -> None:
+    mirrored = [
+        [(block, (corners * [-1, 1] + [120, 0])[::-1]) for block, corners in group]
+        for group in COURSES
+    ]
+    assert build_up(mirrored).stands
+
+
+def test_a_wedge_keeps_its_stone() -> None:
+    pillars = single((0, 0, 20, 20), (60, 0, 20, 14))
+    slab, wedge = (3, rectangle(2, 20, 76, 12)), (9, rectangle(66, 14, 10, 6))
+    without = build_up([*pillars, [slab]])
+    assert without.fallen == (3,)
+    held = build_up([*pillars, [slab, wedge]])
+    assert held.stands
+    assert held.moves[-1].id == 9
+    assert held.moves[-1].group == 3
+    # A wedge is judged by the size of its stone.
+    assert held.moves[-1].share == pytest.approx(held.moves[-1].move_px / np.sqrt(76 * 12))
+
+
+def test_gaps_close() -> None:
+    built = build_up(single((0, 0.01, 40, 20), (0, 20.11, 40, 20)))
+    assert built.stands
+    assert built.moves[1].move_px == pytest.approx(0.11, abs=0.06)
+    assert built.outlines[2][:, 1].min() == pytest.approx(20.0, abs=0.06)
+
+
+def test_an_overlap_is_pushed_apart_and_nothing_is_thrown() -> None:
+    built = build_up(single((0, 0, 40, 20), (0, 18, 40, 20)))
+    lower, upper = built.moves
+    assert lower.overlap_px == pytest.approx(0.0, abs=1e-6)
+    assert upper.overlap_px == pytest.approx(2.0, abs=0.01)
+    # It goes up by the overlap and not further.
+    assert upper.move_px == pytest.approx(2.0, abs=0.06)
+    assert upper.turn_deg < 0.1
+    assert built.stands
+
+
+def test_what_came_before_may_have_moved() -> None:
+    """A stone set 3 px too high drops; the next one is put where it was planned all the same."""
+    built = build_up(single((0, 3, 40, 20), (0, 23, 40, 20)))
+    assert built.found_moved_px[0] == 0.0
+    assert built.found_moved_px[1] == pytest.approx(3.0, abs=0.06)
+    assert built.moves[1].move_px == pytest.approx(3.0, abs=0.1)
+
+
+def test_a_movement_alone_is_a_fall() -> None:
+    groups = single((0, 3, 40, 20))
+    assert build_up(groups, settings=BuildSettings(moved_share=0.05)).fallen == (1,)
+    assert build_up(groups, settings=BuildSettings(moved_share=0.2)).stands
+
+
+def test_a_turn_alone_is_a_fall() -> None:
+    settings = BuildSettings(moved_share=10.0, turned_deg=3.0)
+    pillars = single((0, 0, 20, 20), (60, 0, 20, 14), (2, 20, 76, 12))
+    built = build_up(pillars, settings=settings)
+    assert built.fallen == (3,)
+    # About (20, 20), until its end at x = 78 lies on the lower pillar.
+    assert built.moves[2].turn_deg == pytest.approx(np.degrees(np.arctan(6 / 58)), rel=0.05)
+
+
+def test_what_does_not_rest_is_said() -> None:
+    settings = BuildSettings(longest_rest=0.5, resting_time=0.25)
+    built = build_up(single((0, 30, 40, 20)), settings=settings)
+    assert built.restless == (1,)
+    assert not built.rests
+    assert tilt_of(built) is None
+
+
+def test_faces_that_touch_exactly_are_not_found_to_be_deep_in_each_other() -> None:
+    """Sharp polygons are, at some units of length, which a third block changes here."""
+    face = 675.0658410386717, 82.07608080758175
+    left = [(450, 0), (675, 0), face, (635.0067604611938, 85.21316892956254), (450, 85)]
+    right = [(675, 0), (895, 0), (895, 80), (880, 80), (690, 80), face]
+    outlines = {1: np.array(left, float), 2: np.array(right, float)}
+    for size in np.linspace(20, 300, 40):
+        scene = Scene({**outlines, 3: rectangle(1000, 0, size, size)}, 0.58)
+        table = TiltingTable(scene, ROUNDED, placed=(1,))
+        assert table.place(scene, 2) < 1e-6
+
+
+def test_same_input_same_result() -> None:
+    groups = single((0, 0, 40, 20), (50, 0, 40, 20), (22, 20, 40, 20), (60, 40, 40, 20))
+    first, second = build_up(groups), build_up(groups)
+    assert first.moves == second.moves
+    for block, corners in first.outlines.items():
+        assert (corners == second.outlines[block]).all()
+
+
+def test_each_group_is_told() -> None:
+    told: list[int] = []
+    build_up(COURSES[:3], on_group=told.append)
+    assert told == [1, 2, 3]
+
+
+def test_nothing_to_build() -> None:
+    built = build_up([])
+    assert built.stands
+    assert built.moves == ()
+    assert tilt_of(built) is None
+
+
+def test_what_is_no_outline_is_refused() -> None:
+    with pytest.raises(InputError) as caught:
+        build_up([[(1, np.array([[0.0, 0.0], [1.0, 0.0]]))]])
+    assert caught.value.code == "E303"
+
+
+def test_the_tilt_of_a_pile() -> None:
+    """A column two wide and four high topples at 1/2; to both sides."""
+    built = build_up(single((0, 0, 20, 20), (0, 20, 20, 20)), 0.7)
+    tilts = tilt_of(built)
+    assert tilts is not None
+    left, right = tilts
+    assert (left.direction, right.direction) == ("left", "right")
+    for tilt in tilts:
+        assert tilt.alpha == pytest.approx(0.5, abs=0.01)
+
+
+def test_the_tilt_knows_the_friction() -> None:
+    """A flat block slides at its coefficient of friction."""
+    tilts = tilt_of(build_up(single((0, 0, 40, 10)), 0.3))
+    assert tilts is not None
+    assert tilts[0].alpha == pytest.approx(0.3, abs=0.01)
+
+
+def test_what_stands_but_moves_is_not_tilted() -> None:
+    settings = BuildSettings(longest_rest=0.5, resting_time=1.0)
+    built = build_up(single((0, 0, 40, 10)), settings=settings)
+    assert built.stands
+    assert not built.rests
+    assert tilt_of(built) is None
+
+
+def test_the_tilt_starts_where_the_wall_came_to_rest() -> None:
+    """A column planned 2 px above the ground would have to settle by that first."""
+    built = build_up(single((0, 2, 20, 40)), 0.7)
+    tilts = tilt_of(built, (Variation("rough", ROUNDED, TiltSettings(coarse=0.1, fine=0.05)),))
+    assert tilts is not None
+    for tilt in tilts:
+        (trial,) = tilt.trials
+        assert trial.settled_shift < 0.1
+        assert trial.alpha == pytest.approx(0.5, abs=0.06)
+        assert trial.resolution <= 0.025
+
+
+def test_a_table_gets_its_blocks_one_by_one() -> None:
+    corners = {n: rectangle(0, 20.0 * n, 40, 20) for n in range(3)}
+    table = TiltingTable(Scene(corners, 0.6), EngineSettings(), placed=())
+    assert table.ids == ()
+    for number in (0, 2):
+        assert table.place(Scene(corners, 0.6), number) == pytest.approx(0.0, abs=1e-9)
+    assert table.ids == (0, 2)
+    heights = table.poses()[:, 1]
+    assert [b - a for a, b in pairwise(heights)] == pytest.approx([40 / np.sqrt(800)])
+
+
+def test_without_the_engine_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pymunk", None)
+    with pytest.raises(UsageError) as caught:
+        build_up(COURSES)
+    assert caught.value.code == "E305"

@@ -1,0 +1,69 @@
+"""Random simple polygons, convex and concave, as the outlines of stones are."""
+
+import numpy as np
+import shapely
+from hypothesis import strategies as st
+
+from drystone.kernels.polygons import Points, area_and_centroid
+from tests.strategies import Draw
+
+
+def random_polygon(rng: np.random.Generator, corners: int, size: float) -> Points:
+    """A star-shaped polygon of random radii: counter-clockwise, its centroid at the origin.
+
+    Parameters
+    ----------
+    rng : numpy Generator
+        Two numbers a corner are drawn from it.
+    corners : int
+        At least 3; more than 4 are seldom convex.
+    size : float
+        It is at most this wide in any direction.
+    """
+    # Never half a turn or more from one corner to the next, or it need not be simple.
+    spread = min(0.9, 0.45 * (corners - 2))
+    angle = (np.arange(corners) + rng.uniform(0.0, spread, corners)) * (2.0 * np.pi / corners)
+    radius = rng.uniform(0.2, 1.0, corners) * size / 2.0
+    return centred(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
+
+
+def centred(corners: Points) -> Points:
+    """The same polygon with its centroid at the origin."""
+    _, x, y = area_and_centroid(corners)
+    return np.asarray(corners - np.array([x, y]))
+
+
+def convex(corners: Points) -> Points:
+    """The convex hull of some points, counter-clockwise."""
+    hull = shapely.get_coordinates(shapely.convex_hull(shapely.multipoints(corners)))[:-1]
+    return np.ascontiguousarray(hull if area_and_centroid(hull)[0] > 0.0 else hull[::-1])
+
+
+def on_grid(corners: Points, step: float) -> Points | None:
+    """The corners moved to a grid, without those that fall together; None when it is not simple."""
+    moved = np.round(corners / step) * step
+    moved = moved[(moved != np.roll(moved, 1, axis=0)).any(axis=1)]
+    shape = shapely.Polygon(moved) if len(moved) > 2 else shapely.Polygon()
+    return moved if shape.is_valid and shape.area > 0.0 else None
+
+
+@st.composite
+def simple_polygons(draw: Draw, max_corners: int = 12, max_size: float = 20.0) -> Points:
+    """A simple polygon about the origin, counter-clockwise: concave, convex, a box, or on a grid.
+
+    Those on a grid have corners at multiples of .5, with edges along the axes, corners in a row
+    on one line and small whole slopes among them; their centroid is near the origin, that of the
+    others at it.
+    """
+    kind = draw(st.sampled_from(["star", "convex", "box", "grid"]))
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    size = draw(st.floats(0.5, max_size))
+    if kind == "box":
+        width, height = rng.uniform(0.05, 0.7, 2) * size / 2.0
+        return np.array([[-width, -height], [width, -height], [width, height], [-width, height]])
+    star = random_polygon(rng, draw(st.integers(3, max_corners)), size)
+    if kind == "convex":
+        return centred(convex(star))
+    if kind == "grid" and (moved := on_grid(star, 0.5)) is not None:
+        return moved
+    return star

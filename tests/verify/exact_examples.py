@@ -1,0 +1,91 @@
+"""A small wall of outlines made by hand, with a plan that claims what is true of it."""
+
+import numpy as np
+
+from drystone.kernels.polygons import Points, on_grid
+from drystone.kernels.raster import turn
+from drystone.model.placement import Settled, Side
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.model.wall import Wall
+from drystone.planner.assemble import Frame
+from drystone.planner.events import Stopped
+from drystone.planner.plan_wall import finish
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings
+from drystone.settle.placing import settled_placement, settled_wedge
+from drystone.settle.rest import placed_outline
+from drystone.stabilise.settings import StabiliseSettings
+from tests.verify.examples import L_STONE, SLAB, WEDGE, Example, stone_set
+
+GAP_PX = 0.01
+"""Between all that touches."""
+
+SETTINGS = PlannerSettings(
+    geometry="exact",
+    orientations="quarter",
+    two_sided=True,
+    stabilise=StabiliseSettings(min_wedge_px=1, max_wedge_height=0.8),
+)
+WALL_PX = (84.0, 30.0)
+
+
+def exact_example(scale: float = 1.0, px_per_m: float | None = None, *, count: int = 5) -> Example:
+    """Return a slab on two pillars with a wedge on the lower one, an L beside them turned by 90.
+
+    Only the first `count` stones of these.
+    """
+    stones, site = stone_set(), Site.from_source(*WALL_PX, scale, px_per_m)
+    wall = Wall.empty(site, exact=True)
+    for stone_id, angle_deg, left, bottom in (
+        (3, 0.0, 0.0, GAP_PX),
+        (5, 0.0, 40.0, GAP_PX),
+        (SLAB, 180.0, 10.0, 20 + 2 * GAP_PX),
+        (L_STONE, 90.0, 64.0, GAP_PX),
+        (300, -90.0, 74.0, GAP_PX),
+    )[:count]:
+        wall = with_stone(wall, stones, (stone_id, angle_deg), (left, bottom))
+    return plan_of(wall, stones)
+
+
+def with_stone(
+    wall: Wall, stones: StoneSet, turned: tuple[int, float], corner: tuple[float, float]
+) -> Wall:
+    """Add a stone, the bottom-left corner of its box at a place; the slab with its wedge."""
+    assert wall.outlines is not None
+    stone_id, angle_deg = turned
+    outline = stones.by_id(stone_id).outline_within(SETTINGS.settle.outline_px)
+    x, y = (np.array(corner) - turn(outline, angle_deg).min(axis=0)).tolist()
+    x, y = on_grid(np.array([x, y])).tolist()
+    settled = Settled(x, y, placed_outline(outline, angle_deg, x, y))
+    side: Side = "right" if stone_id == 300 else "left"
+    placement = settled_placement(
+        wall.outlines, wall.site, stones.by_id(stone_id), angle_deg, settled, side, 0
+    )
+    assert placement is not None
+    if stone_id != SLAB:
+        return wall.add(placement)
+    above = wall.add(placement).outlines
+    assert above is not None
+    return wall.add(placement, (settled_wedge(above, wall.site, WEDGE, SLAB, wedge_px()),))
+
+
+def wedge_px() -> Points:
+    """The wedge between the lower pillar and the slab, 8 px wide and nearly 4 px high."""
+    low, high = 16 + 2 * GAP_PX, 20 + GAP_PX
+    return on_grid(np.array([[42.0, low], [50.0, low], [50.0, high], [42.0, high]]))
+
+
+def plan_of(wall: Wall, stones: StoneSet) -> Example:
+    """Return the plan of a wall of outlines, with what the planner finds true of it."""
+    planner = Planner(stones, wall.site, settings=SETTINGS)
+    planner.restore(wall, {})
+    provenance = {
+        "version": "0.1.0",
+        "method": "custom",
+        "seed": 1,
+        "settings": SETTINGS.as_dict(),
+    }
+    stopped = Stopped("stones", "all stones that fit are placed")
+    made = finish(planner, Frame(*WALL_PX, wall.site), stopped, provenance, 0.0)
+    return Example(made.plan, stones, wall)

@@ -1,0 +1,287 @@
+"""Plans of exact geometry are verified on their outlines."""
+
+import json
+from collections.abc import Callable
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drystone.io.plan_json import plan_from_json, plan_to_json
+from drystone.io.read_stones import read_stones
+from drystone.model.plan import Plan, PlanMetrics
+from drystone.planner.plan_wall import PlanResult, plan_wall
+from drystone.planner.settings import method_settings
+from drystone.verify.check import check_plan
+from drystone.verify.exact_replay import PENETRATION_PX
+from drystone.verify.overlap import SPACING_PX
+from drystone.verify.report import PrefixAlpha
+from tests.verify.exact_examples import GAP_PX, exact_example
+from tests.verify.examples import L_STONE, SLAB, WEDGE, Example
+from tests.verify.tampering import (
+    changed,
+    codes,
+    moved,
+    reshaped,
+    step_of,
+    swapped,
+    with_index,
+    with_setting,
+    without,
+)
+
+
+@pytest.fixture(scope="module")
+def true() -> Example:
+    return exact_example()
+
+
+def lowered_top(polygon: np.ndarray, by: float) -> np.ndarray:
+    return polygon - (polygon == polygon.max(axis=0)) * (0, by)
+
+
+def raised_floor(polygon: np.ndarray, by: float) -> np.ndarray:
+    return polygon + (polygon == polygon.min(axis=0)) * (0, by)
+
+
+@pytest.mark.parametrize(
+    ("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, None), (0.5, 200.0)]
+)
+def test_true_plan_passes_in_any_unit_and_at_any_scale(
+    scale: float, px_per_m: float | None
+) -> None:
+    made = exact_example(scale, px_per_m)
+    plan = plan_from_json(json.loads(json.dumps(plan_to_json(made.plan))))
+    report = check_plan(plan, made.stones, wall_labels=made.wall.labels)
+    assert report.problems == ()
+    assert report.notes == ()
+    assert report.geometry == report.as_dict()["geometry"] == "exact"
+    assert (report.overlap_depth, report.overlap_depth_at, report.buried) == (0.0, None, ())
+    assert report.area_error == 0
+    assert report.metrics is not None
+    assert report.metrics.F_LR_half == pytest.approx(1.0)  # slabs and blocks slide before they tip
+    assert report.prefixes[0].alpha_left == pytest.approx(0.58)
+    assert [prefix.step for prefix in report.prefixes] == [1, 2, 4, 5, 6]
+
+
+# What is changed in the plan, and the codes that name it: exactly these.
+EXACT: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+    "unused stone missing": (lambda p: replace(p, unused=()), {"E216"}),
+    "settings": (lambda p: replace(p, settings={**p.settings, "wings": 2}),
+                 {"E217", "E235"}),
+    "stone left of the wall": (lambda p: moved(p, 3, -0.06, 0), {"E220"}),
+    "stone in the ground": (lambda p: moved(p, 5, 0, -0.07), {"E220"}),
+    "stone right of the wall": (lambda p: moved(p, 300, 0.06, 0), {"E220"}),
+    "stone above the top": (lambda p: moved(p, SLAB, 0, 4.05), {"E220"}),
+    "stone .2 px into what is below": (lambda p: moved(p, SLAB, 0, -0.2), {"E221"}),
+    "stone .2 px into its neighbour": (lambda p: moved(p, 300, -2.2, 0), {"E221"}),
+    "stone in another": (lambda p: moved(p, 300, 2 - 74, 2), {"E221"}),
+    "stone turned into another": (
+        lambda p: changed(p, SLAB, angle_deg=181.0, rotation_moves=1), {"E221"}),
+    "wedge .2 px into its stone": (
+        lambda p: reshaped(p, lambda w: w + np.array([0, 0.2])), {"E221"}),
+    "wedge clockwise": (lambda p: reshaped(p, lambda w: w[::-1]), {"E222"}),
+    "wedge that crosses itself": (lambda p: reshaped(p, lambda w: w[[0, 2, 1, 3]]), {"E222"}),
+    "wedge without area": (lambda p: reshaped(p, lambda w: w * (1, 0)), {"E222"}),
+    "wedge far outside": (lambda p: reshaped(p, lambda w: w * 1e9), {"E220"}),
+    "wedge too small": (lambda p: with_setting(p, "stabilise", min_wedge_px=4), {"E224"}),
+    "wedge too high": (lambda p: with_setting(p, "stabilise", max_wedge_height=0.2), {"E224"}),
+    "source centroid": (lambda p: changed(p, 3, source_centroid=(12.0, 13.5)), {"E225"}),
+    "alpha of a stone": (lambda p: changed(p, 3, alpha_left=0.580001), {"E231"}),
+    "alpha of a wedge": (lambda p: changed(p, WEDGE, alpha_right=None), {"E231"}),
+    "cluster": (lambda p: changed(p, 3, cluster=77), {"E233"}),
+    "two rotation moves": (lambda p: changed(p, 3, rotation_moves=2), {"E235"}),
+    "a turn that is none": (
+        lambda p: changed(with_setting(p, "stabilise", method="wedge"), 3, rotation_moves=1),
+        {"E235"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_tampering_is_caught_by_its_code(true: Example, name: str) -> None:
+    change, expected = EXACT[name]
+    report = check_plan(change(true.plan), true.stones)
+    assert codes(report) == expected
+    assert not report.ok
+
+
+# Changes with more than one consequence: these codes are among those found.
+AMONG: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
+    "stone lifted by 1 px": (lambda p: moved(p, L_STONE, 0, 1), {"E230", "E236"}),
+    "stone lifted beyond the tolerance": (lambda p: moved(p, 300, 0, 0.11), {"E230"}),
+    "first stone lifted": (lambda p: moved(without(p, SLAB), 3, 0, 1), {"E230"}),
+    "stone lifted within the tolerance": (lambda p: moved(p, 300, 0, 0.06), {"E234"}),
+    "stone turned by 1 degree": (lambda p: changed(p, 3, angle_deg=1.0), {"E235"}),
+    "stone turned further than it may": (
+        lambda p: changed(p, 3, angle_deg=12.1, rotation_moves=1), {"E235"}),
+    "stone turned by 180 degrees": (lambda p: changed(p, L_STONE, angle_deg=-90.0), {"E236"}),
+    "ids swapped": (lambda p: swapped(p, L_STONE, 300), {"E225", "E236"}),
+    "stone that is not there": (lambda p: changed(p, 3, stone=4), {"E212", "E216"}),
+    "stone used twice": (lambda p: changed(p, 300, stone=3), {"E213", "E216"}),
+    "side": (lambda p: changed(p, 300, side="left"), {"E232"}),
+    "wedge left out": (lambda p: without(p, WEDGE), {"E230", "E234", "E236"}),
+    "wedge with a stone's id": (lambda p: changed(p, WEDGE, id=9), {"E213", "E236"}),
+    "wedge too low": (lambda p: reshaped(p, lambda w: lowered_top(w, 0.2)), {"E223", "E230"}),
+    "wedge hanging": (lambda p: reshaped(p, lambda w: raised_floor(w, 0.2)), {"E223"}),
+    "wedge narrower": (lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (0.5, 0)),
+                       {"E234"}),
+    "wedge elsewhere": (lambda p: reshaped(p, lambda w: w - (12, 0)), {"E223", "E230", "E236"}),
+    "friction": (lambda p: replace(p, settings={**p.settings, "mu": 0.3}), {"E231", "E234"}),
+    "contact tolerance": (
+        lambda p: with_setting(p, "settle", contact_px=GAP_PX / 2, clearance_px=GAP_PX / 4),
+        {"E223", "E230"}),
+    "one-sided": (lambda p: replace(p, settings={**p.settings, "two_sided": False}), {"E235"}),
+    "raster": (lambda p: replace(p, settings={**p.settings, "geometry": "raster"}), {"E234"}),
+    "wall wider": (lambda p: replace(p, width=90.0), {"E234", "E236"}),
+    "unit of length": (lambda p: replace(p, px_per_m=2.0, length_unit="m"), {"E230"}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", AMONG)
+def test_tampering_with_consequences_is_caught(true: Example, name: str) -> None:
+    change, expected = AMONG[name]
+    report = check_plan(change(true.plan), true.stones, wall_labels=true.wall.labels)
+    assert codes(report) >= expected
+
+
+@pytest.mark.parametrize(("into", "allowed"), [(0.04, True), (0.06, False)])
+def test_penetration_is_allowed_up_to_a_limit(true: Example, into: float, allowed: bool) -> None:
+    report = check_plan(moved(true.plan, SLAB, 0, -GAP_PX - into), true.stones)
+    assert ("E221" not in codes(report)) is allowed
+    assert report.overlap_depth == pytest.approx(into, abs=1e-6)
+    assert report.overlap_depth_at in {(3, SLAB), (SLAB, WEDGE)}
+    assert (into <= PENETRATION_PX) is allowed
+
+
+def test_depth_is_said_in_source_px_and_of_wedges_too() -> None:
+    made = exact_example(0.5, 200.0)
+    plan = reshaped(made.plan, lambda w: w - (0, 1.2 / 200))
+    report = check_plan(plan, made.stones)
+    assert report.overlap_depth == pytest.approx(1.2 - GAP_PX, abs=SPACING_PX / 2)
+    assert report.overlap_depth_at == (5, WEDGE)
+    (problem,) = (p for p in report.problems if p.code == "E221")
+    assert "1.19 source px deep in stone 5" in problem.message
+    assert problem.step == step_of(made.plan, WEDGE).step
+
+
+def test_edges_of_the_wall_are_named_in_source_px() -> None:
+    made = exact_example(0.5)
+    report = check_plan(moved(made.plan, 300, 0.75, -0.25), made.stones)
+    (problem,) = report.problems
+    assert problem.code == "E220"
+    assert "0.24 px below the ground, 0.75 px right of the right" in problem.message
+
+
+def test_wall_in_the_air_does_not_stand(true: Example) -> None:
+    alone = moved(replace(true.plan, steps=true.plan.steps[:1]), 3, 0, 1)
+    report = check_plan(alone, true.stones)
+    assert report.prefixes == (PrefixAlpha(1, None, None),)
+    (problem,) = (p for p in report.problems if p.code == "E230")
+    assert problem.message == "nothing of the wall stands on the ground."
+    assert report.metrics is None
+
+
+def test_stone_that_hangs_between_others_does_not_stand(true: Example) -> None:
+    # As near to its neighbours as contacts are, with nothing below it.
+    hanging = moved(true.plan, L_STONE, 2.0 - GAP_PX, 3.0)
+    report = check_plan(hanging, true.stones)
+    step = step_of(true.plan, L_STONE).step
+    assert {p.code for p in report.problems if p.step == step} >= {"E230"}
+    assert PrefixAlpha(step, None, None) in report.prefixes
+
+
+@pytest.mark.parametrize("name", ["SF", "LFR", "GDS", "NHR", "IWR", "IS"])
+def test_every_index_is_verified(true: Example, name: str) -> None:
+    report = check_plan(with_index(true.plan, name, 1e-8), true.stones)
+    assert codes(report) == {"E232"}
+    assert name in report.problems[0].message
+
+
+@pytest.mark.parametrize("name", [field.name for field in fields(PlanMetrics)])
+def test_every_metric_is_verified(true: Example, name: str) -> None:
+    value = getattr(true.plan.metrics, name)
+    metrics = replace(true.plan.metrics, **{name: value + 1e-6 * max(1.0, value)})
+    report = check_plan(replace(true.plan, metrics=metrics), true.stones)
+    assert codes(report) == {"E234"}
+    assert name in report.problems[0].message
+
+
+def test_mirrored_stone_in_the_wall_image_is_caught(true: Example) -> None:
+    labels = true.wall.labels.copy()
+    window = next(p.window for p in true.wall.placements if p.stone_id == L_STONE)
+    labels[window] = labels[window][:, ::-1]
+    report = check_plan(true.plan, true.stones, wall_labels=labels)
+    assert [(p.code, p.step) for p in report.problems] == [
+        ("E236", step_of(true.plan, L_STONE).step)
+    ]
+
+
+def test_stone_that_cannot_be_lowered_in_is_listed(true: Example) -> None:
+    below_the_slab = moved(true.plan, 300, 22 - 74, 0)
+    assert check_plan(below_the_slab, true.stones).buried == (300,)
+
+
+def test_empty_plan_is_checked(true: Example) -> None:
+    empty = PlanMetrics(0.0, None, None, None, 0.0, 0.0, None, None, 0.0)
+    ids = tuple(stone.id for stone in true.stones)
+    assert check_plan(replace(true.plan, steps=(), unused=ids, metrics=empty), true.stones).ok
+
+
+# The planner's own plans of a published set.
+
+
+@pytest.fixture(scope="module")
+def published(data_dir: Path) -> tuple[PlanResult, Any]:
+    stones = read_stones(data_dir / "almeida" / "PR.png")
+    settings = method_settings("best").updated({"rework": {"rounds": 0}, "geometry": "exact"})
+    return plan_wall(stones, 600, 160, seed=1, settings=settings, scale=0.5), stones
+
+
+def turned(plan: Plan, stone: int, by_deg: float) -> Plan:
+    return changed(plan, stone, angle_deg=step_of(plan, stone).angle_deg + by_deg)
+
+
+def test_plan_of_a_published_set_passes(published: tuple[PlanResult, Any]) -> None:
+    made, stones = published
+    report = check_plan(made.plan, stones, wall_labels=made.wall.labels)
+    assert report.problems == ()
+    assert report.overlap_depth == 0.0
+    assert report.area_error < 0.05
+    assert len(made.plan.stone_steps) > 20
+    assert report.metrics == made.metrics
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (lambda p, s: moved(p, s, 0, -0.2), {"E221", "E220"}),
+        # Between its neighbours it may stick; then the wall carries another load.
+        (lambda p, s: moved(p, s, 0, 1.0), {"E221", "E230", "E231"}),
+        (lambda p, s: turned(p, s, 1.0), {"E220", "E221", "E230", "E231"}),
+        (lambda p, s: turned(p, s, 30.0), {"E235", "E220"}),
+    ],
+    ids=["lowered", "lifted", "turned", "turned far"],
+)
+def test_tampering_with_any_stone_of_a_published_set_is_caught(
+    published: tuple[PlanResult, Any], change: Callable[[Plan, int], Plan], expected: set[str]
+) -> None:
+    made, stones = published
+    for step in made.plan.stone_steps[::7]:
+        assert codes(check_plan(change(made.plan, step.stone), stones)) & expected
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "expected"),
+    [
+        ("contact_px", 0.02, {"E230", "E231", "E234"}),
+        ("outline_px", 1.5, {"E221", "E230", "E231"}),
+    ],
+)
+def test_other_settings_of_settling_are_caught(
+    published: tuple[PlanResult, Any], name: str, value: float, expected: set[str]
+) -> None:
+    made, stones = published
+    plan = with_setting(made.plan, "settle", **{name: value})
+    assert codes(check_plan(plan, stones)) & expected

@@ -1,0 +1,204 @@
+"""Walls of outlines are built again from the input stones and the plan alone."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.errors import PlanError
+from drystone.generate import PolygonSettings, polygon_stones
+from drystone.io.plan_json import plan_from_json, plan_to_json
+from drystone.model.placement import Placement
+from drystone.model.plan import Plan
+from drystone.model.stone import StoneSet
+from drystone.model.wall import Wall
+from drystone.planner.plan_wall import PlanResult, plan_wall
+from drystone.planner.settings import method_settings
+from drystone.verify.check import check_plan
+from drystone.verify.exact_replay import ExactCanvas, leaves
+from drystone.verify.replay import rebuild_wall, replay_plan
+from tests.strategies import repeatable
+from tests.verify.exact_examples import exact_example
+from tests.verify.examples import SLAB, WEDGE
+from tests.verify.tampering import changed, moved, reshaped
+
+ROUNDING_PX = 1e-9
+"""Of lengths that were in metres."""
+
+
+def stone_set() -> StoneSet:
+    settings = PolygonSettings(count=8, width_px=44, height_px=28)
+    return polygon_stones(settings, np.random.default_rng(4))
+
+
+def planned(
+    stones: StoneSet,
+    px_per_m: float | None,
+    built: Wall | None = None,
+    rounds: int = 1,
+    heights: dict[int, float] | None = None,
+) -> PlanResult:
+    settings = method_settings("best").updated({"geometry": "exact", "rework": {"rounds": rounds}})
+    return plan_wall(
+        stones,
+        160,
+        90,
+        seed=3,
+        settings=settings,
+        scale=0.5,
+        px_per_m=px_per_m,
+        built=built,
+        course_heights_px=heights,
+    )
+
+
+def read_again(plan: Plan) -> Plan:
+    return plan_from_json(json.loads(json.dumps(plan_to_json(plan))))
+
+
+@pytest.fixture(scope="module", params=[None, 437.0])
+def made(request: pytest.FixtureRequest) -> tuple[PlanResult, StoneSet]:
+    stones = stone_set()
+    return planned(stones, request.param), stones
+
+
+def raster_part(placement: Placement) -> tuple[object, ...]:
+    """What has no lengths in units of the plan."""
+    posed = placement.posed
+    pixels = posed.mask.shape, posed.mask.tobytes(), placement.row, placement.col
+    said = placement.stone_id, posed.angle_deg, placement.side, placement.rotation_moves
+    return *said, *pixels
+
+
+def test_wall_of_the_planner_is_rebuilt(made: tuple[PlanResult, StoneSet]) -> None:
+    result, stones = made
+    found = rebuild_wall(read_again(result.plan), stones)
+    np.testing.assert_array_equal(found.labels, result.wall.labels)
+    assert len(found.placements) == len(result.wall.placements) >= 5
+    for mine, its in zip(found.placements, result.wall.placements, strict=True):
+        assert raster_part(mine) == raster_part(its)
+        assert mine.settled is not None
+        assert its.settled is not None
+        rounding = ROUNDING_PX if result.plan.px_per_m else 0.0
+        np.testing.assert_allclose(mine.settled.corners, its.settled.corners, rtol=0, atol=rounding)
+        assert mine.settled.x_px == pytest.approx(its.settled.x_px, rel=0, abs=rounding)
+        np.testing.assert_allclose(mine.posed.anchor, its.posed.anchor, rtol=0, atol=rounding)
+
+
+def test_plan_of_the_planner_passes(made: tuple[PlanResult, StoneSet]) -> None:
+    result, stones = made
+    report = check_plan(read_again(result.plan), stones, wall_labels=result.wall.labels)
+    assert report.problems == ()
+    assert report.overlap_depth == 0.0
+
+
+@pytest.mark.parametrize("stones_built", [1, 4])
+def test_going_on_from_a_partial_plan_gives_the_same_plan(stones_built: int) -> None:
+    stones = stone_set()
+    whole = planned(stones, None, rounds=0)
+    steps = whole.plan.steps[:stones_built]
+    built = rebuild_wall(read_again(replace(whole.plan, steps=steps)), stones)
+    heights = {
+        step.stone: step.course_height * 0.5
+        for step in whole.plan.stone_steps[:stones_built]
+        if step.course_height is not None
+    }
+    again = planned(stones, None, built, rounds=0, heights=heights)
+    assert json.dumps(plan_to_json(again.plan)) == json.dumps(plan_to_json(whole.plan))
+    assert again.wall.labels.tobytes() == whole.wall.labels.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("scale", "px_per_m"), [(1.0, None), (1.0, 137.0), (0.5, None), (0.5, 211.3)]
+)
+def test_wall_with_a_wedge_is_rebuilt(scale: float, px_per_m: float | None) -> None:
+    example = exact_example(scale, px_per_m)
+    found = rebuild_wall(read_again(example.plan), example.stones)
+    np.testing.assert_array_equal(found.labels, example.wall.labels)
+    (mine,), (its,) = found.wedges, example.wall.wedges
+    assert (mine.id, mine.under, mine.row, mine.col) == (WEDGE, SLAB, its.row, its.col)
+    np.testing.assert_array_equal(mine.mask, its.mask)
+    assert mine.corners is not None
+    np.testing.assert_allclose(mine.corners, its.corners, rtol=0, atol=ROUNDING_PX)
+
+
+def test_wall_that_cannot_be_built_is_refused_with_the_step() -> None:
+    example = exact_example()
+    others = StoneSet(tuple(stone for stone in example.stones if stone.id != SLAB))
+    with pytest.raises(PlanError, match="E212") as caught:
+        rebuild_wall(example.plan, others)
+    assert caught.value.where == "step 3"
+    unknown = replace(example.plan, settings={**example.plan.settings, "wings": 2})
+    with pytest.raises(PlanError, match="E217") as caught:
+        rebuild_wall(unknown, example.stones)
+    assert caught.value.where == "settings"
+
+
+def test_pieces_that_overlap_stay_in_the_replay_and_the_wall_ends_before() -> None:
+    example = exact_example()
+    replay = replay_plan(moved(example.plan, 5, -25, 0), example.stones)
+    assert replay.broken_at == 2
+    assert [p.code for p in replay.problems if p.step == 2] == ["E221"]
+    assert [p.stone_id for p in replay.wall.placements] == [3]
+    assert len(replay.pieces) == 6
+    assert 5 in replay.labels
+
+
+def test_stone_hidden_in_another_has_no_pixel_and_overlaps() -> None:
+    example = exact_example()
+    replay = replay_plan(moved(example.plan, 300, 4 - 74, 4), example.stones)
+    assert [p.code for p in replay.problems] == ["E221"]
+    assert replay.pieces[-1].item is None
+
+
+@pytest.mark.parametrize(("right", "expected"), [(84.48, []), (84.52, ["E220"])])
+def test_stone_beside_the_pixels_of_the_wall_is_refused(right: float, expected: list[str]) -> None:
+    # A wall of 84.49 px has 84 columns; both stones stay in it, by the outline, closely enough.
+    example = exact_example()
+    plan = moved(replace(example.plan, width=84.49), 300, right - 84, 0)
+    assert [p.code for p in replay_plan(plan, example.stones).problems] == expected
+
+
+def test_order_of_pieces_decides_who_has_a_pixel() -> None:
+    example = exact_example()
+    canvas = ExactCanvas(example.wall.site, example.stones, 0.35)
+    for step in example.plan.steps:
+        _, problems = canvas.put(step)
+        assert problems == []
+    np.testing.assert_array_equal(canvas.labels, example.wall.labels)
+
+
+def test_wedge_may_fill_no_pixel_and_is_a_block_nevertheless() -> None:
+    example = exact_example(scale=0.1, count=3)
+    assert WEDGE not in example.wall.labels
+    replay = replay_plan(read_again(example.plan), example.stones)
+    assert replay.problems == ()
+    np.testing.assert_array_equal(replay.labels, example.wall.labels)
+    (wedge,) = replay.wall.wedges
+    assert wedge.mask.size == 0
+    report = check_plan(example.plan, example.stones, wall_labels=example.wall.labels)
+    # Ten working px are more than it is high: only its size is wrong.
+    assert {problem.code for problem in report.problems} == {"E224"}
+
+
+def test_wedge_of_huge_size_is_refused_before_it_is_drawn() -> None:
+    example = exact_example()
+    replay = replay_plan(reshaped(example.plan, lambda w: w * 1e12), example.stones)
+    assert [p.code for p in replay.problems] == ["E220"]
+    replay = replay_plan(changed(example.plan, 3, centroid=(1e300, 10.0)), example.stones)
+    assert [p.code for p in replay.problems] == ["E220"]
+
+
+@repeatable(40)
+@given(st.floats(-3, 3), st.floats(-3, 3), st.sampled_from([0.0, 0.04, 0.06]))
+def test_edges_are_crossed_by_what_is_out_of_the_box(dx: float, dy: float, by: float) -> None:
+    corners = np.array([[2.0 + dx, 1.0 + dy], [7.0 + dx, 2.0 + dy], [4.0 + dx, 5.0 + dy]])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    extent = high[0] - by, high[1] - by
+    beyond = [by, by, -low[1], -low[0]]
+    assert len([part for part in leaves(corners, extent).split(", ") if part]) == sum(
+        b > 0.05 for b in beyond
+    )
