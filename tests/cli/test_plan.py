@@ -24,8 +24,8 @@ FILES = {
 
 SUMMARY = [
     "plan", "status", "stopped", "placed", "stones", "unused", "wedges", "F_SF", "F_AV", "F_AH",
-    "F_LR", "T_LEVEL", "E_FLUSH", "alpha_left", "alpha_right", "wedge_area", "working_scale",
-    "seconds",
+    "F_LR", "F_LR_half", "F_LR_double", "T_LEVEL", "E_FLUSH", "alpha_left", "alpha_right",
+    "wedge_area", "working_scale", "seconds",
 ]  # fmt: skip
 
 

@@ -48,6 +48,8 @@ def rules(size: float, **changes: float) -> Rules:
         shift=2.0 * size,
         gain=4e-6 * size,
         overlap=0.5,
+        steep=-1.0,
+        beyond=0.0,
         sticks=False,
         turns=True,
         steps=200,

@@ -30,6 +30,8 @@ def exact(size, **changes):
         shift=2.0 * size,
         gain=1e-12 * size,
         overlap=0.01 * size,
+        steep=-1.0,
+        beyond=0.0,
         sticks=False,
         turns=True,
         steps=400,

@@ -17,6 +17,7 @@ from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.plan_wall import PlanResult, plan_wall
 from drystone.planner.settings import method_settings
+from drystone.settle.settings import SettleSettings
 from drystone.verify.check import check_plan
 from drystone.verify.exact_replay import ExactCanvas, leaves
 from drystone.verify.replay import rebuild_wall, replay_plan
@@ -164,7 +165,7 @@ def test_stone_beside_the_pixels_of_the_wall_is_refused(right: float, expected: 
 
 def test_order_of_pieces_decides_who_has_a_pixel() -> None:
     example = exact_example()
-    canvas = ExactCanvas(example.wall.site, example.stones, 0.35)
+    canvas = ExactCanvas(example.wall.site, example.stones, SettleSettings(beyond_px=0.0))
     for step in example.plan.steps:
         _, problems = canvas.put(step)
         assert problems == []

@@ -106,7 +106,7 @@ def _summary(judged: Sequence[Judged]) -> Table:
         ),
         (
             "Rank correlation (Spearman) of alpha and the tangent of the tilt at failure, over "
-            "both sides of all walls, and over the weaker sides. The last column is the median ratio.",
+            "both sides of all walls, and over the weaker sides; then the median ratio.",
         ),
     )
 

@@ -29,11 +29,15 @@ class Friction(NamedTuple):
         Gaps up to this one touch.
     corner : float
         Two corners nearer than this meet with a face.
+    steep : float
+        Contacts whose normal goes up by less than this have no friction.  A stone that is held by
+        friction on upright faces alone stands only if it was pressed between them before.
     """
 
     mu: float
     tolerance: float
     corner: float
+    steep: float = -1.0
 
 
 def rest_margin_python(
@@ -47,7 +51,7 @@ def rest_margin_python(
     """Twin of :func:`drystone.kernels.settling.rest_margin`, given the edges too."""
     gaps = gaps_python(corners, edges, around, width, friction.tolerance, friction.corner)
     arm = arm_of(corners, *centroid)
-    return firmness_python(gaps, centroid, arm, friction.mu, friction.tolerance)
+    return firmness_python(gaps, centroid, arm, friction)
 
 
 def arm_of(corners: Points, x: float, y: float) -> float:
@@ -57,7 +61,7 @@ def arm_of(corners: Points, x: float, y: float) -> float:
 
 
 def firmness_python(
-    gaps: Sequence[Gap], centroid: tuple[float, float], arm: float, mu: float, tolerance: float
+    gaps: Sequence[Gap], centroid: tuple[float, float], arm: float, friction: Friction
 ) -> float:
     """Return how far gravity may lean, over mu, until a polygon moves; -1 when it does not rest.
 
@@ -69,12 +73,10 @@ def firmness_python(
         Where its weight is.
     arm : float
         Turns are ways of a corner so far out.
-    mu : float
-        Coefficient of friction.
-    tolerance : float
-        Gaps up to this one touch.
+    friction : Friction
+        What counts.
     """
-    rows = _cones(gaps, centroid, arm, mu, tolerance)
+    rows = _cones(gaps, centroid, arm, friction)
     if len(rows) < 4:
         return -1.0
     found = solve_python(rows, (0.0, -1.0, 0.0), (1.0, 1.0, 1.0))
@@ -87,19 +89,20 @@ def firmness_python(
         rows2 = [(rows[i][1], rows[i][2], -sign * rows[i][0]) for i in order]
         best = solve2_python(rows2, (-1.0, 0.0), (FASTEST, FASTEST))
         if best is not None:
-            least = min(least, best[0] / mu)
+            least = min(least, best[0] / friction.mu)
     return max(least, 0.0)
 
 
 def _cones(
-    gaps: Sequence[Gap], centroid: tuple[float, float], arm: float, mu: float, tolerance: float
+    gaps: Sequence[Gap], centroid: tuple[float, float], arm: float, friction: Friction
 ) -> list[Row]:
     """Return two rows for each contact, the edges of its cone of friction."""
     x, y = centroid
     rows = []
     for _, nx, ny, px, py, away, other in gaps:
-        if away > tolerance or other == END:
+        if away > friction.tolerance or other == END:
             continue
+        mu = friction.mu if ny >= friction.steep else 0.0
         for sign in (-1, 1):
             gx = nx + sign * mu * ny
             gy = ny - sign * mu * nx

@@ -92,7 +92,13 @@ def gaps_around(
 
 
 def gaps_python(
-    corners: Points, edges: Points, around: Polygons, width: float, reach: float, corner: float
+    corners: Points,
+    edges: Points,
+    around: Polygons,
+    width: float,
+    reach: float,
+    corner: float,
+    beyond: float = 0.0,
 ) -> list[Gap]:
     """Twin of :func:`gaps_around`."""
     body = Ring.of(corners, edges)
@@ -114,7 +120,7 @@ def gaps_python(
         found += ways[1].gaps(in_window[own, owner][:, None] & meets[:, owner].T, owner)
         found.sort()
     gaps = [Gap(d, nx, ny, x, y, away, int(near[k])) for k, _, _, _, d, nx, ny, x, y, away in found]
-    gaps += _to_the_site(corners.tolist(), width, reach)
+    gaps += _to_the_site(corners.tolist(), width, reach, beyond)
     return gaps
 
 
@@ -273,9 +279,12 @@ class Way(NamedTuple):
         return face
 
 
-def _to_the_site(corners: list[list[float]], width: float, reach: float) -> list[Gap]:
+def _to_the_site(
+    corners: list[list[float]], width: float, reach: float, beyond: float
+) -> list[Gap]:
     """List the gaps of corners to the ground and the ends of the wall."""
     gaps = [Gap(y, 0.0, 1.0, x, y, y, GROUND) for x, y in corners if y < reach]
-    gaps += [Gap(x, 1.0, 0.0, x, y, x, END) for x, y in corners if x < reach]
-    far = [(width - x, x, y) for x, y in corners]
+    near = [(x + beyond, x, y) for x, y in corners]
+    gaps += [Gap(d, 1.0, 0.0, x, y, d, END) for d, x, y in near if d < reach]
+    far = [(width - x + beyond, x, y) for x, y in corners]
     return gaps + [Gap(d, -1.0, 0.0, x, y, d, END) for d, x, y in far if d < reach]

@@ -55,7 +55,7 @@ def settle(
     """
     if _fast is None:
         return settle_python(outline, edges, pose, around, width, rules)
-    numbers = np.array(rules[:12], np.float64)
+    numbers = np.array(rules[:14], np.float64)
     found = _fast.settle(
         outline, edges, *pose, around.corners, around.first, around.boxes, around.edges, width,
         numbers, rules.sticks, rules.turns, rules.steps,
@@ -63,7 +63,7 @@ def settle(
     return Settling(Status(found[0]), *found[1:])
 
 
-def rest_margin(
+def rest_margin(  # noqa: PLR0913, PLR0917 - as many facts as it takes
     corners: Points,
     centroid: tuple[float, float],
     around: Polygons,
@@ -71,6 +71,7 @@ def rest_margin(
     mu: float,
     tolerance: float,
     corner: float = 0.3,
+    steep: float = -1.0,
 ) -> float:
     """Return how far gravity may lean, over mu, until a placed polygon moves.
 
@@ -88,7 +89,7 @@ def rest_margin(
         Coefficient of friction.
     tolerance : float
         Gaps up to this one touch.
-    corner : float
+    corner, steep : float
         See :class:`Rules`.
 
     Returns
@@ -98,11 +99,11 @@ def rest_margin(
     """
     edges = polygon_edges(corners)
     if _firm is None:
-        friction = Friction(mu, tolerance, corner)
+        friction = Friction(mu, tolerance, corner, steep)
         return rest_margin_python(corners, edges, centroid, around, width, friction)
     return float(
         _firm.rest_margin(
             corners, edges, *centroid, around.corners, around.first, around.boxes, around.edges,
-            width, mu, tolerance, corner,
+            width, mu, tolerance, corner, steep,
         )
     )  # fmt: skip

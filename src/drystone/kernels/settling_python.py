@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from drystone.kernels.crossings import crosses_any_python
-from drystone.kernels.firmness import arm_of, firmness_python
+from drystone.kernels.firmness import Friction, arm_of, firmness_python
 from drystone.kernels.gaps import END, Gap, gaps_python
 from drystone.kernels.polygons import Points, Polygons
 from drystone.kernels.seidel import Row, Solution, solve_python
@@ -53,13 +53,17 @@ class Scene(NamedTuple):
         edges = np.column_stack([c * x - s * y, s * x + c * y, length])
         corner = self.rules.corner
         reach = SPREAD * self.rules.far + corner
-        gaps = gaps_python(corners, edges, self.around, self.width, reach, corner)
+        gaps = gaps_python(
+            corners, edges, self.around, self.width, reach, corner, self.rules.beyond
+        )
         return State(pose, corners, gaps, min((gap.gap for gap in gaps), default=FARTHEST))
 
     def margin(self, state: State) -> float:
         """Return how firmly the stone rests."""
         x, y, _ = state.pose
-        return firmness_python(state.gaps, (x, y), self.arm, self.rules.mu, self.rules.tolerance)
+        rules = self.rules
+        friction = Friction(rules.mu, rules.tolerance, rules.corner, rules.steep)
+        return firmness_python(state.gaps, (x, y), self.arm, friction)
 
     def moved(self, pose: Pose, move: Solution) -> Pose:
         """Move a pose; a turn is given as the way of the furthest corner."""

@@ -44,6 +44,11 @@ class Rules(NamedTuple):
         Settling ends where a step would go down by no more; not below 0.
     overlap : float
         So deep a stone may overlap at the start; it is then brought apart first.
+    steep : float
+        Contacts whose normal goes up by less than this have no friction in the rest test; -1:
+        all have.
+    beyond : float
+        How far the stone may stand out over the ends of the wall.
     sticks : bool
         The supporting point nearest to the centroid does not slide: the stone rolls about it.
     turns : bool
@@ -64,6 +69,8 @@ class Rules(NamedTuple):
     shift: float
     gain: float
     overlap: float
+    steep: float
+    beyond: float
     sticks: bool
     turns: bool
     steps: int

@@ -150,7 +150,7 @@ class ExactProposer:
         rest = trial.rest or self._workshop.rest(self._build)
         return DropTerms(
             cell_px=1.0 / site.scale,
-            width_px=site.extent_px[0],
+            width_px=site.extent_px[0] + 2.0 * self._settings.settle.beyond_px,
             height_px=site.extent_px[1],
             slack_px=SLACK * size_px,
             clearance_px=2.0 * self._settings.settle.clearance_px,
@@ -246,7 +246,8 @@ class ExactProposer:
         """Return a stone that rests, with the pixels that it fills; None when it is too high."""
         wall, posed = self._build.wall, drop.trial.poses[0]
         assert wall.outlines is not None  # noqa: S101 - the planner builds on outlines
-        if repose.settled.corners[:, 1].max() > wall.site.extent_px[1]:
+        beyond_px = self._settings.settle.beyond_px
+        if repose.settled.corners[:, 1].max() > wall.site.extent_px[1] + beyond_px:
             return None
         placement = settled_placement(
             wall.outlines,
@@ -316,4 +317,5 @@ def wedge_limits(settings: PlannerSettings, stock: Stock, scale: float) -> Wedge
         clearance_px=settle.clearance_px,
         contact_px=0.5 * settle.contact_px,
         rest=settle.margin,
+        steep=settle.steep,
     )

@@ -182,6 +182,8 @@ def ways(
         shift=settings.max_shift * size,
         gain=GAIN * size,
         overlap=OVERLAP_PX,
+        steep=settings.steep,
+        beyond=settings.beyond_px,
         sticks=False,
         turns=turns,
         steps=settings.max_steps,

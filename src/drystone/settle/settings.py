@@ -29,6 +29,12 @@ class SettleSettings:
     margin : float
         How far gravity may lean at least until the settled stone moves on rigid neighbours, over
         mu.
+    steep : float
+        Contacts whose normal goes up by less than this share do not count as friction when it is
+        asked whether a stone rests: upright faces grip only what was pressed between them before.
+    beyond_px : float
+        How far a stone may stand out over the ends and the top of the wall: the clearances of a
+        course add up.
     max_turn_deg : float
         Largest turn while settling.
     max_shift : float
@@ -51,6 +57,8 @@ class SettleSettings:
     contact_px: float = 0.1
     lean: float = 0.3
     margin: float = 0.2
+    steep: float = 0.3
+    beyond_px: float = 0.25
     max_turn_deg: float = 12.0
     max_shift: float = 0.5
     max_steps: int = 60
@@ -64,7 +72,17 @@ class SettleSettings:
             raise ValueError(f"unknown way of settling {self.method!r}")
         if not 0 < 2 * self.clearance_px <= self.contact_px or self.outline_px <= 0:
             raise ValueError("clearance must be above 0, contact_px at least twice as much")
-        if min(self.lean, self.margin, self.max_turn_deg, self.max_shift, self.apart) < 0:
+        if (
+            min(
+                self.lean,
+                self.margin,
+                self.max_turn_deg,
+                self.max_shift,
+                self.apart,
+                self.beyond_px,
+            )
+            < 0
+        ):
             raise ValueError("lean, margin and limits must not be negative")
         if min(self.max_steps, self.spots, self.shortlist, self.per_stone) < 1:
             raise ValueError("steps, spots and the shortlist must be positive")

@@ -51,6 +51,8 @@ class WedgeLimits:
         Gaps up to this one touch.
     rest : float
         How far gravity may lean until the wedged stone moves, over mu, at least.
+    steep : float
+        See :class:`drystone.settle.settings.SettleSettings`.
     """
 
     smallest_px: float
@@ -60,6 +62,7 @@ class WedgeLimits:
     clearance_px: float = 0.01
     contact_px: float = 0.1
     rest: float = 0.0
+    steep: float = -1.0
 
     def __post_init__(self) -> None:
         if not 0 < self.smallest_px <= self.largest_px:
@@ -162,10 +165,12 @@ def _holds(
 ) -> bool:
     """Say whether a wedge rests on what is below it alone, and the stone rests with it."""
     _, *centroid = area_and_centroid(wedge)
-    friction = limits.mu, limits.contact_px
-    if rest_margin(wedge, (centroid[0], centroid[1]), around, width, *friction) < 0.0:
+    mu, contact_px, steep = limits.mu, limits.contact_px, limits.steep
+    own = (centroid[0], centroid[1])
+    if rest_margin(wedge, own, around, width, mu, contact_px, steep=steep) < 0.0:
         return False
-    return rest_margin(*stone, around.added([wedge]), width, *friction) >= limits.rest
+    on_it = around.added([wedge])
+    return rest_margin(*stone, on_it, width, mu, contact_px, steep=steep) >= limits.rest
 
 
 def _wedges(

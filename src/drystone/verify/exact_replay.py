@@ -13,6 +13,7 @@ from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import placed_outline
+from drystone.settle.settings import SettleSettings
 from drystone.verify.lengths import source_points
 from drystone.verify.overlap import overlap_depth, shape_of
 from drystone.verify.pieces import Piece, Step, piece_id, piece_name
@@ -34,14 +35,16 @@ class ExactCanvas:
         Of the plan.
     stones : StoneSet
         That it was made from.
-    outline_px : float
-        How far outlines may stay away from the contour of the pixels, source px.
+    settings : SettleSettings
+        How far outlines may stay away from the contour of the pixels, and how far stones may
+        stand out of the wall.
     """
 
-    def __init__(self, site: Site, stones: StoneSet, outline_px: float) -> None:
+    def __init__(self, site: Site, stones: StoneSet, settings: SettleSettings) -> None:
         self._site = site
         self._stones = stones
-        self._outline_px = outline_px
+        self._outline_px = settings.outline_px
+        self._beyond_px = settings.beyond_px
         self._outlines = Outlines.empty(site)
         self._names: list[str] = []
         self._shapes: list[shapely.Geometry] = []
@@ -59,7 +62,7 @@ class ExactCanvas:
             else settled_stone(step, self._stones, self._site, self._outline_px)
         )
         corners = place.corners if isinstance(place, Settled) else place
-        where = leaves(corners, self._site.extent_px)
+        where = leaves(corners, self._site.extent_px, self._beyond_px)
         if where:
             # It is not drawn, as its image could be of any size.
             message = f"{piece_name(step)} leaves the site: {where}."
@@ -127,8 +130,10 @@ def wedge_corners(step: WedgeStep, site: Site) -> Points:
     return corners
 
 
-def leaves(corners: Points, extent_px: tuple[float, float]) -> str:
-    """Say where an outline is beyond the edges of the wall by more than `PENETRATION_PX`.
+def leaves(corners: Points, extent_px: tuple[float, float], beyond_px: float = 0.0) -> str:
+    """Say where an outline is out of the wall by more than it may and `PENETRATION_PX`.
+
+    Over the ends and the top it may stand out by `beyond_px`, into the ground by nothing.
 
     Examples
     --------
@@ -138,9 +143,13 @@ def leaves(corners: Points, extent_px: tuple[float, float]) -> str:
     (left, bottom), (right, top) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
     width, height = extent_px
     beyond = {
-        "above the top": top - height,
-        "below the ground": -bottom,
-        "left of the left end": -left,
-        "right of the right": right - width,
+        "above the top": (top - height, beyond_px),
+        "below the ground": (-bottom, 0.0),
+        "left of the left end": (-left, beyond_px),
+        "right of the right": (right - width, beyond_px),
     }
-    return ", ".join(f"{d:.3g} px {side}" for side, d in beyond.items() if d > PENETRATION_PX)
+    return ", ".join(
+        f"{by:.3g} px {side}"
+        for side, (by, allowed) in beyond.items()
+        if by > allowed + PENETRATION_PX
+    )

@@ -131,7 +131,7 @@ def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
     problems += disorder
     exact = settings.geometry == "exact"
     canvas: Canvas = (
-        ExactCanvas(site, stones, settings.settle.outline_px)
+        ExactCanvas(site, stones, settings.settle)
         if exact
         else RasterCanvas(site, stones)
     )

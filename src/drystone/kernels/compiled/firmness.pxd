@@ -14,5 +14,6 @@ cdef void free_work(Work *work) noexcept nogil
 cdef bint enough_rows(Work *work, Py_ssize_t count) noexcept nogil
 cdef double arm_of(const double *corners, Py_ssize_t count, double x, double y) noexcept nogil
 cdef double firmness(
-    const Gaps *gaps, double x, double y, double arm, double mu, double tolerance, Work *work
+    const Gaps *gaps, double x, double y, double arm, double mu, double tolerance,
+    double steep, Work *work
 ) noexcept nogil

@@ -38,6 +38,7 @@ def rest_margin(
     double mu,
     double tolerance,
     double corner,
+    double steep,
 ):
     """Return what `rest_margin_python` returns."""
     cdef Heap heap = heap_of(around, first, boxes, around_edges, width)
@@ -51,7 +52,9 @@ def rest_margin(
     with nogil:
         measure(&body)
         find_gaps(&body, &heap, tolerance, corner, &gaps)
-        margin = firmness(&gaps, x, y, arm_of(body.corners, body.count, x, y), mu, tolerance, &work)
+        margin = firmness(
+            &gaps, x, y, arm_of(body.corners, body.count, x, y), mu, tolerance, steep, &work
+        )
     free_gaps(&gaps)
     free_work(&work)
     if gaps.lost or work.lost:
@@ -101,13 +104,14 @@ cdef double arm_of(const double *corners, Py_ssize_t count, double x, double y) 
 
 
 cdef double firmness(
-    const Gaps *gaps, double x, double y, double arm, double mu, double tolerance, Work *work
+    const Gaps *gaps, double x, double y, double arm, double mu, double tolerance,
+    double steep, Work *work
 ) noexcept nogil:
     """Return how far gravity may lean, over mu, until a stone moves; -1 when it does not rest."""
     cdef double gain[3]
     cdef double most[3]
     cdef double found[3]
-    cdef double gx, gy, least = FIRMEST, turning
+    cdef double gx, gy, least = FIRMEST, turning, grip
     cdef Py_ssize_t i, count = 0
     cdef const Gap *gap
     cdef int sign
@@ -117,9 +121,10 @@ cdef double firmness(
         gap = gaps.items + i
         if gap.away > tolerance or gap.other == END:
             continue
+        grip = mu if gap.normal[1] >= steep else 0.0
         for sign in range(-1, 2, 2):
-            gx = gap.normal[0] + sign * mu * gap.normal[1]
-            gy = gap.normal[1] - sign * mu * gap.normal[0]
+            gx = gap.normal[0] + sign * grip * gap.normal[1]
+            gy = gap.normal[1] - sign * grip * gap.normal[0]
             turning = (gap.point[0] - x) * gy - (gap.point[1] - y) * gx
             work.rows[count].a[0], work.rows[count].a[1] = -gx, -gy
             work.rows[count].a[2], work.rows[count].b = -turning / arm, 0.0

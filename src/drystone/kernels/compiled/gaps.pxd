@@ -15,6 +15,7 @@ ctypedef struct Heap:
     const double *boxes
     const double *edges
     double width
+    double beyond
 
 ctypedef struct Gap:
     double gap

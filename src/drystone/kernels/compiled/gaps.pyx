@@ -85,7 +85,7 @@ cdef Heap heap_of(
 ):
     """Return the polygons of some arrays, which have to outlive it."""
     cdef Heap heap
-    heap.count, heap.first, heap.width = boxes.shape[0], &first[0], width
+    heap.count, heap.first, heap.width, heap.beyond = boxes.shape[0], &first[0], width, 0.0
     heap.corners = heap.boxes = heap.edges = NULL
     if heap.count:
         heap.corners, heap.boxes, heap.edges = &corners[0, 0], &boxes[0, 0], &edges[0, 0]
@@ -139,7 +139,7 @@ cdef void find_gaps(
     cdef Py_ssize_t i
     cdef const double *box
     cdef Body other
-    cdef double x, y
+    cdef double x, y, room
     out.count = 0
     for i in range(heap.count):
         box = heap.boxes + 4 * i
@@ -155,16 +155,18 @@ cdef void find_gaps(
             x, y = body.corners[2 * i], body.corners[2 * i + 1]
             if y < reach:
                 keep(out, y, 0.0, 1.0, x, y, y, -1)
-    if body.box[0] < reach:
+    if body.box[0] + heap.beyond < reach:
         for i in range(body.count):
             x, y = body.corners[2 * i], body.corners[2 * i + 1]
-            if x < reach:
-                keep(out, x, 1.0, 0.0, x, y, x, -2)
-    if heap.width - body.box[2] < reach:
+            room = x + heap.beyond
+            if room < reach:
+                keep(out, room, 1.0, 0.0, x, y, room, -2)
+    if heap.width - body.box[2] + heap.beyond < reach:
         for i in range(body.count):
             x, y = body.corners[2 * i], body.corners[2 * i + 1]
-            if heap.width - x < reach:
-                keep(out, heap.width - x, -1.0, 0.0, x, y, heap.width - x, -2)
+            room = heap.width - x + heap.beyond
+            if room < reach:
+                keep(out, room, -1.0, 0.0, x, y, room, -2)
 
 
 cdef bint room_for(Gaps *out, Py_ssize_t count) noexcept nogil:

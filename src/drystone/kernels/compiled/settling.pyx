@@ -54,6 +54,7 @@ ctypedef struct Rules:
     double shift
     double gain
     double overlap
+    double steep
     bint sticks
     bint turns
     Py_ssize_t steps
@@ -105,7 +106,8 @@ def settle(
     rules.clearance, rules.tolerance, rules.corner = numbers[3], numbers[4], numbers[5]
     rules.near, rules.far = numbers[6], numbers[7]
     rules.turn, rules.shift, rules.gain = numbers[8], numbers[9], numbers[10]
-    rules.overlap = numbers[11]
+    rules.overlap, rules.steep = numbers[11], numbers[12]
+    heap.beyond = numbers[13]
     rules.sticks, rules.turns, rules.steps = sticks, turns, steps
     shape.corners, shape.edges, shape.count = &outline[0, 0], &outline_edges[0, 0], outline.shape[0]
     here.pose[0], here.pose[1], here.pose[2] = x, y, angle
@@ -202,7 +204,8 @@ cdef double margin_of(
     const Shape *shape, const Rules *rules, const State *here, Work *work
 ) noexcept nogil:
     return firmness(
-        &here.gaps, here.pose[0], here.pose[1], shape.arm, rules.mu, rules.tolerance, work
+        &here.gaps, here.pose[0], here.pose[1], shape.arm, rules.mu, rules.tolerance, rules.steep,
+        work,
     )
 
 
