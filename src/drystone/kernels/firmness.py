@@ -17,6 +17,10 @@ GAINED = 1e-6
 FASTEST = 1e3
 FIRMEST = 10.0
 
+HOLDS_DOWN = -0.1
+"""A contact whose normal goes down further holds a stone down: where upright faces do not grip, it
+does not count either."""
+
 
 class Friction(NamedTuple):
     """What counts in the rest test.
@@ -30,8 +34,9 @@ class Friction(NamedTuple):
     corner : float
         Two corners nearer than this meet with a face.
     steep : float
-        Contacts whose normal goes up by less than this have no friction.  A stone that is held by
-        friction on upright faces alone stands only if it was pressed between them before.
+        Contacts whose normal goes up by less than this have no friction, and those whose normal
+        goes down do not count; -1: all count.  A stone that is held by friction on upright faces,
+        or by what it is hooked under, stands only if it was pressed in between before.
     """
 
     mu: float
@@ -101,6 +106,8 @@ def _cones(
     rows = []
     for _, nx, ny, px, py, away, other in gaps:
         if away > friction.tolerance or other == END:
+            continue
+        if friction.steep >= 0.0 and ny < HOLDS_DOWN:
             continue
         mu = friction.mu if ny >= friction.steep else 0.0
         for sign in (-1, 1):

@@ -126,7 +126,8 @@ class Attempt:
         new = [k for k, key in enumerate(keys) if key not in self._judged]
         if new:
             with self._profile.part("limit analysis"):
-                _ = self.build.analysis  # before the threads ask for it, all at once
+                # Before the threads ask for them, all at once.
+                _ = self.build.analysis, self.build.sturdy_analysis
             with self._profile.part("contacts"):
                 _ = None if self.build.wall.outlines else self.build.points
         results = self._map(

@@ -69,6 +69,11 @@ class Candidate:
     solved_cold : bool
         True when an answer found from the bases of the wall had no certificate, and the model was
         solved from the start.
+    sturdy_model : RigidBlockModel or None
+        The model of outlines with fewer and less able contacts, in which the wall must stand as
+        well (:mod:`drystone.planner.sturdy`); None for pixels.
+    sturdy : bool
+        Whether it does.
     """
 
     proposal: Proposal
@@ -77,6 +82,8 @@ class Candidate:
     model: RigidBlockModel
     resistance: LateralResistance
     solved_cold: bool = False
+    sturdy_model: RigidBlockModel | None = None
+    sturdy: bool = True
 
     @property
     def stabilised(self) -> Stabilised:
@@ -110,6 +117,10 @@ class Build:
         Of the wall before the last action; None when nothing will be built on the wall.
     before : Build or None
         The state before the last action, if it was kept.
+    sturdy_model : RigidBlockModel or None
+        Of a wall of outlines: see :class:`Candidate`.
+    sturdy_from : GrowingAnalysis or None
+        Of its sturdy model before the last action.
     """
 
     wall: Wall
@@ -117,6 +128,8 @@ class Build:
     actions: tuple[Candidate, ...] = ()
     grown_from: GrowingAnalysis | None = None
     before: "Build | None" = None
+    sturdy_model: RigidBlockModel | None = None
+    sturdy_from: GrowingAnalysis | None = None
 
     @classmethod
     def empty(cls, site: Site, mu: float, stone_area_px: float, *, exact: bool = False) -> "Build":
@@ -137,7 +150,10 @@ class Build:
         area = stone_area_px / site.scale**2 if exact else stone_area_px
         model = RigidBlockModel((), (), mu)
         analysis = growing(model, Units(area**0.5, area))
-        return cls(Wall.empty(site, exact=exact), model, grown_from=analysis)
+        wall = Wall.empty(site, exact=exact)
+        if not exact:
+            return cls(wall, model, grown_from=analysis)
+        return cls(wall, model, grown_from=analysis, sturdy_model=model, sturdy_from=analysis)
 
     @cached_property
     def analysis(self) -> GrowingAnalysis:
@@ -147,6 +163,13 @@ class Build:
         """
         assert self.grown_from is not None  # noqa: S101 - a wall that is built on began empty
         return self.grown_from.extended(self.model)
+
+    @cached_property
+    def sturdy_analysis(self) -> GrowingAnalysis | None:
+        """Limit analysis of the sturdy model, ready for one more stone; None for pixels."""
+        if self.sturdy_from is None or self.sturdy_model is None:
+            return None
+        return self.sturdy_from.extended(self.sturdy_model)
 
     @cached_property
     def points(self) -> PointContacts:
@@ -165,7 +188,11 @@ class Build:
         """
         wall = self.wall.add(action.stabilised.placement, action.stabilised.wedges)
         before = self if keep else None
-        return Build(wall, action.model, (*self.actions, action), self.analysis, before)
+        actions = (*self.actions, action)
+        return Build(
+            wall, action.model, actions, self.analysis, before, action.sturdy_model,
+            self.sturdy_analysis,
+        )  # fmt: skip
 
     def states(self) -> "tuple[Build, ...]":
         """Return the states of construction that were kept, in order, and this one."""

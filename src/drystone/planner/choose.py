@@ -22,7 +22,7 @@ def choose_by_algorithm2(
     proposals: Sequence[Proposal], judge: Judge, settings: SelectionSettings
 ) -> Candidate | None:
     """Return the best action of one side by Algorithm 2; all proposals are analysed."""
-    candidates = judge(proposals)
+    candidates = [candidate for candidate in judge(proposals) if candidate.sturdy]
     selected = select_action([_action(c) for c in candidates], settings)
     return None if selected is None else candidates[selected.position]
 
@@ -62,7 +62,7 @@ def choose_by_score(
     standing: list[Candidate] = []
     for start in range(0, len(order), settings.analysed):
         batch = judge([proposals[k] for k in order[start : start + settings.analysed]])
-        standing += [c for c in batch if c.indices.LLC is not None and c.indices.LLC > 0]
+        standing += [c for c in batch if c.sturdy and (c.indices.LLC or 0.0) > 0]
         if len(standing) >= settings.analysed:
             break
 

@@ -17,6 +17,7 @@ from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
+from drystone.planner.sturdy import sturdy_model_with
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.contacts.blocks import model_with
 from drystone.statics.contacts.settled import model_with_outlines
@@ -67,9 +68,23 @@ class Evaluator:
                 proposal.course_height_px,
                 self.stock.narrowest_px,
             )
-        return Candidate(
+        candidate = Candidate(
             proposal, indices, course_height, model, grown.resistance, grown.solved_cold
         )
+        return self._sturdily(build, candidate)
+
+    def _sturdily(self, build: Build, candidate: Candidate) -> Candidate:
+        """Judge a wall of outlines by its sturdy model, too."""
+        outlines, analysis = build.wall.outlines, build.sturdy_analysis
+        if outlines is None or analysis is None:
+            return candidate
+        stabilised = candidate.stabilised
+        with self.profile.part("contacts"):
+            blocks = outlined(stabilised.placement, stabilised.wedges)
+            model = sturdy_model_with(analysis.model, blocks, outlines, self.settings.settle)
+        with self.profile.part("limit analysis"):
+            sturdy = analysis.resistance_with(model).resistance.stable
+        return replace(candidate, sturdy_model=model, sturdy=sturdy)
 
     def _model(self, build: Build, stabilised: Stabilised) -> RigidBlockModel:
         """Return the model of the wall with an action done."""

@@ -4,6 +4,8 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from operator import attrgetter
 
 from drystone.kernels.drops import DropTerms, drops
 from drystone.kernels.polygons import Points
@@ -27,7 +29,7 @@ from drystone.settle.wedged import wedged
 from drystone.stabilise.stabilise import Stabilised
 
 SLACK = 0.15
-"""A stone may stand out over the wall's height by this share of its size where it is dropped."""
+"""A stone may stand out over the wall's height by so many mean stone sizes where it is dropped."""
 
 UNBALANCED = 2.0
 """Cost of a centroid that is beside what carries a dropped stone, in widths of the stone."""
@@ -45,19 +47,19 @@ class Drop:
         Which place of the trial's pose.
     start : (float, float)
         Of its centroid, in the view, source px.
-    cost : float
-        Estimated.
+    rank : (float, tuple)
+        Estimated cost, and what tells it from the others of a step: sorts the cheapest first.
     """
 
     trial: Trial
     spot: int
     start: tuple[float, float]
-    cost: float
+    rank: tuple[float, tuple[Key, int]]
 
     @property
     def key(self) -> tuple[Key, int]:
         """What tells it from the others of a step."""
-        return self.trial.key, self.spot
+        return self.rank[1]
 
 
 class ExactProposer:
@@ -106,6 +108,7 @@ class ExactProposer:
         """Return the best places of each trial, the cheapest first."""
         for side in dict.fromkeys(trial.landscape.side for trial in trials):
             self.view(side)
+        _ = self._terms  # before the threads ask for it, all at once
         new = [trial for trial in trials if trial.key not in self._drops]
         found = apply(self._dropped, new)
         self._drops.update(zip([trial.key for trial in new], found, strict=True))
@@ -127,32 +130,35 @@ class ExactProposer:
     def _dropped(self, trial: Trial) -> tuple[Drop, ...]:
         """Return the best places of the poses of a trial, the cheapest first."""
         side, settings = trial.landscape.side, self._settings.settle
+        terms = self._terms
         _, profile = self.view(side)
         found = []
         with self._profile.part("placement"):
             for posed in trial.poses:
                 hung = self._workshop.outlines.hung(posed.stone, posed.angle_deg, side)
                 size_px = hung.turned.size_px
-                terms = self._terms(trial, size_px)
                 constant = _pose_cost(posed, self._workshop.stock, self._settings)
                 places = drops(
                     profile, hung.profile, terms, constant, settings.spots, settings.apart * size_px
                 )
                 one = replace(trial, poses=(posed,))
+                key, left = one.key, hung.profile.left
                 found += [
-                    Drop(one, spot, (x - hung.profile.left, y), cost)
+                    Drop(one, spot, (x - left, y), (round(cost, 12), (key, spot)))
                     for spot, (x, y, cost, _) in enumerate(places.tolist())
                 ]
-        return tuple(sorted(found, key=lambda drop: round(drop.cost, 12)))
+        return tuple(sorted(found, key=attrgetter("rank")))
 
-    def _terms(self, trial: Trial, size_px: float) -> DropTerms:
+    @cached_property
+    def _terms(self) -> DropTerms:
+        """What drops cost in this state of construction."""
         site, stock, score = self._build.wall.site, self._workshop.stock, self._settings.score
-        rest = trial.rest or self._workshop.rest(self._build)
+        rest = self._workshop.rest(self._build)
         return DropTerms(
             cell_px=1.0 / site.scale,
             width_px=site.extent_px[0] + 2.0 * self._settings.settle.beyond_px,
             height_px=site.extent_px[1],
-            slack_px=SLACK * size_px,
+            slack_px=SLACK * stock.mean_area_px**0.5 / site.scale,
             clearance_px=2.0 * self._settings.settle.clearance_px,
             narrowest_px=stock.narrowest_px / site.scale,
             mean_height_px=stock.mean_height_px / site.scale,
@@ -271,8 +277,8 @@ def shortlist(drops: Sequence[Drop], settings: SettleSettings) -> tuple[list[Dro
     taken: list[Drop] = []
     left: list[Drop] = []
     counts: Counter[int] = Counter()
-    for drop in sorted(drops, key=lambda d: (round(d.cost, 12), *d.trial.key, d.spot)):
-        stone_id = drop.trial.key[0]
+    for drop in sorted(drops, key=attrgetter("rank")):
+        stone_id = drop.key[0][0]
         if len(taken) < settings.shortlist and counts[stone_id] < settings.per_stone:
             counts[stone_id] += 1
             taken.append(drop)

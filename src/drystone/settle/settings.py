@@ -30,8 +30,9 @@ class SettleSettings:
         How far gravity may lean at least until the settled stone moves on rigid neighbours, over
         mu.
     steep : float
-        Contacts whose normal goes up by less than this share do not count as friction when it is
-        asked whether a stone rests: upright faces grip only what was pressed between them before.
+        When it is asked whether a stone rests, contacts whose normal goes up by less than this have
+        no friction, and those whose normal goes down do not count: upright faces and hooks hold
+        only what was pressed in between before.
     beyond_px : float
         How far a stone may stand out over the ends and the top of the wall: the clearances of a
         course add up.

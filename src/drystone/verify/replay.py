@@ -131,9 +131,7 @@ def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
     problems += disorder
     exact = settings.geometry == "exact"
     canvas: Canvas = (
-        ExactCanvas(site, stones, settings.settle)
-        if exact
-        else RasterCanvas(site, stones)
+        ExactCanvas(site, stones, settings.settle) if exact else RasterCanvas(site, stones)
     )
     wall, broken_at = Wall.empty(site, exact=exact), None
     pieces: list[Piece] = []

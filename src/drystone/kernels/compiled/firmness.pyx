@@ -23,6 +23,7 @@ cdef int END = -2
 cdef double GAINED = 1e-6
 cdef double FASTEST = 1e3
 cdef double FIRMEST = 10.0
+cdef double HOLDS_DOWN = -0.1
 
 
 def rest_margin(
@@ -120,6 +121,8 @@ cdef double firmness(
     for i in range(gaps.count):
         gap = gaps.items + i
         if gap.away > tolerance or gap.other == END:
+            continue
+        if steep >= 0.0 and gap.normal[1] < HOLDS_DOWN:
             continue
         grip = mu if gap.normal[1] >= steep else 0.0
         for sign in range(-1, 2, 2):
