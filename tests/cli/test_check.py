@@ -12,7 +12,8 @@ from matplotlib.image import imread
 
 from drystone.cli import check_physics, check_picture
 from drystone.cli.main import main
-from drystone.physics.building import ROUNDED, BuildSettings, build_up, tilt_of
+from drystone.physics.building import ROUNDED, BuildSettings, tilt_of
+from drystone.physics.repeated import build_up_repeatedly
 from drystone.physics.scatter import Variation
 from drystone.physics.tilt import TiltSettings
 from tests.cli.conftest import Run
@@ -85,8 +86,8 @@ def test_a_stone_that_falls_is_named_and_drawn(
     """A fall is a failed check only where the engine was asked."""
     pytest.importorskip("pymunk", reason=NO_ENGINE)
     # By this measure the stone that settles by a px has fallen.
-    strict = partial(build_up, settings=BuildSettings(moved_share=0.03))
-    monkeypatch.setattr(check_physics, "build_up", strict)
+    strict = partial(build_up_repeatedly, settings=BuildSettings(moved_share=0.03))
+    monkeypatch.setattr(check_physics, "build_up_repeatedly", strict)
     assert run("check", plan_copy).code == 0
     assert not (plan_copy / "check.png").exists()
     ran = run("check", plan_copy, "--physics")

@@ -27,3 +27,12 @@ def test_a_wall_of_too_many_pixels_is_refused_with_the_cure() -> None:
     with pytest.raises(UsageError, match=r"E121.*--scale"):
         Site.from_source(9999, 9999)
     assert Site.from_source(9999, 9999, scale=0.5).width_px == 5000
+
+
+def test_outlines_must_stay_within_the_lengths_in_source_px() -> None:
+    # 26 working px are 52 source px, but the wall is 51 wide.
+    site = Site.from_source(51, 33.4, 0.5)
+    assert (site.width_px, site.height_px) == (26, 17)
+    assert site.extent_px == (51, 33.4)
+    assert Site(26, 17, 0.5).extent_px == (52.0, 34.0)
+    assert Site.from_source(51, 33.4, 0.5, px_per_m=400.0).extent_px == (51, 33.4)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from drystone.model.placement import Placement, Wedge
+from drystone.model.placement import Placement, Settled, Wedge
 from drystone.model.site import Site
 from drystone.model.stone import Stone
-from drystone.model.wall import Wall
+from drystone.model.wall import Wall, outlined
 from drystone.poses import PoseBook
 from tests.strategies import repeatable, walls
 
@@ -68,3 +68,63 @@ def test_labels_are_those_of_the_placements(wall: Wall) -> None:
         assert x == pytest.approx(placement.col + local[0], abs=1 / 64)
         assert y == pytest.approx(height - placement.row - mask.shape[0] + local[1], abs=1 / 64)
     assert np.array_equal(wall.labels, expected)
+
+
+def _settled(stone_id: int, left: float, low: float, right: float, high: float) -> Placement:
+    """A box in source px; its pixels are of no account for a wall of outlines."""
+    posed = PoseBook(0.5).pose(Stone(stone_id, np.ones((4, 4), bool)), 0.0)
+    corners = np.array([[left, low], [right, low], [right, high], [left, high]])
+    centre = Settled((left + right) / 2.0, (low + high) / 2.0, corners)
+    return Placement(posed, 0, 0, settled=centre)
+
+
+def test_with_outlines_a_pixel_is_whose_share_is_largest_where_half_is_covered() -> None:
+    site = Site(6, 3, 0.5)
+    one = _settled(3, 0.0, 0.0, 5.3, 4.0)
+    empty = Wall.empty(site, exact=True)
+    first = empty.add(one)
+    # Of the third column .65 is covered.
+    assert first.labels.tolist() == [[0] * 6, [3, 3, 3, 0, 0, 0], [3, 3, 3, 0, 0, 0]]
+    wedge = Wedge(90, 9, np.zeros((0, 0), bool), 3, 0, np.array([[8.2, 0], [9.2, 0], [9.2, 2]]))
+    second = first.add(_settled(9, 5.3, 0.0, 8.2, 2.0), (wedge,))
+    assert second.labels.tolist() == [
+        [0] * 6,
+        [3, 3, 3, 0, 0, 0],
+        # The third is shared, most of it the first stone's; the fifth is less than half full.
+        [3, 3, 3, 9, 0, 0],
+    ]
+    third = second.add(_settled(5, 4.4, 2.1, 8.3, 4.3))
+    assert third.labels[1].tolist() == [3, 3, 3, 5, 0, 0]
+    assert not empty.occupied.any()
+    assert third.outlines is not None
+    assert third.outlines.ids == (3, 9, 90, 5)
+    assert third.wedges == (wedge,)
+    assert third.height_px == 2
+    with pytest.raises(ValueError, match="read-only"):
+        third.labels[0, 0] = 1
+
+
+def test_a_stone_takes_a_pixel_of_which_it_has_more_than_those_before() -> None:
+    wall = Wall.empty(Site(3, 1, 0.5), exact=True).add(_settled(3, 0.0, 0.0, 2.9, 2.0))
+    assert wall.labels.tolist() == [[3, 0, 0]]
+    # .45 of the second column is the first stone's, .55 the second's.
+    assert wall.add(_settled(9, 2.9, 0.0, 6.0, 2.0)).labels.tolist() == [[3, 9, 9]]
+    assert wall.add(_settled(9, 3.3, 0.0, 6.0, 2.0)).labels.tolist() == [[3, 3, 9]]
+
+
+def test_outlined_are_the_stone_and_its_wedges() -> None:
+    stone = _settled(3, 0.0, 0.0, 5.3, 4.0)
+    corners = np.array([[6.0, 0.0], [7.0, 0.0], [7.0, 1.0]])
+    wedges = tuple(
+        Wedge(i, 3, np.ones((1, 1), bool), 0, 0, c) for i, c in ((8, corners), (9, None))
+    )
+    assert stone.settled is not None
+    found = outlined(stone, wedges)
+    assert [block for block, _ in found] == [3, 8]
+    assert found[0][1] is stone.settled.corners
+    assert found[1][1] is corners
+
+
+def test_a_wall_of_pixels_has_no_outlines() -> None:
+    assert Wall.empty(Site(3, 1)).outlines is None
+    assert Wall.empty(Site(6, 4)).add(Placement(POSED, 2, 0)).outlines is None

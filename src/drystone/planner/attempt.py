@@ -1,7 +1,7 @@
 """One step: evaluate candidates on the landscape as it stands and choose (lines 6-17)."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from statistics import fmean
@@ -99,20 +99,28 @@ class Attempt:
         return better_side(found, self.build, self._settings.selection)
 
     def _select(self, landscapes: Sequence[Landscape], stones: Sequence[int]) -> Candidate | None:
-        proposals = self._proposals(landscapes, stones)
+        for proposals in self._proposals(landscapes, stones):
+            chosen = self._best(proposals)
+            if chosen is not None:
+                return chosen
+        return None
+
+    def _best(self, proposals: Sequence[Proposal]) -> Candidate | None:
         if self._settings.selection_rule == "score":
             return choose_by_score(proposals, self._judge, self._settings.score)
         return choose_by_algorithm2(proposals, self._judge, self._settings.selection)
 
-    def _proposals(self, landscapes: Sequence[Landscape], stones: Sequence[int]) -> list[Proposal]:
-        """Place and stabilise the candidates of some sides (lines 7-15)."""
+    def _proposals(
+        self, landscapes: Sequence[Landscape], stones: Sequence[int]
+    ) -> Iterator[list[Proposal]]:
+        """Place and stabilise the candidates of some sides (lines 7-15), batch by batch."""
         groups = self._groups(stones)
         trials = [Trial(poses, view, self._rest) for view in landscapes for poses in groups]
         heights = _course_heights(groups)
-        return [
-            replace(proposal, course_height_px=heights[proposal.stone_id])
-            for proposal in self._proposer.proposals(trials, self._map)
-        ]
+        for batch in self._proposer.proposals(trials, self._map):
+            yield [
+                replace(proposal, course_height_px=heights[proposal.stone_id]) for proposal in batch
+            ]
 
     def _groups(self, stones: Sequence[int]) -> list[tuple[PosedStone, ...]]:
         """Return the poses of each candidate: one each, or all of a stone for the rule to pick."""

@@ -1,6 +1,6 @@
 """Trial placement and stabilisation of candidates (Algorithm 1, lines 8-15)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -62,8 +62,10 @@ class Proposer(Protocol):
         """How many candidates were looked at."""
         ...
 
-    def proposals(self, trials: Sequence[Trial], apply: Apply) -> list[Proposal]:
-        """Return where the stones of some trials could stand, in the order of the trials.
+    def proposals(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Proposal]]:
+        """List where the stones of some trials could stand.
+
+        Proposals come in batches: whoever can use none of one batch asks for the next.
 
         Parameters
         ----------
@@ -104,13 +106,13 @@ class RasterProposer:
         """See :class:`Proposer`."""
         return len(self._proposed)
 
-    def proposals(self, trials: Sequence[Trial], apply: Apply) -> list[Proposal]:
-        """See :class:`Proposer`."""
+    def proposals(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Proposal]]:
+        """See :class:`Proposer`; all come at once, in the order of the trials."""
         new = [trial for trial in trials if trial.key not in self._proposed]
         found = apply(self.propose, new)
         self._proposed.update(zip([trial.key for trial in new], found, strict=True))
         mine = (self._proposed[trial.key] for trial in trials)
-        return [proposal for proposal in mine if proposal is not None]
+        yield [proposal for proposal in mine if proposal is not None]
 
     def propose(self, trial: Trial) -> Proposal | None:
         """Return the best stable placement of a stone; None when there is none (lines 8-15).

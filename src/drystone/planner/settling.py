@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import attrgetter
@@ -66,7 +66,8 @@ class ExactProposer:
     """Stones settle on the outlines of others.
 
     Where selection goes by cost, the cheapest drops of all trials are settled, and where none of
-    them rests the next ones; Algorithm 2 compares all trials, each where its first drop rests.
+    them can be used the next ones; Algorithm 2 compares all trials, each where its first drop
+    rests.
 
     Parameters
     ----------
@@ -97,12 +98,13 @@ class ExactProposer:
         """See :class:`drystone.planner.proposing.Proposer`."""
         return len(self._drops)
 
-    def proposals(self, trials: Sequence[Trial], apply: Apply) -> list[Proposal]:
+    def proposals(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Proposal]]:
         """See :class:`drystone.planner.proposing.Proposer`."""
         drops = self.drops(trials, apply)
         if self._settings.selection_rule == "score":
-            return self._cheapest([drop for mine in drops for drop in mine], apply)
-        return [proposal for proposal in apply(self._first, drops) if proposal is not None]
+            yield from self._cheapest([drop for mine in drops for drop in mine], apply)
+        else:
+            yield [proposal for proposal in apply(self._first, drops) if proposal is not None]
 
     def drops(self, trials: Sequence[Trial], apply: Apply) -> list[tuple[Drop, ...]]:
         """Return the best places of each trial, the cheapest first."""
@@ -175,14 +177,11 @@ class ExactProposer:
             rest_height_px=rest.height_px,
         )
 
-    def _cheapest(self, drops: list[Drop], apply: Apply) -> list[Proposal]:
-        """Settle the cheapest drops; where none of them rests, the next ones."""
+    def _cheapest(self, drops: list[Drop], apply: Apply) -> Iterator[list[Proposal]]:
+        """Settle the cheapest drops, then the next ones, and so on."""
         while drops:
             batch, drops = shortlist(drops, self._settings.settle)
-            found = [proposal for proposal in self._all_settled(batch, apply) if proposal]
-            if found:
-                return found
-        return []
+            yield [proposal for proposal in self._all_settled(batch, apply) if proposal]
 
     def _all_settled(self, drops: Sequence[Drop], apply: Apply) -> list[Proposal | None]:
         new = [drop for drop in drops if drop.key not in self._settled]

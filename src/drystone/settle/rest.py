@@ -141,9 +141,7 @@ def come_to_rest(
         Whether it may turn.
     """
     for rules in ways(stone, scene, settings, turns=turns):
-        found = settle(
-            stone.corners, stone.edges, (*start, 0.0), scene.polygons, scene.width_px, rules
-        )
+        found = let_go(stone, scene, start, rules)
         if found.status == Status.RESTS and found.margin >= settings.margin:
             return repose(stone, scene, found)
     return None
@@ -157,10 +155,16 @@ def touch_down(
     Whether it rests there, its margin says.
     """
     rules = ways(stone, scene, settings, turns=False)[-1]._replace(lean=0.0, stop=-1.0)
-    found = settle(stone.corners, stone.edges, (*start, 0.0), scene.polygons, scene.width_px, rules)
+    found = let_go(stone, scene, start, rules)
     if found.status not in (Status.RESTS, Status.FALLS):
         return None
     return repose(stone, scene, found)
+
+
+def let_go(stone: Turned, scene: Scene, start: tuple[float, float], rules: Rules) -> Settling:
+    """Settle a stone in one way; one that may not turn has not turned, not even by rounding."""
+    found = settle(stone.corners, stone.edges, (*start, 0.0), scene.polygons, scene.width_px, rules)
+    return found if rules.turns else found._replace(angle=0.0)
 
 
 def ways(

@@ -1,0 +1,105 @@
+"""The pixels that settled stones and wedges fill: those that become half full."""
+
+import numpy as np
+import pytest
+
+from drystone.kernels.polygons import Points
+from drystone.model.outlines import Outlines
+from drystone.model.placement import Placement, Settled
+from drystone.model.site import Site
+from drystone.model.stone import Stone
+from drystone.model.wall import Wall
+from drystone.settle.placing import settled_placement, settled_wedge
+
+STONE = Stone(5, np.ones((4, 6), bool))
+
+
+def box(left: float, low: float, right: float, high: float) -> Points:
+    return np.array([[left, low], [right, low], [right, high], [left, high]], float)
+
+
+def placed(
+    site: Site, corners: Points, outlines: Outlines | None = None, moves: int = 0
+) -> Placement | None:
+    x, y = corners.mean(axis=0).tolist()
+    settled = Settled(x, y, corners)
+    there = Outlines.empty(site) if outlines is None else outlines
+    return settled_placement(there, site, STONE, 12.5, settled, "right", moves)
+
+
+def test_pixels_that_are_half_full_are_the_stones() -> None:
+    site = Site(12, 8)
+    made = placed(site, box(2.5, 0.0, 8.49, 3.5), moves=1)
+    assert made is not None
+    # Columns 2 to 7: the last column holds .49, the first .5; the top row is half full.
+    assert (made.row, made.col, made.posed.mask.shape) == (4, 2, (4, 6))
+    assert made.posed.mask[1:].all()
+    assert made.posed.mask[0].tolist() == [False, True, True, True, True, True]
+    assert (made.stone_id, made.posed.angle_deg, made.side) == (5, 12.5, "right")
+    assert made.rotation_moves == 1
+    assert made.settled is not None
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.5, 0.25])
+def test_the_anchor_is_where_the_centroid_is(scale: float) -> None:
+    site = Site(24, 16, scale)
+    made = placed(site, box(3.3, 0.02, 19.7, 11.9))
+    assert made is not None
+    x, y = made.posed.anchor
+    bottom = site.height_px - made.row - made.posed.height_px
+    assert (made.col + x, bottom + y) == pytest.approx((11.5 * scale, 5.96 * scale))
+    assert made.centroid(site.height_px) == pytest.approx((11.5 * scale, 5.96 * scale))
+    assert made.posed.scale == scale
+    alone = Wall.empty(site, exact=True).add(made)
+    assert np.array_equal(alone.labels[made.window] == 5, made.posed.mask)
+    assert np.count_nonzero(alone.labels) == np.count_nonzero(made.posed.mask)
+
+
+def test_what_is_there_helps_to_fill_pixels() -> None:
+    site = Site(12, 8)
+    alone = placed(site, box(6.6, 0.0, 9.0, 2.0))
+    assert alone is not None
+    assert (alone.col, alone.posed.width_px) == (7, 2)
+    there = Outlines.empty(site).added([(3, box(2.0, 0.0, 6.2, 2.0))], 1.0)
+    beside = placed(site, box(6.6, 0.0, 9.0, 2.0), there)
+    assert beside is not None
+    assert (beside.col, beside.posed.width_px) == (6, 3)
+    # A pixel that was half full before is not its own.
+    there = Outlines.empty(site).added([(3, box(2.0, 0.0, 6.55, 2.0))], 1.0)
+    later = placed(site, box(6.56, 0.0, 9.0, 2.0), there)
+    assert later is not None
+    assert (later.col, later.posed.width_px) == (7, 2)
+
+
+@pytest.mark.parametrize(
+    "corners",
+    [
+        box(5.1, 0.0, 5.5, 0.9),
+        box(-0.6, 0.0, 4.0, 3.0),
+        box(8.0, 0.0, 12.6, 3.0),
+        box(2.0, 5.0, 4.0, 8.6),
+    ],
+    ids=["too thin", "left", "right", "top"],
+)
+def test_no_pixel_or_one_outside_is_no_placement(corners: Points) -> None:
+    assert placed(Site(12, 8), corners) is None
+
+
+def test_a_little_over_the_edge_is_no_pixel() -> None:
+    made = placed(Site(12, 8), box(-0.25, 0.0, 12.25, 8.25))
+    assert made is not None
+    assert (made.row, made.col, made.posed.mask.shape) == (0, 0, (8, 12))
+
+
+def test_wedges() -> None:
+    site = Site(12, 8, 0.5)
+    corners = box(4.0, 0.0, 8.0, 2.0)
+    wedge = settled_wedge(Outlines.empty(site), site, 90, 5, corners)
+    assert (wedge.id, wedge.under, wedge.row, wedge.col) == (90, 5, 7, 2)
+    assert wedge.mask.tolist() == [[True, True]]
+    assert wedge.corners is corners
+    thin = settled_wedge(Outlines.empty(site), site, 91, 5, box(4.2, 0.0, 5.0, 1.0))
+    assert thin.area_px == 0
+    assert thin.corners is not None
+    under = Outlines.empty(site).added([(5, box(4.0, 0.0, 6.0, 2.0))], 0.5)
+    assert settled_wedge(under, site, 92, 5, corners).mask.tolist() == [[True]]
