@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 FILES = [
     f"benchmarks/test_{room}.py"
-    for room in ("placement", "stones", "statics", "metrics", "walls", "floors")
+    for room in ("placement", "outlines", "stones", "statics", "metrics", "walls", "floors")
 ]
 """In the order of the tables."""
 

@@ -85,3 +85,24 @@ def plan_copy(finished: Path, rubble: Path, tmp_path: Path) -> Path:
     shutil.copytree(finished, folder)
     shutil.copy(rubble, folder)
     return folder
+
+
+EXACT = ("--wall", "100x36", "--scale", "1", "--budget", "1")
+"""A wall for the rubble by one pass of `best`, which plans on outlines."""
+
+
+@pytest.fixture(scope="session")
+def settled(rubble: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a plan of the rubble on outlines; not to be changed."""
+    folder = tmp_path_factory.mktemp("plans") / "settled"
+    assert main(["plan", str(rubble), *EXACT, "-o", str(folder), "--seed", "1"]) in (0, 4)
+    return folder
+
+
+@pytest.fixture
+def settled_copy(settled: Path, rubble: Path, tmp_path: Path) -> Path:
+    """A plan on outlines in a folder of its own, the stones beside it, to be tampered with."""
+    folder = tmp_path / "settled"
+    shutil.copytree(settled, folder)
+    shutil.copy(rubble, folder)
+    return folder

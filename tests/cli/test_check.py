@@ -11,8 +11,10 @@ import pytest
 from matplotlib.image import imread
 
 from drystone.cli import check_physics, check_picture
+from drystone.cli.check_physics import PhysicsCard
 from drystone.cli.main import main
-from drystone.physics.building import ROUNDED, BuildSettings, tilt_of
+from drystone.io.plan_json import read_plan
+from drystone.physics.building import ROUNDED, BlockMove, BuildSettings, BuildUp, tilt_of
 from drystone.physics.repeated import build_up_repeatedly
 from drystone.physics.scatter import Variation
 from drystone.physics.tilt import TiltSettings
@@ -243,3 +245,42 @@ def test_a_plan_without_stones_has_no_picture(plan_copy: Path, tmp_path: Path, r
     assert ran.code == 5
     assert not path.exists()
     assert main(["check", str(plan_copy)]) == 5
+
+
+@pytest.mark.parametrize(
+    ("planned", "found", "said"),
+    [
+        (0.0, 0.46, "up to 0.46 source px deep (stone 3): others had moved there"),
+        (1.5, 1.6, "up to 1.60 source px deep (stone 3): what overlaps cannot stay where it is"),
+        (0.0, 0.009, None),
+    ],
+)
+def test_why_stones_were_pushed_apart(
+    planned: float, found: float, said: str | None, plan_copy: Path
+) -> None:
+    """Where the plan has no overlap it is the engine's doing."""
+    plan = read_plan(plan_copy)
+    move = BlockMove(3, 1, 0.2, 0.01, 0.1, found, fell=False)
+    built = BuildUp((move,), {}, {}, (0.0,), (), None, 0.58)
+    card = PhysicsCard(plan, built, None, None, overlap_px=planned)
+    assert dict(card.rows()).get("  pushed apart") == said
+
+
+def test_steps_that_did_not_come_to_rest_are_counted_right(plan_copy: Path) -> None:
+    plan = read_plan(plan_copy)
+    for restless, said in (((1,), "step 1 was"), ((1, 2), "steps 1, 2 was")):
+        built = BuildUp((), {}, {}, (0.0,), restless, None, 0.58)
+        rows = dict(PhysicsCard(plan, built, None, None).rows())
+        assert rows["  restless"] == f"blocks still moved when the time of {said} up"
+
+
+def test_the_engine_is_told_how_deep_outlines_overlap(
+    plan_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The plan is one of pixels, whose outlines do overlap."""
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    monkeypatch.setattr(check_physics, "tilt_of", lambda _: None)
+    change(plan_copy, push)
+    depth = run("check", plan_copy, "--json").json()["overlap_depth"]
+    assert depth > check_physics.NOTEWORTHY_PX
+    assert "what overlaps cannot stay where it is" in run("check", plan_copy, "--physics").out

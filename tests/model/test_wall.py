@@ -93,7 +93,7 @@ def test_with_outlines_a_pixel_is_whose_share_is_largest_where_half_is_covered()
         # The third is shared, most of it the first stone's; the fifth is less than half full.
         [3, 3, 3, 9, 0, 0],
     ]
-    third = second.add(_settled(5, 4.4, 2.1, 8.3, 4.3))
+    third = second.add(_settled(5, 5.31, 2.1, 8.3, 4.3))
     assert third.labels[1].tolist() == [3, 3, 3, 5, 0, 0]
     assert not empty.occupied.any()
     assert third.outlines is not None

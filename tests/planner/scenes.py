@@ -8,6 +8,7 @@ from drystone.generate import BrickSettings, RubbleSettings, brick_stones, rubbl
 from drystone.kernels.raster import Mask
 from drystone.model.site import Site
 from drystone.model.stone import Source, Stone, StoneSet
+from drystone.model.wall import outlined
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings, method_settings
 
@@ -59,6 +60,13 @@ def finish(planner: Planner) -> Planner:
     return planner
 
 
+def outlines(planner: Planner) -> list[tuple[int, bytes]]:
+    """Ids and corners of stones and wedges that are outlines, in the order of placement."""
+    groups = planner.build.wall.groups if planner.build.wall.outlines else ()
+    blocks = (block for group in groups for block in outlined(group.placement, group.wedges))
+    return [(block_id, corners.tobytes()) for block_id, corners in blocks]
+
+
 def same(one: Planner, other: Planner) -> bool:
     """Say whether two planners did the same, with the same figures."""
     figures: Sequence[list[object]] = [
@@ -69,6 +77,7 @@ def same(one: Planner, other: Planner) -> bool:
     return (
         order(one) == order(other)
         and figures[0] == figures[1]
+        and outlines(one) == outlines(other)
         and labels[0].tobytes() == labels[1].tobytes()
         and one.stopped == other.stopped
     )

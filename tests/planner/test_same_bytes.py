@@ -4,23 +4,59 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
+from drystone.generate import RubbleSettings, rubble_stones
+from drystone.io.plan_json import write_plan
+from drystone.io.wall_image import write_wall_image
 from drystone.kernels.backend import VARIABLE, describe
+from drystone.planner.plan_wall import plan_wall
+from tests.planner.scenes import greedy
 from tests.regression.test_same_plan import planned
 
 METHODS = ("paper", "best")
+WALLS: dict[str, dict[str, Any]] = {
+    "energy": {"selection_rule": "score", "rework": {"rounds": 1}},
+    "pivot": {"selection_rule": "algorithm2", "settle": {"method": "pivot"}, "mu": 0.4},
+    "wedges": {
+        "selection_rule": "algorithm2",
+        "stabilise": {"method": "wedge", "min_wedge_px": 1, "margin": 0.3, "max_wedge_height": 0.9},
+        "two_sided": False,
+    },
+}
+"""What is changed in the default method, on outlines."""
+
 PLAN, IMAGE = "plan.json", "wall.png"
 SCRIPT = """
 import sys
 from pathlib import Path
 from drystone.kernels.backend import describe
+from tests.planner.test_same_bytes import WALLS, exact
 from tests.regression.test_same_plan import planned
-for method in sys.argv[2:]:
-    planned(method, Path(sys.argv[1]) / method)
+for name in sys.argv[2:]:
+    folder = Path(sys.argv[1]) / name
+    exact(name, folder) if name in WALLS else planned(name, folder)
 print(describe())
 """
+
+
+def exact(name: str, folder: Path, n_jobs: int = 1) -> tuple[bytes, bytes]:
+    """The bytes of plan.json and wall.png of a few stones on outlines; in metres, at half size."""
+    size = RubbleSettings(count=5, width_px=90, height_px=30, courses=2)
+    stones = rubble_stones(size, np.random.default_rng(1))
+    settings = greedy(WALLS[name])
+    result = plan_wall(
+        stones, 84, 34, scale=0.5, seed=3, settings=settings, n_jobs=n_jobs, px_per_m=437.3
+    )
+    assert len(result.wall.groups) >= 3
+    assert bool(result.wall.wedges) == (name == "wedges")
+    folder.mkdir()
+    write_plan(result.plan, folder / PLAN)
+    image = write_wall_image(result.wall.labels, folder)
+    return (folder / PLAN).read_bytes(), image.read_bytes()
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -29,13 +65,18 @@ def test_threads_do_not_shape_the_plan(method: str, tmp_path: Path) -> None:
     assert more == [one, one]
 
 
+@pytest.mark.parametrize("name", WALLS)
+def test_threads_do_not_shape_walls_of_outlines(name: str, tmp_path: Path) -> None:
+    assert exact(name, tmp_path / "3", n_jobs=3) == exact(name, tmp_path / "1")
+
+
 def test_kernels_do_not_shape_the_plan(tmp_path: Path) -> None:
     if describe() == "NumPy":
         pytest.skip("the kernels here are those in NumPy already")
     there = tmp_path / "there"
     there.mkdir()
     ran = subprocess.run(  # noqa: S603 - our own code
-        [sys.executable, "-c", SCRIPT, str(there), *METHODS],
+        [sys.executable, "-c", SCRIPT, str(there), *METHODS, *WALLS],
         check=True,
         stdout=subprocess.PIPE,
         text=True,
@@ -43,6 +84,6 @@ def test_kernels_do_not_shape_the_plan(tmp_path: Path) -> None:
         env={**os.environ, VARIABLE: "numpy"},
     )
     assert ran.stdout.strip() == "NumPy"
-    for method in METHODS:
-        here = planned(method, tmp_path / method)
-        assert here == tuple((there / method / name).read_bytes() for name in (PLAN, IMAGE))
+    for name in (*METHODS, *WALLS):
+        here = (exact if name in WALLS else planned)(name, tmp_path / name)
+        assert here == tuple((there / name / file).read_bytes() for file in (PLAN, IMAGE))

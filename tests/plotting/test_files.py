@@ -2,12 +2,17 @@ import subprocess
 import sys
 
 import matplotlib as mpl
+import numpy as np
 import pytest
 from PIL import Image
 
 from drystone.plotting import files, plot_mechanism, plot_wall, save, write_pictures
+from drystone.statics.contacts.settled import model_of_outlines
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.plotting import examples
+from tests.plotting.test_stones import patches
+from tests.verify.exact_examples import exact_example
 
 
 @pytest.mark.parametrize("name", ["wall.png", "wall.pdf", "wall.svg"])
@@ -72,3 +77,26 @@ def test_nothing_global_changes(tmp_path):
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "False"
+
+
+def test_mechanisms_of_a_wall_of_outlines_are_drawn_of_its_outlines(tmp_path, monkeypatch):
+    drawn = []
+
+    def noted(shown, mechanism, direction, alpha):
+        drawn.append((shown, plot_mechanism(shown, mechanism, direction, alpha)))
+        return drawn[-1][1]
+
+    monkeypatch.setattr(files, "plot_mechanism", noted)
+    wall = exact_example(0.5, 50.0).wall
+    model = model_of_outlines(wall.outlines, 0.58, 0.1)
+    both = lateral_resistance(model, mechanism=True)
+    written = write_pictures(tmp_path, wall, resistance=both, dpi=20)
+    assert [path.name for path in written] == [files.PICTURE, *files.MECHANISMS.values()]
+    for shown, ax in drawn:
+        assert set(shown) == {block.id for block in model.blocks}
+        for block, corners in wall.outlines.blocks:
+            np.testing.assert_array_equal(shown[block], corners)
+        assert "ground" in patches(ax)
+    # Those of a wall of outlines do not stay beside one that has none.
+    written = write_pictures(tmp_path, examples.wall(), dpi=20)
+    assert [path.name for path in tmp_path.iterdir()] == [files.PICTURE]

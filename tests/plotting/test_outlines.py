@@ -20,6 +20,7 @@ from drystone.plotting.outlines import (
 )
 from tests.naive import plotting as naive
 from tests.plotting import examples
+from tests.verify.exact_examples import GAP_PX, exact_example
 
 masks = hnp.arrays(bool, st.tuples(st.integers(1, 7), st.integers(1, 7)))
 
@@ -117,3 +118,17 @@ def test_regions_of_a_wall_stand_on_its_lowest_stone():
     polygons = {5: np.array([[0, 2], [1, 2], [1, 3.0]]), 3: np.array([[4, 2], [5, 2], [5, 3.0]])}
     assert [region.id for region in wall_regions(polygons)] == [3, 5]
     assert not stands_on_ground(wall_regions(polygons))
+
+
+@pytest.mark.parametrize("unit", [1.0, 1 / 200.0])
+def test_stones_that_settled_stand_on_the_ground(unit):
+    """They hang .01 source px above it."""
+    wall = exact_example().wall
+    outlines = {block: loop * unit for block, loop in wall.outlines.blocks}
+    lowest = min(loop[:, 1].min() for loop in outlines.values())
+    assert lowest == pytest.approx(GAP_PX * unit, rel=1e-4)
+    assert stands_on_ground(wall_regions(outlines))
+    lifted = {block: loop + np.array([0, unit]) for block, loop in outlines.items()}
+    assert not stands_on_ground(wall_regions(lifted))
+    sunk = {block: loop - np.array([0, unit]) for block, loop in outlines.items()}
+    assert not stands_on_ground(wall_regions(sunk))

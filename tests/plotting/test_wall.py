@@ -8,6 +8,7 @@ from drystone.plotting import plot_wall, wall_outlines
 from drystone.plotting.palette import PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour
 from tests.plotting import examples
 from tests.plotting.test_stones import numbers, patches
+from tests.verify.exact_examples import exact_example
 
 
 def test_every_stone_wedge_frame_and_ground_is_drawn_once():
@@ -77,3 +78,22 @@ def test_an_empty_wall_is_a_frame_on_the_ground():
     assert set(patches(ax)) == {"frame", "ground"}
     assert ax.get_title(loc="left") == "nothing yet"
     assert not ax.texts
+
+
+@pytest.mark.parametrize(("scale", "px_per_m"), [(1.0, None), (0.5, None), (0.5, 50.0)])
+def test_a_wall_of_outlines_is_drawn_by_its_outlines(scale, px_per_m):
+    made = exact_example(scale, px_per_m)
+    units = 1.0 / (px_per_m or 1.0)
+    drawn = patches(plot_wall(made.wall))
+    assert {name for name in drawn if name not in ("frame", "ground")} == {
+        *(f"stone-{step.stone}" for step in made.plan.stone_steps),
+        *(f"wedge-{step.id}" for step in made.plan.wedge_steps),
+    }
+    for block, corners in made.wall.outlines.blocks:
+        name = next(gid for gid in drawn if gid.endswith(f"-{block}"))
+        np.testing.assert_allclose(drawn[name].get_path().vertices[:-1], corners * units)
+    frame = drawn["frame"].get_bbox()
+    assert (frame.x1, frame.y1) == pytest.approx((84 * units, 30 * units))
+    written = numbers(plot_wall(made.wall))
+    for step in made.plan.stone_steps:
+        assert written[str(step.step)].get_position() == pytest.approx(step.centroid)

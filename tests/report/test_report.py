@@ -12,9 +12,17 @@ from drystone.model.plan import PlanMetrics
 from drystone.plotting import wall_outlines, write_pictures
 from drystone.plotting.palette import cluster_colour
 from drystone.report import write_report
-from drystone.report.content import cards, flat_settings, number, rows, weaker_direction
+from drystone.report.content import (
+    assumptions,
+    cards,
+    flat_settings,
+    number,
+    rows,
+    weaker_direction,
+)
 from drystone.report.player import drawing
 from tests.plotting import examples
+from tests.verify.exact_examples import exact_example
 
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
 TIMES = "\N{MULTIPLICATION SIGN}"
@@ -104,6 +112,38 @@ def test_results_inputs_and_notices_are_said(report):
         "1 (6.0 px²)",
     ):
         assert said in text
+
+
+def test_what_stones_are_is_said(report):
+    text = Page(report).text
+    assert "Stones are their pixels at the working resolution" in text
+    assert "Stones touch where their pixels have edges or corners in common" in text
+    assert "contact tolerance" not in text
+
+
+def test_a_plan_on_outlines_says_so(tmp_path):
+    made = exact_example()
+    metrics = replace(made.plan.metrics, F_LR=0.71, F_LR_half=0.512, F_LR_double=None)
+    plan = replace(made.plan, metrics=metrics)
+    pictures = tmp_path / "none"
+    outlines = wall_outlines(made.wall)
+    path = write_report(tmp_path / "one.html", plan=plan, pictures=pictures, outlines=outlines)
+    page = Page(path.read_text(encoding="utf-8"))
+    assert "Stones are their outlines" in page.text
+    assert "within the contact tolerance, 0.1 px of the image" in page.text
+    assert "0.512 and not defined at half and twice the contact tolerance." in page.text
+    assert "pixels have edges" not in page.text
+    # Drawn a thousand wide: the wall is 84 px wide and 30 px high.
+    drawn = [a["points"] for a in page.all("polygon")]
+    for (_, corners), points in zip(made.wall.outlines.blocks, drawn, strict=True):
+        found = np.array([point.split(",") for point in points.split()], float)
+        expected = (corners * (1, -1) + (0, 30)) * 1000 / 84
+        np.testing.assert_allclose(found, expected, atol=0.06)
+    settle = {**plan.settings["settle"], "contact_px": 0.25}
+    other = replace(plan, settings={**plan.settings, "settle": settle})
+    assert "0.25 px of the image" in assumptions(other)[-1]
+    without = {name: value for name, value in plan.settings.items() if name != "settle"}
+    assert "0.1 px of the image" in assumptions(replace(plan, settings=without))[-1]
 
 
 def test_names_are_escaped(report):

@@ -330,3 +330,7 @@ def test_a_repose_is_made_from_what_settling_found() -> None:
     assert made.angle_deg == pytest.approx(-math.degrees(found.angle))
     assert made.settled.x_px == pytest.approx(100.0 - found.x, abs=1.0 / GRID)
     assert (made.turned, made.margin) == (True, found.margin)
+    # Angles are between half turns.
+    for angle_deg, expected in ((177.0, -177.0), (-177.0, -171.0), (180.0, -174.0)):
+        over = repose(turned(BRICK, angle_deg), scene_of([]), found._replace(angle=math.radians(6)))
+        assert over.angle_deg == pytest.approx(expected)

@@ -12,6 +12,7 @@ from drystone.physics.repeated import RADII, build_up_repeatedly
 from drystone.physics.scatter import TiltResult
 from drystone.verify.lengths import plan_settings
 from drystone.verify.outlines import Group
+from drystone.verify.report import CheckReport
 
 NOTEWORTHY_PX = 0.01
 """Overlaps below this, in source px, round to nothing and are not spoken of."""
@@ -29,6 +30,8 @@ class PhysicsCard:
         Its wall in the engine, in the run in the middle of several.
     falls_in, runs : int
         In how many of how many runs something falls.
+    overlap_px : float
+        How deep outlines overlap by the plan itself.
     tilts : (TiltResult, TiltResult) or None
         To the left and to the right; None for a wall that fell or did not come to rest.
     metrics : PlanMetrics or None
@@ -41,6 +44,7 @@ class PhysicsCard:
     metrics: PlanMetrics | None
     falls_in: int = 0
     runs: int = 1
+    overlap_px: float = 0.0
 
     @property
     def first_fall(self) -> int | None:
@@ -56,10 +60,13 @@ class PhysicsCard:
         deepest = max(self.built.moves, key=lambda move: move.overlap_px, default=None)
         if deepest is not None and deepest.overlap_px >= NOTEWORTHY_PX:
             said = f"up to {deepest.overlap_px:.2f} source px deep ({self._name(deepest.id)})"
-            rows.append(("  pushed apart", f"{said}: what overlaps cannot stay where it is"))
+            overlaps = self.overlap_px >= NOTEWORTHY_PX
+            why = "what overlaps cannot stay where it is" if overlaps else "others had moved there"
+            rows.append(("  pushed apart", f"{said}: {why}"))
         if self.built.restless:
             steps = ", ".join(str(self._step(group)) for group in self.built.restless)
-            rows.append(("  restless", f"blocks still moved when the time of step {steps} was up"))
+            of = f"step{'s' if len(self.built.restless) > 1 else ''} {steps}"
+            rows.append(("  restless", f"blocks still moved when the time of {of} was up"))
         for name in ("left", "right"):
             rows.append((f"  tilted to the {name}", self._tilted(name)))
         return rows
@@ -138,7 +145,7 @@ class PhysicsCard:
 
 
 def physics_of(
-    plan: Plan, groups: Sequence[Group], metrics: PlanMetrics | None, *, quiet: bool
+    plan: Plan, groups: Sequence[Group], report: CheckReport, *, quiet: bool
 ) -> PhysicsCard | None:
     """Build the wall of a plan in the engine and tilt it.
 
@@ -148,8 +155,8 @@ def physics_of(
         The plan.
     groups : sequence of Group
         Its polygons.
-    metrics : PlanMetrics or None
-        What the limit analysis says of the wall.
+    report : CheckReport
+        What the limit analysis says of the wall, and how deep outlines overlap by the plan.
     quiet : bool
         Show no progress.
 
@@ -170,4 +177,12 @@ def physics_of(
     with counting_bar("stones in the engine", placings, quiet=quiet) as on_group:
         found = build_up_repeatedly(groups, settings.mu, on_group=on_group)
     built = found.typical
-    return PhysicsCard(plan, built, tilt_of(built), metrics, found.falls_in, len(found.runs))
+    return PhysicsCard(
+        plan,
+        built,
+        tilt_of(built),
+        report.metrics,
+        found.falls_in,
+        len(found.runs),
+        report.overlap_depth,
+    )

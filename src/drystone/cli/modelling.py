@@ -83,11 +83,12 @@ def _given(
     wall: GivenWall, blocks: dict[str, Any], mu: float, arguments: argparse.Namespace
 ) -> Modelled:
     if arguments.close_gaps is not None or arguments.contacts != "pixels":
-        raise UsageError(
-            "E138",
-            "a block model has no pixels to take contacts from.",
-            cure="Leave --close-gaps and --contacts out.",
-        )
+        what = "a block model has no pixels to take contacts from."
+        cure = "Leave --close-gaps and --contacts out."
+        if wall.plan is not None:
+            what = "this plan is one of outlines, whose contacts are known."
+            cure = "Leave --close-gaps and --contacts out, or give its wall image."
+        raise UsageError("E138", what, cure=cure)
     if arguments.mu is not None:
         blocks = {**blocks, "mu": mu}
     return Modelled(

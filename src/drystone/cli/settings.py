@@ -5,7 +5,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from drystone.errors import InputError
+from drystone.errors import InputError, UsageError
 from drystone.planner.settings import PlannerSettings, method_settings
 
 
@@ -21,6 +21,9 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
             changes[name] = value
     placement = {"rule": arguments.placement, "reach": arguments.reach}
     changes["placement"] = {k: v for k, v in placement.items() if v is not None}
+    _check_geometry(
+        settings.updated({k: v for k, v in changes.items() if k == "geometry"}), arguments
+    )
     if arguments.settle is not None:
         changes["settle"] = {"method": arguments.settle}
     if arguments.budget is not None:
@@ -28,6 +31,19 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
     if arguments.stabilise is not None:
         changes["stabilise"] = {"method": arguments.stabilise}
     return settings.updated(changes)
+
+
+def _check_geometry(settings: PlannerSettings, arguments: argparse.Namespace) -> None:
+    """Refuse options that would do nothing on the geometry of a plan (E138)."""
+    exact = settings.geometry == "exact"
+    useless = ("placement", "reach") if exact else ("settle",)
+    given = [f"--{name}" for name in useless if getattr(arguments, name) is not None]
+    if given:
+        raise UsageError(
+            "E138",
+            f"{' and '.join(given)} would do nothing with --geometry {settings.geometry}.",
+            cure=f"Leave it out, or add --geometry {'raster' if exact else 'exact'}.",
+        )
 
 
 def read_toml(path: Path) -> dict[str, Any]:

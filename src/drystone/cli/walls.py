@@ -1,6 +1,8 @@
 """Reading what `analyse` and `measure` are given: a label image, a plan, or a block model."""
 
 import json
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,11 +13,16 @@ from drystone.errors import InputError, Notice
 from drystone.io.blocks_json import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
+from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.plan import Plan
 from drystone.model.wall import Labels
-from drystone.statics.contacts.given_parts import read_list, read_mu
+from drystone.statics.contacts.given import polygons_from_json
+from drystone.statics.contacts.given_parts import read_mu
 from drystone.statics.contacts.joints import loose_blocks
 from drystone.statics.model import RigidBlockModel
+
+CENTROID_PX = 0.01
+"""Between centroids of a plan and of its block model, source px: rounding of either file only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,17 +83,7 @@ def read_wall(path: Path) -> GivenWall:
         )
     if plan.settings.get("geometry") != "exact":
         return GivenWall(labels, plan)
-    blocks = _read_json(path.with_name(BLOCKS))
-    if not isinstance(blocks, dict) or {b.get("id") for b in read_list(blocks, "blocks")} != set(
-        _ids(plan)
-    ):
-        raise InputError(
-            "E133",
-            f"the {BLOCKS} beside the plan has other stones than the plan.",
-            where=str(path),
-            cure="Keep the files of a plan together.",
-        )
-    return GivenWall(labels, plan, blocks)
+    return GivenWall(labels, plan, _blocks_of(plan, path))
 
 
 def image_name(plan: Plan) -> str:
@@ -112,6 +109,43 @@ def unsupported(model: RigidBlockModel) -> Notice | None:
         f"connected with it: {named}.",
         "Only edges that meet bear on each other: close the gaps that are drawn between stones.",
     )
+
+
+def _blocks_of(plan: Plan, path: Path) -> dict[str, Any]:
+    """Return the block model beside a plan on outlines; E133 when it is not that of the plan."""
+    beside = path.with_name(BLOCKS)
+    if not beside.exists():
+        what = f"there is no {BLOCKS} beside the plan."
+    else:
+        blocks = _read_json(beside)
+        if not isinstance(blocks, dict):
+            what = f"the {BLOCKS} beside the plan is no block model."
+        else:
+            polygons = polygons_from_json(blocks)
+            if set(polygons) != set(_ids(plan)):
+                what = f"the {BLOCKS} beside the plan has other stones than the plan."
+            elif not _where_planned(plan, polygons):
+                what = f"the {BLOCKS} beside the plan has its stones in other places than the plan."
+            else:
+                return blocks
+    cure = "Keep the files of a plan together, or plan again."
+    raise InputError("E133", what, where=str(path), cure=cure)
+
+
+def _where_planned(plan: Plan, polygons: Mapping[int, Points]) -> bool:
+    """Say whether all polygons have their centroids where those of the plan are."""
+    planned = {step.stone: step.centroid for step in plan.stone_steps}
+    planned |= {step.id: _centroid(np.array(step.polygon)) for step in plan.wedge_steps}
+    allowed = CENTROID_PX / (plan.px_per_m or 1.0)
+    return all(
+        math.dist(_centroid(polygon), planned[block]) <= allowed
+        for block, polygon in polygons.items()
+    )
+
+
+def _centroid(polygon: Points) -> tuple[float, float]:
+    _, x, y = area_and_centroid(polygon)
+    return x, y
 
 
 def _ids(plan: Plan) -> list[int]:

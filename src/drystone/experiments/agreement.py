@@ -5,7 +5,6 @@ import numpy as np
 from drystone.experiments.planned_walls import PlannedWall, missing_data, planned_walls
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.statics.asking import Solver
-from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance
@@ -35,8 +34,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 def _row(wall: PlannedWall) -> tuple[Cell, ...]:
     answers = same = certified = 0
     differences, gaps, residuals = [0.0], [0.0], [0.0]
-    for labels in wall.stages:
-        model = model_from_labels(labels, wall.mu).model
+    for model in wall.models:
         found = [lateral_resistance(model, solver=solver) for solver in SOLVERS]
         for ends in ([both.left for both in found], [both.right for both in found]):
             answers += 1
@@ -49,15 +47,14 @@ def _row(wall: PlannedWall) -> tuple[Cell, ...]:
             residuals += [c.residual for c in certificates if c is not None]
     holds = answers == same == certified and max(differences) <= AGREED
     return (
-        wall.name, len(wall.stages), answers, same, max(differences), certified, max(gaps),
+        wall.name, len(wall.models), answers, same, max(differences), certified, max(gaps),
         max(residuals), *_factors(wall, found[0]), "pass" if holds else "miss",
     )  # fmt: skip
 
 
 def _factors(wall: PlannedWall, last: LateralResistance) -> tuple[float | None, str]:
     value = None if last.value is None else last.value * last.mu
-    model = model_from_labels(wall.stages[-1], wall.mu).model
-    without = nonassociative_resistance(model)
+    without = nonassociative_resistance(wall.models[-1])
     if without.left.alpha is None or without.right.alpha is None:
         return value, " / ".join(str(end.status) for end in (without.left, without.right))
     return value, f"{min(without.left.alpha, without.right.alpha):.4f}"

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import median
 
 from scipy.stats import spearmanr
 
@@ -135,5 +136,5 @@ def _rank_correlation(pairs: Sequence[tuple[float, float]]) -> float | None:
 
 
 def _median_ratio(pairs: Sequence[tuple[float, float]]) -> float | None:
-    ratios = sorted(tilt / alpha for alpha, tilt in pairs if alpha > 0)
-    return ratios[len(ratios) // 2] if ratios else None
+    ratios = [tilt / alpha for alpha, tilt in pairs if alpha > 0]
+    return median(ratios) if ratios else None

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.random import Generator
 
 from drystone.experiments.table import BenchSettings
+from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.generate.fourier import FourierSettings, fourier_stones
 from drystone.generate.polygon import PolygonSettings, polygon_stones
 from drystone.io.read_stones import read_stones
@@ -67,6 +68,10 @@ def _polygons(rng: Generator) -> StoneSet:
     return polygon_stones(PolygonSettings(count=30, noise=0.2), rng)
 
 
+def _bricks(rng: Generator) -> StoneSet:
+    return brick_stones(BrickSettings(count=9), rng)
+
+
 TARGETS = (
     Target("R", "almeida/R.png", 1445, 395, 0.2),
     Target("PR 600x160", "almeida/PR.png", 600, 160, 0.5),
@@ -76,6 +81,14 @@ TARGETS = (
     Target("Fourier", _fourier, 400, 200, 0.6),
     Target("polygons", _polygons, 800, 460, 0.3),
 )
+
+QUICK = (Target("bricks", _bricks, 108, 36, 1.0),)
+"""What every suite can do in a second or two."""
+
+
+def targets(settings: BenchSettings, count: int | None = None) -> tuple[Target, ...]:
+    """Return the targets of a suite, the first `count` unless it shall be quick."""
+    return QUICK if settings.quick else TARGETS[:count]
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +168,7 @@ def built_walls(
     budget : int
         Walls that are tried for each; 1 is one pass.
     """
-    for target in TARGETS[-1:] if settings.quick else TARGETS:
+    for target in targets(settings):
         stones = target.stones(settings)
         if stones is None:
             continue

@@ -10,7 +10,10 @@ from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.planner.plan_wall import plan_wall
-from drystone.verify.replay import replay_plan
+from drystone.statics.model import RigidBlockModel
+from drystone.verify.lengths import plan_settings
+from drystone.verify.replay import Stage, replay_plan
+from drystone.verify.stability import wall_model
 
 SETS = (("PR", 0.5, 560.0, 160.0), ("R", 0.2, 1445.0, 395.0), ("IR", 0.3, 1443.0, 383.0))
 """Stone set of Almeida et al. (2021), working scale, width and height of the wall in px."""
@@ -18,7 +21,7 @@ SETS = (("PR", 0.5, 560.0, 160.0), ("R", 0.2, 1445.0, 395.0), ("IR", 0.3, 1443.0
 
 @dataclass(frozen=True, eq=False)
 class PlannedWall:
-    """A plan, and the label image after every step.
+    """A plan, and the wall after every step.
 
     Parameters
     ----------
@@ -37,7 +40,18 @@ class PlannedWall:
     @cached_property
     def stages(self) -> tuple[Labels, ...]:
         """Label image at the working scale after each stone and its wedges."""
-        return tuple(stage.after.labels for stage in replay_plan(self.plan, self.stones).stages)
+        return tuple(stage.after.labels for stage in self._replayed)
+
+    @cached_property
+    def models(self) -> tuple[RigidBlockModel, ...]:
+        """Models of the same walls on the geometry of the plan: of its pixels or its outlines."""
+        settings, _ = plan_settings(self.plan)
+        found = (wall_model(stage.after, settings) for stage in self._replayed)
+        return tuple(model for model in found if model is not None)
+
+    @cached_property
+    def _replayed(self) -> tuple[Stage, ...]:
+        return replay_plan(self.plan, self.stones).stages
 
     @property
     def mu(self) -> float:

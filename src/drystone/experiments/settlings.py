@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drystone.experiments.exact_walls import TARGETS, Target, one_pass
+from drystone.experiments.exact_walls import Target, one_pass, targets
 from drystone.experiments.planned_walls import missing_data
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.kernels.settling import Settling, settle
@@ -63,7 +63,7 @@ class Attempted:
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Time settlings of planned walls, and whole walls."""
-    chosen = TARGETS[-1:] if settings.quick else TARGETS[:4]
+    chosen = targets(settings, 4)
     found = [(t, stones) for t in chosen if (stones := t.stones(settings)) is not None]
     return (
         Table(

@@ -35,8 +35,8 @@ class Friction(NamedTuple):
         Two corners nearer than this meet with a face.
     steep : float
         Contacts whose normal goes up by less than this have no friction, and those whose normal
-        goes down do not count; -1: all count.  A stone that is held by friction on upright faces,
-        or by what it is hooked under, stands only if it was pressed in between before.
+        goes down by more than .1 do not count; -1: all count.  A stone that is held by friction on
+        upright faces, or by what it is hooked under, stands only if it was pressed in before.
     """
 
     mu: float

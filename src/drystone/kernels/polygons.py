@@ -79,7 +79,7 @@ def on_grid(points: Points) -> Points:
     Examples
     --------
     >>> metres = on_grid(np.array([[0.1, 700.7]])) / 437.3
-    >>> (on_grid(metres * 437.3) == on_grid(np.array([[0.1, 700.7]]))).all()
+    >>> bool((on_grid(metres * 437.3) == on_grid(np.array([[0.1, 700.7]]))).all())
     True
     """
     return np.asarray(np.floor(points * GRID + 0.5) / GRID)

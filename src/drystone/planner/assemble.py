@@ -105,7 +105,8 @@ def plan_metrics(
         return PlanMetrics(0.0, None, None, None, 0.0, 0.0, None, None, 0.0)
     measured = measure_labels(
         wall.labels,
-        wall_px=(frame.width * scale, frame.height * scale),
+        # Metres times px per metre leave rounding errors, which must not decide over a half px.
+        wall_px=(round(frame.width * scale, 9), round(frame.height * scale, 9)),
         wedge_ids=frozenset(wedge.id for wedge in wall.wedges),
         stone_area_px=sum(p.posed.stone.area_px for p in wall.placements) * scale**2,
         lateral_resistance=resistance.value,

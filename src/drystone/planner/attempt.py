@@ -143,7 +143,7 @@ class Attempt:
             [proposals[k] for k in new],
         )
         self._judged.update(zip([keys[k] for k in new], results, strict=True))
-        self.failed_solves += sum(result.resistance.failed for result in results)
+        self.failed_solves += sum(result.failed for result in results)
         self.cold_solves += sum(result.solved_cold for result in results)
         # NHR depends on the other candidates, which differ between the folds.
         return [

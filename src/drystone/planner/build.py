@@ -67,13 +67,15 @@ class Candidate:
     resistance : LateralResistance
         Of that model.
     solved_cold : bool
-        True when an answer found from the bases of the wall had no certificate, and the model was
+        True when an answer found from the bases of the wall had no certificate, and a model was
         solved from the start.
     sturdy_model : RigidBlockModel or None
         The model of outlines with fewer and less able contacts, in which the wall must stand as
         well (:mod:`drystone.planner.sturdy`); None for pixels.
     sturdy : bool
         Whether it does.
+    failed : bool
+        True when the solver gave up on one of the models.
     """
 
     proposal: Proposal
@@ -84,6 +86,7 @@ class Candidate:
     solved_cold: bool = False
     sturdy_model: RigidBlockModel | None = None
     sturdy: bool = True
+    failed: bool = False
 
     @property
     def stabilised(self) -> Stabilised:

@@ -69,8 +69,9 @@ class Evaluator:
                 self.stock.narrowest_px,
             )
         candidate = Candidate(
-            proposal, indices, course_height, model, grown.resistance, grown.solved_cold
-        )
+            proposal, indices, course_height, model, grown.resistance, grown.solved_cold,
+            failed=grown.resistance.failed,
+        )  # fmt: skip
         return self._sturdily(build, candidate)
 
     def _sturdily(self, build: Build, candidate: Candidate) -> Candidate:
@@ -83,8 +84,14 @@ class Evaluator:
             blocks = outlined(stabilised.placement, stabilised.wedges)
             model = sturdy_model_with(analysis.model, blocks, outlines, self.settings.settle)
         with self.profile.part("limit analysis"):
-            sturdy = analysis.resistance_with(model).resistance.stable
-        return replace(candidate, sturdy_model=model, sturdy=sturdy)
+            grown = analysis.resistance_with(model)
+        return replace(
+            candidate,
+            sturdy_model=model,
+            sturdy=grown.resistance.stable,
+            solved_cold=candidate.solved_cold or grown.solved_cold,
+            failed=candidate.failed or grown.resistance.failed,
+        )
 
     def _model(self, build: Build, stabilised: Stabilised) -> RigidBlockModel:
         """Return the model of the wall with an action done."""

@@ -1,17 +1,21 @@
 """A wall of outlines must also stand with fewer and less able contacts (DESIGN 4.9).
 
 The limit analysis lets friction act wherever outlines are near each other.  In the world upright
-faces grip only what was pressed between them before, and a gap that counts as a contact may be
-open.  So every action must leave a wall that stands, under its own weight, without friction on
-upright faces and with half the contact tolerance; its load multipliers are those with all.
+faces grip only what was pressed between them before, a gap that counts as a contact may be open,
+and friction has scatter.  So every action must leave a wall that stands, under its own weight,
+with half the contact tolerance, without friction on upright faces, and with three quarters of it
+on the others; its load multipliers are those with all.
 """
 
 from dataclasses import replace
 
 from drystone.model.outlines import Outlined, Outlines
 from drystone.settle.settings import SettleSettings
-from drystone.statics.contacts.settled import model_with_outlines
-from drystone.statics.model import RigidBlockModel
+from drystone.statics.contacts.settled import model_of_outlines, model_with_outlines
+from drystone.statics.model import Interface, RigidBlockModel
+
+GRIP = 0.75
+"""Share of the friction with which a wall must stand."""
 
 
 def sturdy_model_with(
@@ -32,8 +36,30 @@ def sturdy_model_with(
     """
     added = model_with_outlines(model, blocks, outlines, 0.5 * settings.contact_px).added
     assert added is not None  # noqa: S101 - it was made by adding
-    interfaces = tuple(
-        replace(interface, mu=0.0) if abs(interface.normal[1]) < settings.steep else interface
-        for interface in added.interfaces
+    return model.with_added(added.blocks, _slippery(added.interfaces, model.mu, settings))
+
+
+def sturdy_model_of(outlines: Outlines, mu: float, settings: SettleSettings) -> RigidBlockModel:
+    """Return the sturdy model of a whole wall.
+
+    Parameters
+    ----------
+    outlines : Outlines
+        Of the wall.
+    mu : float
+        Coefficient of friction.
+    settings : SettleSettings
+        Contact tolerance, and which faces are upright.
+    """
+    model = model_of_outlines(outlines, mu, 0.5 * settings.contact_px)
+    return replace(model, interfaces=_slippery(model.interfaces, mu, settings))
+
+
+def _slippery(
+    interfaces: tuple[Interface, ...], mu: float, settings: SettleSettings
+) -> tuple[Interface, ...]:
+    """Return interfaces with as little friction as a wall must do with."""
+    return tuple(
+        replace(interface, mu=0.0 if abs(interface.normal[1]) < settings.steep else GRIP * mu)
+        for interface in interfaces
     )
-    return model.with_added(added.blocks, interfaces)

@@ -15,6 +15,9 @@ Loop = NDArray[np.float64]
 """(n, 2) corners (x, y), y up, first corner not repeated: counter-clockwise around stone,
 clockwise around holes."""
 
+UNSEEN = 1e-3
+"""Share of a wall's size that nobody sees: stones settle .01 source px above the ground."""
+
 
 @dataclass(frozen=True, eq=False)
 class Region:
@@ -123,7 +126,7 @@ def regions_box(*walls: Iterable[Iterable[Loop]]) -> tuple[float, float, float, 
 def stands_on_ground(regions: Iterable[Region]) -> bool:
     """Whether the lowest corner of a wall is at y = 0, where the ground is."""
     _, y0, x1, y1 = box = regions_box(region.loops for region in regions)
-    return abs(y0) <= 1e-6 * max(x1 - box[0], y1 - y0)
+    return abs(y0) <= UNSEEN * max(x1 - box[0], y1 - y0)
 
 
 def _region(label: int, mask: Mask, window: tuple[slice, slice], height: int) -> Region:

@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.plotting.palette import WEDGE_COLOUR, cluster_colour
+from drystone.settle.settings import SettleSettings
 
 UNDEFINED = "not defined"
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
@@ -20,6 +21,16 @@ INDICES = {
     "IWR": "interlocking with the joints below; higher is better",
     "IS": "slope of the upper edge; positive falls inwards, higher is better",
     "LLC": "limit load coefficient: min(alpha) / mu after the step; higher is better",
+}
+STONES_ARE = {
+    "exact": "their outlines",
+    "raster": "their pixels at the working resolution",
+}
+TOUCHING = {
+    "exact": "Stones touch where their outlines are within the contact tolerance, {contact_px:g} "
+    "px of the image, of each other.",
+    "raster": "Stones touch where their pixels have edges or corners in common; by their real "
+    "outlines they may overlap, or not touch.",
 }
 ASSUMPTIONS = (
     "The wall is a flat section of unit thickness; what happens across it is not modelled.",
@@ -89,10 +100,22 @@ def inputs(plan: Plan) -> tuple[tuple[str, str], ...]:
         ("Wall", f"{plan.width:.{digits}f} {TIMES} {plan.height:.{digits}f} {unit}"),
         ("Scale", scale),
         ("Working resolution", f"{plan.working_scale:g} of the source's"),
+        ("Stones are", STONES_ARE[geometry(plan)]),
         ("Method", plan.method),
         ("Seed", str(plan.seed)),
         ("drystone", f"version {plan.version}"),
     )
+
+
+def geometry(plan: Plan) -> Literal["raster", "exact"]:
+    """Return what the stones of a plan are."""
+    return "exact" if plan.settings.get("geometry") == "exact" else "raster"
+
+
+def assumptions(plan: Plan) -> tuple[str, ...]:
+    """Return what the results rest on."""
+    contact_px = plan.settings.get("settle", {}).get("contact_px", SettleSettings().contact_px)
+    return (*ASSUMPTIONS, TOUCHING[geometry(plan)].format(contact_px=contact_px))
 
 
 def summary(plan: Plan) -> str:
@@ -119,7 +142,7 @@ def _strength(metrics: PlanMetrics) -> tuple[Card, ...]:
             number(metrics.F_LR),
             "higher",
             "The smaller load multiplier over the coefficient of friction. At 1 the whole wall "
-            "would slide on the ground before it comes apart.",
+            f"would slide on the ground before it comes apart.{_by_tolerance(metrics)}",
         ),
         Card(
             f"{ALPHA} left",
@@ -143,6 +166,14 @@ def _strength(metrics: PlanMetrics) -> tuple[Card, ...]:
             "Where the wall fails first when it is pushed from the side.",
         ),
     )
+
+
+def _by_tolerance(metrics: PlanMetrics) -> str:
+    """Say what it is with other contact tolerances, where there is a tolerance."""
+    half, double = metrics.F_LR_half, metrics.F_LR_double
+    if half is None and double is None:
+        return ""
+    return f" {number(half)} and {number(double)} at half and twice the contact tolerance."
 
 
 def weaker_direction(metrics: PlanMetrics) -> str:

@@ -79,7 +79,7 @@ def write_report(
         notices=notices,
         timings=timings or {},
         settings=tuple(content.flat_settings(plan.settings)),
-        assumptions=content.ASSUMPTIONS,
+        assumptions=content.assumptions(plan),
         number=content.number,
         drawing=None if outlines is None else drawing(plan, outlines),
     )

@@ -1,9 +1,11 @@
 """Settled stones and wedges in the wall: the pixels that they fill there (DESIGN 4.9)."""
 
 import numpy as np
+from scipy import ndimage
 
 from drystone.kernels.coverage import coverage
 from drystone.kernels.polygons import Points
+from drystone.kernels.raster import Mask
 from drystone.model.outlines import Outlines
 from drystone.model.placement import Placement, Settled, Side, Wedge
 from drystone.model.pose import PosedStone
@@ -46,11 +48,26 @@ def settled_placement(
     fresh = outlines.shares.fresh(*coverage(settled.corners * site.scale))
     if fresh is None:
         return None
-    mask, row, col = fresh
+    mask, row, col = _in_one_piece(*fresh)
     bottom = site.height_px - row - mask.shape[0]
     anchor = (settled.x_px * site.scale - col, settled.y_px * site.scale - bottom)
     posed = PosedStone(stone, angle_deg, site.scale, mask, anchor)
     return Placement(posed, row, col, side, rotation_moves, settled)
+
+
+def _in_one_piece(mask: Mask, row: int, col: int) -> tuple[Mask, int, int]:
+    """Keep the largest piece of a mask that has rows or columns without pixels.
+
+    Arms that are thinner than a pixel fill none: what is beyond them is not seen either.
+    """
+    if mask.any(axis=0).all() and mask.any(axis=1).all():
+        return mask, row, col
+    pieces, _ = ndimage.label(mask, np.ones((3, 3)))
+    sizes = np.bincount(pieces.ravel())
+    sizes[0] = 0
+    piece = int(sizes.argmax())
+    rows, cols = ndimage.find_objects(pieces, piece)[-1]
+    return pieces[rows, cols] == piece, row + rows.start, col + cols.start
 
 
 def settled_wedge(

@@ -21,7 +21,7 @@ class SettleSettings:
     outline_px : float
         How far outlines may stay away from the contour of the pixels.
     clearance_px : float
-        Gap that settled stones keep.
+        Gap that settled stones are left, and keep at least half of.
     contact_px : float
         Gaps up to this one are contacts, in the rest test and in the limit analysis.
     lean : float
@@ -31,8 +31,8 @@ class SettleSettings:
         mu.
     steep : float
         When it is asked whether a stone rests, contacts whose normal goes up by less than this have
-        no friction, and those whose normal goes down do not count: upright faces and hooks hold
-        only what was pressed in between before.
+        no friction, and those whose normal goes down by more than .1 do not count: upright faces
+        and hooks hold only what was pressed in between before.
     beyond_px : float
         How far a stone may stand out over the ends and the top of the wall: the clearances of a
         course add up.
@@ -71,8 +71,13 @@ class SettleSettings:
     def __post_init__(self) -> None:
         if self.method not in ("energy", "pivot"):
             raise ValueError(f"unknown way of settling {self.method!r}")
-        if not 0 < 2 * self.clearance_px <= self.contact_px or self.outline_px <= 0:
-            raise ValueError("clearance must be above 0, contact_px at least twice as much")
+        if not 1e-4 <= self.clearance_px or not 4 * self.clearance_px <= self.contact_px <= 0.5:
+            raise ValueError("clearance_px must be .0001 or more, contact_px 4 times it to .5")
+        # Beyond these a plan would no longer speak of the stones of the picture.
+        if not 0 < self.outline_px <= 0.5 or not 0 <= self.beyond_px <= 1:
+            raise ValueError("outline_px must be in (0, .5], beyond_px in [0, 1]")
+        if not 0 <= self.steep < 1:
+            raise ValueError("steep must be in [0, 1)")
         if (
             min(
                 self.lean,
@@ -80,7 +85,6 @@ class SettleSettings:
                 self.max_turn_deg,
                 self.max_shift,
                 self.apart,
-                self.beyond_px,
             )
             < 0
         ):

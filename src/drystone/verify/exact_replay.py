@@ -119,12 +119,17 @@ def wedge_corners(step: WedgeStep, site: Site) -> Points:
     Raises
     ------
     PlanError
-        E222 when its polygon crosses or touches itself, has no area, or is clockwise.
+        E222 when its polygon crosses or touches itself, names a corner twice, has no area, or is
+        clockwise.
     """
     corners = source_points(step.polygon, site)
     polygon = shapely.Polygon(corners)
-    if not polygon.is_valid:
-        raise PlanError("E222", f"the polygon of wedge {step.id} crosses itself or has no area.")
+    apart = np.abs(corners - np.roll(corners, 1, axis=0)).max(axis=1) > 0.0
+    if not (apart.all() and polygon.is_valid):
+        raise PlanError(
+            "E222",
+            f"the polygon of wedge {step.id} crosses itself, names a corner twice or has no area.",
+        )
     if not polygon.exterior.is_ccw:
         raise PlanError("E222", f"the polygon of wedge {step.id} is clockwise.")
     return corners

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from drystone.model.plan import StoneStep, WedgeStep
 from drystone.model.wall import Labels, Wall
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.sturdy import sturdy_model_of
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.limit import lateral_resistance
@@ -29,7 +30,8 @@ class Standing:
     models : tuple of RigidBlockModel or None
         Of the same walls.
     problems : tuple of Problem
-        E230: it does not stand; E231: another load multiplier is claimed.
+        E230: it does not stand; E231: another load multiplier is claimed; E237: a wall of
+        outlines stands by friction that it should not need.
     """
 
     resistances: tuple[LateralResistance | None, ...]
@@ -51,7 +53,8 @@ def check_stability(stages: Sequence[Stage], settings: PlannerSettings) -> Stand
     found = [None if model is None else lateral_resistance(model) for model in models]
     problems: list[Problem] = []
     for stage, resistance in zip(stages, found, strict=True):
-        problems += _judge(stage, resistance)
+        judged = _judge(stage, resistance)
+        problems += judged or _not_sturdy(stage, settings)
     return Standing(tuple(found), tuple(models), tuple(problems))
 
 
@@ -93,6 +96,21 @@ def differs(claimed: float | None, found: float | None, tolerance: float) -> boo
     if claimed is None or found is None:
         return claimed is not found
     return not abs(claimed - found) <= tolerance * max(1.0, abs(found))
+
+
+def _not_sturdy(stage: Stage, settings: PlannerSettings) -> list[Problem]:
+    """Say that a wall of outlines does not stand in its sturdy model (E237)."""
+    outlines = stage.after.outlines
+    if outlines is None:
+        return []
+    model = sturdy_model_of(outlines, settings.mu, settings.settle)
+    if lateral_resistance(model).stable:
+        return []
+    message = (
+        "the wall stands only by friction on upright faces, by more than three quarters of the "
+        "friction, or by gaps near the contact tolerance."
+    )
+    return [Problem("E237", stage.last.step, message)]
 
 
 def _judge(stage: Stage, resistance: LateralResistance | None) -> list[Problem]:

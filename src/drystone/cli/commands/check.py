@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         asked_physics=arguments.physics,
     )
     if arguments.physics:
-        found = physics_of(plan, checked.groups, checked.report.metrics, quiet=arguments.json)
+        found = physics_of(plan, checked.groups, checked.report, quiet=arguments.json)
         checked = replace(checked, physics=found)
     picture = _picture(checked, arguments, path.parent)
     if arguments.json:

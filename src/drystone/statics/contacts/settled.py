@@ -122,18 +122,11 @@ def model_of_outlines(
     ids, polygons = placed.ids, placed.polygons
     outlines = [polygons.polygon(place) for place in range(len(ids))]
     interfaces = chain.from_iterable(
-        _interfaces(ids[place], ids, meetings(corners, _leading(polygons, place), tolerance))
+        _interfaces(ids[place], ids, meetings(corners, polygons.leading(place), tolerance))
         for place, corners in enumerate(outlines)
     )
     model = RigidBlockModel(tuple(map(_block, ids, outlines)), tuple(interfaces), mu)
     return model if scale == 1.0 else _scaled(model, scale)
-
-
-def _leading(polygons: Polygons, count: int) -> Polygons:
-    """Return the first so many polygons, without a copy."""
-    first = polygons.first[: count + 1]
-    end = int(first[-1])
-    return Polygons(polygons.corners[:end], first, polygons.boxes[:count], polygons.edges[:end])
 
 
 def _block(block_id: int, corners: Points) -> Block:

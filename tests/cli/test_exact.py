@@ -1,0 +1,319 @@
+"""Plans on outlines, the default of `best`, from `plan` to `check`, in px and in metres."""
+
+import json
+import shutil
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from PIL import Image
+
+from drystone.cli import check_picture
+from drystone.io.blocks_json import BLOCKS
+from drystone.io.plan_json import read_plan
+from drystone.planner.events import Callbacks, Step
+from tests.cli.conftest import EXACT, Run
+from tests.cli.test_plan import FILES, SUMMARY
+
+Tamper = Callable[[dict[str, Any]], Any]
+
+
+def polygons(folder: Path) -> dict[int, np.ndarray]:
+    """Return the outlines beside a plan by id, in the units of the plan."""
+    blocks = json.loads((folder / BLOCKS).read_text(encoding="utf-8"))["blocks"]
+    return {block["id"]: np.array(block["polygon"]) for block in blocks}
+
+
+def change(path: Path, tamper: Tamper) -> None:
+    content = json.loads(path.read_text(encoding="utf-8"))
+    tamper(content)
+    path.write_text(json.dumps(content), encoding="utf-8")
+
+
+def shift(blocks: dict[str, Any], by: float) -> None:
+    """Move the last block to the right, by some of the plan's units."""
+    last = blocks["blocks"][-1]
+    last["polygon"] = [[x + by, y] for x, y in last["polygon"]]
+
+
+def test_best_plans_on_outlines_and_writes_them(settled: Path) -> None:
+    assert {path.name for path in settled.iterdir()} == FILES | {BLOCKS}
+    plan = read_plan(settled)
+    assert (plan.method, plan.settings["geometry"]) == ("best", "exact")
+    assert 'geometry = "exact"' in (settled / "settings.toml").read_text(encoding="utf-8")
+    placed = polygons(settled)
+    steps = [step.stone for step in plan.stone_steps] + [step.id for step in plan.wedge_steps]
+    assert sorted(placed) == sorted(steps)
+    everything = np.concatenate(list(placed.values()))
+    beyond = plan.settings["settle"]["beyond_px"]
+    assert everything.min(axis=0) == pytest.approx([0, 0.01], abs=beyond)
+    assert (everything[:, 1] > 0).all()
+    assert (everything.max(axis=0) <= [100 + beyond, 36]).all()
+    shapes = [shapely.Polygon(corners) for corners in placed.values()]
+    assert shapely.union_all(shapes).area == pytest.approx(sum(shape.area for shape in shapes))
+    report = (settled / "report.html").read_text(encoding="utf-8")
+    assert "their outlines" in report
+    for name in ("picture.png", "mechanism_left.png", "mechanism_right.png"):
+        with Image.open(settled / name) as picture:
+            assert min(picture.size) > 100
+
+
+def test_the_summary_says_what_the_contact_tolerance_changes(
+    rubble: Path, settled: Path, tmp_path: Path, run: Run
+) -> None:
+    seeded = (*EXACT, "--seed", 1)
+    words = run("plan", rubble, *seeded, "-o", tmp_path / "words")
+    summary = run("plan", rubble, *seeded, "-o", tmp_path / "json", "--json", "--profile").json()
+    assert list(summary) == [*SUMMARY, "profile"]
+    half, double = summary["F_LR_half"], summary["F_LR_double"]
+    assert f"{half:.3f} and {double:.3f} at half and twice the contact tolerance" in words.out
+    assert summary["profile"]["parts"]["placement"] > 0
+    for folder in ("words", "json"):
+        for name in ("plan.json", BLOCKS, "wall.png", "picture.png"):
+            assert (tmp_path / folder / name).read_bytes() == (settled / name).read_bytes()
+    pixels = (*seeded, "--geometry", "raster", "-o", tmp_path / "pixels")
+    assert "contact tolerance" not in run("plan", rubble, *pixels).out
+    metrics = read_plan(tmp_path / "pixels").metrics
+    assert (metrics.F_LR_half, metrics.F_LR_double) == (None, None)
+
+
+def test_measure_and_analyse_look_at_the_outlines(settled: Path, tmp_path: Path, run: Run) -> None:
+    plan = read_plan(settled)
+    report = run("analyse", settled, "--json").json()
+    assert report["F_LR"] == pytest.approx(plan.metrics.F_LR)
+    assert report["alpha_left"] == pytest.approx(plan.metrics.alpha_left)
+    assert report["blocks"] == len(plan.steps)
+    assert run("analyse", settled / BLOCKS, "--json").json()["F_LR"] == report["F_LR"]
+    assert "stone" in run("analyse", settled).out
+    measured = run("measure", settled, "--json").json()
+    for name in ("F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH"):
+        assert measured[name] == pytest.approx(getattr(plan.metrics, name))
+    slippery = run("measure", settled, "--json", "--mu", ".2").json()["F_LR"]
+    assert slippery == pytest.approx(run("analyse", settled, "--json", "--mu", ".2").json()["F_LR"])
+    assert slippery != pytest.approx(measured["F_LR"])
+    assert run("analyse", settled, "-o", tmp_path / "out").code == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} >= {
+        "contacts.png", "mechanism_left.png", "forces_right.png"
+    }  # fmt: skip
+    for option in (["--close-gaps", "1"], ["--contacts", "outlines"]):
+        ran = run("analyse", settled, *option)
+        assert (ran.code, ran.out) == (2, "")
+        assert "E138 this plan is one of outlines" in ran.err
+
+
+def test_metres(rubble: Path, settled: Path, tmp_path: Path, run: Run) -> None:
+    out = tmp_path / "m"
+    ran = run("plan", rubble, "--wall", "0.5mx18cm", "--px-per-m", 200, "--scale", "1", "--budget",
+              "1", "--seed", 1, "-o", out)  # fmt: skip
+    assert ran.code in (0, 4)
+    px, metres = read_plan(settled), read_plan(out)
+    assert (metres.length_unit, metres.px_per_m) == ("m", 200.0)
+    for one, other in zip(metres.stone_steps, px.stone_steps, strict=True):
+        assert (one.stone, one.angle_deg) == (other.stone, other.angle_deg)
+        assert np.array(one.centroid) * 200 == pytest.approx(np.array(other.centroid), abs=1e-9)
+    there, here = polygons(out), polygons(settled)
+    for block, corners in here.items():
+        assert there[block] * 200 == pytest.approx(corners, abs=1e-9)
+    assert (out / "wall.png").read_bytes() == (settled / "wall.png").read_bytes()
+    assert run("check", out, "--stones", rubble).code == 0
+    for folder in (settled, out):
+        report = run("analyse", folder, "--json").json()
+        assert report["F_LR"] == pytest.approx(px.metrics.F_LR)
+    for by_px, accepted in ((0.005, True), (0.02, False)):
+        change(out / BLOCKS, partial(shift, by=by_px / 200))
+        assert (run("analyse", out).code == 0) == accepted
+    # The same stones in the same order, but in another unit.
+    shutil.copy(settled / BLOCKS, out / BLOCKS)
+    assert "stones in other places" in run("analyse", out).err
+
+
+def foreign(path: Path) -> None:
+    change(path, lambda blocks: blocks["blocks"][0].update(id=99))
+
+
+def elsewhere(path: Path) -> None:
+    change(path, partial(shift, by=0.02))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "code", "said"),
+    [
+        (Path.unlink, "E133", "there is no blocks.json beside the plan"),
+        (foreign, "E133", "has other stones than the plan"),
+        (elsewhere, "E133", "has its stones in other places than the plan"),
+        (lambda path: path.write_text("[1]"), "E133", "is no block model"),
+        (lambda path: path.write_text("{}"), "E303", "there is neither"),
+        (lambda path: path.write_text("{"), "E132", "is no JSON"),
+    ],
+)
+def test_a_plan_needs_its_own_blocks(
+    spoil: Callable[[Path], object], code: str, said: str, settled_copy: Path, run: Run
+) -> None:
+    spoil(settled_copy / BLOCKS)
+    for command in ("measure", "analyse"):
+        ran = run(command, settled_copy)
+        assert (ran.code, ran.out) == (3, "")
+        assert code in ran.err
+        assert said in ran.err
+    assert run("check", settled_copy).code == 0  # it takes the outlines from the stones
+
+
+def test_a_wedge_in_another_place_is_not_that_of_the_plan(settled_copy: Path, run: Run) -> None:
+    """A stone of the plan stands for a wedge here, so that there is one in any case."""
+    plan = json.loads((settled_copy / "plan.json").read_text(encoding="utf-8"))
+    last = plan["steps"][-1]
+    block = last.get("stone", last.get("id"))
+    corners = polygons(settled_copy)[block].tolist()
+    wedge = {"step": last["step"], "kind": "wedge", "id": block, "under": plan["steps"][0]["stone"],
+             "polygon": corners, "alpha_left": 0.1, "alpha_right": 0.1}  # fmt: skip
+    change(settled_copy / "plan.json", lambda plan: plan["steps"].__setitem__(-1, wedge))
+    assert run("analyse", settled_copy).code == 0
+    wedge["polygon"] = [[x, y + 0.02] for x, y in corners]
+    change(settled_copy / "plan.json", lambda plan: plan["steps"].__setitem__(-1, wedge))
+    assert "has its stones in other places" in run("analyse", settled_copy).err
+
+
+def test_files_of_an_earlier_plan_do_not_stay(settled_copy: Path, rubble: Path, run: Run) -> None:
+    again = ("-o", settled_copy, "--overwrite", "--seed", 1)
+    assert run("plan", rubble, *EXACT, "--geometry", "raster", *again).code in (0, 4)
+    assert {path.name for path in settled_copy.iterdir()} == FILES | {"rubble.png"}
+    on_pixels = run("analyse", settled_copy, "--json").json()
+    assert on_pixels["F_LR"] == pytest.approx(read_plan(settled_copy).metrics.F_LR)
+    assert run("plan", rubble, *EXACT, *again).code in (0, 4)
+    assert {path.name for path in settled_copy.iterdir()} == FILES | {BLOCKS, "rubble.png"}
+    # A wall without stones has no mechanism to draw.
+    small = ("--wall", "15x8", "--scale", "1", "--budget", "1", "--skip-too-large")
+    assert run("plan", rubble, *small, *again).code == 4
+    left = {path.name for path in settled_copy.iterdir()}
+    assert left == (FILES | {BLOCKS, "rubble.png"}) - {"mechanism_left.png", "mechanism_right.png"}
+    assert polygons(settled_copy) == {}
+    assert run("check", settled_copy).code == 0
+
+
+def test_pivots_on_outlines(rubble: Path, settled: Path, tmp_path: Path, run: Run) -> None:
+    out = tmp_path / "pivot"
+    assert run("plan", rubble, *EXACT, "--settle", "pivot", "-o", out, "--seed", 1).code in (0, 4)
+    assert read_plan(out).settings["settle"]["method"] == "pivot"
+    assert run("check", out, "--stones", rubble).code == 0
+    assert (out / "plan.json").read_bytes() != (settled / "plan.json").read_bytes()
+
+
+def test_budget_counts_the_passes(rubble: Path, settled: Path, tmp_path: Path, run: Run) -> None:
+    assert read_plan(settled).settings["rework"]["rounds"] == 0
+    out = tmp_path / "two"
+    ran = run("plan", rubble, *EXACT[:-1], "2", "-o", out, "--seed", 1)
+    assert ran.code in (0, 4)
+    assert read_plan(out).settings["rework"]["rounds"] == 1
+    for wrong in ("0", "-1", "1.5", "many"):
+        ran = run("plan", rubble, *EXACT[:-1], wrong, "-o", tmp_path / "none")
+        assert (ran.code, "E138" in ran.err, "--budget" in ran.err) == (2, True, True)
+
+
+@pytest.mark.parametrize("option", ["--geometry", "--settle"])
+def test_unknown_choices_are_refused(option: str, rubble: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", rubble, *EXACT, option, "wurst", "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert "E138" in ran.err
+    assert "wurst" in ran.err
+    assert not (tmp_path / "out").exists()
+
+
+def test_resume_goes_on_with_the_stones_where_they_settled(
+    settled: Path, rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(_: Callbacks, step: Step) -> None:
+        if step.number == 3:
+            raise KeyboardInterrupt
+
+    out, seeded = tmp_path / "partial", (*EXACT, "--seed", 1)
+    with monkeypatch.context() as patch:
+        patch.setattr(Callbacks, "on_step", interrupt)
+        assert run("plan", rubble, *seeded, "-o", out).code == 130
+    assert len(polygons(out)) == len(read_plan(out).steps) < len(read_plan(settled).steps)
+    assert run("check", out, "--stones", rubble).code == 0
+    refused = run("plan", rubble, *seeded, "-o", out, "--resume", "--geometry", "raster")
+    assert (refused.code, "E136" in refused.err) == (2, True)
+    ran = run("plan", rubble, *seeded, "-o", out, "--resume")
+    assert ran.code in (0, 4)
+    assert ran.err == "drystone: going on after 3 stones\n"
+    for name in ("plan.json", BLOCKS, "wall.png", "settings.toml", "picture.png"):
+        assert (out / name).read_bytes() == (settled / name).read_bytes()
+
+
+def test_check_verifies_the_outlines(settled_copy: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("check", settled_copy)
+    assert ran.code == 0
+    assert ": holds\n" in ran.out
+    assert "0.00 source px deep by the outlines" in ran.out
+    report = run("check", settled_copy, "--json", "--picture", tmp_path / "check.png").json()
+    assert (report["ok"], report["geometry"], report["overlap_depth"]) == (True, "exact", 0.0)
+    assert report["picture"] == str(tmp_path / "check.png")
+    with Image.open(tmp_path / "check.png") as picture:
+        assert min(picture.size) > 100
+
+
+def lift(plan: dict[str, Any]) -> None:
+    plan["steps"][-1]["centroid"][1] += 30.0
+    plan["wall"]["height"] += 40.0
+
+
+@pytest.mark.parametrize(
+    ("tamper", "code"),
+    [
+        (lambda plan: plan["steps"][1]["centroid"].__setitem__(0, 20.0), "E221"),
+        (lambda plan: plan["steps"][0]["centroid"].__setitem__(0, -5.0), "E220"),
+        (lambda plan: plan["steps"][0].update(angle_deg=plan["steps"][0]["angle_deg"] + 9), "E2"),
+        (lambda plan: plan["metrics"].update(F_LR_half=0.99), "E234"),
+        (lambda plan: plan["settings"]["settle"].update(contact_px=0.0), "E2"),
+        (lambda plan: plan["settings"].update(geometry="raster"), "E2"),
+        (lift, "E230"),
+    ],
+)
+def test_a_tampered_plan_does_not_hold(
+    tamper: Tamper, code: str, settled_copy: Path, run: Run
+) -> None:
+    change(settled_copy / "plan.json", tamper)
+    ran = run("check", settled_copy)
+    assert ran.code == 5
+    assert "does not hold" in ran.out
+    assert f"problem  {code}" in ran.out
+    assert (settled_copy / "check.png").exists() == ("picture" in ran.out)
+
+
+def test_overlaps_are_drawn_of_the_outlines(
+    settled_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[check_picture.FailureView] = []
+    draw = check_picture.plot_failures
+
+    def keep(views: list[check_picture.FailureView]) -> object:
+        seen.extend(views)
+        return draw(views)
+
+    monkeypatch.setattr(check_picture, "plot_failures", keep)
+    plan = read_plan(settled_copy)
+    first, second = plan.stone_steps[:2]
+    x = second.centroid[0] - 6.0 if second.side == "left" else second.centroid[0] + 6.0
+    change(settled_copy / "plan.json", lambda p: p["steps"][1]["centroid"].__setitem__(0, x))
+    assert run("check", settled_copy).code == 5
+    view = next(view for view in seen if view.title.startswith("E22"))
+    moved = view.planned[second.stone] - polygons(settled_copy)[second.stone]
+    assert np.abs(moved[:, 0]) == pytest.approx(6.0)
+    assert moved[:, 1] == pytest.approx(0.0)
+    assert view.planned[first.stone] == pytest.approx(polygons(settled_copy)[first.stone])
+
+
+def test_the_engine_builds_the_outlines(settled_copy: Path, run: Run) -> None:
+    pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
+    ran = run("check", settled_copy, "--physics", "--json")
+    report = ran.json()
+    assert (ran.code == 0) == report["ok"] == (not report["physics"]["fallen"])
+    assert report["problems"] == []
+    moves = {move["id"]: move for move in report["physics"]["moves"]}
+    assert set(moves) == set(polygons(settled_copy))
+    first = read_plan(settled_copy).stone_steps[0].stone
+    assert moves[first]["overlap"] == 0.0

@@ -1,0 +1,196 @@
+"""Whatever the stones and the site: walls of outlines hold what their plans claim."""
+
+import json
+from itertools import combinations, pairwise
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.generate import (
+    FourierSettings,
+    PolygonSettings,
+    RubbleSettings,
+    fourier_stones,
+    polygon_stones,
+    rubble_stones,
+)
+from drystone.io.plan_json import plan_from_json, plan_to_json
+from drystone.model.outlines import Outlines
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.model.wall import outlined
+from drystone.planner.plan_wall import PlanResult, plan_wall
+from drystone.planner.planner import Planner
+from drystone.planner.rework import rework
+from drystone.planner.settings import PlannerSettings
+from drystone.settle.rest import placed_outline
+from drystone.verify import check_plan
+from tests.planner.scenes import finish, greedy, outlines, same
+from tests.strategies import repeatable
+
+Case = tuple[StoneSet, tuple[float, float], float, PlannerSettings]
+
+
+@st.composite
+def stone_sets(draw: st.DrawFn) -> StoneSet:
+    """A few stones about 20 px wide."""
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    count = draw(st.integers(2, 7))
+    kind = draw(st.sampled_from(["polygon", "concave", "fourier", "rubble"]))
+    if kind == "fourier":
+        round_ones = FourierSettings(count=count, smallest_radius_px=8, largest_radius_px=13)
+        return fourier_stones(round_ones, rng)
+    if kind == "rubble":
+        return rubble_stones(RubbleSettings(count=count, width_px=90, height_px=40, courses=2), rng)
+    flat = PolygonSettings(count=count, width_px=28, height_px=18, convex=kind == "polygon")
+    return polygon_stones(flat, rng)
+
+
+@st.composite
+def cases(draw: st.DrawFn) -> Case:
+    """Stones, a site in source px, its scale, and settings."""
+    changes = {
+        "rework": {"rounds": draw(st.integers(0, 1))},
+        "two_sided": draw(st.booleans()),
+        "skip_too_large": True,
+        "settle": {"method": draw(st.sampled_from(["energy", "pivot"]))},
+        "stabilise": {
+            "method": draw(st.sampled_from(["both", "wedge", "rotation", "none"])),
+            "min_wedge_px": 1,
+        },
+        "selection_rule": draw(st.sampled_from(["score", "algorithm2"])),
+        "orientations": draw(st.sampled_from(["quarter", "sf", "45deg"])),
+        "mu": draw(st.sampled_from([0.58, 0.3])),
+    }
+    size = draw(st.floats(45.0, 100.0)), draw(st.floats(28.0, 60.0))
+    scale = draw(st.sampled_from([1.0, 0.5, 0.37]))
+    return draw(stone_sets()), size, scale, greedy(changes)
+
+
+def check(result: PlanResult, stones: StoneSet) -> None:
+    """See that a plan, written and read again, is true."""
+    plan = plan_from_json(json.loads(json.dumps(plan_to_json(result.plan))))
+    report = check_plan(plan, stones, wall_labels=result.wall.labels)
+    assert report.problems == ()
+    assert report.overlap_depth == 0.0
+    assert len(report.prefixes) == len(result.wall.groups)
+    assert all(p.alpha_left and p.alpha_right for p in report.prefixes)
+
+
+def check_outlines(result: PlanResult, settings: PlannerSettings, site: Site) -> None:
+    """See that stones keep apart, that they are the stones' own, and that they stay in the wall."""
+    shapes, filled = [], 0
+    for group in result.wall.groups:
+        placement = group.placement
+        assert placement.settled is not None
+        outline = placement.posed.stone.outline_within(settings.settle.outline_px)
+        x, y, corners = (
+            placement.settled.x_px, placement.settled.y_px, placement.settled.corners
+        )  # fmt: skip
+        assert np.array_equal(placed_outline(outline, placement.posed.angle_deg, x, y), corners)
+        shapes += [shapely.Polygon(c) for _, c in outlined(placement, group.wedges)]
+        filled += placement.posed.area_px + sum(wedge.area_px for wedge in group.wedges)
+    assert filled == np.count_nonzero(result.wall.labels)  # every pixel was filled by one of them
+    for one, other in combinations(shapes, 2):
+        assert one.distance(other) >= 0.49 * settings.settle.clearance_px
+    (width, height), beyond = site.extent_px, settings.settle.beyond_px
+    for shape in shapes:
+        left, low, right, high = shape.bounds
+        assert low >= 0.49 * settings.settle.clearance_px
+        assert -beyond <= left < right <= width + beyond
+        assert high <= height + beyond
+
+
+@repeatable(20)
+@given(case=cases(), seed=st.integers(0, 1000))
+def test_every_plan_is_true(case: Case, seed: int) -> None:
+    stones, (width, height), scale, settings = case
+    result = plan_wall(stones, width, height, seed=seed, settings=settings, scale=scale)
+    check(result, stones)
+    check_outlines(result, settings, Site.from_source(width, height, scale))
+    assert result.notices == ()
+    if settings.stabilise.method in ("wedge", "none"):
+        assert all(p.rotation_moves == 0 for p in result.wall.placements)
+    if settings.stabilise.method in ("rotation", "none"):
+        assert result.wall.wedges == ()
+
+
+WEDGES = greedy(
+    {
+        "selection_rule": "algorithm2",
+        "stabilise": {"method": "wedge", "min_wedge_px": 1, "margin": 0.3, "max_wedge_height": 0.9},
+        "two_sided": False,
+        "rework": {"rounds": 3},
+    }
+)
+WALL_PX = (84.0, 34.0)
+SITE = Site.from_source(*WALL_PX, 0.5)
+
+
+def few_stones() -> StoneSet:
+    """Some of these get wedges."""
+    size = RubbleSettings(count=5, width_px=90, height_px=30, courses=2)
+    return rubble_stones(size, np.random.default_rng(1))
+
+
+def test_half_a_pixel_is_not_decided_by_the_unit() -> None:
+    """51 px are 25.5 working px; in metres and back they are a little less."""
+    width, px_per_m = 51.0, 137.3
+    assert width / px_per_m * px_per_m < width
+    stones = few_stones()
+    result = plan_wall(stones, width, 53, settings=greedy(), scale=0.5, px_per_m=px_per_m)
+    assert result.wall.labels.shape[1] == 26
+    check(result, stones)
+
+
+def test_walls_with_wedges_are_restored_as_they_were() -> None:
+    first = finish(Planner(few_stones(), SITE, seed=3, settings=WEDGES))
+    assert first.build.wall.wedges
+    again = Planner(few_stones(), SITE, seed=3, settings=WEDGES)
+    again.restore(first.build.wall, {})
+    assert outlines(again) == outlines(first)
+    assert again.workshop.next_wedge(again.build) == 6 + len(first.build.wall.wedges)
+    for state, other in zip(again.build.states(), first.build.states(), strict=True):
+        assert isinstance(state.wall.outlines, Outlines)
+        for made, sought in (
+            (state.model, other.model),
+            (state.sturdy_model, other.sturdy_model),
+        ):
+            assert made is not None
+            assert sought is not None
+            assert made.blocks == sought.blocks
+            assert [i.points.tobytes() for i in made.interfaces] == [
+                i.points.tobytes() for i in sought.interfaces
+            ]
+            assert [i.mu for i in made.interfaces] == [i.mu for i in sought.interfaces]
+
+
+@pytest.mark.parametrize("back", [1, 2, 3])
+def test_a_wall_that_goes_back_goes_on_as_it_did(back: int) -> None:
+    whole = finish(Planner(few_stones(), SITE, seed=3, settings=WEDGES))
+    states = whole.build.states()
+    assert len(states) > 3
+    again = Planner(few_stones(), SITE, seed=3, settings=WEDGES, workshop=whole.workshop)
+    again.build = states[-1 - back]
+    assert len(again.build.actions) == len(whole.build.actions) - back
+    assert same(finish(again), whole)
+
+
+def test_reworked_walls_are_true() -> None:
+    stones = few_stones()
+    incumbents = list(rework(finish(Planner(stones, SITE, seed=3, settings=WEDGES))))
+    for incumbent in incumbents:
+        states = incumbent.planner.build.states()
+        for before, after in pairwise(states):
+            assert before.wall.outlines is not None
+            assert after.wall.outlines is not None
+            count = len(before.wall.outlines.ids)
+            assert after.wall.outlines.ids[:count] == before.wall.outlines.ids
+        assert all(action.sturdy for action in incumbent.planner.build.actions)
+    result = plan_wall(stones, *WALL_PX, seed=3, settings=WEDGES, scale=0.5)
+    check(result, stones)
+    check_outlines(result, WEDGES, SITE)
+    assert result.wall.wedges

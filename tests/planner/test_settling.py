@@ -1,0 +1,375 @@
+"""Proposals on outlines: what is dropped where, what is settled when, and what is kept."""
+
+from collections import Counter
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+from drystone.kernels.profiles import StoneProfile, bare, raised
+from drystone.model.landscape import Landscape
+from drystone.model.placement import Side
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.planner import settling
+from drystone.planner.attempt import Attempt
+from drystone.planner.build import Build, Proposal
+from drystone.planner.planner import Planner
+from drystone.planner.profile import Profile
+from drystone.planner.proposing import Key, Trial, one_by_one
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.settling import Drop, ExactProposer, shortlist, wedge_limits
+from drystone.planner.stock import Stock
+from drystone.settle.rest import Scene, Turned, come_to_rest
+from drystone.settle.settings import SettleSettings
+from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, rubble
+
+BOTH_RULES = pytest.mark.parametrize("rule", ["score", "algorithm2"])
+
+
+class _Step:
+    """What is tried on the wall after some steps of the default method."""
+
+    def __init__(
+        self,
+        stones: StoneSet,
+        site: Site,
+        built: int = 0,
+        changes: dict[str, Any] | None = None,
+    ) -> None:
+        self.settings = greedy({"vary": 0.0, **(changes or {})})
+        planner = Planner(stones, site, settings=self.settings)
+        if built:
+            next(step for step in planner.steps() if step.number == built)
+        self.workshop, self.build = planner.workshop, planner.build
+
+    def proposer(self) -> ExactProposer:
+        return ExactProposer(self.workshop, self.settings, self.build, Profile())
+
+    def trials(self, sides: tuple[Side, ...] = ("left", "right")) -> list[Trial]:
+        rest = self.workshop.rest(self.build)
+        return [
+            Trial((posed,), Landscape.of(self.build.wall, side), rest)
+            for side in sides
+            for stone_id in self.workshop.remaining(self.build)
+            for posed in self.workshop.poses(stone_id)
+        ]
+
+    def all(self) -> list[list[Proposal]]:
+        return list(self.proposer().proposals(self.trials(), one_by_one))
+
+
+def _key(proposal: Proposal) -> tuple[Key, int]:
+    """What tells a proposal from others, as that of the drop from which it comes."""
+    return (proposal.stone_id, proposal.trial_angle_deg, proposal.side), proposal.spot
+
+
+class _Calls:
+    """How often poses were dropped, and let go where."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.dropped: Counter[object] = Counter()
+        self.settled: Counter[object] = Counter()
+        drops, settle = settling.drops, ExactProposer._settle
+
+        def dropped(profile: Any, stone: StoneProfile, *args: Any) -> Any:
+            self.dropped[id(profile), id(stone)] += 1
+            return drops(profile, stone, *args)
+
+        def settled(this: ExactProposer, drop: Drop) -> Any:
+            self.settled[drop.key] += 1
+            return settle(this, drop)
+
+        monkeypatch.setattr(settling, "drops", dropped)
+        monkeypatch.setattr(ExactProposer, "_settle", settled)
+
+
+@BOTH_RULES
+@pytest.mark.parametrize("choice", ["candidates", "placement"])
+def test_nothing_is_dropped_or_settled_twice(
+    rule: str, choice: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    changes = {"selection_rule": rule, "orientation_choice": choice, "sampling": "twofold"}
+    step = _Step(rubble(), RUBBLE_SITE, 2, changes)
+    attempt = Attempt(step.workshop, step.settings, step.build)
+    calls = _Calls(monkeypatch)
+    for seed in range(4):
+        attempt.choose(np.random.default_rng(seed))
+    assert max(calls.dropped.values()) == 1
+    assert max(calls.settled.values()) == 1
+    assert len(calls.settled) > 4
+
+
+def test_by_cost_every_drop_comes_in_batches_until_one_can_be_used() -> None:
+    step = _Step(rubble(), RUBBLE_SITE, 2, {"settle": {"shortlist": 5, "per_stone": 2}})
+    proposer = step.proposer()
+    drops = [drop for mine in proposer.drops(step.trials(), one_by_one) for drop in mine]
+    by_rank = {drop.key: drop.rank for drop in drops}
+    batches = list(proposer.proposals(step.trials(), one_by_one))
+    assert sum(len(batch) > 1 for batch in batches) > 4
+    assert all(len(batch) <= 5 for batch in batches)
+    assert len(batches) >= len(drops) / 5
+    keys = [[_key(p) for p in batch] for batch in batches]
+    # Nothing comes twice, the cheapest of a batch first.
+    assert max(Counter(key for batch in keys for key in batch).values()) == 1
+    for batch in keys:
+        assert batch == sorted(batch, key=by_rank.__getitem__)
+        assert max(Counter(key[0][0] for key in batch).values(), default=0) <= 2
+
+
+def test_a_first_batch_that_cannot_be_used_is_not_the_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    step = _Step(rubble(), RUBBLE_SITE, 2, {"settle": {"shortlist": 3}})
+    first, second = step.all()[:2]
+    unsound = {_key(p) for p in first}
+    attempt = Attempt(step.workshop, step.settings, step.build)
+    judge = Attempt._judge
+
+    def severe(this: Attempt, proposals: list[Proposal]) -> Any:
+        return [
+            replace(c, sturdy=_key(p) not in unsound)
+            for p, c in zip(proposals, judge(this, proposals), strict=True)
+        ]
+
+    monkeypatch.setattr(Attempt, "_judge", severe)
+    chosen = attempt.choose(np.random.default_rng(0))
+    assert chosen is not None
+    assert _key(chosen.proposal) in [_key(p) for p in second]
+
+
+@pytest.mark.parametrize("choice", ["candidates", "placement"])
+def test_algorithm_2_compares_each_trial_where_its_first_drop_rests(choice: str) -> None:
+    step = _Step(rubble(), RUBBLE_SITE, 2, {"selection_rule": "algorithm2"})
+    trials = step.trials()
+    if choice == "placement":
+        trials = [
+            Trial(step.workshop.poses(stone_id), trials[0].landscape, trials[0].rest)
+            for stone_id in step.workshop.remaining(step.build)
+        ]
+    proposer = step.proposer()
+    (found,) = proposer.proposals(trials, one_by_one)
+    expected = []
+    for mine in proposer.drops(trials, one_by_one):
+        assert [drop.rank for drop in mine] == sorted(drop.rank for drop in mine)
+        resting = [p for drop in mine if (p := step.proposer()._settle(drop)) is not None]
+        expected += resting[:1]
+    assert len(found) > 4
+    assert [_key(p) for p in found] == [_key(p) for p in expected]
+
+
+def _drops(ranks: list[tuple[float, int]]) -> list[Drop]:
+    """Drops of some costs and stones, told from each other by their spots."""
+    trial = SimpleNamespace()
+    return [
+        Drop(trial, k, (0.0, 0.0), (cost, ((stone_id, 0.0, "left"), k)))  # type: ignore[arg-type]
+        for k, (cost, stone_id) in enumerate(ranks)
+    ]
+
+
+def test_the_shortlist_takes_the_cheapest_but_only_so_many_of_one_stone() -> None:
+    drops = _drops([(0.5, 1), (0.1, 2), (0.2, 2), (0.3, 2), (0.1, 1), (0.9, 3), (0.4, 3)])
+    settings = SettleSettings(shortlist=4, per_stone=2)
+    taken, left = shortlist(drops, settings)
+    assert [(d.rank[0], d.key[0][0]) for d in taken] == [(0.1, 1), (0.1, 2), (0.2, 2), (0.4, 3)]
+    assert [(d.rank[0], d.key[0][0]) for d in left] == [(0.3, 2), (0.5, 1), (0.9, 3)]
+    again, rest = shortlist(left, settings)
+    assert [d.spot for d in again] == [3, 0, 5]
+    assert rest == []
+    assert shortlist([], settings) == ([], [])
+
+
+def test_drops_are_above_what_is_there_and_inside_the_wall() -> None:
+    step = _Step(rubble(), RUBBLE_SITE, 3)
+    proposer = step.proposer()
+    found = proposer.drops(step.trials(), one_by_one)
+    assert sum(map(len, found)) > 20
+    for drop in (drop for mine in found for drop in mine):
+        side, posed = drop.trial.landscape.side, drop.trial.poses[0]
+        scene, _ = proposer.view(side)
+        corners = step.workshop.outlines.hung(posed.stone, posed.angle_deg, side).turned.corners
+        shape = shapely.Polygon(corners + np.array(drop.start))
+        left, low, right, _ = shape.bounds
+        assert -0.25 <= left < right <= RUBBLE_SITE.width_px + 0.5 + 1e-9
+        assert low >= 0.0
+        # At most by what a profile leaves out.
+        for k in range(len(scene.polygons)):
+            other = shapely.Polygon(scene.polygons.polygon(k))
+            over = shapely.intersection(shape, other)
+            assert over.is_empty or over.bounds[2] - over.bounds[0] <= 0.51
+
+
+def test_a_scene_from_the_right_is_mirrored() -> None:
+    step = _Step(rubble(), RUBBLE_SITE, 3)
+    (left, low), (right, high) = (step.proposer().view(side) for side in ("left", "right"))
+    assert (left.side, right.side, right.width_px) == ("left", "right", 100.0)
+    for k in range(3):
+        mirrored = right.polygons.polygon(k)[::-1] * (-1.0, 1.0) + (100.0, 0.0)
+        assert mirrored == pytest.approx(left.polygons.polygon(k))
+    assert high.boxes[:, [0, 2]] == pytest.approx(100.0 - low.boxes[:, [2, 0]])
+
+
+# A slab, and the post that it may lie on.
+TIPPING = blocks({1: (8, 12), 2: (30, 6), 3: (8, 14), 4: (12, 6)})
+
+
+def _one(method: str, start: tuple[float, float], post: float = 0.0) -> Proposal | None:
+    """Let the slab go over the post, which stands on the ground somewhere."""
+    changes = {"stabilise": {"method": method, "max_wedge_height": 3.0, "margin": 0.0}}
+    step = _Step(TIPPING, Site(60, 30), changes=changes)
+    step.build = _placed(step, 1, (post + 4.02, 6.01))
+    trial = next(t for t in step.trials(("left",)) if t.key == (2, 0.0, "left"))
+    return step.proposer()._settle(Drop(trial, 0, start, (0.0, (trial.key, 0))))
+
+
+def _placed(step: _Step, stone_id: int, start: tuple[float, float]) -> Build:
+    """The build with one stone settled from a place."""
+    proposer = step.proposer()
+    trial = next(t for t in step.trials(("left",)) if t.key == (stone_id, 0.0, "left"))
+    proposal = proposer._settle(Drop(trial, 0, start, (0.0, (trial.key, 0))))
+    assert proposal is not None
+    attempt = Attempt(step.workshop, step.settings, step.build)
+    (candidate,) = attempt._judge([proposal])
+    assert candidate.sturdy
+    return step.build.add(candidate)
+
+
+def test_methods_of_stabilisation() -> None:
+    beside = (15.02, 15.5)  # both left ends at that of the wall
+    for method in ("both", "wedge"):
+        found = _one(method, beside)
+        assert found is not None
+        (wedge,) = found.stabilised.wedges
+        assert (wedge.id, wedge.under) == (5, 2)
+        assert wedge.corners is not None
+        assert wedge.area_px > 0
+        assert found.stabilised.placement.rotation_moves == 0
+    for method in ("rotation", "none"):
+        assert _one(method, beside) is None
+    # With its centroid over the post it rests, whatever may be done.
+    for method in ("both", "wedge", "rotation", "none"):
+        found = _one(method, (28.0, 15.5), post=25.0)
+        assert found is not None
+        assert found.stabilised.wedges == ()
+
+
+def _tilted(method: str) -> Proposal | None:
+    """A brick that is let go tilted by 8 degrees over bare ground."""
+    changes = {"stabilise": {"method": method, "min_wedge_px": 1}, "orientations": "8deg"}
+    step = _Step(blocks({1: (20, 10)}), Site(60, 30), changes=changes)
+    trial = next(t for t in step.trials(("left",)) if abs(t.key[1]) == 4.0)
+    return step.proposer()._settle(Drop(trial, 0, (30.0, 12.0), (0.0, (trial.key, 0))))
+
+
+def test_only_methods_that_rotate_turn_a_stone() -> None:
+    for method in ("both", "rotation"):
+        found = _tilted(method)
+        assert found is not None
+        placement = found.stabilised.placement
+        assert placement.rotation_moves == 1
+        assert placement.posed.angle_deg == pytest.approx(0.0, abs=0.1)
+        assert abs(found.trial_angle_deg) == 4.0
+    assert _tilted("none") is None
+    wedged = _tilted("wedge")
+    assert wedged is not None
+    assert wedged.stabilised.placement.posed.angle_deg == wedged.trial_angle_deg
+    assert wedged.stabilised.placement.rotation_moves == 0
+    assert len(wedged.stabilised.wedges) == 1
+
+
+@pytest.mark.parametrize(("height", "rests"), [(9.7, False), (9.8, True), (10.0, True)])
+def test_a_stone_that_would_stand_out_over_the_top_is_none(height: float, rests: bool) -> None:
+    step = _Step(bricks(1), Site.from_source(60, height), changes={"orientations": "sf"})
+    (trial,) = step.trials(("left",))
+    found = step.proposer()._settle(Drop(trial, 0, (30.0, 5.1), (0.0, (trial.key, 0))))
+    assert (found is not None) == rests
+
+
+def test_it_moves_beside_the_neighbour_that_it_would_overlap() -> None:
+    step = _Step(bricks(2), Site(60, 20))
+    stone = StoneProfile(np.zeros(20), np.zeros(20), -10.0, -5.0, 10.0, 5.0)
+
+    def beside(x: float, y: float, *boxes: tuple[float, float, float, float]) -> float:
+        profile = bare(60)
+        for k, (left, low, right, high) in enumerate(boxes):
+            corners = np.array([[left, low], [right, low], [right, high], [left, high]])
+            profile = raised(profile, corners, k, 1.0)
+        moved, same = step.proposer()._beside((x, y), stone, profile)
+        assert same == y
+        return moved
+
+    low, high = (0.0, 0.0, 20.2, 10.0), (5.0, 10.0, 20.1, 18.0)
+    assert beside(30.0, 5.02, low) == pytest.approx(30.22)
+    assert beside(30.0, 12.0, low, high) == pytest.approx(30.22)
+    assert beside(30.0, 15.02, low, high) == pytest.approx(30.12)  # over the first one
+    assert beside(30.0, 25.0, low, high) == 30.0
+    assert beside(30.0, 5.02, (0.0, 10.03, 20.2, 18.0)) == 30.0  # under the other one
+    assert beside(30.2, 5.02, low) == 30.2  # it touches
+    assert beside(29.9, 5.02, low) == 29.9  # too far in: what the profile counts carries it
+    assert beside(30.1, 5.02, low, (0.0, 2.0, 20.3, 4.0)) == pytest.approx(30.32)
+
+
+@pytest.mark.parametrize("width", [60.0, 59.7])
+@pytest.mark.parametrize("changes", [{}, {"selection_rule": "algorithm2"}, {"two_sided": False}])
+def test_bricks_fill_a_wall_exactly(width: float, changes: dict[str, Any]) -> None:
+    """With their clearances they are wider than the wall, but may stand out by a little."""
+    settings = greedy({"orientations": "sf", **changes})
+    planner = finish(Planner(bricks(6), Site.from_source(width, 20), settings=settings))
+    assert len(planner.build.actions) == 6
+    assert (planner.build.wall.labels > 0).all()
+    assert Counter(planner.build.wall.labels.ravel().tolist()) == dict.fromkeys(range(1, 7), 200)
+
+
+def test_stones_are_let_go_beside_their_neighbours(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Columns of 2 to 5 px count as free when a neighbour is over them by less than a quarter."""
+    let_go = []
+
+    def watched(
+        stone: Turned, scene: Scene, start: tuple[float, float], *args: Any, **kw: Any
+    ) -> Any:
+        shape = shapely.Polygon(stone.corners + np.array(start))
+        others = [shapely.Polygon(scene.polygons.polygon(k)) for k in range(len(scene.polygons))]
+        beside = [o for o in others if o.bounds[0] < shape.bounds[0]]
+        let_go.append(min((shape.distance(other) for other in beside), default=1.0))
+        return come_to_rest(stone, scene, start, *args, **kw)
+
+    monkeypatch.setattr(settling, "come_to_rest", watched)
+    stones = blocks({i: (15 + i, 10) for i in range(1, 6)})
+    settings = greedy({"orientations": "sf", "vary": 0.0})
+    for scale in (0.22, 0.34, 0.5):
+        planner = finish(Planner(stones, Site.from_source(94, 12, scale), settings=settings))
+        assert len(planner.build.actions) == 5
+    assert len(let_go) > 10
+    assert min(let_go) == pytest.approx(0.02, abs=1e-6)
+
+
+@BOTH_RULES
+def test_what_was_asked_before_does_not_matter(rule: str) -> None:
+    """A proposer that was asked before for some of the trials gives the same."""
+    step = _Step(rubble(1), RUBBLE_SITE, 2, {"selection_rule": rule})
+    trials = step.trials()
+    warm = step.proposer()
+    for part in (trials[3:7], trials[5:]):
+        list(warm.proposals(part, one_by_one))
+
+    def told(batches: list[list[Proposal]]) -> list[object]:
+        return [
+            (p.stone_id, p.spot, p.cost, p.stabilised.placement.settled.corners.tobytes())
+            for batch in batches
+            for p in batch
+            if p.stabilised.placement.settled is not None
+        ]
+
+    assert told(list(warm.proposals(trials, one_by_one))) == told(step.all())
+    assert warm.tried == len(trials)
+
+
+def test_wedge_limits_are_in_source_px() -> None:
+    settings = PlannerSettings().updated({"stabilise": {"min_wedge_px": 3, "margin": 0.1}})
+    stock = Stock(narrowest_px=4.0, mean_height_px=20.0, mean_area_px=400.0, largest_id=9)
+    limits = wedge_limits(settings, stock, 0.5)
+    assert (limits.smallest_px, limits.largest_px, limits.margin) == (6.0, 20.0, 0.1)
+    assert (limits.contact_px, limits.rest, limits.steep, limits.mu) == (0.05, 0.2, 0.3, 0.58)
+    small = replace(stock, mean_height_px=2.0)
+    assert wedge_limits(settings, small, 0.5).largest_px == 6.0

@@ -1,0 +1,201 @@
+"""Walls must stand without friction on upright faces, and with half the contact tolerance."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drystone.kernels.polygons import Points
+from drystone.model.outlines import Outlines
+from drystone.model.site import Site
+from drystone.model.wall import outlined
+from drystone.planner.attempt import Attempt
+from drystone.planner.build import Candidate
+from drystone.planner.evaluate import Evaluator
+from drystone.planner.planner import Planner
+from drystone.planner.sturdy import sturdy_model_with
+from drystone.settle.settings import SettleSettings
+from drystone.statics.contacts.settled import PlacedPolygons, model_with_outlines
+from drystone.statics.growing import Grown
+from drystone.statics.growing_simplex import SimplexGrowth
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
+from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
+
+SITE = Site(100, 60)
+BOTH_RULES = pytest.mark.parametrize("rule", ["score", "algorithm2"])
+
+
+def box(left: float, low: float, right: float, high: float) -> Points:
+    return np.array([[left, low], [right, low], [right, high], [left, high]], float)
+
+
+def models(
+    *outlines: Points, settings: SettleSettings | None = None
+) -> tuple[RigidBlockModel, RigidBlockModel]:
+    """The model of some stones with all contacts, and the sturdy one."""
+    settings = settings or SettleSettings()
+    placed = Outlines.empty(SITE)
+    full = sturdy = RigidBlockModel((), (), 0.58)
+    for number, corners in enumerate(outlines, 1):
+        new = [(number, corners)]
+        full = model_with_outlines(full, new, placed, settings.contact_px)
+        sturdy = sturdy_model_with(sturdy, new, placed, settings)
+        placed = placed.added(new, SITE.scale)
+    return full, sturdy
+
+
+def stands(model: RigidBlockModel) -> bool:
+    return lateral_resistance(model).stable
+
+
+PIERS = box(10.0, 0.01, 40.0, 40.0), box(60.0, 0.01, 90.0, 40.0)
+
+
+def test_a_stone_held_between_upright_faces_does_not_stand() -> None:
+    between = box(40.01, 20.0, 59.99, 30.0)
+    full, sturdy = models(*PIERS, between)
+    assert stands(full)  # friction on both sides holds it
+    assert not stands(sturdy)
+    assert sorted((i.block, i.other, i.mu) for i in sturdy.interfaces) == [
+        (1, 0, None), (2, 0, None), (3, 1, 0.0), (3, 2, 0.0)
+    ]  # fmt: skip
+    assert all(i.mu is None for i in full.interfaces)
+    on_the_ground = models(*PIERS, box(40.01, 0.01, 59.99, 10.0))[1]
+    assert stands(on_the_ground)
+
+
+def test_a_keystone_stands_as_steep_as_the_settings_say() -> None:
+    def keystone(aside: float) -> Points:
+        """Between faces that lean outwards by so much on 20 px."""
+        return np.array(
+            [[40.01 + aside, 20.0], [59.99 - aside, 20.0], [59.99, 40.0], [40.01, 40.0]]
+        )
+
+    def piers(aside: float) -> tuple[Points, Points]:
+        left = np.array([[10.0, 0.01], [40.0 + aside, 0.01], [40.0 + aside, 20.0], [40.0, 40.0],
+                         [10.0, 40.0]])  # fmt: skip
+        return left, left[::-1] * (-1.0, 1.0) + (100.0, 0.0)
+
+    for aside, steep, held in ((5.0, 0.3, False), (5.0, 0.2, True), (8.0, 0.3, True)):
+        settings = SettleSettings(steep=steep)
+        full, sturdy = models(*piers(aside), keystone(aside), settings=settings)
+        assert stands(full)
+        faces = [i for i in sturdy.interfaces if i.block == 3 and i.other]
+        assert len(faces) == 2
+        # Normals go up by the cosine of the slope: .24 and .37.
+        assert all((i.mu is None) == held for i in faces)
+        assert all(abs(i.normal[1]) == pytest.approx(aside / np.hypot(aside, 20.0)) for i in faces)
+
+
+def test_what_lies_on_a_stone_from_above_grips_it() -> None:
+    slab = box(10.0, 40.02, 90.0, 50.0)
+    below = box(44.0, 0.01, 56.0, 40.0)
+    _, sturdy = models(*PIERS, slab, below)
+    under = next(i for i in sturdy.interfaces if (i.block, i.other) == (4, 3))
+    assert under.normal == pytest.approx((0.0, -1.0))
+    assert under.mu is None
+
+
+def test_a_gap_beyond_half_the_tolerance_carries_nothing() -> None:
+    below = box(10.0, 0.01, 40.0, 20.0)
+    for gap, held in ((0.04, True), (0.06, False), (0.09, False)):
+        full, sturdy = models(below, box(10.0, 20.0 + gap, 40.0, 30.0))
+        assert stands(full)
+        assert stands(sturdy) == held
+
+
+def test_wedges_are_part_of_it() -> None:
+    placed = Outlines.empty(SITE)
+    empty = RigidBlockModel((), (), 0.58)
+    stone, wedge = box(10.0, 10.0, 40.0, 20.0), box(20.0, 0.01, 30.0, 9.99)
+    alone = sturdy_model_with(empty, [(1, stone)], placed, SettleSettings())
+    wedged = sturdy_model_with(empty, [(1, stone), (7, wedge)], placed, SettleSettings())
+    assert not stands(alone)
+    assert stands(wedged)
+    assert [block.id for block in wedged.blocks] == [1, 7]
+
+
+@BOTH_RULES
+def test_what_is_not_sturdy_is_never_chosen(rule: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    settings = greedy({"selection_rule": rule, "vary": 0.0})
+    planner = Planner(rubble(), RUBBLE_SITE, settings=settings)
+    next(step for step in planner.steps() if step.number == 2)
+    judge = Evaluator.judge
+    judged: list[Candidate] = []
+    refused: set[int] = set()
+
+    def severe(this: Evaluator, *args: Any) -> Candidate:
+        candidate = judge(this, *args)
+        judged.append(replace(candidate, sturdy=candidate.stone_id not in refused))
+        return judged[-1]
+
+    monkeypatch.setattr(Evaluator, "judge", severe)
+    left = set(planner.workshop.remaining(planner.build))
+    while refused < left:
+        attempt = Attempt(planner.workshop, settings, planner.build)
+        chosen = attempt.choose(np.random.default_rng(0))
+        if chosen is None:
+            break
+        assert chosen.stone_id not in refused
+        refused.add(chosen.stone_id)
+    assert len(refused) > 3
+    assert any(not candidate.sturdy for candidate in judged)
+    assert all(candidate.resistance.stable for candidate in judged if candidate.sturdy)
+
+
+@BOTH_RULES
+def test_every_state_is_sturdy_and_known_as_the_wall_grows(rule: str) -> None:
+    planner = finish(
+        Planner(rubble(1), RUBBLE_SITE, seed=1, settings=greedy({"selection_rule": rule}))
+    )
+    placed = PlacedPolygons.of([])
+    sturdy = RigidBlockModel((), (), 0.58)
+    for action in planner.build.actions:
+        blocks = outlined(action.stabilised.placement, action.stabilised.wedges)
+        around = Outlines(placed.polygons, placed.ids, Outlines.empty(RUBBLE_SITE).shares)
+        sturdy = sturdy_model_with(sturdy, blocks, around, planner.settings.settle)
+        placed = PlacedPolygons(
+            (*placed.ids, *(i for i, _ in blocks)), placed.polygons.added(c for _, c in blocks)
+        )
+        assert action.sturdy
+        assert action.sturdy_model is not None
+        assert action.sturdy_model.blocks == sturdy.blocks
+        assert len(action.sturdy_model.interfaces) == len(sturdy.interfaces)
+        assert stands(sturdy)
+    assert len(planner.build.actions) > 4
+
+
+@pytest.mark.parametrize("which", ["full", "sturdy"])
+def test_failures_of_the_solver_are_counted_in_either_model(
+    which: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings = greedy({"vary": 0.0})
+    planner = Planner(rubble(), RUBBLE_SITE, settings=settings)
+    next(step for step in planner.steps() if step.number == 2)
+    build = planner.build
+    one = build.analysis if which == "full" else build.sturdy_analysis
+    real = SimplexGrowth.resistance_with
+
+    def gives_up(analysis: SimplexGrowth, model: RigidBlockModel) -> Grown:
+        if analysis is not one:
+            return real(analysis, model)
+        failed = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
+        return Grown(LateralResistance(failed[0], failed[1], model.mu), solved_cold=True)
+
+    monkeypatch.setattr(SimplexGrowth, "resistance_with", gives_up)
+    attempt = Attempt(planner.workshop, settings, build)
+    assert attempt.choose(np.random.default_rng(0)) is None
+    judged = list(attempt._judged.values())
+    assert judged
+    assert all(candidate.failed and candidate.solved_cold for candidate in judged)
+    assert attempt.failed_solves == attempt.cold_solves == len(judged)
+
+
+def test_walls_of_pixels_have_no_sturdy_model() -> None:
+    planner = finish(Planner(rubble(), RUBBLE_SITE, settings=greedy({"geometry": "raster"})))
+    assert planner.build.sturdy_model is None
+    assert planner.build.sturdy_analysis is None
+    assert all(a.sturdy and a.sturdy_model is None for a in planner.build.actions)

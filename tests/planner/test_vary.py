@@ -1,0 +1,84 @@
+"""Weights that differ from wall to wall."""
+
+import math
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from drystone.planner import settling
+from drystone.planner.plan_wall import plan_wall
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.planner.vary import varied
+from drystone.selection.scored import ScoreSettings
+from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble, same
+
+WEIGHTS = [field.name for field in fields(ScoreSettings) if field.name != "analysed"]
+
+
+def test_every_weight_gets_its_own_factor_and_nothing_else_changes() -> None:
+    settings = method_settings("best")
+    new = varied(settings, 0.3, np.random.default_rng(5))
+    rng = np.random.default_rng(5)
+    for name in WEIGHTS:
+        factor = math.exp(0.3 * rng.normal())
+        assert getattr(new.score, name) == getattr(settings.score, name) * factor
+    assert new.vary == 0.0
+    assert new.score.analysed == settings.score.analysed
+    unvaried = {"score": settings.as_dict()["score"], "vary": settings.vary}
+    assert new.updated(unvaried) == settings
+
+
+def test_factors_are_log_normal() -> None:
+    rng = np.random.default_rng(1)
+    factors = [varied(PlannerSettings(), 0.4, rng).score.height for _ in range(400)]
+    logs = np.log(np.array(factors) / PlannerSettings().score.height)
+    assert logs.std() == pytest.approx(0.4, rel=0.15)
+    assert logs.mean() == pytest.approx(0.0, abs=0.08)
+    assert varied(PlannerSettings(), 0.0, rng).score == PlannerSettings().score
+
+
+def built(seed: int, vary: float) -> Planner:
+    settings = greedy({"vary": vary})
+    return finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings))
+
+
+def test_another_seed_gives_another_wall_and_the_same_seed_the_same() -> None:
+    walls = {seed: built(seed, 0.3) for seed in (1, 2, 3)}
+    assert len({tuple(order(planner)) for planner in walls.values()}) > 1
+    assert same(built(2, 0.3), walls[2])
+    # Without it nothing is random here.
+    plain = [built(seed, 0.0) for seed in (1, 2)]
+    assert same(*plain)
+
+
+def test_all_steps_of_a_wall_have_the_same_weights(monkeypatch: pytest.MonkeyPatch) -> None:
+    used = []
+    craft_cost = settling.craft_cost
+
+    def watched(craft: object, score: ScoreSettings) -> float:
+        used.append(score)
+        return craft_cost(craft, score)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(settling, "craft_cost", watched)
+    planner = built(7, 0.3)
+    rng = np.random.default_rng([7, 2_000_000])
+    assert set(used) == {varied(planner.settings, 0.3, rng).score}
+
+
+def test_the_plan_records_the_weights_themselves() -> None:
+    settings = greedy({"rework": {"rounds": 2}})
+    result = plan_wall(rubble(), 100, 36, seed=3, settings=settings, scale=1.0)
+    assert result.plan.settings == settings.as_dict()
+    assert result.plan.settings["vary"] == 0.3
+
+
+@pytest.mark.parametrize("seed", [1, 4])
+def test_a_restored_wall_goes_on_with_the_weights_of_its_seed(seed: int) -> None:
+    whole = built(seed, 0.5)
+    part = Planner(rubble(), RUBBLE_SITE, seed=seed, settings=greedy({"vary": 0.5}))
+    next(step for step in part.steps() if step.number == 3)
+    again = Planner(rubble(), RUBBLE_SITE, seed=seed, settings=greedy({"vary": 0.5}))
+    again.restore(part.build.wall, {})
+    assert order(finish(again)) == order(whole)
