@@ -76,3 +76,21 @@ def test_wrong_values(
     assert ran.code == 2
     assert code in ran.err
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "useless"),
+    [
+        (["--placement", "snug"], "--placement"),
+        (["--reach", "any", "--geometry", "exact"], "--reach"),
+        (["--geometry", "raster", "--settle", "pivot"], "--settle"),
+        (["--method", "paper", "--settle", "energy"], "--settle"),
+    ],
+)
+def test_options_that_would_do_nothing_are_refused(
+    rubble: Path, tmp_path: Path, run: Run, options: list[str], useless: str
+) -> None:
+    ran = run("plan", rubble, "--wall", "100x36", "-o", tmp_path / "out", *options)
+    assert ran.code == 2
+    assert "E138" in ran.err
+    assert f"{useless} would do nothing" in ran.err

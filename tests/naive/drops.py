@@ -20,7 +20,10 @@ def height_profile(polygons, columns, cell):
     """Tops and owners of polygons that were placed one after the other."""
     tops, owners = [0.0] * columns, [-1] * columns
     for index, corners in enumerate(polygons):
-        for column in range(columns):
+        # Outermost columns count from a quarter on.
+        first = math.floor(corners[:, 0].min() / cell + 0.25)
+        end = math.ceil(corners[:, 0].max() / cell - 0.25)
+        for column in range(max(0, first), min(columns, end)):
             span = column_span(corners, column * cell, (column + 1) * cell)
             if span is not None and span[1] > tops[column]:
                 tops[column], owners[column] = span[1], index
@@ -60,7 +63,7 @@ def craft(profile, stone, terms, place, lift):
     left, bottom, top = place * cell, lift + stone.bottom, lift + stone.top
     box = (left, bottom, left + width, top)
     gaps = [lift + stone.bottoms[k] - tops[place + k] for k in range(columns)]
-    covered = [min(cell, width - k * cell) for k in range(columns)]
+    covered = [cell] * (columns - 1) + [width - (columns - 1) * cell]
     void = sum(gap * part for gap, part in zip(gaps, covered, strict=True))
     area, column = 0.0, place - 1
     while column >= 0 and tops[column] < (bottom + top) / 2:

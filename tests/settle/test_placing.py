@@ -103,3 +103,16 @@ def test_wedges() -> None:
     assert thin.corners is not None
     under = Outlines.empty(site).added([(5, box(4.0, 0.0, 6.0, 2.0))], 0.5)
     assert settled_wedge(under, site, 92, 5, corners).mask.tolist() == [[True]]
+
+
+def test_arms_thinner_than_a_pixel_are_not_seen_nor_what_is_beyond_them() -> None:
+    site = Site(24, 12, 0.5)
+    # A dumb-bell: two plates that a bar of .4 working px joins.
+    bell = np.array(
+        [[2, 0], [14, 0], [14, 5.6], [26, 5.6], [26, 2], [34, 2], [34, 10], [26, 10], [26, 6.4],
+         [14, 6.4], [14, 12], [2, 12]], float,
+    )  # fmt: skip
+    made = placed(site, bell)
+    assert made is not None
+    assert (made.row, made.col, made.posed.mask.shape) == (6, 1, (6, 6))
+    assert made.posed.mask.all()

@@ -12,13 +12,16 @@ import pytest
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.io.read_stones import read_stones
 from drystone.model.plan import Plan, PlanMetrics
+from drystone.model.site import Site
+from drystone.model.wall import Wall
 from drystone.planner.plan_wall import PlanResult, plan_wall
 from drystone.planner.settings import method_settings
 from drystone.verify.check import check_plan
 from drystone.verify.exact_replay import PENETRATION_PX
 from drystone.verify.overlap import SPACING_PX
 from drystone.verify.report import PrefixAlpha
-from tests.verify.exact_examples import GAP_PX, exact_example
+from tests.planner.scenes import stones_of_masks
+from tests.verify.exact_examples import GAP_PX, WALL_PX, exact_example, plan_of, with_stone
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example
 from tests.verify.tampering import (
     changed,
@@ -130,7 +133,7 @@ AMONG: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
     "wedge elsewhere": (lambda p: reshaped(p, lambda w: w - (12, 0)), {"E223", "E230", "E236"}),
     "friction": (lambda p: replace(p, settings={**p.settings, "mu": 0.3}), {"E231", "E234"}),
     "contact tolerance": (
-        lambda p: with_setting(p, "settle", contact_px=GAP_PX / 2, clearance_px=GAP_PX / 4),
+        lambda p: with_setting(p, "settle", contact_px=GAP_PX / 2, clearance_px=GAP_PX / 8),
         {"E223", "E230"}),
     "one-sided": (lambda p: replace(p, settings={**p.settings, "two_sided": False}), {"E235"}),
     "raster": (lambda p: replace(p, settings={**p.settings, "geometry": "raster"}), {"E234"}),
@@ -275,8 +278,10 @@ def test_tampering_with_any_stone_of_a_published_set_is_caught(
 @pytest.mark.parametrize(
     ("name", "value", "expected"),
     [
-        ("contact_px", 0.02, {"E230", "E231", "E234"}),
-        ("outline_px", 1.5, {"E221", "E230", "E231"}),
+        ("contact_px", 0.041, {"E230", "E231", "E234", "E237"}),
+        ("outline_px", 0.5, {"E221", "E230", "E231", "E237"}),
+        ("outline_px", 1.5, {"E217"}),
+        ("beyond_px", 60.0, {"E217"}),
     ],
 )
 def test_other_settings_of_settling_are_caught(
@@ -285,3 +290,14 @@ def test_other_settings_of_settling_are_caught(
     made, stones = published
     plan = with_setting(made.plan, "settle", **{name: value})
     assert codes(check_plan(plan, stones)) & expected
+
+
+def test_stone_that_only_friction_on_upright_faces_holds_is_named() -> None:
+    masks = {1: np.ones((30, 30), bool), 2: np.ones((30, 30), bool), 3: np.ones((20, 20), bool)}
+    stones = stones_of_masks(masks)
+    wall = Wall.empty(Site.from_source(*WALL_PX), exact=True)
+    for stone_id, left, bottom in ((1, 0.0, GAP_PX), (2, 50.02, GAP_PX), (3, 30.01, 9.0)):
+        wall = with_stone(wall, stones, (stone_id, 0.0), (left, bottom))
+    hanging = plan_of(wall, stones)
+    problems = check_plan(hanging.plan, stones).problems
+    assert [(problem.code, problem.step) for problem in problems] == [("E237", 3)]
