@@ -12,10 +12,11 @@ from drystone.kernels.polygons import Points, Polygons
 from drystone.kernels.profiles import HeightProfile
 from drystone.kernels.settling import Rules, Settling, Status, settle
 from drystone.model.landscape import Landscape
+from drystone.planner.dropping import Drop, shortlist
 from drystone.planner.planner import Planner
 from drystone.planner.proposing import Trial, one_by_one
 from drystone.planner.settings import method_settings
-from drystone.planner.settling import Drop, ExactProposer, shortlist
+from drystone.planner.settling import ExactProposer
 from drystone.settle.book import Hung
 from drystone.settle.rest import Scene, placed_outline, ways
 from drystone.settle.settings import SettleSettings

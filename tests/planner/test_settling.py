@@ -17,11 +17,12 @@ from drystone.model.stone import StoneSet
 from drystone.planner import settling
 from drystone.planner.attempt import Attempt
 from drystone.planner.build import Build, Proposal
+from drystone.planner.dropping import Drop, shortlist, wedge_limits
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import Key, Trial, one_by_one
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.settling import Drop, ExactProposer, shortlist, wedge_limits
+from drystone.planner.settling import ExactProposer
 from drystone.planner.stock import Stock
 from drystone.settle.rest import Scene, Turned, come_to_rest
 from drystone.settle.settings import SettleSettings

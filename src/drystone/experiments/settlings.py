@@ -20,10 +20,11 @@ from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.build import Build
+from drystone.planner.dropping import shortlist
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Part
 from drystone.planner.proposing import Trial, one_by_one
-from drystone.planner.settling import ExactProposer, shortlist
+from drystone.planner.settling import ExactProposer
 from drystone.settle.rest import Scene, Turned, ways
 from drystone.settle.settings import SettleSettings
 

@@ -1,9 +1,7 @@
 """Proposals on outlines: dropped onto a height profile, then settled exactly (DESIGN 4.9)."""
 
-import math
-from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from operator import attrgetter
 
@@ -11,55 +9,19 @@ from drystone.kernels.drops import DropTerms, drops
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import OVER, HeightProfile, StoneProfile, bare, raised
 from drystone.model.placement import Side
-from drystone.model.pose import PosedStone
 from drystone.model.wall import outlined
 from drystone.planner.build import Build, Proposal
 from drystone.planner.craft import action_craft
+from drystone.planner.dropping import Drop, drop_terms, pose_cost, shortlist, wedge_limits
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import Apply, Key, Trial
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.stock import Stock
 from drystone.planner.workshop import Workshop
 from drystone.selection.scored import craft_cost
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import Repose, Scene, come_to_rest
-from drystone.settle.settings import SettleSettings
-from drystone.settle.wedge import WedgeLimits
 from drystone.settle.wedged import wedged
 from drystone.stabilise.stabilise import Stabilised
-
-SLACK = 0.15
-"""A stone may stand out over the wall's height by so many mean stone sizes where it is dropped."""
-
-UNBALANCED = 2.0
-"""Cost of a centroid that is beside what carries a dropped stone, in widths of the stone."""
-
-
-@dataclass(frozen=True, eq=False)
-class Drop:
-    """A place where a stone could be let go.
-
-    Parameters
-    ----------
-    trial : Trial
-        Stone and side.
-    spot : int
-        Which place of the trial's pose.
-    start : (float, float)
-        Of its centroid, in the view, source px.
-    rank : (float, tuple)
-        Estimated cost, and what tells it from the others of a step: sorts the cheapest first.
-    """
-
-    trial: Trial
-    spot: int
-    start: tuple[float, float]
-    rank: tuple[float, tuple[Key, int]]
-
-    @property
-    def key(self) -> tuple[Key, int]:
-        """What tells it from the others of a step."""
-        return self.rank[1]
 
 
 class ExactProposer:
@@ -139,7 +101,7 @@ class ExactProposer:
             for posed in trial.poses:
                 hung = self._workshop.outlines.hung(posed.stone, posed.angle_deg, side)
                 size_px = hung.turned.size_px
-                constant = _pose_cost(posed, self._workshop.stock, self._settings)
+                constant = pose_cost(posed, self._workshop.stock, self._settings)
                 places = drops(
                     profile, hung.profile, terms, constant, settings.spots, settings.apart * size_px
                 )
@@ -154,28 +116,8 @@ class ExactProposer:
     @cached_property
     def _terms(self) -> DropTerms:
         """What drops cost in this state of construction."""
-        site, stock, score = self._build.wall.site, self._workshop.stock, self._settings.score
         rest = self._workshop.rest(self._build)
-        return DropTerms(
-            cell_px=1.0 / site.scale,
-            width_px=site.extent_px[0] + 2.0 * self._settings.settle.beyond_px,
-            height_px=site.extent_px[1],
-            slack_px=SLACK * stock.mean_area_px**0.5 / site.scale,
-            clearance_px=2.0 * self._settings.settle.clearance_px,
-            narrowest_px=stock.narrowest_px / site.scale,
-            mean_height_px=stock.mean_height_px / site.scale,
-            mean_area_px=stock.mean_area_px / site.scale**2,
-            height=score.height,
-            void=score.void,
-            gap=score.gap,
-            slot=score.slot,
-            headroom=score.headroom,
-            step=score.step,
-            joint=score.joint,
-            unbalanced=UNBALANCED,
-            rest_width_px=rest.width_px,
-            rest_height_px=rest.height_px,
-        )
+        return drop_terms(self._build.wall.site, self._workshop.stock, rest, self._settings)
 
     def _cheapest(self, drops: list[Drop], apply: Apply) -> Iterator[list[Proposal]]:
         """Settle the cheapest drops, then the next ones, and so on."""
@@ -269,58 +211,3 @@ class ExactProposer:
         with_stone = wall.outlines.added(outlined(placement, ()), wall.site.scale)
         under = settled_wedge(with_stone, wall.site, number, posed.stone.id, wedge)
         return Stabilised(placement, (under,))
-
-
-def shortlist(drops: Sequence[Drop], settings: SettleSettings) -> tuple[list[Drop], list[Drop]]:
-    """Take the cheapest drops, only so many of one stone; return those and the others."""
-    taken: list[Drop] = []
-    left: list[Drop] = []
-    counts: Counter[int] = Counter()
-    for drop in sorted(drops, key=attrgetter("rank")):
-        stone_id = drop.key[0][0]
-        if len(taken) < settings.shortlist and counts[stone_id] < settings.per_stone:
-            counts[stone_id] += 1
-            taken.append(drop)
-        else:
-            left.append(drop)
-    return taken, left
-
-
-def _pose_cost(posed: PosedStone, stock: Stock, settings: PlannerSettings) -> float:
-    """Return what a pose costs wherever it goes."""
-    score = settings.score
-    upright = max(0.0, 1.0 - posed.width_px / posed.height_px)
-    return math.fsum(
-        [
-            score.roughness * posed.top_roughness_px / stock.mean_height_px,
-            score.upright * upright,
-            -score.area * posed.area_px / stock.mean_area_px,
-            -score.thickness * min(posed.width_px, posed.height_px) / stock.mean_height_px,
-        ]
-    )
-
-
-def wedge_limits(settings: PlannerSettings, stock: Stock, scale: float) -> WedgeLimits:
-    """Return what wedges may be, in source px.
-
-    Parameters
-    ----------
-    settings : PlannerSettings
-        Sizes in working px and in mean stone heights.
-    stock : Stock
-        Sizes of the stones, working px.
-    scale : float
-        Working resolution over source resolution.
-    """
-    sizes, settle = settings.stabilise, settings.settle
-    smallest = sizes.min_wedge_px / scale
-    return WedgeLimits(
-        smallest_px=smallest,
-        largest_px=max(smallest, sizes.max_wedge_height * stock.mean_height_px / scale),
-        margin=sizes.margin,
-        mu=settings.mu,
-        clearance_px=settle.clearance_px,
-        contact_px=0.5 * settle.contact_px,
-        rest=settle.margin,
-        steep=settle.steep,
-    )
