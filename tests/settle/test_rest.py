@@ -24,6 +24,7 @@ from drystone.settle.rest import (
     Scene,
     Turned,
     come_to_rest,
+    lay,
     placed_outline,
     repose,
     touch_down,
@@ -334,3 +335,24 @@ def test_a_repose_is_made_from_what_settling_found() -> None:
     for angle_deg, expected in ((177.0, -177.0), (-177.0, -171.0), (180.0, -174.0)):
         over = repose(turned(BRICK, angle_deg), scene_of([]), found._replace(angle=math.radians(6)))
         assert over.angle_deg == pytest.approx(expected)
+
+
+def test_a_stone_that_rests_where_it_is_laid_stays_there() -> None:
+    scene = scene_of([BRICK + [50.0, 5.01]])
+    found = lay(turned(BRICK), scene, (52.0, 15.02), SettleSettings())
+    assert found is not None
+    assert (found.settled.x_px, found.settled.y_px) == pytest.approx((52.0, 15.02), abs=1e-6)
+    assert not found.turned
+
+
+def test_a_stone_that_is_laid_into_another_is_brought_apart() -> None:
+    scene = scene_of([BRICK + [50.0, 5.01]])
+    found = lay(turned(BRICK), scene, (52.0, 14.7), SettleSettings())
+    assert found is not None
+    assert found.settled.y_px == pytest.approx(15.02, abs=0.01)
+    assert lay(turned(BRICK), scene, (52.0, 14.0), SettleSettings()) is None
+
+
+def test_a_stone_that_falls_where_it_is_laid_is_lost() -> None:
+    scene = scene_of([BRICK + [50.0, 5.01]])
+    assert lay(turned(BRICK), scene, (61.0, 15.02), SettleSettings()) is None

@@ -1,7 +1,7 @@
 """Letting a stone go above others until it rests (§3.7 without pixels; DESIGN 4.9)."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -159,6 +159,28 @@ def touch_down(
     if found.status not in (Status.RESTS, Status.FALLS):
         return None
     return repose(stone, scene, found)
+
+
+def lay(
+    stone: Turned, scene: Scene, start: tuple[float, float], settings: SettleSettings
+) -> Repose | None:
+    """Lay a stone where it is planned, and move it no further than until it rests.
+
+    What it overlaps a little there it is brought apart from.
+
+    Parameters
+    ----------
+    stone, scene, start, settings
+        As for :func:`come_to_rest`.
+
+    Returns
+    -------
+    repose : Repose or None
+        None when it does not rest nearby.
+    """
+    rules = ways(stone, scene, replace(settings, method="energy"))[-1]._replace(stop=0.0)
+    found = let_go(stone, scene, start, rules)
+    return repose(stone, scene, found) if found.status == Status.RESTS else None
 
 
 def let_go(stone: Turned, scene: Scene, start: tuple[float, float], rules: Rules) -> Settling:
