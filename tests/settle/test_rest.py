@@ -338,7 +338,7 @@ def test_a_repose_is_made_from_what_settling_found() -> None:
 
 
 def test_a_stone_that_rests_where_it_is_laid_stays_there() -> None:
-    scene = scene_of([BRICK + [50.0, 5.01]])
+    scene = scene_of([BRICK + np.array([50.0, 5.01])])
     found = lay(turned(BRICK), scene, (52.0, 15.02), SettleSettings())
     assert found is not None
     assert (found.settled.x_px, found.settled.y_px) == pytest.approx((52.0, 15.02), abs=1e-6)
@@ -346,7 +346,7 @@ def test_a_stone_that_rests_where_it_is_laid_stays_there() -> None:
 
 
 def test_a_stone_that_is_laid_into_another_is_brought_apart() -> None:
-    scene = scene_of([BRICK + [50.0, 5.01]])
+    scene = scene_of([BRICK + np.array([50.0, 5.01])])
     found = lay(turned(BRICK), scene, (52.0, 14.7), SettleSettings())
     assert found is not None
     assert found.settled.y_px == pytest.approx(15.02, abs=0.01)
@@ -354,5 +354,5 @@ def test_a_stone_that_is_laid_into_another_is_brought_apart() -> None:
 
 
 def test_a_stone_that_falls_where_it_is_laid_is_lost() -> None:
-    scene = scene_of([BRICK + [50.0, 5.01]])
+    scene = scene_of([BRICK + np.array([50.0, 5.01])])
     assert lay(turned(BRICK), scene, (61.0, 15.02), SettleSettings()) is None
