@@ -12,13 +12,18 @@ from matplotlib.image import imread
 
 from drystone.cli import check_physics, check_picture
 from drystone.cli.check_physics import PhysicsCard
+from drystone.cli.check_picture import views_of
+from drystone.cli.checked import Checked
 from drystone.cli.main import main
 from drystone.io.plan_json import read_plan
 from drystone.physics.building import ROUNDED, BlockMove, BuildSettings, BuildUp, tilt_of
 from drystone.physics.repeated import build_up_repeatedly
 from drystone.physics.scatter import Variation
 from drystone.physics.tilt import TiltSettings
+from drystone.verify.check import check_plan
+from drystone.verify.outlines import plan_polygons
 from tests.cli.conftest import Run
+from tests.verify.exact_examples import hanging_example
 
 NO_ENGINE = "pymunk is not installed (extra `physics`)"
 
@@ -284,3 +289,13 @@ def test_the_engine_is_told_how_deep_outlines_overlap(
     depth = run("check", plan_copy, "--json").json()["overlap_depth"]
     assert depth > check_physics.NOTEWORTHY_PX
     assert "what overlaps cannot stay where it is" in run("check", plan_copy, "--physics").out
+
+
+def test_a_stone_that_hangs_by_friction_is_drawn_where_it_hangs() -> None:
+    hanging = hanging_example()
+    report = check_plan(hanging.plan, hanging.stones)
+    groups = plan_polygons(hanging.plan, hanging.stones)
+    (view,) = views_of(Checked(hanging.plan, hanging.stones, report, groups))
+    assert "E237" in view.title
+    assert list(view.concerned) == [3]
+    assert not view.ended

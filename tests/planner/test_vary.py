@@ -6,7 +6,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from drystone.planner import settling
+from drystone.planner import proposing
 from drystone.planner.plan_wall import plan_wall
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings, method_settings
@@ -55,13 +55,13 @@ def test_another_seed_gives_another_wall_and_the_same_seed_the_same() -> None:
 
 def test_all_steps_of_a_wall_have_the_same_weights(monkeypatch: pytest.MonkeyPatch) -> None:
     used = []
-    craft_cost = settling.craft_cost
+    craft_cost = proposing.craft_cost
 
     def watched(craft: object, score: ScoreSettings) -> float:
         used.append(score)
         return craft_cost(craft, score)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(settling, "craft_cost", watched)
+    monkeypatch.setattr(proposing, "craft_cost", watched)
     planner = built(7, 0.3)
     rng = np.random.default_rng([7, 2_000_000])
     assert set(used) == {varied(planner.settings, 0.3, rng).score}

@@ -16,6 +16,7 @@ from drystone.planner.settings import PlannerSettings
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import placed_outline
 from drystone.stabilise.settings import StabiliseSettings
+from tests.planner.scenes import stones_of_masks
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example, stone_set
 
 GAP_PX = 0.01
@@ -45,6 +46,16 @@ def exact_example(scale: float = 1.0, px_per_m: float | None = None, *, count: i
         (300, -90.0, 74.0, GAP_PX),
     )[:count]:
         wall = with_stone(wall, stones, (stone_id, angle_deg), (left, bottom))
+    return plan_of(wall, stones)
+
+
+def hanging_example() -> Example:
+    """Return a stone that hangs between two blocks by friction on their upright faces."""
+    masks = {1: np.ones((30, 30), bool), 2: np.ones((30, 30), bool), 3: np.ones((20, 20), bool)}
+    stones = stones_of_masks(masks)
+    wall = Wall.empty(Site.from_source(*WALL_PX), exact=True)
+    for stone_id, left, bottom in ((1, 0.0, GAP_PX), (2, 50.02, GAP_PX), (3, 30.01, 9.0)):
+        wall = with_stone(wall, stones, (stone_id, 0.0), (left, bottom))
     return plan_of(wall, stones)
 
 

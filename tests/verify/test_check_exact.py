@@ -12,16 +12,13 @@ import pytest
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.io.read_stones import read_stones
 from drystone.model.plan import Plan, PlanMetrics
-from drystone.model.site import Site
-from drystone.model.wall import Wall
 from drystone.planner.plan_wall import PlanResult, plan_wall
 from drystone.planner.settings import method_settings
 from drystone.verify.check import check_plan
 from drystone.verify.exact_replay import PENETRATION_PX
 from drystone.verify.overlap import SPACING_PX
 from drystone.verify.report import PrefixAlpha
-from tests.planner.scenes import stones_of_masks
-from tests.verify.exact_examples import GAP_PX, WALL_PX, exact_example, plan_of, with_stone
+from tests.verify.exact_examples import GAP_PX, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example
 from tests.verify.tampering import (
     changed,
@@ -293,11 +290,6 @@ def test_other_settings_of_settling_are_caught(
 
 
 def test_stone_that_only_friction_on_upright_faces_holds_is_named() -> None:
-    masks = {1: np.ones((30, 30), bool), 2: np.ones((30, 30), bool), 3: np.ones((20, 20), bool)}
-    stones = stones_of_masks(masks)
-    wall = Wall.empty(Site.from_source(*WALL_PX), exact=True)
-    for stone_id, left, bottom in ((1, 0.0, GAP_PX), (2, 50.02, GAP_PX), (3, 30.01, 9.0)):
-        wall = with_stone(wall, stones, (stone_id, 0.0), (left, bottom))
-    hanging = plan_of(wall, stones)
-    problems = check_plan(hanging.plan, stones).problems
+    hanging = hanging_example()
+    problems = check_plan(hanging.plan, hanging.stones).problems
     assert [(problem.code, problem.step) for problem in problems] == [("E237", 3)]

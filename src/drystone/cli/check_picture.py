@@ -21,7 +21,7 @@ PICTURE = "check.png"
 MISPLACED = ("E220", "E221", "E222", "E223", "E224")
 """Problems of a stone or wedge where it lies."""
 
-OVERLAPS, FALLS, OTHER_PIXELS = "E221", "E230", "E236"
+OVERLAPS, FALLS, OTHER_PIXELS, NOT_STURDY = "E221", "E230", "E236", "E237"
 
 NOTABLE = 0.02
 """Blocks that move by this share of the largest movement belong to a mechanism."""
@@ -78,7 +78,7 @@ def views_of(checked: Checked) -> list[FailureView]:
     pixels = [p for p in problems if p.code == OTHER_PIXELS and p.step is not None]
     if misplaced or pixels:
         views.append(_misplaced(checked, planned, misplaced or pixels))
-    falling = next((problem for problem in problems if problem.code == FALLS), None)
+    falling = next((p for p in problems if p.code in (FALLS, NOT_STURDY)), None)
     if falling is not None:
         views.append(_unstable(checked, planned, falling))
     if checked.falls:
@@ -122,7 +122,8 @@ def _unstable(checked: Checked, planned: Mapping[int, Loop], problem: Problem) -
     stage = next(stage for stage in replay.stages if stage.last.step == problem.step)
     standing = {block: loop for block, loop in planned.items() if block in _there(stage)}
     title = _short(str(problem))
-    model = wall_model(stage.after, replay.settings)
+    # With all its friction a wall that is not sturdy does not begin to fall.
+    model = wall_model(stage.after, replay.settings) if problem.code == FALLS else None
     mechanism = None if model is None else lateral_resistance(model, mechanism=True).left.mechanism
     if mechanism is None:
         last = _ids(checked, {stage.stone.step}, planned)

@@ -15,7 +15,7 @@ from drystone.kernels.polygons import Points
 from drystone.model.stone import StoneSet
 from drystone.planner.plan_wall import PlanResult, plan_wall
 from drystone.planner.settings import PlannerSettings, method_settings
-from drystone.settle.rest import placed_outline
+from drystone.verify.outlines import Group, plan_polygons
 
 Geometry = str
 Outlined = tuple[int, Points]
@@ -121,25 +121,12 @@ class BuiltWall:
         return f"{self.target.name}, {self.geometry}, seed {self.seed}"
 
     @property
-    def groups(self) -> list[list[Outlined]]:
+    def groups(self) -> tuple[Group, ...]:
         """Ids and outlines of the stones with their wedges, in order, source px.
 
         Of a plan on pixels they are the outlines of the stones in the planned poses.
         """
-        wall, scale = self.result.wall, self.result.wall.site.scale
-        groups = []
-        steps = {step.id: step for step in self.result.plan.wedge_steps}
-        for group in wall.groups:
-            placement = group.placement
-            if placement.settled is not None:
-                corners = placement.settled.corners
-            else:
-                x, y = (at / scale for at in placement.centroid(wall.site.height_px))
-                outline = placement.posed.stone.outline
-                corners = placed_outline(outline, placement.posed.angle_deg, x, y)
-            wedges = [(w.id, np.array(steps[w.id].polygon)) for w in group.wedges]
-            groups.append([(placement.stone_id, corners), *wedges])
-        return groups
+        return plan_polygons(self.result.plan, self.stones)
 
 
 def one_pass(geometry: Geometry, budget: int = 1) -> PlannerSettings:

@@ -54,6 +54,17 @@ class Trial:
         return self.poses[0].stone.id, self.poses[0].angle_deg, self.landscape.side
 
 
+def action_cost(
+    trial: Trial, stabilised: Stabilised, workshop: Workshop, settings: PlannerSettings
+) -> float:
+    """Return the weighted craft cost of an action; 0 when no choice depends on it."""
+    if not settings.weighs_craft:
+        return 0.0
+    assert trial.rest is not None  # noqa: S101 - the attempt gives it then
+    craft = action_craft(trial.landscape, stabilised, workshop.stock, trial.rest)
+    return craft_cost(craft, settings.score)
+
+
 class Proposer(Protocol):
     """Places and stabilises candidates on one state of construction; remembers what it tried."""
 
@@ -153,11 +164,6 @@ class RasterProposer:
         return can_be_lowered(landscape, landscape.view(posed), placement.row, col)
 
     def _proposal(self, trial: Trial, trial_angle_deg: float, stabilised: Stabilised) -> Proposal:
-        cost = 0.0
-        if self._settings.weighs_craft:
-            assert trial.rest is not None  # noqa: S101 - the attempt gives it then
-            with self._profile.part("indices"):
-                stock = self._workshop.stock
-                craft = action_craft(trial.landscape, stabilised, stock, trial.rest)
-            cost = craft_cost(craft, self._settings.score)
+        with self._profile.part("indices"):
+            cost = action_cost(trial, stabilised, self._workshop, self._settings)
         return Proposal(stabilised, trial_angle_deg, cost=cost)

@@ -11,13 +11,11 @@ from drystone.kernels.profiles import OVER, HeightProfile, StoneProfile, bare, r
 from drystone.model.placement import Side
 from drystone.model.wall import outlined
 from drystone.planner.build import Build, Proposal
-from drystone.planner.craft import action_craft
 from drystone.planner.dropping import Drop, drop_terms, pose_cost, shortlist, wedge_limits
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import Apply, Key, Trial
+from drystone.planner.proposing import Apply, Key, Trial, action_cost
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
-from drystone.selection.scored import craft_cost
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import Repose, Scene, come_to_rest
 from drystone.settle.wedged import wedged
@@ -159,14 +157,8 @@ class ExactProposer:
                     stabilised = self._stabilised(drop, found.repose, found.wedge)
         if stabilised is None:
             return None
-        cost = 0.0
-        if self._settings.weighs_craft:
-            assert drop.trial.rest is not None  # noqa: S101 - the attempt gives it then
-            with self._profile.part("indices"):
-                craft = action_craft(
-                    drop.trial.landscape, stabilised, self._workshop.stock, drop.trial.rest
-                )
-            cost = craft_cost(craft, self._settings.score)
+        with self._profile.part("indices"):
+            cost = action_cost(drop.trial, stabilised, self._workshop, self._settings)
         return Proposal(stabilised, posed.angle_deg, cost=cost, spot=drop.spot)
 
     def _beside(

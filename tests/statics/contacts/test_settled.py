@@ -171,18 +171,6 @@ def test_ids_need_not_ascend():
     assert model.interfaces[1].normal == (0.0, 1.0)
 
 
-def test_another_unit_of_length():
-    placed = settled_wall(1, 0.01, 1e-5)
-    around = PlacedPolygons.of(enumerate(placed, start=1))
-    one, half = model_of_outlines(around, 0.7), model_of_outlines(around, 0.7, 0.1, 0.5)
-    assert alphas(half) == pytest.approx(alphas(one), abs=1e-8)
-    assert half.mu == 0.7
-    assert half.blocks[3].area == one.blocks[3].area / 4
-    assert half.blocks[3].centroid == tuple(c / 2 for c in one.blocks[3].centroid)
-    assert half.interfaces[5].points.tolist() == (one.interfaces[5].points / 2).tolist()
-    assert half.interfaces[5].normal == one.interfaces[5].normal
-
-
 @pytest.mark.parametrize("seed", [1, 4])
 def test_a_wall_that_grows_has_the_load_multipliers_of_the_whole_one(seed):
     placed = list(enumerate(settled_wall(seed, 0.01, 1e-5), start=1))

@@ -6,7 +6,6 @@ block of the two.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple, Protocol
 
@@ -92,9 +91,7 @@ def model_with_outlines(
     return model.with_added(tuple(new), tuple(found))
 
 
-def model_of_outlines(
-    placed: Placed, mu: float = 0.58, tolerance: float = 0.1, scale: float = 1.0
-) -> RigidBlockModel:
+def model_of_outlines(placed: Placed, mu: float = 0.58, tolerance: float = 0.1) -> RigidBlockModel:
     """Make the rigid block model of a wall of settled stones.
 
     Parameters
@@ -105,8 +102,6 @@ def model_of_outlines(
         Coefficient of friction.
     tolerance : float
         Gap or overlap up to which blocks touch, in the unit of the outlines, above 0.
-    scale : float
-        Lengths of the model over those of the outlines, above 0.
 
     Returns
     -------
@@ -125,8 +120,7 @@ def model_of_outlines(
         _interfaces(ids[place], ids, meetings(corners, polygons.leading(place), tolerance))
         for place, corners in enumerate(outlines)
     )
-    model = RigidBlockModel(tuple(map(_block, ids, outlines)), tuple(interfaces), mu)
-    return model if scale == 1.0 else _scaled(model, scale)
+    return RigidBlockModel(tuple(map(_block, ids, outlines)), tuple(interfaces), mu)
 
 
 def _block(block_id: int, corners: Points) -> Block:
@@ -142,17 +136,3 @@ def _interfaces(block_id: int, ids: Sequence[int], found: Meetings) -> list[Inte
         Interface(block_id, ids[other] if other >= 0 else GROUND, points[k, :count], (x, y))
         for k, (other, count, (x, y)) in enumerate(told)
     ]
-
-
-def _scaled(model: RigidBlockModel, scale: float) -> RigidBlockModel:
-    """Return a model in another unit of length."""
-    blocks = (
-        replace(
-            block,
-            area=block.area * scale * scale,
-            centroid=(block.centroid[0] * scale, block.centroid[1] * scale),
-        )
-        for block in model.blocks
-    )
-    interfaces = (replace(i, points=i.points * scale) for i in model.interfaces)
-    return RigidBlockModel(tuple(blocks), tuple(interfaces), model.mu)
