@@ -107,8 +107,7 @@ def _not_sturdy(stage: Stage, settings: PlannerSettings) -> list[Problem]:
     if lateral_resistance(model).stable:
         return []
     message = (
-        "the wall stands only by friction on upright faces, by more than three quarters of the "
-        "friction, or by gaps near the contact tolerance."
+        "the wall needs friction of upright faces, or friction or gaps at their limit, to stand."
     )
     return [Problem("E237", stage.last.step, message)]
 
