@@ -16,8 +16,14 @@ from drystone.cli.check_picture import views_of
 from drystone.cli.checked import Checked
 from drystone.cli.main import main
 from drystone.io.plan_json import read_plan
-from drystone.physics.building import ROUNDED, BlockMove, BuildSettings, BuildUp, tilt_of
-from drystone.physics.repeated import build_up_repeatedly
+from drystone.physics.building import (
+    ROUNDED,
+    BlockMove,
+    BuildSettings,
+    BuildUp,
+    build_up,
+    tilt_of,
+)
 from drystone.physics.scatter import Variation
 from drystone.physics.tilt import TiltSettings
 from drystone.verify.check import check_plan
@@ -93,8 +99,8 @@ def test_a_stone_that_falls_is_named_and_drawn(
     """A fall is a failed check only where the engine was asked."""
     pytest.importorskip("pymunk", reason=NO_ENGINE)
     # By this measure the stone that settles by a px has fallen.
-    strict = partial(build_up_repeatedly, settings=BuildSettings(moved_share=0.03))
-    monkeypatch.setattr(check_physics, "build_up_repeatedly", strict)
+    strict = partial(build_up, settings=BuildSettings(moved_share=0.03))
+    monkeypatch.setattr(check_physics, "build_up", strict)
     assert run("check", plan_copy).code == 0
     assert not (plan_copy / "check.png").exists()
     ran = run("check", plan_copy, "--physics")

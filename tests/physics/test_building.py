@@ -252,3 +252,24 @@ def test_without_the_engine_it_says_what_to_install(monkeypatch: pytest.MonkeyPa
     with pytest.raises(UsageError) as caught:
         build_up(COURSES)
     assert caught.value.code == "E305"
+
+
+@pytest.mark.parametrize("seed", [2, 4, 7])
+@pytest.mark.parametrize("engine", [EngineSettings(), ROUNDED], ids=["sharp", "rounded"])
+def test_corners_on_a_line_do_not_move_contacts(seed: int, engine: EngineSettings) -> None:
+    """A slab on a slope lies still however its faces are divided; engines take edges for faces."""
+    rng = np.random.default_rng(seed)
+
+    def divided(corners: list[tuple[float, float]]) -> Points:
+        sides = zip(np.array(corners), np.roll(corners, -1, axis=0), strict=True)
+        shares = [np.append(0.0, np.sort(rng.uniform(0.02, 0.98, 3))) for _ in corners]
+        return np.vstack(
+            [a + t[:, None] * (b - a) for (a, b), t in zip(sides, shares, strict=True)]
+        )
+
+    ramp = divided([(0, 0), (100, 0), (100, 50), (0, 20)])
+    left, right = np.sort(rng.uniform(5, 95, 2)).tolist() if seed == 4 else (20.0, 75.0)
+    low, high = 20 + 0.3 * left, 20 + 0.3 * right
+    slab = divided([(left, low), (right, high), (right, high + 20), (left, low + 20)])
+    built = build_up([[(1, ramp)], [(2, slab)]], 0.58, BuildSettings(engine=engine))
+    assert max(move.move_px for move in built.moves) < 0.02

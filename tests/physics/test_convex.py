@@ -106,6 +106,21 @@ def test_seams_of_any_outline(outline: np.ndarray) -> None:
 
 
 def test_a_convex_outline_stays_whole() -> None:
-    square = np.array([[0, 0], [1, 0], [2, 0], [2, 2], [0, 2]], float)
+    square = np.array([[0, 0], [2, 0], [2, 2], [0, 2]], float)
     (part,) = convex_parts(square)
     assert part.tolist() == square.tolist()
+
+
+@pytest.mark.parametrize("outline", [COMB, NOSE], ids=["comb", "nose"])
+def test_no_part_has_a_corner_at_which_it_does_not_turn(outline: np.ndarray) -> None:
+    between = (outline + np.roll(outline, -1, axis=0)) / 2
+    split = np.stack([outline, between], axis=1).reshape(-1, 2)
+    for part in (*convex_parts(split), *convex_parts(split[[0, 1, 2, -1]])):
+        before, after = part - np.roll(part, 1, axis=0), np.roll(part, -1, axis=0) - part
+        turn = np.degrees(
+            np.arctan2(
+                before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], (before * after).sum(1)
+            )
+        )
+        assert turn.min() > 1e-3
+        assert turn.sum() == pytest.approx(360)

@@ -7,8 +7,7 @@ from typing import Any
 from drystone.cli.output import number
 from drystone.cli.progress import counting_bar
 from drystone.model.plan import Plan, PlanMetrics
-from drystone.physics.building import BlockMove, BuildUp, tilt_of
-from drystone.physics.repeated import RADII, build_up_repeatedly
+from drystone.physics.building import BlockMove, BuildUp, build_up, tilt_of
 from drystone.physics.scatter import TiltResult
 from drystone.verify.lengths import plan_settings
 from drystone.verify.outlines import Group
@@ -27,9 +26,7 @@ class PhysicsCard:
     plan : Plan
         The plan.
     built : BuildUp
-        Its wall in the engine, in the run in the middle of several.
-    falls_in, runs : int
-        In how many of how many runs something falls.
+        Its wall in the engine.
     overlap_px : float
         How deep outlines overlap by the plan itself.
     tilts : (TiltResult, TiltResult) or None
@@ -42,8 +39,6 @@ class PhysicsCard:
     built: BuildUp
     tilts: tuple[TiltResult, TiltResult] | None
     metrics: PlanMetrics | None
-    falls_in: int = 0
-    runs: int = 1
     overlap_px: float = 0.0
 
     @property
@@ -54,8 +49,6 @@ class PhysicsCard:
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
         rows = [("in the engine", self._outcome())]
-        if self.falls_in and self.runs > 1:
-            rows.append(("  runs", f"something falls in {self.falls_in} of {self.runs}"))
         rows += [("  falls", self._words(move)) for move in self.built.moves if move.fell]
         deepest = max(self.built.moves, key=lambda move: move.overlap_px, default=None)
         if deepest is not None and deepest.overlap_px >= NOTEWORTHY_PX:
@@ -76,8 +69,6 @@ class PhysicsCard:
         furthest, fullest = self._furthest(), max((m.turn_deg for m in self.built.moves), default=0)
         return {
             "fallen": list(self.built.fallen),
-            "falls_in": self.falls_in,
-            "runs": self.runs,
             "first_fall": self.first_fall,
             "largest_move": furthest.move_px if furthest else 0.0,
             "largest_move_at": furthest.id if furthest else None,
@@ -173,16 +164,6 @@ def physics_of(
     if sum(map(len, groups)) < len(plan.steps):
         return None
     settings, _ = plan_settings(plan)
-    placings = len(RADII) * len(groups)
-    with counting_bar("stones in the engine", placings, quiet=quiet) as on_group:
-        found = build_up_repeatedly(groups, settings.mu, on_group=on_group)
-    built = found.typical
-    return PhysicsCard(
-        plan,
-        built,
-        tilt_of(built),
-        report.metrics,
-        found.falls_in,
-        len(found.runs),
-        report.overlap_depth,
-    )
+    with counting_bar("stones in the engine", len(groups), quiet=quiet) as on_group:
+        built = build_up(groups, settings.mu, on_group=on_group)
+    return PhysicsCard(plan, built, tilt_of(built), report.metrics, report.overlap_depth)

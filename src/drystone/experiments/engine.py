@@ -9,11 +9,10 @@ from scipy.stats import spearmanr
 from drystone.experiments.exact_walls import BuiltWall, built_walls
 from drystone.experiments.planned_walls import missing_data
 from drystone.experiments.table import BenchSettings, Cell, Table
-from drystone.physics.building import BuildUp, tilt_of
-from drystone.physics.repeated import Repeated, build_up_repeatedly
+from drystone.physics.building import BuildUp, build_up, tilt_of
 
 COLUMNS = (
-    "wall", "stones", "falls in runs", "fallen", "moved most px", "share", "turn deg", "overlap px",
+    "wall", "stones", "fallen", "moved most px", "share", "turn deg", "overlap px",
     "alpha left", "tilt left", "alpha right", "tilt right",
 )  # fmt: skip
 
@@ -26,7 +25,7 @@ class Judged:
     ----------
     wall : BuiltWall
         As planned.
-    found : Repeated
+    built : BuildUp
         As the engine has it.
     tilts : (float or None, float or None)
         Tangent of the tilt at which it comes down, to the left and to the right; None when it
@@ -34,13 +33,8 @@ class Judged:
     """
 
     wall: BuiltWall
-    found: Repeated
+    built: BuildUp
     tilts: tuple[float | None, float | None]
-
-    @property
-    def built(self) -> BuildUp:
-        """The run in the middle."""
-        return self.found.typical
 
     @property
     def alphas(self) -> tuple[float | None, float | None]:
@@ -58,22 +52,18 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
             "Walls of one pass on outlines in the engine",
             COLUMNS,
             rows,
-            (
-                "Every wall is built up in three runs, corners rounded by .002, .003 and .006 of "
-                "a mean stone; what moved and fell is that of the run in the middle.",
-                *missing_data(settings),
-            ),
+            missing_data(settings),
         ),
         _summary(judged),
     )
 
 
 def _judged(wall: BuiltWall) -> Judged:
-    found = build_up_repeatedly(wall.groups, float(wall.result.plan.settings["mu"]))
-    tilts = tilt_of(found.typical)
+    built = build_up(wall.groups, float(wall.result.plan.settings["mu"]))
+    tilts = tilt_of(built)
     if tilts is None:
-        return Judged(wall, found, (None, None))
-    return Judged(wall, found, (tilts[0].alpha, tilts[1].alpha))
+        return Judged(wall, built, (None, None))
+    return Judged(wall, built, (tilts[0].alpha, tilts[1].alpha))
 
 
 def _row(judged: Judged) -> tuple[Cell, ...]:
@@ -82,7 +72,6 @@ def _row(judged: Judged) -> tuple[Cell, ...]:
     return (
         judged.wall.name,
         len(judged.wall.result.plan.stone_steps),
-        f"{judged.found.falls_in} of {len(judged.found.runs)}",
         ", ".join(map(str, judged.built.fallen)) or "none",
         max(move.move_px for move in moves),
         max(move.share for move in moves),

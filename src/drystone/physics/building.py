@@ -19,9 +19,7 @@ ROUNDED = EngineSettings(time_step=0.005, slop=3e-3, corner_radius=3e-3)
 
 The engine finds rounded polygons by the distance of their cores, sharp ones by their overlap, and
 that fails where two faces touch exactly (measured: a contact said to be 2 L deep, which throws a
-stone by .1 L).  Where the radius or the overlap is a tenth of this, contacts flicker and stones
-creep along level beds (measured on two walls of 32 stones: by 5 and 14 px, and neither came to
-rest; now by .5 and .2 px).  For stones of 50 px it is .15 px, about the contact tolerance.
+stone by .1 L).  For stones of 50 px it is .15 px, about the contact tolerance.
 """
 
 

@@ -13,6 +13,9 @@ _Side = tuple[_Corner, _Corner]
 STRAIGHT = 1e-9
 """Corners that go in by this share of the size of a stone count as straight."""
 
+FLAT = 1e-6
+"""Corners of parts that turn by less than this, radians, are none."""
+
 
 REACHES = (0.3, 0.1, 0.03, 0.01, 0.003)
 """How far parts reach into the stone beyond their faces, over the square root of its area."""
@@ -48,13 +51,43 @@ def convex_parts(outline: Points) -> tuple[Points, ...]:
     whole = shapely.Polygon(ring)
     size = float(np.sqrt(whole.area))
     if _is_convex(ring, size):
-        return (np.array(ring),)
+        return (without_straight_corners(np.array(ring)),)
     faces = set(_sides(ring))
     parts: list[list[_Corner]] = []
     for cell in _cells(outline):
         grown = _reaching(whole, _middle(cell), [(s, s not in faces) for s in _sides(cell)])
         parts += [grown] if grown else _slabs(ring, whole, faces.intersection(_sides(cell)), cell)
-    return tuple(np.array(part) for part in parts)
+    return tuple(without_straight_corners(np.array(part)) for part in parts)
+
+
+def without_straight_corners(part: Points) -> Points:
+    """Leave out the corners of a convex polygon at which it does not turn.
+
+    The engine takes the corner furthest along a normal, then the face at it; where a face is made
+    of several edges that may be the wrong one, and the contact comes to lie beside both stones
+    (measured: a contact 46 px from where two stones touched, which turned one by 14 degrees).
+
+    Parameters
+    ----------
+    part : (n, 2) float array
+        Counter-clockwise, not closed.
+
+    Returns
+    -------
+    (m, 2) float array
+        The corners that are left.
+
+    Examples
+    --------
+    >>> without_straight_corners(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 2.0]]))
+    array([[0., 0.],
+           [2., 0.],
+           [0., 2.]])
+    """
+    before, after = part - np.roll(part, 1, axis=0), np.roll(part, -1, axis=0) - part
+    turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    turns = turn > FLAT * np.hypot(*before.T) * np.hypot(*after.T)
+    return part[turns]
 
 
 def _slabs(

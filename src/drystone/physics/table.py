@@ -10,7 +10,7 @@ import shapely
 from numpy.typing import NDArray
 
 from drystone.errors import UsageError
-from drystone.physics.convex import Points, convex_parts
+from drystone.physics.convex import Points, convex_parts, without_straight_corners
 from drystone.physics.scene import EngineSettings, Scene
 
 Floats = NDArray[np.float64]
@@ -103,7 +103,7 @@ class TiltingTable:
         # A part too thin to be rounded keeps its corners.
         rounded = self._settings.corner_radius > 0 and isinstance(inner, shapely.Polygon)
         rounded = rounded and not inner.is_empty
-        outline = shapely.get_coordinates(inner)[:-1] if rounded else corners
+        outline = _outline(inner) if rounded else corners
         radius = self._settings.corner_radius if rounded else 0.0
         shape = load_engine().Poly(body, outline.tolist(), radius=radius)
         # The friction of a pair is the product of both.
@@ -156,6 +156,11 @@ class TiltingTable:
     def _free(self) -> list[Any]:
         dynamic = load_engine().Body.DYNAMIC
         return [body for body in self._space.bodies if body.body_type == dynamic]
+
+
+def _outline(part: shapely.Polygon) -> Points:
+    """Return the corners of a convex part, counter-clockwise."""
+    return without_straight_corners(shapely.get_coordinates(shapely.orient_polygons(part))[:-1])
 
 
 def load_engine() -> Any:
