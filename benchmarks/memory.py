@@ -8,7 +8,7 @@ from pathlib import Path
 
 from benchmarks.scenes import stock
 from benchmarks.sizes import SIZES, Sizes
-from drystone.planner.plan_wall import plan_wall
+from drystone.search.plan_wall import plan_wall
 
 STATUS = Path("/proc/self/status")
 """Where Linux tells the peak of this process; that of `resource` includes the parent's."""

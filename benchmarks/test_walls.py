@@ -13,9 +13,9 @@ from tests.naive.planner import SlowPlanner
 from benchmarks.conftest import Row, Timer
 from benchmarks.scenes import Stock
 from benchmarks.sizes import Sizes
-from drystone.planner.plan_wall import plan_wall
 from drystone.planner.planner import Planner
 from drystone.planner.profile import PARTS, Profile
+from drystone.search.plan_wall import plan_wall
 
 SCALE = 0.5
 SEED = 1

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from drystone.model.site import Site as Site
     from drystone.model.stone import Stone as Stone
     from drystone.model.stone import StoneSet as StoneSet
-    from drystone.planner.plan_wall import PlanResult as PlanResult
-    from drystone.planner.plan_wall import plan_wall as plan_wall
     from drystone.planner.planner import Planner as Planner
     from drystone.planner.settings import PlannerSettings as PlannerSettings
     from drystone.planner.settings import method_settings as method_settings
+    from drystone.search.plan_wall import PlanResult as PlanResult
+    from drystone.search.plan_wall import plan_wall as plan_wall
     from drystone.statics.contacts.blocks import model_from_labels as model_from_labels
     from drystone.statics.contacts.given import model_from_json as model_from_json
     from drystone.statics.flow.nonassociative import (
@@ -49,8 +49,8 @@ _HOMES = {
     "Site": "drystone.model.site",
     "Stone": "drystone.model.stone",
     "StoneSet": "drystone.model.stone",
-    "PlanResult": "drystone.planner.plan_wall",
-    "plan_wall": "drystone.planner.plan_wall",
+    "PlanResult": "drystone.search.plan_wall",
+    "plan_wall": "drystone.search.plan_wall",
     "Planner": "drystone.planner.planner",
     "PlannerSettings": "drystone.planner.settings",
     "method_settings": "drystone.planner.settings",

@@ -11,9 +11,9 @@ from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame, plan_metrics, plan_steps
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import action_indices
-from drystone.planner.plan_wall import PlanResult, plan_wall
 from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
+from drystone.search.plan_wall import PlanResult, plan_wall
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.contacts.blocks import model_with
 from drystone.statics.growing import Grown

@@ -22,10 +22,10 @@ from drystone.model.outlines import Outlines
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import outlined
-from drystone.planner.plan_wall import PlanResult, plan_wall
 from drystone.planner.planner import Planner
 from drystone.planner.rework import rework
 from drystone.planner.settings import PlannerSettings
+from drystone.search.plan_wall import PlanResult, plan_wall
 from drystone.settle.rest import placed_outline
 from drystone.verify import check_plan
 from tests.planner.scenes import finish, greedy, outlines, same

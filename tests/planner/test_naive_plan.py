@@ -8,7 +8,7 @@ from drystone.generate import RubbleSettings, rubble_stones
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.wall import Wall
-from drystone.planner.plan_wall import plan_wall
+from drystone.search.plan_wall import plan_wall
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
 from tests.naive import placement as naive

@@ -12,9 +12,9 @@ import pytest
 from drystone.model.site import Site
 from drystone.planner.build import Build
 from drystone.planner.events import Callbacks, Round, Step
-from drystone.planner.plan_wall import plan_wall, run_to_end
 from drystone.planner.planner import Planner
 from drystone.planner.rework import rework, wall_merit
+from drystone.search.plan_wall import plan_wall, run_to_end
 from drystone.selection.scored import ScoreSettings
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble, same
 

@@ -13,7 +13,7 @@ from drystone.generate import RubbleSettings, rubble_stones
 from drystone.io.plan_json import write_plan
 from drystone.io.wall_image import write_wall_image
 from drystone.kernels.backend import VARIABLE, describe
-from drystone.planner.plan_wall import plan_wall
+from drystone.search.plan_wall import plan_wall
 from tests.planner.scenes import greedy
 from tests.regression.test_same_plan import planned
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from drystone.planner import proposing
-from drystone.planner.plan_wall import plan_wall
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.planner.vary import varied
+from drystone.search.plan_wall import plan_wall
 from drystone.selection.scored import ScoreSettings
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble, same
 

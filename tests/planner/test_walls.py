@@ -15,11 +15,11 @@ from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import Evaluator
-from drystone.planner.plan_wall import mean_top, plan_wall, working_scale
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import RasterProposer, Trial
 from drystone.planner.settings import PlannerSettings
+from drystone.search.plan_wall import mean_top, plan_wall, working_scale
 from drystone.verify import check_plan
 from tests.planner.scenes import blocks, bricks, greedy, rubble, stones_of_masks
 

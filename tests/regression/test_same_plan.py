@@ -10,8 +10,8 @@ import pytest
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.io.plan_json import write_plan
 from drystone.io.wall_image import write_wall_image
-from drystone.planner.plan_wall import plan_wall
 from drystone.planner.settings import method_settings
+from drystone.search.plan_wall import plan_wall
 
 SCRIPT = """
 import sys

@@ -12,8 +12,8 @@ from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.io.read_stones import read_stones
 from drystone.model.plan import Plan, PlanMetrics
 from drystone.model.stone import Source, StoneSet
-from drystone.planner.plan_wall import plan_wall
 from drystone.planner.settings import PlannerSettings
+from drystone.search.plan_wall import plan_wall
 from drystone.verify.check import check_plan
 from drystone.verify.report import PrefixAlpha
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example, example

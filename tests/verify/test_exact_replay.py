@@ -15,8 +15,8 @@ from drystone.model.placement import Placement
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
-from drystone.planner.plan_wall import PlanResult, plan_wall
 from drystone.planner.settings import method_settings
+from drystone.search.plan_wall import PlanResult, plan_wall
 from drystone.settle.settings import SettleSettings
 from drystone.verify.check import check_plan
 from drystone.verify.exact_replay import ExactCanvas, leaves

@@ -18,8 +18,8 @@ from drystone.io.plan_json import read_plan, write_plan
 from drystone.io.wall_image import write_wall_image
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
-from drystone.planner.plan_wall import PlanResult, plan_wall, working_scale
 from drystone.planner.settings import PlannerSettings
+from drystone.search.plan_wall import PlanResult, plan_wall, working_scale
 from drystone.verify.replay import rebuild_wall
 
 _EXIT = {

@@ -4,8 +4,8 @@ from typing import Any
 
 from drystone.cli.output import print_table
 from drystone.kernels.backend import describe
-from drystone.planner.plan_wall import PlanResult
 from drystone.planner.profile import PARTS
+from drystone.search.plan_wall import PlanResult
 
 
 def profile_summary(result: PlanResult, jobs: int) -> dict[str, Any]:

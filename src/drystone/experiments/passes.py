@@ -10,8 +10,8 @@ from drystone.experiments.planned_walls import missing_data
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.kernels.polygons import Points, no_polygons
 from drystone.model.stone import StoneSet
-from drystone.planner.plan_wall import plan_wall
 from drystone.planner.settings import PlannerSettings
+from drystone.search.plan_wall import plan_wall
 from drystone.settle.rest import Repose, Scene, Turned, lay
 from drystone.statics.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.statics.limit import lateral_resistance

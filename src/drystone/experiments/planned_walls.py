@@ -9,7 +9,7 @@ from drystone.io.read_stones import read_stones
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
-from drystone.planner.plan_wall import plan_wall
+from drystone.search.plan_wall import plan_wall
 from drystone.statics.model import RigidBlockModel
 from drystone.verify.lengths import plan_settings
 from drystone.verify.replay import Stage, replay_plan

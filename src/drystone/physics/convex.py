@@ -87,7 +87,7 @@ def without_straight_corners(part: Points) -> Points:
     before, after = part - np.roll(part, 1, axis=0), np.roll(part, -1, axis=0) - part
     turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     turns = turn > FLAT * np.hypot(*before.T) * np.hypot(*after.T)
-    return part[turns]
+    return np.asarray(part[turns])
 
 
 def _slabs(

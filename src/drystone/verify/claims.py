@@ -10,10 +10,10 @@ from drystone.model.stone import StoneSet
 from drystone.planner.assemble import Frame, plan_metrics
 from drystone.planner.build import Build
 from drystone.planner.evaluate import action_indices
-from drystone.planner.plan_wall import resistance_by_tolerance
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
 from drystone.poses import PoseBook, orientation_step_deg
+from drystone.search.plan_wall import resistance_by_tolerance
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel

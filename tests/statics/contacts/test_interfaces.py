@@ -8,8 +8,8 @@ from hypothesis.extra.numpy import arrays
 
 from drystone.io.read_stones import read_stones
 from drystone.kernels.patches import painted_patch
-from drystone.planner.plan_wall import plan_wall
 from drystone.planner.settings import method_settings
+from drystone.search.plan_wall import plan_wall
 from drystone.statics.contacts.interfaces import PointContacts, find_interfaces, interfaces_in
 from drystone.statics.model import GROUND
 from tests.naive import contacts as naive
