@@ -203,11 +203,11 @@ def test_pivots_on_outlines(rubble: Path, settled: Path, tmp_path: Path, run: Ru
 
 
 def test_budget_counts_the_passes(rubble: Path, settled: Path, tmp_path: Path, run: Run) -> None:
-    assert read_plan(settled).settings["rework"]["rounds"] == 0
+    assert read_plan(settled).settings["search"]["budget"] == 1
     out = tmp_path / "two"
     ran = run("plan", rubble, *EXACT[:-1], "2", "-o", out, "--seed", 1)
     assert ran.code in (0, 4)
-    assert read_plan(out).settings["rework"]["rounds"] == 1
+    assert read_plan(out).settings["search"]["budget"] == 2
     for wrong in ("0", "-1", "1.5", "many"):
         ran = run("plan", rubble, *EXACT[:-1], wrong, "-o", tmp_path / "none")
         assert (ran.code, "E138" in ran.err, "--budget" in ran.err) == (2, True, True)

@@ -142,7 +142,7 @@ def test_equal_seeds_give_equal_bytes_and_others_do_not(
 
 def test_best_does_not_depend_on_jobs(rubble: Path, tmp_path: Path, run: Run) -> None:
     toml = tmp_path / "quick.toml"
-    toml.write_text("[rework]\nrounds = 1\n", encoding="utf-8")
+    toml.write_text("[search]\nbudget = 2\n", encoding="utf-8")
     plans = []
     for jobs in (1, 2):
         folder = tmp_path / str(jobs)

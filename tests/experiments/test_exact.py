@@ -138,6 +138,6 @@ def test_every_target_is_planned_on_each_geometry_with_each_seed(monkeypatch):
     for wall in walls:
         plan = wall.result.plan
         assert (plan.settings["geometry"], plan.seed) == (wall.geometry, wall.seed)
-        assert (plan.settings["rework"]["rounds"], plan.working_scale) == (0, 1.0)
+        assert (plan.settings["search"]["budget"], plan.working_scale) == (1, 1.0)
     (twice,) = built_walls(QUICK, ("exact",), budget=2)
-    assert twice.result.plan.settings["rework"]["rounds"] == 1
+    assert twice.result.plan.settings["search"]["budget"] == 2

@@ -43,8 +43,8 @@ def blocks(sizes: Mapping[int, tuple[int, int]]) -> StoneSet:
 
 
 def greedy(changes: Mapping[str, object] | None = None) -> PlannerSettings:
-    """The default method without rework."""
-    return method_settings("best").updated({"rework": {"rounds": 0}, **(changes or {})})
+    """The default method without a search."""
+    return method_settings("best").updated({"search": {"budget": 1}, **(changes or {})})
 
 
 def order(planner: Planner) -> list[tuple[int, float, int, int, str]]:

@@ -11,8 +11,8 @@ from drystone.model.wall import Wall
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
-from drystone.planner.rework import rework
 from drystone.planner.settings import PlannerSettings
+from drystone.search.plan_wall import run_to_end
 from drystone.statics.growing import GrowingAnalysis, Grown
 from drystone.statics.growing_simplex import NAME, SimplexGrowth
 from drystone.statics.limit import lateral_resistance
@@ -72,7 +72,7 @@ def test_the_analysis_of_a_state_gives_what_its_last_action_was_judged_by(
         assert _alphas(analysis.grown.resistance) == _alphas(step.action.resistance)
 
 
-def test_no_state_is_analysed_twice_not_even_by_rework(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_state_is_analysed_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     models: list[RigidBlockModel] = []
     extended = SimplexGrowth.extended
 
@@ -81,9 +81,8 @@ def test_no_state_is_analysed_twice_not_even_by_rework(monkeypatch: pytest.Monke
         return extended(analysis, model)
 
     monkeypatch.setattr(SimplexGrowth, "extended", watched)
-    settings = greedy({"rework": {"rounds": 3}})
+    settings = greedy({"search": {"budget": 4}})
     planner = finish(Planner(rubble(seed=1), RUBBLE_SITE, seed=1, settings=settings))
-    list(rework(planner))
     # `models` keeps them alive, so an id is one model.
     assert max(Counter(id(model) for model in models if model.blocks).values()) == 1
     assert len(models) > len(planner.build.actions)
@@ -91,7 +90,7 @@ def test_no_state_is_analysed_twice_not_even_by_rework(monkeypatch: pytest.Monke
 
 def test_states_are_kept_only_to_go_back_to_them() -> None:
     for rounds in (0, 1):
-        settings = greedy({"rework": {"rounds": rounds}})
+        settings = greedy({"search": {"budget": rounds + 1}})
         planner = Planner(rubble(), RUBBLE_SITE, settings=settings)
         begun = planner.build
         builds = [begun, *(step.build for step in planner.steps())]
@@ -115,8 +114,8 @@ def test_the_unit_of_weight_is_a_stone_of_the_set(monkeypatch: pytest.MonkeyPatc
         return resistance_with(analysis, model)
 
     monkeypatch.setattr(SimplexGrowth, "resistance_with", watched)
-    planner = Planner(rubble(), RUBBLE_SITE, settings=greedy({"rework": {"rounds": 1}}))
-    list(rework(finish(planner)))
+    planner = Planner(rubble(), RUBBLE_SITE, settings=greedy({"search": {"budget": 2}}))
+    run_to_end(planner)
     again = Planner(rubble(), RUBBLE_SITE, settings=greedy())
     again.restore(planner.build.wall, {})
     area = planner.workshop.stock.mean_area_px

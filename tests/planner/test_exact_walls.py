@@ -23,9 +23,8 @@ from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import outlined
 from drystone.planner.planner import Planner
-from drystone.planner.rework import rework
 from drystone.planner.settings import PlannerSettings
-from drystone.search.plan_wall import PlanResult, plan_wall
+from drystone.search.plan_wall import PlanResult, plan_wall, run_to_end
 from drystone.settle.rest import placed_outline
 from drystone.verify import check_plan
 from tests.planner.scenes import finish, greedy, outlines, same
@@ -53,7 +52,7 @@ def stone_sets(draw: st.DrawFn) -> StoneSet:
 def cases(draw: st.DrawFn) -> Case:
     """Stones, a site in source px, its scale, and settings."""
     changes = {
-        "rework": {"rounds": draw(st.integers(0, 1))},
+        "search": {"budget": draw(st.integers(1, 2))},
         "two_sided": draw(st.booleans()),
         "skip_too_large": True,
         "settle": {"method": draw(st.sampled_from(["energy", "pivot"]))},
@@ -123,7 +122,7 @@ WEDGES = greedy(
         "selection_rule": "algorithm2",
         "stabilise": {"method": "wedge", "min_wedge_px": 1, "margin": 0.3, "max_wedge_height": 0.9},
         "two_sided": False,
-        "rework": {"rounds": 3},
+        "search": {"budget": 4},
     }
 )
 WALL_PX = (84.0, 34.0)
@@ -179,17 +178,17 @@ def test_a_wall_that_goes_back_goes_on_as_it_did(back: int) -> None:
     assert same(finish(again), whole)
 
 
-def test_reworked_walls_are_true() -> None:
+def test_walls_of_a_search_are_true() -> None:
     stones = few_stones()
-    incumbents = list(rework(finish(Planner(stones, SITE, seed=3, settings=WEDGES))))
-    for incumbent in incumbents:
-        states = incumbent.planner.build.states()
-        for before, after in pairwise(states):
-            assert before.wall.outlines is not None
-            assert after.wall.outlines is not None
-            count = len(before.wall.outlines.ids)
-            assert after.wall.outlines.ids[:count] == before.wall.outlines.ids
-        assert all(action.sturdy for action in incumbent.planner.build.actions)
+    best, _, walls = run_to_end(Planner(stones, SITE, seed=3, settings=WEDGES))
+    assert walls == 4
+    states = best.build.states()
+    for before, after in pairwise(states):
+        assert before.wall.outlines is not None
+        assert after.wall.outlines is not None
+        count = len(before.wall.outlines.ids)
+        assert after.wall.outlines.ids[:count] == before.wall.outlines.ids
+    assert all(action.sturdy for action in best.build.actions)
     result = plan_wall(stones, *WALL_PX, seed=3, settings=WEDGES, scale=0.5)
     check(result, stones)
     check_outlines(result, WEDGES, SITE)

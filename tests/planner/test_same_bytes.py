@@ -19,7 +19,7 @@ from tests.regression.test_same_plan import planned
 
 METHODS = ("paper", "best")
 WALLS: dict[str, dict[str, Any]] = {
-    "energy": {"selection_rule": "score", "rework": {"rounds": 1}},
+    "energy": {"selection_rule": "score", "search": {"budget": 2}},
     "pivot": {"selection_rule": "algorithm2", "settle": {"method": "pivot"}, "mu": 0.4},
     "wedges": {
         "selection_rule": "algorithm2",

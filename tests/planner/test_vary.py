@@ -68,7 +68,7 @@ def test_all_steps_of_a_wall_have_the_same_weights(monkeypatch: pytest.MonkeyPat
 
 
 def test_the_plan_records_the_weights_themselves() -> None:
-    settings = greedy({"rework": {"rounds": 2}})
+    settings = greedy({"search": {"budget": 3}})
     result = plan_wall(rubble(), 100, 36, seed=3, settings=settings, scale=1.0)
     assert result.plan.settings == settings.as_dict()
     assert result.plan.settings["vary"] == 0.3

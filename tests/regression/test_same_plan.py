@@ -26,7 +26,7 @@ def planned(method: str, folder: Path, n_jobs: int = 1) -> tuple[bytes, bytes]:
     size = RubbleSettings(count=10, width_px=100, height_px=36, courses=2)
     stones = rubble_stones(size, np.random.default_rng(5))
     settings = method_settings(method)
-    settings = settings.updated({"rework": {"rounds": min(1, settings.rework.rounds)}})
+    settings = settings.updated({"search": {"budget": min(2, settings.search.budget)}})
     result = plan_wall(
         stones, 100, 36, scale=1.0, seed=7, method=method, settings=settings, n_jobs=n_jobs
     )

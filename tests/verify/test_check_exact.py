@@ -235,7 +235,7 @@ def test_empty_plan_is_checked(true: Example) -> None:
 @pytest.fixture(scope="module")
 def published(data_dir: Path) -> tuple[PlanResult, Any]:
     stones = read_stones(data_dir / "almeida" / "PR.png")
-    settings = method_settings("best").updated({"rework": {"rounds": 0}, "geometry": "exact"})
+    settings = method_settings("best").updated({"search": {"budget": 1}, "geometry": "exact"})
     return plan_wall(stones, 600, 160, seed=1, settings=settings, scale=0.5), stones
 
 

@@ -8,6 +8,7 @@ from drystone.cli.analyse_options import add_loads, add_model, add_scatter
 from drystone.cli.numbers import positive, share, whole_from
 from drystone.cli.reading import add_reading
 from drystone.errors import UsageError
+from drystone.planner.search_settings import AIMS
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -109,16 +110,39 @@ def _planning(command: argparse.ArgumentParser) -> None:
         "--settle", choices=["energy", "pivot"],
         help="with exact geometry: down to the least energy, or rolling as in the paper",
     )  # fmt: skip
+    effort = group.add_mutually_exclusive_group()
+    effort.add_argument(
+        "--time", type=positive, metavar="SECONDS",
+        help="how long better walls are looked for (best: 10 s for 30 stones)",
+    )  # fmt: skip
+    effort.add_argument(
+        "--budget", type=_count, metavar="N",
+        help="how many walls are built instead, which repeats exactly: 1 is a single pass",
+    )  # fmt: skip
     group.add_argument(
-        "--budget", type=_count, metavar="N", help="walls that are tried: 1 is a single pass"
-    )
+        "--aim", nargs="+", action="extend", type=_aim, metavar="FIGURE=VALUE",
+        help="figures to reach, such as F_SF=.88 F_AV=40 F_AH=1.5 F_LR=.8",
+    )  # fmt: skip
     group.add_argument(
         "--skip-too-large", action="store_true", default=None,
         help="leave out stones that fit into the wall in no orientation",
     )  # fmt: skip
     group.add_argument(
-        "--jobs", type=_count, default=1, metavar="N", help="threads; never the result"
+        "--jobs",
+        type=_count,
+        default=1,
+        metavar="N",
+        help="processes; never the result of a budget",
     )
+
+
+def _aim(text: str) -> tuple[str, float]:
+    """Read what a figure of merit shall reach."""
+    name, _, value = text.partition("=")
+    if name not in AIMS:
+        message = f"{text!r} is not one of {', '.join(f'{known}=VALUE' for known in AIMS)}"
+        raise argparse.ArgumentTypeError(message)
+    return name, float(value)
 
 
 def _writing(command: argparse.ArgumentParser) -> None:

@@ -1,6 +1,7 @@
 """What `plan` and `demo` share: plan, write everything, print the summary."""
 
 import argparse
+import math
 import sys
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ import tomli_w
 
 from drystone.cli.output import number, prepare_folder, print_json, print_table
 from drystone.cli.progress import step_bar
-from drystone.cli.settings import settings_from
+from drystone.cli.settings import search_seconds, settings_from
 from drystone.cli.timing import print_profile, profile_summary
 from drystone.errors import ExitCode, UsageError
 from drystone.io.blocks_json import write_blocks
@@ -18,7 +19,7 @@ from drystone.io.plan_json import read_plan, write_plan
 from drystone.io.wall_image import write_wall_image
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
-from drystone.planner.settings import PlannerSettings
+from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.search.plan_wall import PlanResult, plan_wall, working_scale
 from drystone.verify.replay import rebuild_wall
 
@@ -40,7 +41,13 @@ def plan_and_write(
         print("drystone: this plan is finished, there is nothing to go on with", file=sys.stderr)
         return ExitCode.DONE
     prepare_folder(folder, overwrite=arguments.overwrite or partial is not None)
-    with step_bar(len(stones), quiet=arguments.quiet or arguments.json) as callbacks:
+    seconds = search_seconds(method_settings(arguments.method), len(stones), arguments)
+    if seconds is not None and settings.search.budget > 1:
+        said = f"looking for better walls for about {seconds:.0f} s (--time, --budget)"
+        print(f"drystone: {said}", file=sys.stderr)
+    with step_bar(
+        len(stones), settings, seconds, quiet=arguments.quiet or arguments.json
+    ) as callbacks:
         result = plan_wall(
             stones,
             *wall,
@@ -49,6 +56,7 @@ def plan_and_write(
             settings=settings,
             scale=arguments.scale,
             px_per_m=arguments.px_per_m,
+            seconds=math.inf if seconds is None else seconds,
             n_jobs=arguments.jobs,
             callbacks=callbacks,
             built=None if partial is None else rebuild_wall(partial, stones),

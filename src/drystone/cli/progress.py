@@ -1,5 +1,6 @@
 """A progress bar on stderr that follows the planner's steps."""
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -14,14 +15,18 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from drystone.planner.events import Callbacks, Round, Step
+from drystone.planner.events import Callbacks, Incumbent, Step
+from drystone.planner.settings import PlannerSettings
 
 
 class _Bar(Callbacks):
-    def __init__(self, bar: Progress, stones: int) -> None:
+    def __init__(self, bar: Progress, stones: int, total: float, *, timed: bool) -> None:
         self._bar = bar
         self._stones = bar.add_task("stones", total=stones)
-        self._rounds: TaskID | None = None
+        self._total = total
+        self._timed = timed
+        self._walls: TaskID | None = None
+        self._started = time.monotonic()
 
     def on_step(self, step: Step) -> None:
         carried = step.action.resistance.value
@@ -31,23 +36,33 @@ class _Bar(Callbacks):
             self._stones, advance=1, description=f"stones, filling {filling:.0f} %{text}"
         )
 
-    def on_round(self, round_: Round) -> None:
-        if round_.rounds == 0:
-            return
-        if self._rounds is None:
-            self._rounds = self._bar.add_task("rework", total=round_.rounds)
-        text = f"rework, best has {round_.stones} stones, merit {round_.merit:.2f}"
-        self._bar.update(self._rounds, completed=round_.number, description=text)
+    def on_walls(self, incumbent: Incumbent) -> None:
+        if self._walls is None:
+            self._walls = self._bar.add_task("walls", total=self._total)
+        text = (
+            f"{incumbent.walls} walls; best: {incumbent.stones} stones, "
+            f"F_SF {incumbent.F_SF:.3f}, F_AV {incumbent.F_AV:.1f}, "
+            f"F_AH {incumbent.F_AH:.2f}, F_LR {incumbent.F_LR:.2f}"
+        )
+        spent = time.monotonic() - self._started
+        done = round(spent) if self._timed else incumbent.walls
+        self._bar.update(self._walls, completed=done, description=text)
 
 
 @contextmanager
-def step_bar(stones: int, *, quiet: bool) -> Iterator[Callbacks]:
-    """Show stones placed, filling, load multiplier, rounds of rework and the time that is left.
+def step_bar(
+    stones: int, settings: PlannerSettings, seconds: float | None, *, quiet: bool
+) -> Iterator[Callbacks]:
+    """Show stones placed, then the best wall of the search and the time that is left.
 
     Parameters
     ----------
     stones : int
         How many there are.
+    settings : PlannerSettings
+        Their budget of walls is the end of the search,
+    seconds : float or None
+        unless it ends by the clock.
     quiet : bool
         Show nothing; nothing is shown either when stderr is no terminal.
 
@@ -61,7 +76,9 @@ def step_bar(stones: int, *, quiet: bool) -> Iterator[Callbacks]:
         yield Callbacks()
         return
     with _progress(console) as bar:
-        yield _Bar(bar, stones)
+        timed = seconds is not None
+        total = settings.search.budget if seconds is None else round(seconds)
+        yield _Bar(bar, stones, total, timed=timed)
 
 
 @contextmanager

@@ -8,6 +8,12 @@ from typing import Any
 from drystone.errors import InputError, UsageError
 from drystone.planner.settings import PlannerSettings, method_settings
 
+UNLIMITED = 1_000_000
+"""Budget of a search that the clock ends."""
+
+SECONDS_A_STONE = 1 / 3
+"""How long better walls are looked for when nothing is said."""
+
 
 def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
     """Return the settings that the command line asks for."""
@@ -26,11 +32,42 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
     )
     if arguments.settle is not None:
         changes["settle"] = {"method": arguments.settle}
-    if arguments.budget is not None:
-        changes["rework"] = {"rounds": arguments.budget - 1}
+    changes["search"] = _search(settings, arguments)
+    if arguments.aim:
+        changes["goal"] = dict(arguments.aim)
     if arguments.stabilise is not None:
         changes["stabilise"] = {"method": arguments.stabilise}
     return settings.updated(changes)
+
+
+def _search(settings: PlannerSettings, arguments: argparse.Namespace) -> dict[str, Any]:
+    """Return the changes of the search's settings."""
+    search: dict[str, Any] = {}
+    if arguments.budget is not None:
+        search["budget"] = arguments.budget
+    elif search_seconds(settings, 0, arguments) is not None:
+        search["budget"] = UNLIMITED
+    return search
+
+
+def search_seconds(
+    settings: PlannerSettings, stones: int, arguments: argparse.Namespace
+) -> float | None:
+    """Return how long better walls are looked for; None when a budget says how many.
+
+    Parameters
+    ----------
+    settings : PlannerSettings
+        Before the options.
+    stones : int
+        How many there are.
+    arguments : argparse.Namespace
+        The options.
+    """
+    if arguments.time is not None:
+        return float(arguments.time)
+    timed = arguments.budget is None and arguments.settings is None
+    return stones * SECONDS_A_STONE if timed and settings.search.budget > 1 else None
 
 
 def _check_geometry(settings: PlannerSettings, arguments: argparse.Namespace) -> None:

@@ -132,7 +132,7 @@ class BuiltWall:
 def one_pass(geometry: Geometry, budget: int = 1) -> PlannerSettings:
     """Return the settings of `best` on a geometry, with so many walls tried."""
     best = method_settings("best")
-    return replace(best, geometry=geometry, rework=replace(best.rework, rounds=budget - 1))  # type: ignore[arg-type]
+    return replace(best, geometry=geometry, search=replace(best.search, budget=budget))  # type: ignore[arg-type]
 
 
 def built_walls(

@@ -45,23 +45,28 @@ class Stopped:
 
 
 @dataclass(frozen=True)
-class Round:
-    """What a round of rework came to (:mod:`drystone.planner.rework`).
+class Incumbent:
+    """The best wall of a search so far (:mod:`drystone.search`).
 
     Parameters
     ----------
-    number, rounds : int
-        Of how many.
+    walls : int
+        How many have been built: the budget that repeats it.
     stones : int
-        Placed in the best wall so far.
+        Placed in the best one.
     merit : float
-        Of the best wall so far.
+        What the goal makes of it; higher is better.
+    F_SF, F_LR, F_AV, F_AH : float
+        Its figures of merit at the working resolution.
     """
 
-    number: int
-    rounds: int
+    walls: int
     stones: int
     merit: float
+    F_SF: float
+    F_LR: float
+    F_AV: float
+    F_AH: float
 
 
 class Callbacks:
@@ -70,5 +75,5 @@ class Callbacks:
     def on_step(self, step: Step) -> None:
         """Follow the first pass: an action was chosen."""
 
-    def on_round(self, round_: Round) -> None:
-        """Follow the rework: a round is over."""
+    def on_walls(self, incumbent: Incumbent) -> None:
+        """Follow the search: more walls have been built."""

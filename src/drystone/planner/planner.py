@@ -5,19 +5,18 @@ from concurrent.futures import Executor
 
 import numpy as np
 
-from drystone.model.landscape import Landscape
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.attempt import Attempt
-from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.build import Build, Candidate
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.events import Callbacks, Step, Stopped
 from drystone.planner.profile import Profile
+from drystone.planner.replay import judged
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.vary import varied
 from drystone.planner.workshop import Workshop
-from drystone.stabilise.stabilise import Stabilised
 
 
 class Planner:
@@ -124,8 +123,8 @@ class Planner:
         )
 
     def _added(self, build: Build, action: Candidate) -> Build:
-        """Return the state after an action; rework goes back to the one before."""
-        return build.add(action, keep=self.settings.rework.rounds > 0)
+        """Return the state after an action; a search goes back to those before."""
+        return build.add(action, keep=self.settings.search.budget > 1)
 
     def _why_stop(self, failures: int) -> Stopped | None:
         """Say why construction ends here; None when it goes on."""
@@ -150,17 +149,8 @@ class Planner:
         course_heights_px : mapping of int to float
             For stones that began a course: the height that Eq. 8 compared with.
         """
-        workshop = self.workshop
-        evaluator = Evaluator(self.settings, workshop.stock, self.profile)
+        evaluator = Evaluator(self.settings, self.workshop.stock, self.profile)
         build = self._empty()
         for group in wall.groups:
-            placement = group.placement
-            proposal = Proposal(
-                Stabilised(placement, group.wedges),
-                placement.posed.angle_deg,
-                course_height_px=course_heights_px.get(placement.stone_id),
-            )
-            landscape = Landscape.of(build.wall, placement.side)
-            action = evaluator.judge(build, landscape, proposal)
-            build = self._added(build, action)
+            build = self._added(build, judged(build, group, course_heights_px, evaluator))
         self.build = build

@@ -10,6 +10,7 @@ from drystone.clusters import ClusterSettings
 from drystone.errors import UsageError
 from drystone.model.settings import check_finite, updated
 from drystone.placement.settings import PlacementSettings
+from drystone.planner.search_settings import GoalSettings, SearchSettings
 from drystone.poses import orientation_step_deg
 from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.sampling import Sampling
@@ -36,38 +37,6 @@ class StopSettings:
     def __post_init__(self) -> None:
         if not 0 < self.filling <= 1 or self.failures < 1:
             raise ValueError("filling must be in (0, 1], failures positive")
-
-
-@dataclass(frozen=True, kw_only=True)
-class ReworkSettings:
-    """How a finished wall is improved (:mod:`drystone.planner.rework`).
-
-    Parameters
-    ----------
-    rounds : int
-        How often its upper part is taken down and built again; 0 in the paper.
-    deepest : float
-        Largest share of the stones that is taken down.
-    spread : float
-        Standard deviation of the logarithm of the random factors on the craft weights.
-    filling, resistance, vertical, horizontal, level, flush : float
-        Weights of F_SF over what is possible, F_LR, F_AV, F_AH, T_LEVEL and E_FLUSH in the merit
-        of a wall.
-    """
-
-    rounds: int = 0
-    deepest: float = 0.6
-    spread: float = 0.5
-    filling: float = 15.0
-    resistance: float = 1.0
-    vertical: float = 0.025
-    horizontal: float = 0.1
-    level: float = 0.5
-    flush: float = 0.25
-
-    def __post_init__(self) -> None:
-        if self.rounds < 0 or not 0 < self.deepest <= 1 or self.spread < 0:
-            raise ValueError("rounds and spread must not be negative, deepest in (0, 1]")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,7 +67,7 @@ class PlannerSettings:
         weights of a wall.
     skip_too_large : bool
         Leave out stones that fit into the wall in no orientation instead of refusing them.
-    clusters, placement, stabilise, settle, selection, score, rework, stop
+    clusters, placement, stabilise, settle, selection, score, search, goal, stop
         Settings of the stages.
     """
 
@@ -117,7 +86,8 @@ class PlannerSettings:
     settle: SettleSettings = field(default_factory=SettleSettings)
     selection: SelectionSettings = field(default_factory=SelectionSettings)
     score: ScoreSettings = field(default_factory=ScoreSettings)
-    rework: ReworkSettings = field(default_factory=ReworkSettings)
+    search: SearchSettings = field(default_factory=SearchSettings)
+    goal: GoalSettings = field(default_factory=GoalSettings)
     stop: StopSettings = field(default_factory=StopSettings)
 
     def __post_init__(self) -> None:
@@ -174,7 +144,7 @@ METHODS: Mapping[str, PlannerSettings] = types.MappingProxyType(
             placement=PlacementSettings(rule="snug", reach="above", tries=4, compare=True),
             stabilise=StabiliseSettings(margin=0.1),
             score=ScoreSettings(thickness=1.5, llc=4.0),
-            rework=ReworkSettings(rounds=8),
+            search=SearchSettings(budget=16),
         ),
     }
 )

@@ -1,5 +1,6 @@
 """From stones to a finished plan in one call."""
 
+import math
 import time
 from collections.abc import Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor
@@ -18,11 +19,14 @@ from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame, assemble_plan, plan_metrics
 from drystone.planner.build import Build
-from drystone.planner.events import Callbacks, Round, Stopped
+from drystone.planner.events import Callbacks, Incumbent, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
-from drystone.planner.rework import rework
 from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.search.anytime import Progress, searching
+from drystone.search.found import Found
+from drystone.search.packed import Packed, found_again
+from drystone.search.processes import processes
 from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
@@ -104,6 +108,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     settings: PlannerSettings | None = None,
     scale: float | None = None,
     px_per_m: float | None = None,
+    seconds: float = math.inf,
     n_jobs: int = 1,
     executor: Executor | None = None,
     callbacks: Callbacks | None = None,
@@ -128,19 +133,24 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         Working resolution over source resolution, in (0, 1]; chosen when missing.
     px_per_m : float, optional
         Source px in a metre; the plan is then in metres.
+    seconds : float
+        Time after which the search begins no further wall, where its budget does not end before.
+        The plan's settings hold the budget that was used, which repeats the plan.
     n_jobs : int
-        Threads that evaluate candidates; never changes the result.
+        Processes that build the walls of a search, threads that evaluate candidates where a
+        single wall is built; never changes the result.
     executor : concurrent.futures.Executor, optional
-        Used instead of `n_jobs` threads; must share memory, such as a thread pool.
+        Used for candidates; must share memory, such as a thread pool.
     callbacks : Callbacks, optional
-        Told of every step and every round of rework.
+        Told of every step of the first wall, and of the best wall of a search.
     built, course_heights_px : Wall and mapping, optional
         What is built already, to go on from (:meth:`Planner.restore`).
 
     Returns
     -------
     result : PlanResult
-        An interrupt (Ctrl-C) ends construction; the result then holds what is built.
+        An interrupt (Ctrl-C) ends the search, and the result is the best wall so far; while the
+        first wall is built, the result holds what is built.
 
     Examples
     --------
@@ -158,8 +168,9 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         raise UsageError("E125", f"a scale of {scale} is not in (0, 1].", where="--scale")
     frame = Frame(width, height, Site.from_source(width, height, scale, px_per_m))
     started = time.perf_counter()
-    own = ThreadPoolExecutor(n_jobs) if executor is None and n_jobs > 1 else None
-    with own or nullcontext():
+    single = settings.search.budget == 1
+    own = ThreadPoolExecutor(n_jobs) if executor is None and n_jobs > 1 and single else None
+    with own or nullcontext(), processes(1 if single else n_jobs) as workers:
         first = Planner(
             stones,
             frame.site,
@@ -170,15 +181,16 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         )
         if built is not None:
             first.restore(built, course_heights_px or {})
-        planner, stopped = run_to_end(first)
-    seconds = time.perf_counter() - started
+        planner, stopped, walls = run_to_end(first, seconds=seconds, executor=workers)
+    took = time.perf_counter() - started
+    used = replace(settings, search=replace(settings.search, budget=walls))
     provenance = {
         "version": version("drystone"),
         "method": method,
         "seed": seed,
-        "settings": settings.as_dict(),
+        "settings": used.as_dict(),
     }
-    result = finish(planner, frame, stopped, provenance, seconds)
+    result = finish(planner, frame, stopped, provenance, took)
     return replace(result, notices=_notices(first))
 
 
@@ -197,29 +209,89 @@ def _notices(planner: Planner) -> tuple[Notice, ...]:
     return tuple(Notice("W303", text, cure) for text in said)
 
 
-def run_to_end(planner: Planner) -> tuple[Planner, Stopped]:
-    """Take all steps and all rounds of rework; an interrupt keeps the best so far.
+def run_to_end(
+    planner: Planner,
+    *,
+    seconds: float = math.inf,
+    executor: Executor | None = None,
+) -> tuple[Planner, Stopped, int]:
+    """Build a first wall, and look for better ones; an interrupt keeps the best so far.
+
+    Parameters
+    ----------
+    planner : Planner
+        Of the first wall.
+    seconds : float
+        Time after which no further wall is begun, from now.
+    executor : concurrent.futures.Executor, optional
+        Processes for the search.
 
     Returns
     -------
     planner : Planner
         The one that built the best wall.
     stopped : Stopped
-        Why construction ended.
+        Why its construction ended.
+    walls : int
+        How many walls were built: the budget that repeats it.
     """
-    best = planner
-    rounds = planner.settings.rework.rounds
+    started = time.perf_counter()
     try:
         for _ in planner.steps():
             pass
-        for number, incumbent in enumerate(rework(planner) if rounds else ()):
-            best = incumbent.planner
-            stones = len(best.build.actions)
-            planner.callbacks.on_round(Round(number, rounds, stones, incumbent.merit))
     except KeyboardInterrupt:
-        return best, Stopped("interrupted", "interrupted")
-    assert best.stopped is not None  # noqa: S101 - steps() ended by itself
-    return best, best.stopped
+        return planner, Stopped("interrupted", "interrupted"), 1
+    assert planner.stopped is not None  # noqa: S101 - steps() ended by itself
+    if planner.settings.search.budget == 1:
+        return planner, planner.stopped, 1
+    workshop, settings = planner.workshop, planner.settings
+    first = Found.of(planner)
+    left = seconds - (time.perf_counter() - started)
+    best, walls = Packed.of(first), 1
+    try:
+        for progress in searching(
+            first, workshop, settings, planner.seed, seconds=left, executor=executor
+        ):
+            best, walls = progress.best, progress.walls
+            planner.failed_solves = progress.solves.failed
+            planner.cold_solves = progress.solves.cold
+            planner.callbacks.on_walls(_incumbent(progress))
+    except KeyboardInterrupt:
+        pass  # every wall of a search is complete
+    return *_ended(planner, best), walls
+
+
+def _ended(planner: Planner, best: Packed) -> tuple[Planner, Stopped]:
+    """Return a planner with the best wall, and why nothing more can be placed there."""
+    workshop, settings = planner.workshop, planner.settings
+    last = Planner(
+        workshop.stones,
+        workshop.site,
+        seed=planner.seed,
+        settings=settings,
+        workshop=workshop,
+        profile=planner.profile,
+    )
+    last.build = found_again(best, workshop, settings).build
+    for _ in last.steps():
+        pass
+    assert last.stopped is not None  # noqa: S101 - steps() ended by itself
+    return last, last.stopped
+
+
+def _incumbent(progress: Progress) -> Incumbent:
+    figures = progress.best.figures
+    if figures is None:
+        return Incumbent(progress.walls, 0, progress.best.merit, 0.0, 0.0, 0.0, 0.0)
+    return Incumbent(
+        progress.walls,
+        figures.stones,
+        progress.best.merit,
+        figures.F_SF,
+        figures.F_LR,
+        figures.F_AV,
+        figures.F_AH,
+    )
 
 
 def finish(

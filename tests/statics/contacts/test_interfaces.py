@@ -218,7 +218,7 @@ def test_interfaces_of_tilted_joints_equal_their_naive_twin(seed):
 
 def test_interfaces_of_a_planned_wall_equal_their_naive_twin(data_dir):
     stones = read_stones(data_dir / "almeida" / "IR.png")
-    settings = method_settings("paper").updated({"rework": {"rounds": 0}})
+    settings = method_settings("paper").updated({"search": {"budget": 1}})
     labels = plan_wall(stones, 560, 160, scale=0.25, seed=1, settings=settings).wall.labels
     assert len(np.unique(labels)) > 15
     assert_equals_naive(labels)

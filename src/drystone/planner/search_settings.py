@@ -1,0 +1,86 @@
+"""What the search for better walls (:mod:`drystone.search`) goes by."""
+
+from dataclasses import dataclass
+
+AIMS = ("F_SF", "F_LR", "F_AV", "F_AH")
+"""Figures of merit that may have an aim."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GoalSettings:
+    """What makes a finished wall good: the weighted sum of its figures of merit.
+
+    Parameters
+    ----------
+    filling : float
+        Weight of F_SF over the largest that the stones allow.
+    resistance, vertical, horizontal, level, flush : float
+        Weights of F_LR (up to 1), F_AV, F_AH, T_LEVEL and E_FLUSH; the last three count against
+        a wall.
+    F_SF, F_LR, F_AV, F_AH : float
+        Aims: what is better than its aim counts no more than the aim; 0 is none.
+    urgent : float
+        Factor on the weight of figures that have an aim.
+    """
+
+    filling: float = 15.0
+    resistance: float = 1.0
+    vertical: float = 0.025
+    horizontal: float = 0.1
+    level: float = 0.5
+    flush: float = 0.25
+    F_SF: float = 0.0
+    F_LR: float = 0.0
+    F_AV: float = 0.0
+    F_AH: float = 0.0
+    urgent: float = 4.0
+
+    def __post_init__(self) -> None:
+        if not self.urgent > 0:
+            raise ValueError("urgent must be positive")
+        if min(self.F_SF, self.F_LR, self.F_AV, self.F_AH) < 0:
+            raise ValueError("aims must not be negative")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SearchSettings:
+    """How better walls are looked for after the first.
+
+    Parameters
+    ----------
+    budget : int
+        How many walls are built, the first one among them; 1 in the paper.
+    passes : int
+        How many of them are first walls, from seed to seed; then the search goes on from the best.
+    chains : int
+        How many walls are improved side by side, each from its own.
+    share_every : int
+        Walls after which each chain that is behind may go on from the best.
+    largest : float
+        Largest share of the stones that is chosen to be taken down; what rests on them goes too.
+    spread : float
+        Standard deviation of the logarithm of the random factors on the craft weights with which
+        the wall is built up again.
+    warm, cold : float
+        Temperatures of annealing, in units of merit, at the start and at the end of each cycle.
+    cycle : int
+        Walls of a chain in its first cycle; every further one is twice as long.
+    """
+
+    budget: int = 1
+    passes: int = 8
+    chains: int = 4
+    share_every: int = 8
+    largest: float = 0.3
+    spread: float = 0.5
+    warm: float = 0.15
+    cold: float = 0.01
+    cycle: int = 64
+
+    def __post_init__(self) -> None:
+        if min(self.budget, self.passes, self.chains, self.share_every, self.cycle) < 1:
+            raise ValueError("budget, passes, chains, share_every and cycle must be positive")
+        if not 0 < self.largest <= 1 or self.spread < 0:
+            raise ValueError("largest must be in (0, 1], spread not negative")
+        if not 0 < self.cold <= self.warm:
+            raise ValueError("temperatures must be positive, cold not above warm")

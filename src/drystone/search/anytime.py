@@ -1,0 +1,146 @@
+"""An anytime search: first walls from many seeds, then chains that share their best.
+
+Everything that is drawn depends on the seed and on the number of a wall, and what chains share on
+how many walls they have built: the same budget gives the same wall, however many processes work
+and whatever the clock says.  The clock decides only how large the budget is.
+"""
+
+import math
+import pickle
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.workshop import Workshop
+from drystone.search.found import Found, Solves
+from drystone.search.packed import Packed
+from drystone.search.work import Job, PackedLink, more_links, one_pass
+
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True, eq=False)
+class Progress:
+    """How far a search is.
+
+    Parameters
+    ----------
+    walls : int
+        How many walls it has built that count: the budget that repeats it.
+    best : Packed
+        The best of them.
+    solves : Solves
+        What trouble there was with all of them.
+    """
+
+    walls: int
+    best: Packed
+    solves: Solves
+
+
+def searching(
+    first: Found,
+    workshop: Workshop,
+    settings: PlannerSettings,
+    seed: int,
+    *,
+    seconds: float = math.inf,
+    executor: Executor | None = None,
+) -> Iterator[Progress]:
+    """Look for better walls than a first one.
+
+    Parameters
+    ----------
+    first : Found
+        The wall of the seed itself.
+    workshop : Workshop
+        Stones and site.
+    settings : PlannerSettings
+        All parameters; those of the search say how many walls are built at most.
+    seed : int
+        Of everything that is drawn.
+    seconds : float
+        Time after which no further wall is begun, as far as the budget does not end before.
+    executor : concurrent.futures.Executor, optional
+        Processes that build walls side by side; the walls do not depend on it.
+
+    Yields
+    ------
+    Progress
+        After the first wall, and whenever walls have been added.
+    """
+    tools = pickle.dumps((workshop.stones, workshop.site, settings))
+    job = Job(tools, seed, time.time() + seconds)
+    search, start = settings.search, Packed.of(first)
+    found = [start]
+    yield Progress(1, start, start.solves)
+    passes = range(1, min(search.passes, search.budget))
+    for wall in _mapped(executor, one_pass, [(job, number) for number in passes]):
+        if wall is None:
+            return
+        found.append(wall)
+        yield Progress(len(found), _best(found), _all_solves(found))
+    links = _links(found, search.chains)
+    walls, before = len(found), _all_solves(found)
+    while walls < search.budget:
+        counts = _shares(search.budget - walls, search.chains, search.share_every)
+        tasks = [(job, link, count) for link, count in zip(links, counts, strict=True) if count]
+        for k, link in enumerate(_mapped(executor, more_links, tasks)):
+            if link is None:
+                return
+            links[k] = link
+            walls += counts[k]
+            best = _best([one.best for one in links])
+            yield Progress(walls, best, before + _all_solves(links))
+        links = _shared(links)
+
+
+def _best(walls: Sequence[Packed]) -> Packed:
+    """Return the best wall; of equal ones the first."""
+    return max(walls, key=lambda wall: wall.merit)
+
+
+def _all_solves(walls: Sequence[Packed] | Sequence[PackedLink]) -> Solves:
+    return sum((wall.solves for wall in walls), Solves())
+
+
+def _links(found: Sequence[Packed], chains: int) -> list[PackedLink]:
+    """Begin a chain from each of the best walls; from the best again where there are too few."""
+    order = sorted(range(len(found)), key=lambda k: (-found[k].merit, k))
+    starts = [found[order[k] if k < len(order) else order[0]] for k in range(chains)]
+    return [PackedLink(k, 0, start, start, Solves()) for k, start in enumerate(starts)]
+
+
+def _shares(left: int, chains: int, each: int) -> list[int]:
+    """Say how many walls each chain builds next: all the same, but for the end of the budget."""
+    return [min(each, max(0, left - k * each)) for k in range(chains)]
+
+
+def _shared(links: list[PackedLink]) -> list[PackedLink]:
+    """Let the chain that is furthest behind go on from the best wall."""
+    best = _best([link.best for link in links])
+    last = min(range(len(links)), key=lambda k: (links[k].best.merit, -k))
+    if links[last].best.merit < best.merit:
+        links[last] = replace(links[last], now=best, best=best)
+    return links
+
+
+def _mapped(
+    executor: Executor | None,
+    work: Callable[..., Result | None],
+    tasks: Sequence[tuple[object, ...]],
+) -> Iterator[Result | None]:
+    """Do tasks, and give their results in order; after one that came too late there is no more."""
+    if executor is None:
+        yield from (work(*task) for task in tasks)
+        return
+    futures = [executor.submit(work, *task) for task in tasks]
+    try:
+        for future in futures:
+            yield future.result()
+    finally:
+        for future in futures:
+            future.cancel()

@@ -1,0 +1,171 @@
+"""One chain of walls: ruin and recreate, annealed.
+
+A part of the wall is taken down with all that rests on it, and built up again with other craft
+weights.  Better walls are kept, worse ones with a probability that falls with the temperature.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.random import Generator
+
+from drystone.planner.build import Build
+from drystone.planner.planner import Planner
+from drystone.planner.replay import replayed
+from drystone.planner.search_settings import SearchSettings
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.vary import varied
+from drystone.planner.workshop import Workshop
+from drystone.search.found import Found, Solves, course_heights
+from drystone.search.packed import Packed, found_again
+from drystone.search.ruin import RUINS, taken_down
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """Where a chain is.
+
+    Parameters
+    ----------
+    number : int
+        Of the chain.
+    done : int
+        How many walls it has built.
+    now : Found
+        The wall that it goes on from.
+    best : Packed
+        The best that it found.
+    solves : Solves
+        What trouble there was with all of them.
+    """
+
+    number: int
+    done: int
+    now: Found
+    best: Packed
+    solves: Solves
+
+
+def lengthened(
+    link: Link,
+    count: int,
+    seed: int,
+    workshop: Workshop,
+    settings: PlannerSettings,
+    late: Callable[[], bool] = lambda: False,
+) -> Link | None:
+    """Build some more walls of a chain.
+
+    Parameters
+    ----------
+    link : Link
+        Where it is.
+    count : int
+        How many walls.
+    seed : int
+        Of the search; what is drawn for a wall depends on it, on the chain and on the number of
+        the wall.
+    workshop : Workshop
+        Stones and site.
+    settings : PlannerSettings
+        All parameters.
+    late : callable
+        Asked before every wall; says whether it is too late for another.
+
+    Returns
+    -------
+    Link or None
+        None when it was too late: the walls that were built by then are forgotten, as how many
+        they are depends on the machine.
+    """
+    search = settings.search
+    for _ in range(count):
+        if late():
+            return None
+        position, length = in_cycle(link.done, search.cycle)
+        if position == 0:
+            link = replace(link, now=found_again(link.best, workshop, settings))
+        rng = np.random.default_rng([seed, 3_000_000 + link.number, link.done])
+        found = recreated(link.now, workshop, settings, rng)
+        best = Packed.of(found) if found.merit > link.best.merit + 1e-12 else link.best
+        now = found if _accepted(found, link.now, position / length, search, rng) else link.now
+        link = Link(link.number, link.done + 1, now, best, link.solves + found.solves)
+    return link
+
+
+def in_cycle(done: int, first: int) -> tuple[int, int]:
+    """Return the position in a cycle of annealing, and its length; each is twice the one before.
+
+    Examples
+    --------
+    >>> [in_cycle(done, 2) for done in range(7)]
+    [(0, 2), (1, 2), (0, 4), (1, 4), (2, 4), (3, 4), (0, 8)]
+    """
+    length = first
+    while done >= length:
+        done -= length
+        length *= 2
+    return done, length
+
+
+def _accepted(
+    found: Found, now: Found, share: float, search: SearchSettings, rng: Generator
+) -> bool:
+    """Say whether a chain goes on from a wall that it found."""
+    temperature = search.warm * (search.cold / search.warm) ** share
+    loss = now.merit - found.merit
+    return loss <= 0 or bool(rng.random() < math.exp(-loss / temperature))
+
+
+def recreated(found: Found, workshop: Workshop, settings: PlannerSettings, rng: Generator) -> Found:
+    """Take a part of a wall down and build it up again.
+
+    Parameters
+    ----------
+    found : Found
+        The wall.
+    workshop : Workshop
+        Stones and site.
+    settings : PlannerSettings
+        All parameters.
+    rng : numpy.random.Generator
+        Draws what is taken down, and the weights with which it is built up.
+    """
+    if found.figures is None:
+        build = found.build
+    else:
+        names = list(RUINS)
+        ruin = RUINS[names[int(rng.integers(len(names)))]]
+        gone = taken_down(found.build, ruin, settings.search, rng)
+        build = without(found.build, gone, workshop, settings)
+    return Found.of(built_up(build, workshop, settings, rng))
+
+
+def without(
+    build: Build, gone: frozenset[int], workshop: Workshop, settings: PlannerSettings
+) -> Build:
+    """Return a wall without some stones; those that do not stand without them go as well."""
+    groups = build.wall.groups
+    first = next((k for k, g in enumerate(groups) if g.placement.stone_id in gone), len(groups))
+    kept = [g for g in groups[first:] if g.placement.stone_id not in gone]
+    start = build.states()[first]
+    return replayed(start, kept, course_heights(build), workshop, settings, strict=False)[0]
+
+
+def built_up(
+    build: Build, workshop: Workshop, settings: PlannerSettings, rng: Generator
+) -> Planner:
+    """Build on to the end, with craft weights varied."""
+    planner = Planner(
+        workshop.stones,
+        workshop.site,
+        seed=int(rng.integers(2**31)),
+        settings=varied(settings, settings.search.spread, rng),
+        workshop=workshop,
+    )
+    planner.build = build
+    for _ in planner.steps():
+        pass
+    return planner

@@ -1,0 +1,79 @@
+"""A finished wall and what it is worth."""
+
+from dataclasses import dataclass, field
+
+from drystone.planner.build import Build
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.workshop import Workshop
+from drystone.search.goal import Figures, figures_of, merit_of, possible_filling
+
+
+@dataclass(frozen=True)
+class Solves:
+    """How often the solver had trouble with a candidate while walls were built.
+
+    Parameters
+    ----------
+    failed : int
+        It gave up, and the candidate was passed over.
+    cold : int
+        It had to start anew, which costs time alone.
+    """
+
+    failed: int = 0
+    cold: int = 0
+
+    def __add__(self, other: "Solves") -> "Solves":
+        """Add up."""
+        return Solves(self.failed + other.failed, self.cold + other.cold)
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A finished wall and what it is worth.
+
+    Parameters
+    ----------
+    build : Build
+        The wall.
+    figures : Figures or None
+        Its figures of merit; None when it is empty.
+    merit : float
+        Their weighted sum.
+    solves : Solves
+        What trouble there was with it.
+    """
+
+    build: Build
+    figures: Figures | None
+    merit: float
+    solves: Solves = field(default_factory=Solves)
+
+    @classmethod
+    def of(cls, planner: Planner) -> "Found":
+        """Measure what a planner has built."""
+        solves = Solves(planner.failed_solves, planner.cold_solves)
+        return cls.measured(planner.build, planner.workshop, planner.settings, solves)
+
+    @classmethod
+    def measured(
+        cls,
+        build: Build,
+        workshop: Workshop,
+        settings: PlannerSettings,
+        solves: Solves | None = None,
+    ) -> "Found":
+        """Measure a wall."""
+        figures = figures_of(build)
+        merit = merit_of(figures, possible_filling(workshop), settings.goal)
+        return cls(build, figures, merit, solves or Solves())
+
+
+def course_heights(build: Build) -> dict[int, float]:
+    """Return what Eq. 8 compared the stones with that began a course."""
+    return {
+        action.stone_id: action.course_height_px
+        for action in build.actions
+        if action.course_height_px is not None
+    }

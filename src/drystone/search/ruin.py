@@ -1,0 +1,149 @@
+"""What is taken down of a wall before it is built up again."""
+
+import math
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from numpy.random import Generator
+
+from drystone.metrics.joints import joint_mask
+from drystone.metrics.paths import vertical_paths
+from drystone.planner.build import Build
+from drystone.planner.search_settings import SearchSettings
+from drystone.statics.limit import lateral_resistance
+
+Ids = frozenset[int]
+Points = np.ndarray
+Ruin = Callable[[Build, int, Generator], Ids]
+
+BEARS = 0.2
+"""A contact bears what is above it when its normal points up by at least this."""
+
+
+def taken_down(build: Build, ruin: Ruin, settings: SearchSettings, rng: Generator) -> Ids:
+    """Choose stones by a ruin, and all that rest on them."""
+    stones = len(build.actions)
+    most = max(1, round(settings.largest * stones))
+    count = int(rng.integers(1, most + 1))
+    return with_all_above(build, ruin(build, count, rng))
+
+
+def with_all_above(build: Build, chosen: Ids) -> Ids:
+    """Add the stones that rest on some, and those on these."""
+    stone_of = {g.placement.stone_id: g.placement.stone_id for g in build.wall.groups}
+    stone_of |= {w.id: w.under for g in build.wall.groups for w in g.wedges}
+    above: dict[int, set[int]] = {}
+    for one in build.model.interfaces:
+        if abs(one.normal[1]) < BEARS or one.other not in stone_of or one.block not in stone_of:
+            continue
+        high, low = (one.block, one.other) if one.normal[1] > 0 else (one.other, one.block)
+        above.setdefault(stone_of[low], set()).add(stone_of[high])
+    found, todo = set(chosen), list(chosen)
+    while todo:
+        for stone in above.get(todo.pop(), set()) - found:
+            found.add(stone)
+            todo.append(stone)
+    return frozenset(found)
+
+
+def centres(build: Build) -> tuple[list[int], Points]:
+    """Return the ids of the stones and their centroids in the wall frame, working px."""
+    height = build.wall.site.height_px
+    placements = build.wall.placements
+    return (
+        [p.stone_id for p in placements],
+        np.array([p.centroid(height) for p in placements], float),
+    )
+
+
+def _nearest(build: Build, point: Points, count: int) -> Ids:
+    ids, at = centres(build)
+    order = np.argsort(np.hypot(*(at - point).T), kind="stable")
+    return frozenset(ids[k] for k in order[:count].tolist())
+
+
+def disc(build: Build, count: int, rng: Generator) -> Ids:
+    """Take the stones around one of them."""
+    ids, at = centres(build)
+    return _nearest(build, at[int(rng.integers(len(ids)))], count)
+
+
+def top(build: Build, count: int, rng: Generator) -> Ids:
+    """Take the highest stones of the whole wall."""
+    del rng
+    ids, at = centres(build)
+    order = np.argsort(-at[:, 1], kind="stable")
+    return frozenset(ids[k] for k in order[:count].tolist())
+
+
+def column(build: Build, count: int, rng: Generator) -> Ids:
+    """Take the upper stones around a vertical line."""
+    ids, at = centres(build)
+    x = float(rng.uniform(0, build.wall.site.width_px))
+    order = np.argsort(np.abs(at[:, 0] - x) - 0.5 * at[:, 1], kind="stable")
+    return frozenset(ids[k] for k in order[:count].tolist())
+
+
+def end(build: Build, count: int, rng: Generator) -> Ids:
+    """Take the stones at one end, from the top down."""
+    ids, at = centres(build)
+    width, height = build.wall.site.width_px, build.wall.site.height_px
+    away = at[:, 0] if rng.integers(2) else width - at[:, 0]
+    order = np.argsort(away - (at[:, 1] - height), kind="stable")
+    return frozenset(ids[k] for k in order[:count].tolist())
+
+
+def joint(build: Build, count: int, rng: Generator) -> Ids:
+    """Take the stones around a piece of one of the shortest vertical joint paths (F_AV)."""
+    paths = vertical_paths(joint_mask(build.wall.labels))[:5]
+    if not paths:
+        return disc(build, count, rng)
+    pixels = paths[int(rng.integers(len(paths)))].pixels
+    row, col = pixels[int(rng.integers(len(pixels)))].tolist()
+    # The joint image has a pixel more on the left and on top.
+    return _nearest(build, np.array([col - 0.5, build.wall.site.height_px - row + 0.5]), count)
+
+
+def step(build: Build, count: int, rng: Generator) -> Ids:
+    """Take the stones around a place where neighbours' tops are not level (F_AH, T_LEVEL)."""
+    ids, at = centres(build)
+    labels = build.wall.labels
+    tops = {i: labels.shape[0] - p.row for i, p in zip(ids, build.wall.placements, strict=True)}
+    beside = [
+        (one.block, one.other)
+        for one in build.model.interfaces
+        if abs(one.normal[1]) < BEARS and one.block in tops and one.other in tops
+    ]
+    if not beside:
+        return disc(build, count, rng)
+    steps = np.array([abs(tops[a] - tops[b]) for a, b in beside], float) + 1e-3
+    a, b = beside[int(rng.choice(len(beside), p=steps / steps.sum()))]
+    return _nearest(build, (at[ids.index(a)] + at[ids.index(b)]) / 2.0, count)
+
+
+def mechanism(build: Build, count: int, rng: Generator) -> Ids:
+    """Take the stones around one that moves when the wall fails (F_LR)."""
+    found = lateral_resistance(build.model, mechanism=True)
+    sides = [side for side in (found.left, found.right) if side.mechanism is not None]
+    if not sides:
+        return disc(build, count, rng)
+    weaker = min(sides, key=lambda side: math.inf if side.alpha is None else abs(side.alpha))
+    assert weaker.mechanism is not None  # noqa: S101 - those without are left out
+    ids, at = centres(build)
+    velocity = dict(zip(weaker.mechanism.block_ids, weaker.mechanism.velocity, strict=True))
+    speed = np.array([np.hypot(*velocity[i][:2]) for i in ids])
+    if not speed.sum() > 0:
+        return disc(build, count, rng)
+    return _nearest(build, at[int(rng.choice(len(ids), p=speed / speed.sum()))], count)
+
+
+RUINS: Mapping[str, Ruin] = {
+    "disc": disc,
+    "top": top,
+    "column": column,
+    "end": end,
+    "joint": joint,
+    "step": step,
+    "mechanism": mechanism,
+}
+"""By name, in the order in which they are drawn."""

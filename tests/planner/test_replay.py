@@ -1,0 +1,226 @@
+"""Steps taken again are those that were taken, wherever they still stand."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from drystone.generate import RubbleSettings, rubble_stones
+from drystone.model.outlines import Outlines
+from drystone.model.placement import Placement, Settled
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.model.wall import Group
+from drystone.planner.build import Build, Candidate
+from drystone.planner.evaluate import Evaluator
+from drystone.planner.planner import Planner
+from drystone.planner.replay import judged, replayed, stands
+from drystone.planner.settings import PlannerSettings
+from drystone.settle.placing import settled_placement
+from drystone.settle.rest import placed_outline
+from tests.planner.scenes import blocks, finish, greedy
+
+WEDGES = {
+    "selection_rule": "algorithm2",
+    "stabilise": {"method": "wedge", "min_wedge_px": 1, "margin": 0.3, "max_wedge_height": 0.9},
+    "two_sided": False,
+}
+RASTER = greedy({"geometry": "raster", **WEDGES})
+EXACT = greedy(WEDGES)
+BOTH = pytest.mark.parametrize("settings", [EXACT, RASTER], ids=["exact", "raster"])
+
+
+def few_stones() -> StoneSet:
+    """Two of these get wedges."""
+    size = RubbleSettings(count=5, width_px=90, height_px=30, courses=2)
+    return rubble_stones(size, np.random.default_rng(1))
+
+
+def wedged_wall(settings: PlannerSettings) -> Planner:
+    """A wall with wedges, and all states on the way."""
+    settings = settings.updated({"search": {"budget": 2}})
+    scale = 0.5 if settings.geometry == "exact" else 1.0
+    site = Site.from_source(84.0, 34.0, scale)
+    return finish(Planner(few_stones(), site, seed=3, settings=settings))
+
+
+def heights(build: Build) -> dict[int, float]:
+    return {a.stone_id: a.course_height_px for a in build.actions if a.course_height_px is not None}
+
+
+def figures(build: Build) -> list[tuple[object, ...]]:
+    """What was placed in each action, in which pixels, and what was found of it."""
+    told: list[tuple[object, ...]] = []
+    for action in build.actions:
+        placement, wedges = action.stabilised.placement, action.stabilised.wedges
+        told.append(
+            (
+                placement.stone_id, placement.row, placement.col, placement.posed.mask.tobytes(),
+                placement.side, placement.rotation_moves, placement.settled is None,
+                tuple((w.id, w.under, w.row, w.col, w.mask.tobytes()) for w in wedges),
+                action.indices, action.course_height_px,
+                (action.resistance.left.alpha, action.resistance.right.alpha),
+                action.sturdy, action.sturdy_model is None,
+            )
+        )  # fmt: skip
+    return told
+
+
+@BOTH
+@pytest.mark.parametrize("kept", [0, 2])
+def test_what_is_taken_down_is_built_again_as_it_was(settings: PlannerSettings, kept: int) -> None:
+    planner = wedged_wall(settings)
+    build = planner.build
+    states = build.states()
+    assert sum(len(g.wedges) for g in build.wall.groups[kept:]) > 0
+    again, left_out = replayed(
+        states[kept], build.wall.groups[kept:], heights(build), planner.workshop, planner.settings
+    )
+    assert left_out == ()
+    assert figures(again) == figures(build)
+    assert again.wall.labels.tobytes() == build.wall.labels.tobytes()
+    assert [i.points.tobytes() for i in again.model.interfaces] == [
+        i.points.tobytes() for i in build.model.interfaces
+    ]
+    assert all(one is other.before for one, other in pairwise(again.states()))
+    assert again.states()[: kept + 1] == states[: kept + 1]
+
+
+@BOTH
+def test_states_are_kept_when_they_are_asked_for(settings: PlannerSettings) -> None:
+    planner = wedged_wall(settings)
+    groups = planner.build.wall.groups
+    again, _ = replayed(
+        planner.build.states()[0], groups, {}, planner.workshop, planner.settings, keep=False
+    )
+    assert len(again.actions) == len(groups)
+    assert again.states() == (again,)
+
+
+@BOTH
+def test_wedges_are_numbered_in_the_order_in_which_they_come_now(settings: PlannerSettings) -> None:
+    planner = wedged_wall(settings)
+    wall, empty = planner.build.wall, planner.build.states()[0]
+    groups = [
+        replace(g, wedges=tuple(replace(w, id=w.id + 100) for w in g.wedges)) for g in wall.groups
+    ]
+    again, left_out = replayed(empty, groups, {}, planner.workshop, planner.settings)
+    assert left_out == ()
+    assert [w.id for w in again.wall.wedges] == [w.id for w in wall.wedges]
+    assert [w.under for w in again.wall.wedges] == [w.under for w in wall.wedges]
+    assert again.wall.labels.tobytes() == wall.labels.tobytes()
+    assert planner.workshop.next_wedge(again) == max(w.id for w in wall.wedges) + 1
+
+
+STONES = blocks({1: (20, 10), 2: (20, 10), 3: (20, 10), 4: (20, 10)})
+PLAIN = pytest.mark.parametrize(
+    "settings", [greedy(), greedy({"geometry": "raster"})], ids=["exact", "raster"]
+)
+
+
+def laid(planner: Planner, stone_id: int, left: float, level: float) -> Group:
+    """A block with its left end at some x, on a level of the wall, alone in it."""
+    stone, site = STONES.by_id(stone_id), planner.workshop.site
+    if planner.settings.geometry == "raster":
+        posed = planner.workshop.book.pose(stone, 0.0)
+        return Group(Placement(posed, site.height_px - 10 * int(level) - 10, int(left)))
+    x, y = left + 10.0, 5.0 + 10.01 * level + 0.01
+    corners = placed_outline(planner.workshop.outlines.outline(stone), 0.0, x, y)
+    outlines = Outlines.empty(site)
+    placement = settled_placement(outlines, site, stone, 0.0, Settled(x, y, corners), "left", 0)
+    assert placement is not None
+    return Group(placement)
+
+
+def scene(settings: PlannerSettings) -> tuple[Planner, dict[str, Group]]:
+    """Blocks on the ground, on each other, over each other, and in the air."""
+    planner = Planner(STONES, Site(60, 40), settings=settings)
+    return planner, {
+        "ground": laid(planner, 1, 5, 0),
+        "upon": laid(planner, 2, 9, 1),
+        "over": laid(planner, 2, 20, 0),
+        "far out": laid(planner, 2, 17, 1),
+        "top": laid(planner, 3, 9, 2),
+        "beside": laid(planner, 4, 35, 0),
+    }
+
+
+@PLAIN
+@pytest.mark.parametrize(
+    ("steps", "kept", "out"),
+    [
+        (["ground", "upon", "top", "beside"], [1, 2, 3, 4], ()),
+        (["upon", "ground", "beside"], [1, 4], (2,)),  # nothing is below yet
+        (["ground", "top", "upon", "beside"], [1, 2, 4], (3,)),
+        (["ground", "over", "beside"], [1, 4], (2,)),  # lies in the first
+        (["ground", "far out", "beside"], [1, 4], (2,)),  # falls
+    ],
+)
+def test_what_cannot_stand_is_left_out(
+    settings: PlannerSettings, steps: list[str], kept: list[int], out: tuple[int, ...]
+) -> None:
+    planner, groups = scene(settings)
+    chosen = [groups[name] for name in steps]
+    build, left_out = replayed(
+        planner.build, chosen, {}, planner.workshop, planner.settings, strict=False
+    )
+    assert [action.stone_id for action in build.actions] == kept
+    assert left_out == out
+    strict, rest = replayed(planner.build, chosen, {}, planner.workshop, planner.settings)
+    ids = [group.placement.stone_id for group in chosen]
+    first = ids.index(out[0]) if out else len(ids)
+    assert [action.stone_id for action in strict.actions] == ids[:first]
+    assert rest == tuple(ids[first:])
+
+
+def test_what_needs_the_friction_of_upright_faces_is_left_out() -> None:
+    planner, _ = scene(greedy())
+    steps = [laid(planner, 1, 0.0, 0), laid(planner, 2, 40.02, 0), laid(planner, 3, 20.01, 0.4)]
+    evaluator = Evaluator(planner.settings, planner.workshop.stock)
+    piers, left_out = replayed(planner.build, steps, {}, planner.workshop, planner.settings)
+    assert left_out == (3,)
+    assert judged(piers, steps[2], {}, evaluator).resistance.stable
+
+
+def test_pixels_are_those_that_a_stone_fills_now() -> None:
+    """Of a pixel that two stones share the one that comes second makes it more than half full."""
+    planner = Planner(STONES, Site.from_source(60, 40, 0.1), settings=greedy())
+    one, other = laid(planner, 1, 4, 0), laid(planner, 2, 26, 0)
+    first, _ = replayed(planner.build, [one, other], {}, planner.workshop, planner.settings)
+    second, _ = replayed(planner.build, [other, one], {}, planner.workshop, planner.settings)
+    for build in (first, second):
+        filled = sum(p.posed.area_px for p in build.wall.placements)
+        assert filled == np.count_nonzero(build.wall.labels)
+    areas = [{p.stone_id: p.posed.area_px for p in b.wall.placements} for b in (first, second)]
+    assert areas[0] != areas[1]
+
+
+def test_what_fills_no_pixel_is_left_out() -> None:
+    planner = Planner(STONES, Site.from_source(60, 40, 0.1), settings=greedy())
+    one = laid(planner, 1, 5, 0)
+    small = Planner(STONES, Site.from_source(60, 40, 0.02), settings=greedy())
+    build, left_out = replayed(small.build, [one], {}, small.workshop, small.settings)
+    assert left_out == (1,)
+    assert build is small.build
+
+
+@PLAIN
+def test_a_course_is_begun_with_the_height_it_was_begun_with(settings: PlannerSettings) -> None:
+    planner, groups = scene(settings)
+    steps = [groups["ground"], groups["upon"]]
+    build, _ = replayed(planner.build, steps, {1: 8.0}, planner.workshop, planner.settings)
+    assert [a.course_height_px for a in build.actions] == [8.0, None]
+    assert build.actions[0].indices.NHR == pytest.approx(0.2)
+
+
+def test_what_stands_stands_in_both_models_and_carries_a_load() -> None:
+    planner, groups = scene(greedy())
+    build, _ = replayed(planner.build, [groups["ground"]], {}, planner.workshop, planner.settings)
+    action: Candidate = build.actions[0]
+    assert stands(action)
+    assert not stands(replace(action, sturdy=False))
+    right = action.resistance.right
+    for alpha in (0.0, None):
+        resistance = replace(action.resistance, right=replace(right, alpha=alpha))
+        assert not stands(replace(action, resistance=resistance))
