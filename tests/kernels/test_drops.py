@@ -9,9 +9,17 @@ from hypothesis import strategies as st
 
 from drystone.kernels import drops as module
 from drystone.kernels.backend import compiled
-from drystone.kernels.drops import DropTerms, drops, drops_numpy
+from drystone.kernels.drops import CLOSE, DropTerms, Wanted
 from drystone.kernels.polygons import Points, mirrored_polygon
-from drystone.kernels.profiles import HeightProfile, StoneProfile, bare, hanging, raised
+from drystone.kernels.profiles import (
+    Floats,
+    HeightProfile,
+    StoneProfile,
+    bare,
+    hanging,
+    in_a_row,
+    raised,
+)
 from tests.naive.drops import all_drops, craft
 from tests.polygons import random_polygon
 from tests.strategies import Draw, repeatable
@@ -34,6 +42,21 @@ def kernel(request: pytest.FixtureRequest) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "_fast", request.param)
         yield
+
+
+def drops(
+    profile: HeightProfile,
+    stone: StoneProfile,
+    terms: DropTerms,
+    constant: float,
+    count: int,
+    apart_px: float,
+) -> Floats:
+    """All drops of one stone."""
+    wanted = Wanted(count, np.array([apart_px]), np.array([7]))
+    places, limit = module.drops(profile, in_a_row([stone]), terms, np.array([constant]), wanted)
+    assert limit == np.inf
+    return places[0]
 
 
 def block(left: float, bottom: float, width: float, height: float) -> Points:
@@ -101,6 +124,28 @@ def scenes(draw: Draw) -> Scene:
     return profile, hanging(_stone(rng, cell, bricks), cell), terms
 
 
+Batch = tuple[HeightProfile, list[StoneProfile], DropTerms, Floats, Wanted]
+
+
+@st.composite
+def batches(draw: Draw, fewest: int = 0) -> Batch:
+    """Some stones over a wall, in groups, and how many of their drops are wanted."""
+    profile, _, terms = draw(scenes())
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    bricks = draw(st.booleans())
+    size = draw(st.integers(0, 8))
+    stones = [_stone(rng, terms.cell_px, bricks) for _ in range(size)]
+    wanted = Wanted(
+        draw(st.integers(0, 5)),
+        rng.choice([0.0, 1.0, 3.5], size) * terms.cell_px,
+        rng.integers(0, 3, size),
+        draw(st.integers(fewest, 12)),
+        draw(st.integers(1, 4)),
+    )
+    constants = rng.choice([0.0, 0.5, 3.0], size)
+    return profile, [hanging(one, terms.cell_px) for one in stones], terms, constants, wanted
+
+
 def _stone(rng: np.random.Generator, cell: float, brick: bool) -> Points:
     if brick:
         width, height = rng.integers(1, 7, 2) * cell
@@ -132,19 +177,68 @@ def test_the_cheapest_places_are_those_of_a_loop_over_all(
 
 
 @pytest.mark.skipif(FAST is None, reason="kernels are not compiled here")
-@repeatable(150)
-@given(scene=scenes(), count=st.integers(0, 40), apart=st.integers(1, 6))
-def test_both_kernels_give_the_same_bits(scene: Scene, count: int, apart: int) -> None:
-    profile, stone, terms = scene
-    places = len(all_drops(profile, stone, terms, 0.25))
-    if not places:
-        return
-    for part in (*profile, stone.bottoms, stone.tops):
+@repeatable(250)
+@given(batch=batches())
+def test_both_kernels_give_the_same_bits(batch: Batch) -> None:
+    profile, stones, terms, constants, wanted = batch
+    row = in_a_row(stones)
+    for part in (*profile, *row, constants):
         part.flags.writeable = False
-    expected = drops_numpy(profile, stone, terms, 0.25, (places, apart, count))
-    found = FAST.drops(profile, stone, terms, 0.25, (places, apart, count))
-    assert found.shape == expected.shape
-    assert found.tobytes() == expected.tobytes()
+    found = []
+    for kernel in (FAST, None):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(module, "_fast", kernel)
+            places, limit = module.drops(profile, row, terms, constants, wanted)
+        found.append(([(mine.shape, mine.tobytes()) for mine in places], limit))
+    assert found[0] == found[1]
+
+
+@repeatable(100)
+@given(batch=batches())
+def test_stones_in_a_row_are_dropped_as_each_by_itself(batch: Batch) -> None:
+    profile, stones, terms, constants, wanted = batch
+    places, limit = module.drops(
+        profile, in_a_row(stones), terms, constants, wanted._replace(cheapest=0)
+    )
+    assert limit == np.inf
+    assert len(places) == len(stones)
+    for k, mine in enumerate(places):
+        apart = float(wanted.apart_px[k])
+        alone = drops(profile, stones[k], terms, float(constants[k]), wanted.spots, apart)
+        assert mine.tobytes() == alone.tobytes()
+
+
+@repeatable(200)
+@given(batch=batches(fewest=1))
+def test_the_cheapest_drops_are_all_there_up_to_the_limit(batch: Batch) -> None:
+    profile, stones, terms, constants, wanted = batch
+    row = in_a_row(stones)
+    every, _ = module.drops(profile, row, terms, constants, wanted._replace(cheapest=0))
+    found, limit = module.drops(profile, row, terms, constants, wanted)
+    costs: dict[int, list[float]] = {}
+    for mine, known, group in zip(found, every, wanted.groups.tolist(), strict=True):
+        assert mine.tobytes() == known[: len(mine)].tobytes()
+        assert (known[len(mine) :, 2] > limit + CLOSE).all()
+        costs.setdefault(group, []).extend(known[:, 2].tolist())
+    counting = sorted(c for group in costs.values() for c in sorted(group)[: wanted.each])
+    full = len(counting) >= wanted.cheapest
+    assert limit == (counting[wanted.cheapest - 1] if full else np.inf)
+
+
+def test_dear_stones_are_left_out_when_there_are_enough_cheap_ones() -> None:
+    stone = hanging(block(-4, -3, 8, 6), 2.0)
+    row, constants = in_a_row([stone] * 4), np.array([2.0, 0.0, 1.0, 1.0 + 0.5 * CLOSE])
+
+    def sizes(cheapest: int, each: int, groups: list[int]) -> tuple[list[int], float]:
+        wanted = Wanted(2, np.full(4, 8.0), np.array(groups), cheapest, each)
+        places, limit = module.drops(bare(20), row, terms_of(), constants, wanted)
+        return [len(mine) for mine in places], limit
+
+    assert sizes(0, 1, [1, 2, 3, 4]) == ([2, 2, 2, 2], np.inf)
+    assert sizes(2, 2, [1, 2, 3, 4]) == ([0, 2, 0, 0], 0.0)
+    assert sizes(3, 2, [1, 2, 3, 4]) == ([0, 2, 2, 2], 1.0)
+    assert sizes(2, 1, [1, 2, 2, 4]) == ([0, 2, 2, 2], 1.0 + 0.5 * CLOSE)
+    assert sizes(5, 2, [1, 2, 2, 2]) == ([2, 2, 2, 2], np.inf)
 
 
 def test_views_from_the_end_are_read_as_they_are() -> None:
@@ -368,6 +462,16 @@ def test_the_mirrored_stone_in_the_mirrored_scene_costs_the_same(seed: int, coun
 
 def test_what_cannot_be_is_refused() -> None:
     stone, terms = hanging(block(-4, -3, 8, 6), 2.0), terms_of(joint=1.0)
+    one, two = np.zeros(1), np.zeros(2)
+    none = np.zeros(1, np.int64)
+    for constants, wanted, words in (
+        (two, Wanted(1, one, none), r"\[1, 2\] stones"),
+        (one, Wanted(1, two, none), r"\[1, 2\] stones"),
+        (one, Wanted(1, one, none[1:]), r"\[0, 1\] stones"),
+        (one, Wanted(1, one, none, 3, 0), "0 of a group"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            module.drops(bare(20), in_a_row([stone]), terms, constants, wanted)
     tops, owners = np.zeros(20), np.full(20, 3, np.int32)
     with pytest.raises(ValueError, match="polygon 3"):
         drops(HeightProfile(tops, owners, np.zeros((3, 4))), stone, terms, 0.0, 1, 0.0)

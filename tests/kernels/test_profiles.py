@@ -10,7 +10,15 @@ from hypothesis import strategies as st
 from drystone.kernels import profiles
 from drystone.kernels.backend import compiled
 from drystone.kernels.polygons import Points, mirrored_polygon
-from drystone.kernels.profiles import HeightProfile, bare, extremes, extremes_numpy, hanging, raised
+from drystone.kernels.profiles import (
+    HeightProfile,
+    bare,
+    extremes,
+    extremes_numpy,
+    hanging,
+    in_a_row,
+    raised,
+)
 from tests.naive.drops import column_span, height_profile
 from tests.polygons import simple_polygons
 from tests.strategies import repeatable
@@ -116,6 +124,21 @@ def test_the_mirror_image_has_the_mirrored_profile(polygon: Points, at: float) -
     mirrored = raised(bare(columns), mirrored_polygon(placed, columns * cell), 0, cell)
     assert mirrored.tops[::-1] == pytest.approx(seen.tops, abs=1e-9)
     assert mirrored.owners[::-1].tolist() == seen.owners.tolist()
+
+
+@repeatable(20)
+@given(polygons=st.lists(simple_polygons(), max_size=4))
+def test_stones_in_a_row_are_those_one_after_the_other(polygons: list[Points]) -> None:
+    stones = [hanging(polygon, 2.0) for polygon in polygons]
+    row = in_a_row(stones)
+    assert (row.bottoms.dtype, row.first.dtype, row.boxes.shape) == (
+        np.float64, np.int64, (len(stones), 4),
+    )  # fmt: skip
+    assert row.first[0] == 0
+    assert row.first[-1] == len(row.bottoms)
+    for k, stone in enumerate(stones):
+        assert row.bottoms[row.first[k] : row.first[k + 1]].tolist() == stone.bottoms.tolist()
+        assert tuple(row.boxes[k].tolist()) == stone[2:]
 
 
 def test_a_polygon_is_not_over_columns_into_which_it_reaches_by_little() -> None:

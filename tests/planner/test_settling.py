@@ -17,7 +17,7 @@ from drystone.model.stone import StoneSet
 from drystone.planner import settling
 from drystone.planner.attempt import Attempt
 from drystone.planner.build import Build, Proposal
-from drystone.planner.dropping import Drop, shortlist, wedge_limits
+from drystone.planner.dropping import Drop, Dropped, in_order, shortlist, wedge_limits
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import Key, Trial, one_by_one
@@ -69,22 +69,22 @@ def _key(proposal: Proposal) -> tuple[Key, int]:
 
 
 class _Calls:
-    """How often poses were dropped, and let go where."""
+    """How often trials were dropped, some of their drops or all, and drops were settled."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.dropped: Counter[object] = Counter()
+        self.dropped: Counter[tuple[Key, bool]] = Counter()
         self.settled: Counter[object] = Counter()
-        drops, settle = settling.drops, ExactProposer._settle
+        dropped, settle = ExactProposer._dropped_together, ExactProposer._settle
 
-        def dropped(profile: Any, stone: StoneProfile, *args: Any) -> Any:
-            self.dropped[id(profile), id(stone)] += 1
-            return drops(profile, stone, *args)
+        def watched(this: ExactProposer, cheapest: int, trials: list[Trial]) -> Any:
+            self.dropped.update((trial.key, cheapest > 0) for trial in trials)
+            return dropped(this, cheapest, trials)
 
         def settled(this: ExactProposer, drop: Drop) -> Any:
             self.settled[drop.key] += 1
             return settle(this, drop)
 
-        monkeypatch.setattr(settling, "drops", dropped)
+        monkeypatch.setattr(ExactProposer, "_dropped_together", watched)
         monkeypatch.setattr(ExactProposer, "_settle", settled)
 
 
@@ -160,6 +160,58 @@ def test_algorithm_2_compares_each_trial_where_its_first_drop_rests(choice: str)
     assert [_key(p) for p in found] == [_key(p) for p in expected]
 
 
+@pytest.mark.parametrize("choice", ["candidates", "placement"])
+@pytest.mark.parametrize("shortlist_size", [2, 6])
+def test_batches_are_those_of_all_drops_in_order(shortlist_size: int, choice: str) -> None:
+    """At first a proposer knows those drops only that may be among the cheapest."""
+    settle = {"shortlist": shortlist_size, "per_stone": 2}
+    step = _Step(rubble(), RUBBLE_SITE, 2, {"settle": settle})
+    trials = step.trials()
+    if choice == "placement":
+        trials = [
+            replace(trial, poses=step.workshop.poses(trial.key[0]))
+            for trial in {(t.key[0], t.key[2]): t for t in trials}.values()
+        ]
+    proposer = step.proposer()
+    left = [drop for mine in proposer.drops(trials, one_by_one) for drop in mine]
+    left.sort(key=lambda drop: drop.rank)
+    assert len({drop.key for drop in left}) == len(left) > 30
+    cautious = step.proposer()
+    for count, batch in enumerate(cautious.batches(trials, one_by_one)):
+        if not count:
+            known = {trial.key: cautious._dropped[trial.key] for trial in trials}
+            assert max(one.limit for one in known.values()) < np.inf
+            assert sum(len(p) for one in known.values() for p in one.places) < len(left)
+        expected: list[Drop] = []
+        for drop in left:
+            mine = sum(one.key[0][0] == drop.key[0][0] for one in expected)
+            if len(expected) < shortlist_size and mine < 2:
+                expected.append(drop)
+        told = [(d.rank, d.start, d.spot, d.trial.key, len(d.trial.poses)) for d in batch]
+        assert told == [(d.rank, d.start, d.spot, d.trial.key, 1) for d in expected]
+        left = [drop for drop in left if drop not in expected]
+    assert left == []
+
+
+def test_drops_whose_costs_are_equal_but_for_rounding_are_in_the_order_of_their_keys() -> None:
+    step = _Step(bricks(3), Site(60, 20))
+    (trials, book) = step.trials(("left",)), step.workshop.outlines
+    chosen = [next(t for t in trials if t.key[0] == stone_id) for stone_id in (1, 2, 3)]
+    close = [0.3, 0.1 + 0.2, 0.3 + 1e-13, 0.3 - 1e-13, 0.3 + 2e-12, 0.2]
+    places = np.array([[0.0, 0.0, cost, 0.0] for cost in close])
+    dropped = [
+        Dropped(chosen[2], (places[[3, 5]],), np.inf),
+        Dropped(chosen[1], (places[[1]],), np.inf),
+        Dropped(chosen[0], (places[[2, 0, 4]],), np.inf),
+    ]
+    found = list(in_order(dropped, book))
+    assert [(d.key[0][0], d.spot) for d in found] == [
+        (3, 1), (1, 0), (1, 1), (2, 0), (3, 0), (1, 2)
+    ]  # fmt: skip
+    assert [d.rank for d in found] == sorted(d.rank for d in found)
+    assert list(in_order([], book)) == []
+
+
 def _drops(ranks: list[tuple[float, int]]) -> list[Drop]:
     """Drops of some costs and stones, told from each other by their spots."""
     trial = SimpleNamespace()
@@ -169,16 +221,15 @@ def _drops(ranks: list[tuple[float, int]]) -> list[Drop]:
     ]
 
 
-def test_the_shortlist_takes_the_cheapest_but_only_so_many_of_one_stone() -> None:
-    drops = _drops([(0.5, 1), (0.1, 2), (0.2, 2), (0.3, 2), (0.1, 1), (0.9, 3), (0.4, 3)])
+def test_the_shortlist_takes_the_first_but_only_so_many_of_one_stone() -> None:
+    ranks = [(0.1, 1), (0.1, 2), (0.2, 2), (0.3, 2), (0.4, 3), (0.5, 1), (0.9, 3)]
     settings = SettleSettings(shortlist=4, per_stone=2)
-    taken, left = shortlist(drops, settings)
+    asked = iter(_drops(ranks))
+    taken = shortlist(asked, settings)
     assert [(d.rank[0], d.key[0][0]) for d in taken] == [(0.1, 1), (0.1, 2), (0.2, 2), (0.4, 3)]
-    assert [(d.rank[0], d.key[0][0]) for d in left] == [(0.3, 2), (0.5, 1), (0.9, 3)]
-    again, rest = shortlist(left, settings)
-    assert [d.spot for d in again] == [3, 0, 5]
-    assert rest == []
-    assert shortlist([], settings) == ([], [])
+    assert [d.spot for d in asked] == [5, 6]  # no further than needed
+    assert [d.spot for d in shortlist(_drops(ranks[3:5]), settings)] == [0, 1]
+    assert shortlist([], settings) == []
 
 
 def test_drops_are_above_what_is_there_and_inside_the_wall() -> None:

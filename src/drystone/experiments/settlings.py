@@ -20,7 +20,6 @@ from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.build import Build
-from drystone.planner.dropping import shortlist
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Part
 from drystone.planner.proposing import Trial, one_by_one
@@ -130,8 +129,7 @@ def _let_go(planner: Planner, build: Build) -> Iterator[Attempted]:
         for stone_id in workshop.remaining(build)
         for posed in workshop.poses(stone_id)
     ]
-    drops = [drop for mine in proposer.drops(trials, one_by_one) for drop in mine]
-    for drop in shortlist(drops, planner.settings.settle)[0]:
+    for drop in next(proposer.batches(trials, one_by_one), []):
         posed, side = drop.trial.poses[0], drop.trial.landscape.side
         hung = workshop.outlines.hung(posed.stone, posed.angle_deg, side)
         yield Attempted(hung.turned, proposer.view(side)[0], drop.start)

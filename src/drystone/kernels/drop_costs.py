@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.profiles import EDGE, Floats, StoneProfile
+from drystone.kernels.profiles import EDGE, Floats
 
 Lengths = NDArray[np.int64]
 
@@ -75,8 +75,10 @@ class Dropped(NamedTuple):
     ----------
     tops : (columns,) float array
         Of the height profile.
-    stone : StoneProfile
-        The stone.
+    bottoms : (n,) float array
+        Of the stone (:class:`drystone.kernels.profiles.StoneProfile`).
+    box : (float, float, float, float)
+        Left, bottom, right and top of the stone, from its centroid.
     terms : DropTerms
         Sizes and weights.
     lift : (places,) float array
@@ -84,19 +86,20 @@ class Dropped(NamedTuple):
     """
 
     tops: Floats
-    stone: StoneProfile
+    bottoms: Floats
+    box: tuple[float, float, float, float]
     terms: DropTerms
     lift: Floats
 
     @property
     def top(self) -> Floats:
         """Height of the stone's highest point."""
-        return np.asarray(self.lift + self.stone.top)
+        return np.asarray(self.lift + self.box[3])
 
     @property
     def bottom(self) -> Floats:
         """Height of its lowest point."""
-        return np.asarray(self.lift + self.stone.bottom)
+        return np.asarray(self.lift + self.box[1])
 
     @property
     def middle(self) -> Floats:
@@ -106,7 +109,7 @@ class Dropped(NamedTuple):
     @property
     def width(self) -> float:
         """Of the stone."""
-        return self.stone.right - self.stone.left
+        return self.box[2] - self.box[0]
 
     @property
     def left(self) -> Floats:
@@ -126,7 +129,7 @@ class Dropped(NamedTuple):
 
     def void(self) -> Floats:
         """Return the area under the stone."""
-        bottoms, cell, places = self.stone.bottoms, self.terms.cell_px, len(self.lift)
+        bottoms, cell, places = self.bottoms, self.terms.cell_px, len(self.lift)
         before = len(bottoms) - 1
         under, hollow = np.zeros(places), 0.0
         for k, bottom in enumerate(bottoms[:-1].tolist()):
@@ -164,7 +167,7 @@ class Dropped(NamedTuple):
     def slot(self) -> Floats:
         """Return the area that the others cannot fill before what is higher than the foot."""
         rest, columns = self.terms.rest_width_px, len(self.tops)
-        ends = np.arange(len(self.lift)) + len(self.stone.bottoms)
+        ends = np.arange(len(self.lift)) + len(self.bottoms)
         foot = self.bottom + self.terms.cell_px
         closed = (self.tops > foot[:, None]) & (np.arange(columns) >= ends[:, None])
         end = np.where(closed.any(axis=1), closed.argmax(axis=1), columns)
@@ -216,10 +219,10 @@ class Dropped(NamedTuple):
 
     def lean(self) -> Floats:
         """Return how far the centroid is right of what carries the stone, in widths."""
-        bottoms, cell = self.stone.bottoms, self.terms.cell_px
+        bottoms, cell = self.bottoms, self.terms.cell_px
         tops = np.lib.stride_tricks.sliding_window_view(self.tops, len(bottoms))[: len(self.lift)]
         carries = (self.lift[:, None] + bottoms) - tops < TOUCHING * cell
         start = carries.argmax(axis=1) * cell
         end = np.minimum(self.width, (len(bottoms) - carries[:, ::-1].argmax(axis=1)) * cell)
-        beside = np.minimum(0.0, -self.stone.left - start) + np.maximum(0.0, -self.stone.left - end)
+        beside = np.minimum(0.0, -self.box[0] - start) + np.maximum(0.0, -self.box[0] - end)
         return np.asarray(beside / self.width)

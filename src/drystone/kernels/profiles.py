@@ -5,6 +5,7 @@ column a polygon is over, the whole column counts.
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -68,6 +69,40 @@ class StoneProfile(NamedTuple):
     bottom: float
     right: float
     top: float
+
+
+class StoneProfiles(NamedTuple):
+    """Stone profiles in a row.
+
+    Parameters
+    ----------
+    bottoms : (n,) float array
+        Those of all stones, one stone after the other.
+    first : (k + 1,) int64 array
+        Stone i has the bottoms from ``first[i]`` to before ``first[i + 1]``.
+    boxes : (k, 4) float array
+        Left, bottom, right and top of each.
+    """
+
+    bottoms: Floats
+    first: NDArray[np.int64]
+    boxes: Floats
+
+
+def in_a_row(stones: Sequence[StoneProfile]) -> StoneProfiles:
+    """Put stone profiles in a row.
+
+    Examples
+    --------
+    >>> one = hanging(np.array([[-1.0, -1.0], [2.0, -1.0], [-1.0, 2.0]]), 2.0)
+    >>> in_a_row([one, one])[:2]
+    (array([-1., -1., -1., -1.]), array([0, 2, 4]))
+    """
+    first = np.zeros(len(stones) + 1, np.int64)
+    np.cumsum([len(stone.bottoms) for stone in stones], out=first[1:])
+    bottoms = np.concatenate([np.zeros(0), *(stone.bottoms for stone in stones)])
+    boxes = np.array([stone[2:] for stone in stones], np.float64).reshape(-1, 4)
+    return StoneProfiles(bottoms, first, boxes)
 
 
 def bare(columns: int) -> HeightProfile:

@@ -153,7 +153,7 @@ class Attempt:
 
     def _map(self, work: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
         """Apply a function to all items, in their order, by the executor if there is one."""
-        if self._executor is None:
+        if self._executor is None or len(items) == 1:
             return [work(item) for item in items]
         # Handing over a candidate costs as much as a part of it: a few tasks, many candidates.
         size = math.ceil(len(items) / TASKS)

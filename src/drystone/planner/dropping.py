@@ -1,17 +1,20 @@
 """Where stones could be let go: their cost before they settle, and the cheapest of them."""
 
-import math
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from operator import attrgetter
 
+import numpy as np
+
 from drystone.kernels.drops import DropTerms
+from drystone.kernels.profiles import Floats
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.planner.proposing import Key, Trial
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, Stock
+from drystone.settle.book import OutlineBook
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import WedgeLimits
 
@@ -47,6 +50,25 @@ class Drop:
     def key(self) -> tuple[Key, int]:
         """What tells it from the others of a step."""
         return self.rank[1]
+
+
+@dataclass(frozen=True, eq=False)
+class Dropped:
+    """Where the poses of a trial could be let go.
+
+    Parameters
+    ----------
+    trial : Trial
+        One stone and side.
+    places : tuple of (n, 4) float arrays
+        Of each pose (:func:`drystone.kernels.drops.drops`).
+    limit : float
+        Those that cost more may be missing.
+    """
+
+    trial: Trial
+    places: tuple[Floats, ...]
+    limit: float
 
 
 def drop_terms(site: Site, stock: Stock, rest: Rest, settings: PlannerSettings) -> DropTerms:
@@ -86,33 +108,62 @@ def drop_terms(site: Site, stock: Stock, rest: Rest, settings: PlannerSettings) 
     )
 
 
-def shortlist(drops: Sequence[Drop], settings: SettleSettings) -> tuple[list[Drop], list[Drop]]:
-    """Take the cheapest drops, only so many of one stone; return those and the others."""
+def in_order(dropped: Sequence[Dropped], book: OutlineBook) -> Iterator[Drop]:
+    """List the drops of some trials that are known, the cheapest first, by :attr:`Drop.rank`."""
+    owners = [(one.trial, posed) for one in dropped for posed in one.trial.poses]
+    places = [mine for one in dropped for mine in one.places]
+    rows = np.concatenate([np.zeros((0, 4)), *places])
+    sizes = np.array([len(mine) for mine in places], np.intp)
+    owner = np.repeat(np.arange(len(places)), sizes)
+    spot = np.arange(len(rows)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    order = np.argsort(rows[:, 2], kind="stable")
+    equal: list[Drop] = []
+    for at, spot_at, (x, y, cost, _) in zip(
+        owner[order].tolist(), spot[order].tolist(), rows[order].tolist(), strict=True
+    ):
+        trial, posed = owners[at]
+        drop = _drop(trial, posed, spot_at, (x, y, round(cost, 12)), book)
+        # Rounding keeps the order of costs, except that it makes some equal.
+        if equal and equal[-1].rank[0] != drop.rank[0]:
+            yield from sorted(equal, key=attrgetter("rank"))
+            equal = []
+        equal.append(drop)
+    yield from sorted(equal, key=attrgetter("rank"))
+
+
+def _drop(
+    trial: Trial,
+    posed: PosedStone,
+    spot: int,
+    place: tuple[float, float, float],
+    book: OutlineBook,
+) -> Drop:
+    one = trial if len(trial.poses) == 1 else replace(trial, poses=(posed,))
+    x, y, cost = place
+    left = book.hung(posed.stone, posed.angle_deg, trial.landscape.side).profile.left
+    return Drop(one, spot, (x - left, y), (cost, (one.key, spot)))
+
+
+def shortlist(drops: Iterable[Drop], settings: SettleSettings) -> list[Drop]:
+    """Take the first drops, only so many of one stone.
+
+    Parameters
+    ----------
+    drops : iterable of Drop
+        The cheapest first; asked for no further than needed.
+    settings : SettleSettings
+        How many.
+    """
     taken: list[Drop] = []
-    left: list[Drop] = []
     counts: Counter[int] = Counter()
-    for drop in sorted(drops, key=attrgetter("rank")):
+    for drop in drops:
         stone_id = drop.key[0][0]
-        if len(taken) < settings.shortlist and counts[stone_id] < settings.per_stone:
+        if counts[stone_id] < settings.per_stone:
             counts[stone_id] += 1
             taken.append(drop)
-        else:
-            left.append(drop)
-    return taken, left
-
-
-def pose_cost(posed: PosedStone, stock: Stock, settings: PlannerSettings) -> float:
-    """Return what a pose costs wherever it goes."""
-    score = settings.score
-    upright = max(0.0, 1.0 - posed.width_px / posed.height_px)
-    return math.fsum(
-        [
-            score.roughness * posed.top_roughness_px / stock.mean_height_px,
-            score.upright * upright,
-            -score.area * posed.area_px / stock.mean_area_px,
-            -score.thickness * min(posed.width_px, posed.height_px) / stock.mean_height_px,
-        ]
-    )
+            if len(taken) == settings.shortlist:
+                break
+    return taken
 
 
 def wedge_limits(settings: PlannerSettings, stock: Stock, scale: float) -> WedgeLimits:

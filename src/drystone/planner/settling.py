@@ -1,17 +1,26 @@
 """Proposals on outlines: dropped onto a height profile, then settled exactly (DESIGN 4.9)."""
 
+import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from functools import cached_property
-from operator import attrgetter
+from functools import partial
+from itertools import islice
 
-from drystone.kernels.drops import DropTerms, drops
+import numpy as np
+
+from drystone.kernels.drops import DropTerms, Wanted, drops
 from drystone.kernels.polygons import Points
-from drystone.kernels.profiles import OVER, HeightProfile, StoneProfile, bare, raised
+from drystone.kernels.profiles import OVER, HeightProfile, StoneProfile, in_a_row
 from drystone.model.placement import Side
 from drystone.model.wall import outlined
 from drystone.planner.build import Build, Proposal
-from drystone.planner.dropping import Drop, drop_terms, pose_cost, shortlist, wedge_limits
+from drystone.planner.dropping import (
+    Drop,
+    Dropped,
+    drop_terms,
+    in_order,
+    shortlist,
+    wedge_limits,
+)
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import Apply, Key, Trial, action_cost
 from drystone.planner.settings import PlannerSettings
@@ -20,6 +29,13 @@ from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import Repose, Scene, come_to_rest
 from drystone.settle.wedged import wedged
 from drystone.stabilise.stabilise import Stabilised
+
+CHUNK = 256
+"""So many trials of one side are dropped together."""
+
+TOGETHER = 6
+"""So many drops are settled together: most of that holds the interpreter's lock, and threads that
+hand it over more often lose more than they gain."""
 
 
 class ExactProposer:
@@ -50,83 +66,108 @@ class ExactProposer:
         self._profile = profile
         self._views: dict[Side, tuple[Scene, HeightProfile]] = {}
         self._limits = wedge_limits(settings, workshop.stock, build.wall.site.scale)
-        self._drops: dict[Key, tuple[Drop, ...]] = {}
+        self._terms: DropTerms | None = None
+        self._dropped: dict[Key, Dropped] = {}
         self._settled: dict[tuple[Key, int], Proposal | None] = {}
 
     @property
     def tried(self) -> int:
         """See :class:`drystone.planner.proposing.Proposer`."""
-        return len(self._drops)
+        return len(self._dropped)
 
     def proposals(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Proposal]]:
         """See :class:`drystone.planner.proposing.Proposer`."""
-        drops = self.drops(trials, apply)
         if self._settings.selection_rule == "score":
-            yield from self._cheapest([drop for mine in drops for drop in mine], apply)
+            for batch in self.batches(trials, apply):
+                yield [proposal for proposal in self._all_settled(batch, apply) if proposal]
         else:
+            drops = self.drops(trials, apply)
             yield [proposal for proposal in apply(self._first, drops) if proposal is not None]
 
     def drops(self, trials: Sequence[Trial], apply: Apply) -> list[tuple[Drop, ...]]:
         """Return the best places of each trial, the cheapest first."""
-        for side in dict.fromkeys(trial.landscape.side for trial in trials):
-            self.view(side)
-        _ = self._terms  # before the threads ask for it, all at once
-        new = [trial for trial in trials if trial.key not in self._drops]
-        found = apply(self._dropped, new)
-        self._drops.update(zip([trial.key for trial in new], found, strict=True))
-        return [self._drops[trial.key] for trial in trials]
+        self._drop(trials, apply, math.inf)
+        book = self._workshop.outlines
+        return [tuple(in_order([self._dropped[trial.key]], book)) for trial in trials]
+
+    def batches(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Drop]]:
+        """List the cheapest drops of all trials, then the next ones, and so on."""
+        given: set[tuple[Key, int]] = set()
+        settings, needed = self._settings.settle, -math.inf
+        while True:
+            self._drop(trials, apply, needed)
+            known = in_order([self._dropped[t.key] for t in trials], self._workshop.outlines)
+            batch = shortlist((drop for drop in known if drop.key not in given), settings)
+            needed = batch[-1].rank[0] if len(batch) == settings.shortlist else math.inf
+            if any(self._dropped[trial.key].limit < needed for trial in trials):
+                continue  # cheaper ones than some of these may be missing
+            if not batch:
+                return
+            given.update(drop.key for drop in batch)
+            yield batch
 
     def view(self, side: Side) -> tuple[Scene, HeightProfile]:
         """Return what is built and how high it is, as it is seen from a side."""
         if side not in self._views:
             site, outlines = self._build.wall.site, self._build.wall.outlines
             assert outlines is not None  # noqa: S101 - the planner builds on outlines
-            scene = Scene.of(outlines.polygons, site.extent_px[0], side, self._settings.mu)
-            profile = bare(site.width_px)
-            for index in range(len(scene.polygons)):
-                corners = scene.polygons.polygon(index)
-                profile = raised(profile, corners, index, 1.0 / site.scale)
-            self._views[side] = scene, profile
+            view = self._workshop.views.of(outlines.polygons, side)
+            scene = Scene(view.seen, site.extent_px[0], side, self._settings.mu)
+            self._views[side] = scene, view.profile
         return self._views[side]
 
-    def _dropped(self, trial: Trial) -> tuple[Drop, ...]:
-        """Return the best places of the poses of a trial, the cheapest first."""
-        side, settings = trial.landscape.side, self._settings.settle
-        terms = self._terms
-        _, profile = self.view(side)
-        found = []
+    def _drop(self, trials: Sequence[Trial], apply: Apply, needed: float) -> None:
+        """Drop the stones of the trials of which not all drops up to a cost are known.
+
+        At first, when none is needed yet, what may be among the cheapest is looked for; later all.
+        """
+        known = self._dropped
+        lacking = [t for t in trials if t.key not in known or known[t.key].limit < needed]
+        cheapest = self._settings.settle.shortlist if needed == -math.inf else 0
+        chunks = []
+        for side in dict.fromkeys(trial.landscape.side for trial in lacking):
+            self.view(side)
+            mine = [trial for trial in lacking if trial.landscape.side == side]
+            chunks += [mine[k : k + CHUNK] for k in range(0, len(mine), CHUNK)]
+        if lacking and self._terms is None:
+            rest = lacking[0].rest or self._workshop.rest(self._build)
+            site, stock = self._build.wall.site, self._workshop.stock
+            self._terms = drop_terms(site, stock, rest, self._settings)
+        for found in apply(partial(self._dropped_together, cheapest), chunks):
+            known.update((one.trial.key, one) for one in found)
+
+    def _dropped_together(self, cheapest: int, trials: Sequence[Trial]) -> list[Dropped]:
+        """Drop the stones of trials of one side."""
+        side, settings = trials[0].landscape.side, self._settings.settle
+        poses = [posed for trial in trials for posed in trial.poses]
         with self._profile.part("placement"):
-            for posed in trial.poses:
-                hung = self._workshop.outlines.hung(posed.stone, posed.angle_deg, side)
-                size_px = hung.turned.size_px
-                constant = pose_cost(posed, self._workshop.stock, self._settings)
-                places = drops(
-                    profile, hung.profile, terms, constant, settings.spots, settings.apart * size_px
-                )
-                one = replace(trial, poses=(posed,))
-                key, left = one.key, hung.profile.left
-                found += [
-                    Drop(one, spot, (x - left, y), (round(cost, 12), (key, spot)))
-                    for spot, (x, y, cost, _) in enumerate(places.tolist())
-                ]
-        return tuple(sorted(found, key=attrgetter("rank")))
-
-    @cached_property
-    def _terms(self) -> DropTerms:
-        """What drops cost in this state of construction."""
-        rest = self._workshop.rest(self._build)
-        return drop_terms(self._build.wall.site, self._workshop.stock, rest, self._settings)
-
-    def _cheapest(self, drops: list[Drop], apply: Apply) -> Iterator[list[Proposal]]:
-        """Settle the cheapest drops, then the next ones, and so on."""
-        while drops:
-            batch, drops = shortlist(drops, self._settings.settle)
-            yield [proposal for proposal in self._all_settled(batch, apply) if proposal]
+            book = self._workshop.outlines
+            hung = [book.hung(posed.stone, posed.angle_deg, side) for posed in poses]
+            wanted = Wanted(
+                settings.spots,
+                settings.apart * np.array([one.turned.size_px for one in hung]),
+                np.array([posed.stone.id for posed in poses], np.int64),
+                cheapest,
+                settings.per_stone,
+            )
+            stones = in_a_row([one.profile for one in hung])
+            constants = self._workshop.costs.of(poses, self._settings.score)
+            assert self._terms is not None  # noqa: S101 - they are there before the threads are
+            places, limit = drops(self.view(side)[1], stones, self._terms, constants, wanted)
+        next_ones = iter(places)
+        return [
+            Dropped(trial, tuple(islice(next_ones, len(trial.poses))), limit) for trial in trials
+        ]
 
     def _all_settled(self, drops: Sequence[Drop], apply: Apply) -> list[Proposal | None]:
         new = [drop for drop in drops if drop.key not in self._settled]
-        self._settled.update(zip([d.key for d in new], apply(self._settle, new), strict=True))
+        groups = [new[k : k + TOGETHER] for k in range(0, len(new), TOGETHER)]
+        found = [one for group in apply(self._settle_all, groups) for one in group]
+        self._settled.update(zip([drop.key for drop in new], found, strict=True))
         return [self._settled[drop.key] for drop in drops]
+
+    def _settle_all(self, drops: Sequence[Drop]) -> list[Proposal | None]:
+        return [self._settle(drop) for drop in drops]
 
     def _first(self, drops: Sequence[Drop]) -> Proposal | None:
         """Settle the drops of a trial until one rests."""

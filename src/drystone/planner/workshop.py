@@ -1,6 +1,6 @@
 """Everything that is prepared once for a stone set and a site (Algorithm 1, line 2)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from drystone.clusters import cluster_stones
 from drystone.errors import UsageError
@@ -8,9 +8,11 @@ from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import Stone, StoneSet
 from drystone.planner.build import Build
+from drystone.planner.pose_costs import PoseCosts
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, Sides, Stock
-from drystone.poses import PoseBook
+from drystone.planner.views import Views
+from drystone.poses import PoseBook, wrap_deg
 from drystone.settle.book import OutlineBook
 from drystone.stabilise.memory import StabiliseMemory
 
@@ -41,6 +43,10 @@ class Workshop:
         Stabilises stones that are pixels.
     outlines : OutlineBook
         Turned outlines, for stones that settle on them.
+    costs : PoseCosts
+        Of their poses, wherever they go.
+    views : Views
+        Of walls of outlines.
     """
 
     stones: StoneSet
@@ -53,6 +59,9 @@ class Workshop:
     sides: Sides
     memory: StabiliseMemory
     outlines: OutlineBook
+    costs: PoseCosts
+    views: Views
+    _angles: dict[int, tuple[float, ...]] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
     def prepare(cls, stones: StoneSet, site: Site, settings: PlannerSettings) -> "Workshop":
@@ -80,13 +89,21 @@ class Workshop:
         outlines = OutlineBook(settings.settle.outline_px, 1.0 / site.scale)
         return cls(
             stones, site, book, clusters, settings.orientations, fitting, stock, sides, memory,
-            outlines,
+            outlines, PoseCosts(stock), Views(site),
         )  # fmt: skip
 
     def poses(self, stone_id: int) -> tuple[PosedStone, ...]:
         """Return the candidate poses of a stone that fit into the wall."""
-        posed = self.book.orientations(self.stones.by_id(stone_id), self.orientations)
-        return tuple(p for p in posed if _has_room(self.site, p))
+        stone, angles = self.stones.by_id(stone_id), self._angles.get(stone_id)
+        if angles is not None:
+            return tuple(self.book.pose(stone, angle) for angle in angles)
+        posed = self.book.orientations(stone, self.orientations)
+        fitting = tuple(p for p in posed if _has_room(self.site, p))
+        # Poses may be forgotten, and made again; which ones differ and fit is known from now on.
+        known = {p.angle_deg for p in fitting}
+        asked = self.book.angles(stone, self.orientations)
+        self._angles[stone_id] = tuple(angle for angle in asked if wrap_deg(angle) in known)
+        return fitting
 
     def initial(self, stone_id: int) -> PosedStone:
         """Return the pose of largest SF of a stone (Eq. 12d)."""

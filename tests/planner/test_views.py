@@ -1,0 +1,82 @@
+"""What each side sees grows with the wall, and is the same as seen at once."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels.polygons import Points, Polygons, no_polygons
+from drystone.kernels.profiles import bare, raised
+from drystone.model.placement import Side
+from drystone.model.site import Site
+from drystone.planner import views
+from drystone.planner.views import View, Views
+from tests.polygons import random_polygon
+from tests.strategies import repeatable
+
+SITE = Site.from_source(60.3, 30, 0.5)
+
+
+def heap(seed: int, count: int) -> list[Points]:
+    rng = np.random.default_rng(seed)
+    at = rng.uniform([5.0, 8.0], [55.0, 20.0], (count, 2))
+    return [random_polygon(rng, 7, 10.0) + at[k] for k in range(count)]
+
+
+def bits(view: View) -> list[bytes]:
+    return [part.tobytes() for part in (*view.built, *view.seen, *view.profile)]
+
+
+def at_once(built: Polygons, side: Side) -> View:
+    width = SITE.extent_px[0]
+    seen = built if side == "left" else built.mirrored(width)
+    profile = bare(SITE.width_px)
+    for index in range(len(seen)):
+        profile = raised(profile, seen.polygon(index), index, 1.0 / SITE.scale)
+    return View(built, seen, profile)
+
+
+@repeatable(40)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    asked=st.lists(st.tuples(st.booleans(), st.integers(0, 5), st.booleans()), max_size=6),
+)
+def test_a_view_does_not_depend_on_what_was_asked_for_before(
+    seed: int, asked: list[tuple[bool, int, bool]]
+) -> None:
+    """Of two walls that differ from the third stone on."""
+    one, other = heap(seed, 5), heap(seed + 1, 5)
+    found = Views(SITE)
+    for first, count, from_left in asked:
+        polygons = one if first else [*one[:2], *other[2:]]
+        built = no_polygons().added(polygons[:count])
+        side: Side = "left" if from_left else "right"
+        assert bits(found.of(built, side)) == bits(at_once(built, side))
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_only_what_is_new_is_added(side: Side, monkeypatch: pytest.MonkeyPatch) -> None:
+    polygons, new = heap(3, 4), []
+
+    def watched(*args: object) -> object:
+        new.append(args[2])
+        return raised(*args)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(views, "raised", watched)
+    found = Views(SITE)
+    for count, expected in ((2, [0, 1]), (2, []), (4, [2, 3]), (3, [0, 1, 2]), (4, [3])):
+        new.clear()
+        found.of(no_polygons().added(polygons[:count]), side)
+        assert new == expected
+
+
+def test_a_wall_that_differs_in_the_last_bit_of_a_corner_is_another_one() -> None:
+    polygons = heap(5, 2)
+    found = Views(SITE)
+    found.of(no_polygons().added(polygons), "left")
+    moved = polygons[0].copy()
+    moved[0, 0] = np.nextafter(moved[0, 0], 99.0)
+    built = no_polygons().added([moved, polygons[1]])
+    assert bits(found.of(built, "left")) == bits(at_once(built, "left"))
+    split = Polygons(built.corners, np.array([0, 4, 14], np.int32), built.boxes, built.edges)
+    assert found.of(split, "left").built is split
