@@ -1,0 +1,130 @@
+"""A search: the same budget gives the same wall, and a larger one none that is worse."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+
+from drystone.model.site import Site
+from drystone.planner.events import Callbacks, Incumbent
+from drystone.planner.planner import Planner
+from drystone.search.anytime import Progress, searching
+from drystone.search.chain import in_cycle
+from drystone.search.found import Found
+from drystone.search.packed import Packed, found_again
+from drystone.search.plan_wall import plan_wall, run_to_end
+from drystone.search.processes import processes
+from drystone.verify.check import check_plan
+from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble
+
+SMALL = {"passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
+"""A search that does everything within ten walls."""
+
+
+def first(budget: int, geometry: str = "exact", seed: int = 1) -> Planner:
+    settings = greedy({"geometry": geometry, "search": {"budget": budget, **SMALL}})
+    return finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings))
+
+
+def searched(planner: Planner, jobs: int = 1) -> list[Progress]:
+    with processes(jobs) as executor:
+        return list(
+            searching(
+                Found.of(planner), planner.workshop, planner.settings, planner.seed,
+                executor=executor,
+            )
+        )  # fmt: skip
+
+
+def same(one: Packed, other: Packed) -> bool:
+    """Whether two packed walls are one wall."""
+    return one.merit == other.merit and [(g.stone_id, g.angle_deg, g.side) for g in one.groups] == [
+        (g.stone_id, g.angle_deg, g.side) for g in other.groups
+    ]
+
+
+@pytest.mark.parametrize("geometry", ["raster", "exact"])
+def test_walls_get_better_and_are_complete(geometry: str) -> None:
+    planner = first(12, geometry)
+    found = searched(planner)
+    assert found[0].walls == 1
+    assert found[0].best.merit == Found.of(planner).merit
+    assert [p.walls for p in found] == [1, 2, 3, 5, 7, 9, 11, 12]
+    assert all(a.best.merit <= b.best.merit for a, b in pairwise(found))
+    assert found[-1].best.merit > found[0].best.merit
+    best = found_again(found[-1].best, planner.workshop, planner.settings)
+    assert all(a.sturdy and a.resistance.stable for a in best.build.actions)
+    # What was measured when the wall was found is what is measured of it now.
+    again = Found.measured(best.build, planner.workshop, planner.settings)
+    assert again.figures == best.figures
+    assert again.merit == best.merit
+
+
+def test_a_part_of_a_search_is_a_search_with_a_smaller_budget() -> None:
+    """What the clock cut off, the budget that is recorded repeats."""
+    whole = searched(first(12))
+    for part in whole:
+        again = searched(first(part.walls))[-1] if part.walls > 1 else whole[0]
+        assert again.walls == part.walls
+        assert same(again.best, part.best)
+
+
+def test_processes_change_nothing() -> None:
+    one, two = searched(first(9)), searched(first(9), jobs=2)
+    assert [p.walls for p in one] == [p.walls for p in two]
+    assert all(same(a.best, b.best) for a, b in zip(one, two, strict=True))
+
+
+def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls() -> None:
+    settings = greedy({"search": {"budget": 10_000, **SMALL}})
+    timed = plan_wall(rubble(), 100, 36, scale=1.0, seed=2, settings=settings, seconds=1.0)
+    used = timed.plan.settings["search"]["budget"]
+    assert 1 <= used < 10_000
+    again = replace(settings, search=replace(settings.search, budget=used))
+    repeated = plan_wall(rubble(), 100, 36, scale=1.0, seed=2, settings=again)
+    assert repeated.plan == timed.plan
+
+
+def test_no_time_is_one_wall() -> None:
+    settings = greedy({"search": {"budget": 100, **SMALL}})
+    planner = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
+    best, stopped, walls = run_to_end(planner, seconds=0.0)
+    assert walls == 1
+    assert order(best) == order(planner)
+    assert stopped == planner.stopped
+
+
+def test_an_interrupt_keeps_the_best_wall_so_far() -> None:
+    told: list[Incumbent] = []
+
+    class Impatient(Callbacks):
+        def on_walls(self, incumbent: Incumbent) -> None:
+            told.append(incumbent)
+            if incumbent.walls >= 5:
+                raise KeyboardInterrupt
+
+    settings = greedy({"search": {"budget": 50, **SMALL}})
+    stones = rubble()
+    result = plan_wall(stones, 100, 36, scale=1.0, seed=1, settings=settings, callbacks=Impatient())
+    assert [one.walls for one in told] == [1, 2, 3, 5]
+    assert result.plan.settings["search"]["budget"] == 5
+    assert result.plan.stopped != "interrupted"
+    assert check_plan(result.plan, stones, wall_labels=result.wall.labels).problems == ()
+    best = searched(first(5))[-1].best
+    assert [step.stone for step in result.plan.stone_steps] == [g.stone_id for g in best.groups]
+    assert told[-1].merit == best.merit
+    assert told[-1].stones == len(best.groups)
+
+
+def test_nothing_to_build_is_no_trouble() -> None:
+    """No stone that is 100 px wide fits."""
+    settings = greedy({"search": {"budget": 6, **SMALL}, "skip_too_large": True})
+    planner = Planner(rubble(), Site(6, 6), settings=settings)
+    best, stopped, walls = run_to_end(planner)
+    assert (best.build.actions, stopped.reason, walls) == ((), "stones", 6)
+
+
+def test_cycles_double() -> None:
+    walked = [in_cycle(done, 3) for done in range(22)]
+    assert [length for position, length in walked if position == 0] == [3, 6, 12, 24]
+    assert all(b[0] in (a[0] + 1, 0) for a, b in pairwise(walked))

@@ -1,0 +1,71 @@
+"""What a wall is worth."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from drystone.planner.planner import Planner
+from drystone.planner.search_settings import GoalSettings
+from drystone.search.goal import Figures, figures_of, merit_of, possible_filling
+from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
+
+WALL = Figures(stones=8, F_SF=0.8, F_LR=0.5, F_AV=20.0, F_AH=2.0, T_LEVEL=0.2, E_FLUSH=0.1)
+GOAL = GoalSettings()
+
+
+def test_merit_rises_with_what_is_good_and_falls_with_what_is_bad() -> None:
+    def gain(**changes: float) -> float:
+        return merit_of(replace(WALL, **changes), 0.9, GOAL) - merit_of(WALL, 0.9, GOAL)
+
+    assert gain(F_SF=0.89) == pytest.approx(0.1 * GOAL.filling)
+    assert gain(F_LR=0.7) == pytest.approx(0.2 * GOAL.resistance)
+    assert gain(F_LR=1.7) == pytest.approx(0.5 * GOAL.resistance)
+    assert gain(F_AV=30.0) == pytest.approx(10 * GOAL.vertical)
+    assert gain(F_AH=3.0) == pytest.approx(-GOAL.horizontal)
+    assert gain(T_LEVEL=0.3) == pytest.approx(-0.1 * GOAL.level)
+    assert gain(E_FLUSH=0.3) == pytest.approx(-0.2 * GOAL.flush)
+
+
+@pytest.mark.parametrize(
+    ("figure", "short", "aim", "beyond", "weight"),
+    [
+        ("F_SF", 0.7, 0.75, 0.8, GOAL.filling),
+        ("F_LR", 0.5, 0.6, 0.7, GOAL.resistance),
+        ("F_AV", 20.0, 30.0, 35.0, GOAL.vertical),
+        ("F_AH", 2.0, 1.5, 1.0, -GOAL.horizontal),
+    ],
+)
+def test_nothing_is_gained_beyond_an_aim(
+    figure: str, short: float, aim: float, beyond: float, weight: float
+) -> None:
+    goal = replace(GOAL, **{figure: aim})
+
+    def merit(value: float) -> float:
+        return merit_of(replace(WALL, **{figure: value}), 1.0, goal)
+
+    assert merit(beyond) == merit(aim)
+    assert merit(aim) - merit(short) == pytest.approx(goal.urgent * weight * (aim - short))
+    assert merit(aim) > merit(short)
+
+
+def test_an_empty_wall_is_the_worst() -> None:
+    assert merit_of(None, 0.9, GOAL) == -math.inf
+
+
+def test_figures_are_those_of_the_wall() -> None:
+    planner = finish(Planner(rubble(), RUBBLE_SITE, settings=greedy()))
+    figures = figures_of(planner.build)
+    assert figures is not None
+    assert figures.stones == len(planner.build.actions)
+    assert figures.F_SF == planner.build.wall.filling
+    assert figures.F_LR == planner.build.actions[-1].resistance.value
+    assert figures.F_SF <= possible_filling(planner.workshop) <= 1.0
+    empty = Planner(rubble(), RUBBLE_SITE, settings=greedy())
+    assert figures_of(empty.build) is None
+
+
+@pytest.mark.parametrize("wrong", [{"urgent": 0.0}, {"F_AH": -1.0}])
+def test_goals_that_mean_nothing_are_refused(wrong: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match=r"urgent|aims"):
+        GoalSettings(**wrong)
