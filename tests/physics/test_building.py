@@ -133,7 +133,8 @@ def test_what_came_before_may_have_moved() -> None:
     built = build_up(single((0, 3, 40, 20), (0, 23, 40, 20)))
     assert built.found_moved_px[0] == 0.0
     assert built.found_moved_px[1] == pytest.approx(3.0, abs=0.06)
-    assert built.moves[1].move_px == pytest.approx(3.0, abs=0.1)
+    # It lands at some speed, and sinks in for a moment.
+    assert built.moves[1].move_px == pytest.approx(3.0, abs=0.25)
 
 
 def test_a_movement_alone_is_a_fall() -> None:

@@ -14,7 +14,7 @@ from drystone.physics.watch import Watch
 Group = Sequence[tuple[int, Points]]
 """A stone and its wedges, which come together: ids and corners in the wall frame, source px."""
 
-ROUNDED = EngineSettings(time_step=0.005, slop=3e-3, corner_radius=3e-3)
+ROUNDED = EngineSettings(slop=3e-3, corner_radius=3e-3)
 """Corners of stones are rounded, and stones may sink into each other, by .003 L.
 
 The engine finds rounded polygons by the distance of their cores, sharp ones by their overlap, and
