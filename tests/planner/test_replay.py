@@ -8,7 +8,7 @@ import pytest
 
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.model.outlines import Outlines
-from drystone.model.placement import Placement, Settled
+from drystone.model.placement import Placement, Settled, Wedge
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Group
@@ -19,7 +19,7 @@ from drystone.planner.replay import judged, replayed, stands
 from drystone.planner.settings import PlannerSettings
 from drystone.settle.placing import settled_placement
 from drystone.settle.rest import placed_outline
-from tests.planner.scenes import blocks, finish, greedy
+from tests.planner.scenes import RUBBLE_SITE, blocks, finish, greedy, rubble
 
 WEDGES = {
     "selection_rule": "algorithm2",
@@ -28,6 +28,9 @@ WEDGES = {
 }
 RASTER = greedy({"geometry": "raster", **WEDGES})
 EXACT = greedy(WEDGES)
+PLAIN = pytest.mark.parametrize(
+    "settings", [greedy(), greedy({"geometry": "raster"})], ids=["exact", "raster"]
+)
 BOTH = pytest.mark.parametrize("settings", [EXACT, RASTER], ids=["exact", "raster"])
 
 
@@ -87,6 +90,21 @@ def test_what_is_taken_down_is_built_again_as_it_was(settings: PlannerSettings, 
     assert again.states()[: kept + 1] == states[: kept + 1]
 
 
+@PLAIN
+def test_turned_stones_of_both_sides_are_built_again_as_they_were(
+    settings: PlannerSettings,
+) -> None:
+    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
+    build, start = planner.build, Planner(rubble(), RUBBLE_SITE, settings=settings).build
+    assert {action.side for action in build.actions} == {"left", "right"}
+    assert any(p.rotation_moves for p in build.wall.placements)
+    again, left_out = replayed(
+        start, build.wall.groups, heights(build), planner.workshop, planner.settings
+    )
+    assert left_out == ()
+    assert figures(again) == figures(build)
+
+
 @BOTH
 def test_states_are_kept_when_they_are_asked_for(settings: PlannerSettings) -> None:
     planner = wedged_wall(settings)
@@ -114,9 +132,6 @@ def test_wedges_are_numbered_in_the_order_in_which_they_come_now(settings: Plann
 
 
 STONES = blocks({1: (20, 10), 2: (20, 10), 3: (20, 10), 4: (20, 10)})
-PLAIN = pytest.mark.parametrize(
-    "settings", [greedy(), greedy({"geometry": "raster"})], ids=["exact", "raster"]
-)
 
 
 def laid(planner: Planner, stone_id: int, left: float, level: float) -> Group:
@@ -172,6 +187,22 @@ def test_what_cannot_stand_is_left_out(
     first = ids.index(out[0]) if out else len(ids)
     assert [action.stone_id for action in strict.actions] == ids[:first]
     assert rest == tuple(ids[first:])
+
+
+@PLAIN
+def test_wedges_must_have_room_as_well(settings: PlannerSettings) -> None:
+    planner, groups = scene(settings)
+    placement = groups["beside"].placement
+    for left, room in ((56, True), (21, False)):
+        corners = np.array([[left, 0.01], [left + 2.0, 0.01], [left + 2.0, 2.0], [left, 2.0]])
+        wedge = Wedge(
+            9, 4, np.ones((2, 2), bool), 38, left,
+            None if settings.geometry == "raster" else corners,
+        )  # fmt: skip
+        steps = [groups["ground"], Group(placement, (wedge,))]
+        build, left_out = replayed(planner.build, steps, {}, planner.workshop, planner.settings)
+        assert left_out == (() if room else (4,))
+        assert [w.id for w in build.wall.wedges] == ([5] if room else [])
 
 
 def test_what_needs_the_friction_of_upright_faces_is_left_out() -> None:

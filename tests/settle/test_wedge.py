@@ -6,7 +6,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.crevice import crevice, slabs
+from drystone.kernels.crevice import crevice
 from drystone.kernels.polygons import (
     Points,
     Polygons,
@@ -15,14 +15,8 @@ from drystone.kernels.polygons import (
     no_polygons,
 )
 from drystone.kernels.settling import rest_margin
-from drystone.settle.wedge import (
-    WedgeLimits,
-    _holds,
-    _parts,
-    _Slabs,
-    falling_side,
-    wedge_under,
-)
+from drystone.settle.wedge import WedgeLimits, _holds, falling_side, wedge_under
+from drystone.settle.wedge_spans import Slabs, parts
 from tests.naive.crevice import gap_at
 from tests.settle.piles import WIDTH, moved, piles
 from tests.strategies import repeatable
@@ -269,14 +263,14 @@ def test_parts_are_where_upright_lines_are_as_long_as_a_wedge(
 ) -> None:
     stone, around = pile
     left, right = float(stone[:, 0].min()), float(stone[:, 0].max())
-    parts = _parts(_Slabs(*slabs(crevice(stone, around, 0.0), left, right)), LIMITS)
+    found = parts(Slabs.of(crevice(stone, around, 0.0)), LIMITS)
     corners = np.concatenate([stone, around.corners])[:, 0]
     for x in (left + share * (right - left) for share in shares):
         if np.abs(corners - x).min() > 1e-6:
             floor, lid = gap_at(stone, around, x)
             room = min(lid - floor - LIMITS.smallest_px, LIMITS.largest_px - (lid - floor))
             if abs(room) > 1e-6:
-                assert (room > 0.0) == any(start <= x <= stop for start, stop in parts)
+                assert (room > 0.0) == any(start <= x <= stop for start, stop in found)
 
 
 def test_limits_are_checked() -> None:
