@@ -1,0 +1,396 @@
+"""Wedges in the gaps of finished walls: they raise the resistance, and the plan stays true."""
+
+import json
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+import shapely
+
+from drystone.generate import PolygonSettings, RubbleSettings, polygon_stones, rubble_stones
+from drystone.io.plan_json import plan_from_json, plan_to_json
+from drystone.kernels.polygons import Points, on_grid
+from drystone.kernels.raster import Mask
+from drystone.model.placement import Settled, Wedge
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.model.wall import Group, outlined
+from drystone.planner.assemble import Frame
+from drystone.planner.build import Build
+from drystone.planner.dropping import wedge_limits
+from drystone.planner.events import Stopped
+from drystone.planner.planner import Planner
+from drystone.planner.replay import replayed
+from drystone.search.plan_wall import finish as finished
+from drystone.search.wedge_places import Motion, wedge_places
+from drystone.search.wedging import wedged_up
+from drystone.settle.placing import settled_placement
+from drystone.settle.rest import placed_outline
+from drystone.settle.wedge import WedgeLimits
+from drystone.statics.contacts.settled import (
+    PlacedPolygons,
+    model_of_outlines,
+    model_with_outlines,
+)
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
+from drystone.statics.result import Mechanism
+from drystone.verify import check_plan
+from tests.planner.scenes import finish, greedy, stones_of_masks
+
+NOTHING = np.zeros((0, 0), bool)
+ONE_PX = greedy({"stabilise": {"min_wedge_px": 1}, "search": {"budget": 2}})
+SITE = Site(80, 40)
+
+
+def toadstool(stem: slice, height: int, under: int) -> Mask:
+    """A block 20 px wide on a stem."""
+    mask = np.ones((height + under, 20), bool)
+    mask[height:] = False
+    mask[height:, stem] = True
+    return mask
+
+
+STONES = stones_of_masks(
+    {
+        1: toadstool(slice(8, 12), 10, 3),
+        2: toadstool(slice(0, 16), 10, 3),
+        3: np.ones((4, 7), bool),
+        4: toadstool(slice(0, 8), 10, 8),
+        5: np.ones((10, 20), bool),
+        6: toadstool(slice(0, 11), 10, 3),
+        7: toadstool(slice(8, 12), 10, 3),
+        8: toadstool(slice(4, 11), 24, 3),
+        9: toadstool(slice(8, 16), 24, 3),
+    }
+)
+
+
+def planner() -> Planner:
+    return Planner(STONES, SITE, settings=ONE_PX)
+
+
+def limits_of(made: Planner) -> WedgeLimits:
+    return wedge_limits(made.settings, made.workshop.stock, made.workshop.site.scale)
+
+
+def wedged(made: Planner, most: int) -> Build:
+    return wedged_up(made.build, made.workshop, made.settings, limits_of(made), most)
+
+
+def built(
+    *places: tuple[int, float, float], wedges: dict[int, list[Points]] | None = None
+) -> Planner:
+    """A wall of stones: id, left end and lower end of each, and outlines of wedges under them."""
+    made = planner()
+    groups = []
+    for stone_id, left, low in places:
+        outline = made.workshop.outlines.outline(STONES.by_id(stone_id))
+        x, y = on_grid(np.array([left, low]) - outline.min(axis=0)).tolist()
+        settled = Settled(x, y, placed_outline(outline, 0.0, x, y))
+        outlines = made.build.wall.outlines
+        assert outlines is not None
+        placement = settled_placement(
+            outlines, SITE, STONES.by_id(stone_id), 0.0, settled, "left", 0
+        )
+        assert placement is not None
+        own = (wedges or {}).get(stone_id, [])
+        under = tuple(Wedge(0, stone_id, NOTHING, 0, 0, on_grid(corners)) for corners in own)
+        groups.append(Group(placement, under))
+    made.build, left_out = replayed(made.build, groups, {}, made.workshop, made.settings)
+    assert left_out == ()
+    return made
+
+
+def box(left: float, low: float, right: float, high: float) -> Points:
+    return np.array([[left, low], [right, low], [right, high], [left, high]], float)
+
+
+def value(build: Build) -> float:
+    found = build.actions[-1].resistance.value
+    assert found is not None
+    return found
+
+
+def check(made: Planner, build: Build, stones: StoneSet) -> None:
+    """See that the plan of a wall, written and read again, is true, and that stones keep apart."""
+    settings, site = made.settings, made.workshop.site
+    made.build = build
+    provenance = {"version": "0", "method": "custom", "seed": 1, "settings": settings.as_dict()}
+    stopped = Stopped("stones", "all stones placed")
+    frame = Frame(*site.extent_px, site)
+    result = finished(made, frame, stopped, provenance, 0.0)
+    plan = plan_from_json(json.loads(json.dumps(plan_to_json(result.plan))))
+    report = check_plan(plan, stones, wall_labels=result.wall.labels)
+    assert report.problems == ()
+    assert report.overlap_depth == 0.0
+    shapes = [
+        shapely.Polygon(corners)
+        for group in build.wall.groups
+        for _, corners in outlined(group.placement, group.wedges)
+    ]
+    for one, other in combinations(shapes, 2):
+        assert one.distance(other) >= 0.49 * settings.settle.clearance_px
+
+
+def test_wedges_on_both_sides_keep_a_stone_from_toppling() -> None:
+    made = built((1, 20.0, 0.01))
+    before = value(made.build)
+    # The centre of mass is 7.3 px high, the stem 4 wide.
+    assert before < 0.5
+    after = wedged(made, 2)
+    assert value(after) == pytest.approx(1.0)
+    assert [w.under for w in after.wall.wedges] == [1, 1]
+    assert [w.id for w in after.wall.wedges] == [10, 11]
+    centres = sorted(float(w.corners[:, 0].mean()) for w in after.wall.wedges)  # type: ignore[index]
+    assert centres[0] < 28.0
+    assert centres[1] > 32.0
+    check(made, after, STONES)
+
+
+def test_where_two_stones_topple_at_once_one_wedge_is_of_no_use() -> None:
+    made = built((1, 5.0, 0.01), (7, 40.0, 0.01))
+    assert wedged(made, 1) is made.build
+
+
+def test_of_wedges_that_do_as_much_the_smallest_is_cut() -> None:
+    """The stone then slides before it topples over a wedge anywhere under its end."""
+    made = built((6, 20.0, 0.01))
+    after = wedged(made, 1)
+    assert value(after) == pytest.approx(1.0)
+    (wedge,) = after.wall.wedges
+    assert wedge.corners is not None
+    assert np.ptp(wedge.corners[:, 0]) == pytest.approx(1.25 * 2.99, abs=1e-5)
+
+
+def test_the_direction_that_was_the_weaker_one_gains_all_it_can() -> None:
+    """The other direction is then that in which another stone topples, wherever the wedge is."""
+    alone = built((9, 40.0, 0.01)).build.actions[-1].resistance
+    made = built((8, 5.0, 0.01), (9, 40.0, 0.01))
+    before, after = (b.actions[-1].resistance for b in (made.build, wedged(made, 1)))
+    assert before.right.alpha == pytest.approx(0.58 * value(made.build))
+    assert after.left.alpha == pytest.approx(alone.left.alpha)
+    assert after.right.alpha == pytest.approx(alone.right.alpha)
+
+
+def test_no_more_are_added_than_asked_for() -> None:
+    made = built((1, 5.0, 0.01), (6, 40.0, 0.01))
+    assert wedged(made, 0) is made.build
+    counts = [len(wedged(made, most).wall.wedges) for most in range(5)]
+    assert all(count <= most for most, count in enumerate(counts))
+    assert counts[4] > counts[1]
+
+
+def test_a_wedge_that_does_not_matter_is_dropped() -> None:
+    """The stone slides before it topples over its wide stem."""
+    made = built((2, 20.0, 0.01), wedges={2: [box(37.0, 0.01, 39.5, 3.0)]})
+    assert len(made.build.wall.wedges) == 1
+    assert value(made.build) == pytest.approx(1.0)
+    after = wedged(made, 0)
+    assert after.wall.wedges == ()
+    assert value(after) == pytest.approx(1.0)
+    check(made, after, STONES)
+
+
+def test_a_wedge_that_carries_stays() -> None:
+    """Without it the stone falls, whatever the wall beside it carries."""
+    leaning = {4: [box(55.0, 0.01, 58.0, 8.0)]}
+    made = built((5, 2.0, 0.01), (4, 40.0, 0.01), wedges=leaning)
+    assert wedged(made, 0) is made.build
+
+
+def test_of_two_wedges_the_needless_one_is_dropped() -> None:
+    two = {4: [box(50.0, 0.01, 52.0, 8.0), box(55.0, 0.01, 58.0, 8.0)]}
+    after = wedged(built((5, 2.0, 0.01), (4, 40.0, 0.01), wedges=two), 0)
+    assert [float(w.corners[:, 0].min()) for w in after.wall.wedges] == [55.0]  # type: ignore[index]
+
+
+def test_a_wedge_that_is_needed_only_while_the_wall_grows_stays() -> None:
+    """The block on the other end of the stone keeps it from falling; but until it comes..."""
+    held = {4: [box(55.0, 0.01, 58.0, 8.0)]}
+    made = built((4, 40.0, 0.01), (5, 30.5, 18.02), wedges=held)
+    blocks = [b for b in made.build.wall.outlines.blocks if b[0] in (4, 5)]  # type: ignore[union-attr]
+    without = lateral_resistance(model_of_outlines(PlacedPolygons.of(blocks)))
+    assert without.value == pytest.approx(value(made.build))
+    assert wedged(made, 0) is made.build
+
+
+def test_a_wall_without_its_states_is_the_same_wall_when_nothing_changes() -> None:
+    made = built((5, 2.0, 0.01), (2, 40.0, 0.01))
+    groups = made.build.wall.groups
+    start = made.build.states()[0]
+    made.build, _ = replayed(start, groups, {}, made.workshop, made.settings, keep=False)
+    assert made.build.states() == (made.build,)
+    assert wedged(made, 0) is made.build
+
+
+def test_wedges_keep_clear_of_what_comes_later_and_do_not_rest_on_it() -> None:
+    made = built((4, 20.0, 0.01), (3, 33.5, 0.01), wedges={4: [box(28.1, 0.01, 30.1, 8.0)]})
+    places = list(wedge_places(made.build.wall, replace(limits_of(made), largest_px=20.0)))
+    under = [p for p in places if p.step == 0]
+    later = shapely.Polygon(made.build.wall.groups[1].placement.settled.corners)  # type: ignore[union-attr]
+    assert under
+    for place in under:
+        shape = shapely.Polygon(place.corners)
+        assert shape.distance(later) >= 0.0049
+        # Over the stone that comes later there is a gap 4 px high, which is not filled.
+        assert place.corners[:, 1].min() == pytest.approx(0.01, abs=1e-5)
+
+
+def test_no_stone_gets_more_than_two_wedges() -> None:
+    wedges = wedged(built((1, 20.0, 0.01)), 2).wall
+    assert len(wedges.wedges) == 2
+    assert list(wedge_places(wedges, limits_of(planner()))) == []
+
+
+def small_walls() -> list[tuple[StoneSet, Planner]]:
+    """Walls of stones about 20 px wide."""
+    rubble = RubbleSettings(count=8, width_px=90, height_px=40, courses=2)
+    sharp = PolygonSettings(count=8, width_px=28, height_px=18)
+    made = []
+    for seed, scale in ((0, 1.0), (1, 0.5)):
+        rng = np.random.default_rng(seed)
+        for stones in (rubble_stones(rubble, rng), polygon_stones(sharp, rng)):
+            site = Site.from_source(90.0, 48.0, scale)
+            made.append((stones, finish(Planner(stones, site, seed=seed, settings=ONE_PX))))
+    return made
+
+
+WALLS = small_walls()
+
+
+@pytest.mark.parametrize("wall", range(len(WALLS)))
+def test_walls_that_are_wedged_up_are_true(wall: int) -> None:
+    stones, made = WALLS[wall]
+    before = made.build
+    after = wedged(made, 3)
+    check(made, after, stones)
+    made.build = before
+    assert value(after) >= value(before) - 1e-6
+    assert len(after.wall.wedges) <= len(before.wall.wedges) + 3
+    for one, other in zip(before.wall.groups, after.wall.groups, strict=True):
+        assert one.placement.settled is other.placement.settled
+        assert one.placement.posed.angle_deg == other.placement.posed.angle_deg
+    assert len(after.states()) == len(after.actions) + 1
+    assert all(action.sturdy for action in after.actions)
+    # As good as without the states, which are then made again.
+    alone, _ = replayed(
+        before.states()[0], before.wall.groups, {}, made.workshop, made.settings, keep=False
+    )
+    again = wedged_up(alone, made.workshop, made.settings, limits_of(made), 3)
+    assert value(again) == pytest.approx(value(after))
+
+
+@pytest.mark.parametrize("wall", range(len(WALLS)))
+def test_the_first_wedge_is_the_best_one(wall: int) -> None:
+    """Of all with which all steps can be taken."""
+    _, made = WALLS[wall]
+    gained = [value(made.build)]
+    for place in wedge_places(made.build.wall, limits_of(made)):
+        group, *rest = made.build.wall.groups[place.step :]
+        wedge = Wedge(0, group.placement.stone_id, NOTHING, 0, 0, place.corners)
+        with_it = Group(group.placement, (*group.wedges, wedge))
+        start = made.build.states()[place.step]
+        build, left_out = replayed(start, [with_it, *rest], {}, made.workshop, made.settings)
+        if not left_out:
+            gained.append(value(build))
+    after = wedged(made, 1)
+    assert value(after) >= max(gained) - 1e-2
+    if value(after) > gained[0] + 1e-6:
+        assert len(after.wall.wedges) <= len(made.build.wall.wedges) + 1
+
+
+def test_some_of_these_walls_gain() -> None:
+    gains = [value(wedged(made, 3)) - value(made.build) for _, made in WALLS]
+    assert sum(gain > 0.03 for gain in gains) >= 2
+
+
+@pytest.mark.parametrize("wall", range(len(WALLS)))
+def test_no_wedge_is_left_that_does_not_matter(wall: int) -> None:
+    _, made = WALLS[wall]
+    after = wedged(made, 3)
+    for step, group in enumerate(after.wall.groups):
+        for wedge in group.wedges:
+            less = Group(group.placement, tuple(w for w in group.wedges if w is not wedge))
+            steps = [less, *after.wall.groups[step + 1 :]]
+            build, left_out = replayed(
+                after.states()[step], steps, {}, made.workshop, made.settings
+            )
+            assert left_out or value(build) < value(after)
+
+
+def test_what_the_mechanism_does_not_violate_does_not_help() -> None:
+    seen = {True: 0, False: 0}
+    for _, made in WALLS:
+        build = made.build
+        failing = lateral_resistance(build.model, mechanism=True)
+        assert failing.left.alpha is not None
+        assert failing.right.alpha is not None
+        one = failing.left if failing.left.alpha <= failing.right.alpha else failing.right
+        assert one.mechanism is not None
+        motion = Motion(build.model, one.mechanism)
+        outlines = build.wall.outlines
+        assert outlines is not None
+        for place in wedge_places(build.wall, limits_of(made)):
+            model = model_with_outlines(build.model, [(999, place.corners)], outlines, 0.1)
+            assert model.added is not None
+            violated = motion.resisted_by(999, model.added.interfaces) > 1e-9
+            # The weight of the wedge is another thing: here it has none.
+            weightless = replace(model.blocks[-1], density=1e-9)
+            after = lateral_resistance(replace(model, blocks=(*model.blocks[:-1], weightless)))
+            alpha = after.left.alpha if one.direction == "left" else after.right.alpha
+            assert alpha is not None
+            assert one.alpha is not None
+            assert violated or alpha <= one.alpha + 1e-6
+            seen[violated] += 1
+    assert min(seen.values()) > 10
+
+
+def motion(*velocity: float) -> Motion:
+    """A block 4 px wide and 2 high over the ground, 1 px above it, that moves."""
+    model = RigidBlockModel((Block(1, 8.0, (2.0, 2.0)),), (), 0.5)
+    return Motion(model, Mechanism((1,), np.array([velocity])))
+
+
+def between(*normal: float) -> tuple[Interface, Interface]:
+    """Contacts of a wedge under the right end of that block."""
+    low = Interface(9, GROUND, np.array([[3.0, 0.0], [4.0, 0.0]]), (0.0, 1.0))
+    return low, Interface(9, 1, np.array([[3.0, 1.0], [4.0, 1.0]]), (normal[0], normal[1]))
+
+
+@pytest.mark.parametrize(
+    ("velocity", "rate"),
+    [
+        ((0.0, -1.0, 0.0), 1.0),  # down onto the wedge
+        ((0.0, 1.0, 0.0), 0.0),  # up
+        ((1.0, 0.5, 0.0), 0.0),  # along it, and up as friction asks for
+        ((1.0, 0.25, 0.0), 0.25),
+        ((-1.0, 0.25, 0.0), 0.25),
+        # Clockwise about the centroid: 2 down at its end, 1 or 2 to the left below.
+        ((0.0, 0.0, -1.0), 2.5),
+    ],
+)
+def test_the_rate_is_that_of_the_worst_point_and_the_best_neighbour(
+    velocity: tuple[float, ...], rate: float
+) -> None:
+    assert motion(*velocity).resisted_by(9, between(0.0, -1.0)) == pytest.approx(rate)
+
+
+def test_what_touches_one_side_only_moves_along() -> None:
+    low, high = between(0.0, -1.0)
+    assert motion(0.0, -1.0, 0.0).resisted_by(9, [low]) == 0.0
+    assert motion(0.0, -1.0, 0.0).resisted_by(9, [high]) == 0.0
+    assert motion(0.0, -1.0, 0.0).resisted_by(9, []) == 0.0
+
+
+def test_a_wall_of_pixels_is_refused() -> None:
+    settings = greedy({"geometry": "raster"})
+    made = Planner(STONES, SITE, settings=settings)
+    with pytest.raises(ValueError, match="outlines"):
+        wedged_up(made.build, made.workshop, settings, limits_of(made), 3)
+
+
+def test_nothing_is_wedged_up_where_nothing_is_built() -> None:
+    made = planner()
+    assert wedged(made, 3) is made.build

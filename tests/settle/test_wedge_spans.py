@@ -1,0 +1,91 @@
+"""Wedges anywhere under a stone, whatever they shall hold."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+
+from drystone.kernels.crevice import crevice
+from drystone.kernels.polygons import Points, Polygons, no_polygons, on_grid
+from drystone.settle.wedge import PLACES, rests, wedges_below
+from drystone.settle.wedge_spans import Slabs, WedgeLimits, all_spans
+from tests.settle.piles import WIDTH, piles
+from tests.settle.test_wedge import box
+from tests.strategies import repeatable
+
+POST, PLANK = box(13.0, 0.01, 16.0, 2.0), box(10.0, 2.01, 20.0, 4.0)
+LIMITS = WedgeLimits(smallest_px=1.0, largest_px=2.5)
+
+
+def spans(limits: WedgeLimits) -> list[tuple[float, float]]:
+    space = crevice(PLANK, no_polygons().added([POST]), limits.clearance_px)
+    return all_spans(Slabs.of(space), PLACES, limits)
+
+
+def test_each_part_of_a_crevice_has_its_places_and_itself() -> None:
+    found = spans(LIMITS)
+    left = [span for span in found if span[1] < 13.0]
+    right = [span for span in found if span[0] > 16.0]
+    assert found == left + right
+    assert (10.0, pytest.approx(12.99)) in left
+    assert (pytest.approx(16.01), 20.0) in right
+    # As wide as high where there is room, 1.25 times.
+    widths = sorted(stop - start for start, stop in right)
+    assert widths[0] == pytest.approx(1.25 * 1.99)
+    assert max(widths) == pytest.approx(3.99)
+    starts = sorted(start for start, _ in right)
+    assert starts[0] == pytest.approx(16.01)
+    assert starts[-1] == pytest.approx(20.0 - 1.25 * 1.99)
+    assert len(set(found)) == len(found)
+
+
+def test_limits_hold_for_whole_parts_as_well() -> None:
+    assert spans(WedgeLimits(smallest_px=0.5, largest_px=1.97)) == []
+    assert spans(WedgeLimits(smallest_px=1.99, largest_px=2.5)) == []
+    narrow = WedgeLimits(smallest_px=1.9, largest_px=2.5)
+    assert min(stop - start for start, stop in spans(narrow)) >= 1.9
+    # The gap rises by 4 in 10: too high over its whole length, and at the end.
+    ramp = np.array([[10.0, 1.0], [20.0, 5.0], [20.0, 8.0], [10.0, 8.0]])
+    space = crevice(ramp, no_polygons(), 0.01)
+    for start, stop in all_spans(Slabs.of(space), PLACES, LIMITS):
+        assert 1.0 + 0.4 * (stop - 10.0) <= 2.5 + 0.05
+        assert stop - start >= 1.0 - 1e-9
+    steep = WedgeLimits(smallest_px=1.0, largest_px=2.5, mu=0.39)
+    assert all_spans(Slabs.of(space), PLACES, steep) == []
+
+
+def test_the_stone_is_no_obstacle_to_its_own_wedges() -> None:
+    wall = no_polygons().added([POST, PLANK])
+    wedges = list(wedges_below(wall, 1, LIMITS))
+    assert len(wedges) == len(spans(LIMITS))
+    assert {(float(w[:, 0].min()), float(w[:, 0].max())) for w in wedges} == {
+        tuple(on_grid(np.array(span)).tolist()) for span in spans(LIMITS)
+    }
+    assert list(wedges_below(wall, 0, LIMITS)) == []
+
+
+def test_a_wedge_rests_or_falls() -> None:
+    around = no_polygons().added([POST])
+    assert rests(box(17.0, 0.01, 19.0, 2.0), around, WIDTH, LIMITS)
+    assert not rests(box(17.0, 0.2, 19.0, 2.0), around, WIDTH, LIMITS)
+
+
+@repeatable(150)
+@given(piles())
+def test_wedges_fit_and_overlap_nothing(pile: tuple[Points, Polygons]) -> None:
+    stone, around = pile
+    limits = WedgeLimits(smallest_px=0.4, largest_px=5.0)
+    wall = around.added([stone])
+    shapes = [shapely.Polygon(wall.polygon(i)) for i in range(len(wall))]
+    below = shapely.union_all([shapely.box(-99, -9, 199, 0), *shapes[:-1]])
+    for wedge in wedges_below(wall, len(around), limits):
+        shape = shapely.Polygon(wedge)
+        assert shape.is_valid
+        assert shapely.LinearRing(wedge).is_ccw
+        assert np.array_equal(on_grid(wedge), wedge)
+        for body in (shapes[-1], below):
+            gap = shape.distance(body)
+            assert limits.clearance_px / 2 <= gap <= 2 * limits.clearance_px
+        left, low, right, high = shape.bounds
+        assert right - left >= limits.smallest_px - 2e-6
+        assert high - low <= limits.largest_px + 2e-6
