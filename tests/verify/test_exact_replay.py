@@ -42,7 +42,9 @@ def planned(
     rounds: int = 1,
     heights: dict[int, float] | None = None,
 ) -> PlanResult:
-    settings = method_settings("best").updated({"geometry": "exact", "search": {"budget": rounds + 1}})
+    settings = method_settings("best").updated(
+        {"geometry": "exact", "search": {"budget": rounds + 1}}
+    )
     return plan_wall(
         stones,
         160,

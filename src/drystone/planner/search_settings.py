@@ -61,6 +61,13 @@ class SearchSettings:
     spread : float
         Standard deviation of the logarithm of the random factors on the craft weights with which
         the wall is built up again.
+    polish : float
+        Share of the walls of a chain of planned walls that are made by taking down a part of its
+        best wall.
+    wedges : int
+        How many wedges may be put into the gaps of a wall of outlines,
+    wedge_below : float
+        when its merit is at most so much below the best of its chain.
     warm, cold : float
         Temperatures of annealing, in units of merit, at the start and at the end of each cycle.
     cycle : int
@@ -73,6 +80,9 @@ class SearchSettings:
     share_every: int = 8
     largest: float = 0.3
     spread: float = 0.5
+    polish: float = 0.2
+    wedges: int = 6
+    wedge_below: float = 0.25
     warm: float = 0.15
     cold: float = 0.01
     cycle: int = 64

@@ -12,15 +12,22 @@ import numpy as np
 from numpy.random import Generator
 
 from drystone.planner.build import Build
+from drystone.planner.dropping import wedge_limits
 from drystone.planner.planner import Planner
 from drystone.planner.replay import replayed
 from drystone.planner.search_settings import SearchSettings
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.vary import varied
 from drystone.planner.workshop import Workshop
+from drystone.search.by_courses import newly_planned, relaid, replanned
 from drystone.search.found import Found, Solves, course_heights
 from drystone.search.packed import Packed, found_again
 from drystone.search.ruin import RUINS, taken_down
+from drystone.search.wedging import wedged_up
+
+NEW, REPLANNED = 0.05, 0.45
+"""Shares of the changes of a planned wall that are new plans, and plans changed; others are laid
+again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,14 +92,49 @@ def lengthened(
         if late():
             return None
         position, length = in_cycle(link.done, search.cycle)
-        if position == 0:
+        if position == 0 and link.best.courses is not None:
             link = replace(link, now=found_again(link.best, workshop, settings))
         rng = np.random.default_rng([seed, 3_000_000 + link.number, link.done])
-        found = recreated(link.now, workshop, settings, rng)
+        if link.now.courses is not None and rng.random() < search.polish:
+            base = found_again(link.best, workshop, settings)
+            found, goes_on = recreated(base, workshop, settings, rng), False
+        else:
+            found, goes_on = _changed(link.now, workshop, settings, rng), True
+        if found.merit > link.best.merit - search.wedge_below:
+            found = wedged(found, workshop, settings)
         best = Packed.of(found) if found.merit > link.best.merit + 1e-12 else link.best
-        now = found if _accepted(found, link.now, position / length, search, rng) else link.now
+        now = link.now
+        if goes_on and _accepted(found, now, position / length, search, rng):
+            now = found
         link = Link(link.number, link.done + 1, now, best, link.solves + found.solves)
     return link
+
+
+def _changed(found: Found, workshop: Workshop, settings: PlannerSettings, rng: Generator) -> Found:
+    """Change a wall: its plan, how it is laid, or, when it was not planned, a part of it."""
+    if found.courses is None:
+        return recreated(found, workshop, settings, rng)
+    share = rng.random()
+    new: Found | None = None
+    if share < NEW:
+        new = newly_planned(workshop, settings, rng)
+    elif share < NEW + REPLANNED:
+        new = replanned(found, workshop, settings, rng)
+    return relaid(found, workshop, settings, rng) if new is None else new
+
+
+def wedged(found: Found, workshop: Workshop, settings: PlannerSettings) -> Found:
+    """Put small wedges into the gaps of a wall of outlines, where that makes it better."""
+    wedges = settings.search.wedges
+    may = settings.stabilise.method in ("both", "wedge")
+    if found.build.wall.outlines is None or not (wedges and may and found.build.actions):
+        return found
+    limits = wedge_limits(settings, workshop.stock, workshop.site.scale)
+    build = wedged_up(found.build, workshop, settings, limits, wedges)
+    if build is found.build:
+        return found
+    again = Found.measured(build, workshop, settings, found.solves, found.courses)
+    return again if again.merit > found.merit else found
 
 
 def in_cycle(done: int, first: int) -> tuple[int, int]:

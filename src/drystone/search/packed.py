@@ -13,7 +13,7 @@ from drystone.planner.planner import Planner
 from drystone.planner.replay import replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
-from drystone.search.found import Found, Solves, course_heights
+from drystone.search.found import Courses, Found, Solves, course_heights
 from drystone.search.goal import Figures
 
 UNSEEN: Mask = np.ones((1, 1), bool)
@@ -65,19 +65,22 @@ class Packed:
         Likewise.
     solves : Solves
         Likewise.
+    courses : Courses or None
+        Likewise.
     """
 
     groups: tuple[PackedGroup, ...]
     figures: Figures | None
     merit: float
     solves: Solves
+    courses: Courses | None
 
     @classmethod
     def of(cls, found: Found) -> "Packed":
         """Pack a wall."""
         heights = course_heights(found.build)
         groups = tuple(_packed_group(group, heights) for group in found.build.wall.groups)
-        return cls(groups, found.figures, found.merit, found.solves)
+        return cls(groups, found.figures, found.merit, found.solves, found.courses)
 
 
 def _packed_group(group: Group, heights: dict[int, float]) -> PackedGroup:
@@ -108,7 +111,7 @@ def found_again(one: Packed, workshop: Workshop, settings: PlannerSettings) -> F
     build, left_out = replayed(start, again, heights, workshop, settings)
     if left_out:
         raise ValueError(f"stones {left_out} do not stand where they stood")
-    return Found(build, one.figures, one.merit, one.solves)
+    return Found(build, one.figures, one.merit, one.solves, one.courses)
 
 
 def _group(one: PackedGroup, workshop: Workshop) -> Group:

@@ -5,12 +5,18 @@ import time
 from dataclasses import dataclass
 from functools import lru_cache
 
+import numpy as np
+
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
-from drystone.search.chain import Link, lengthened
+from drystone.search.by_courses import newly_planned
+from drystone.search.chain import Link, lengthened, wedged
 from drystone.search.found import Found, Solves
 from drystone.search.packed import Packed, found_again
+
+GREEDY_EVERY = 4
+"""Every so many first walls on outlines is built stone by stone; the others are planned first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +59,16 @@ def one_pass(job: Job, number: int) -> Packed | None:
     if job.late():
         return None
     seed = job.seed + number
+    if settings.geometry == "exact" and number % GREEDY_EVERY:
+        planned = newly_planned(workshop, settings, np.random.default_rng([seed, 4_000_000]))
+        if planned is not None:
+            return Packed.of(wedged(planned, workshop, settings))
     planner = Planner(
         workshop.stones, workshop.site, seed=seed, settings=settings, workshop=workshop
     )
     for _ in planner.steps():
         pass
-    return Packed.of(Found.of(planner))
+    return Packed.of(wedged(Found.of(planner), workshop, settings))
 
 
 def more_links(job: Job, link: PackedLink, count: int) -> PackedLink | None:

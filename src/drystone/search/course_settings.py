@@ -1,0 +1,110 @@
+"""Settings of planning course by course."""
+
+from dataclasses import dataclass, fields
+from typing import Literal
+
+
+@dataclass(frozen=True, kw_only=True)
+class CourseSettings:
+    """What a course plan costs, and how long it is looked for.
+
+    Lengths in the weights are shares of the mean size of a stone, the root of its area.
+
+    Parameters
+    ----------
+    step : float
+        Weight of the ups and downs along the top of a course.
+    level : float
+        Of how far the tops of a course are off their mean, for each stone.
+    top : float
+        The same in the last course.
+    joint : float
+        Of a head joint right above another.
+    reach : float
+        Head joints this far from those below are crossed.
+    overflow : float
+        Of what the stones of a course are too wide for the wall.
+    slack : float
+        Of what is free in head joints, over the area of a mean stone, times its width.
+    void : float
+        Of voids under stones, over the area of a mean stone.
+    turn : float
+        Of how far the ends of a stone go up or down when it turns until it rests.
+    rock : float
+        Of how far a stone still stays above what should carry it on one side.
+    support : float
+        Of the width by which a centroid is too near to the end of its support, over that of the
+        stone.
+    margin : float
+        So far inside its support, over the stone's width, a centroid should be.
+    steepest_deg : float
+        A stone turns by no more until it rests.
+    overhead : float
+        Of what a stone stands out above the wall's height.
+    high : float
+        Of a stone that does at all.
+    flush : float
+        Of the distance between the faces of end stones and the ends of the wall.
+    left_out : float
+        Of a stone of mean area that is left out.
+    across : float
+        Of a percent of F_AH, as far as the plan's bed joints tell, for each stone of the stock:
+        what counts by the stone grows with the wall, F_AH and F_AV do not.
+    down : float
+        Of a percent by which F_AV is short of `target`, as far as its head joints tell; the same.
+    target : float
+        F_AV that is enough, percent.
+    slack_at : {"gap", "joints"}
+        Whether what a course leaves free is at one gap or shared by its head joints.
+    apart_px : float
+        Stones are planned so much further apart than their faces need, source px.
+    evaluations : int
+        How many plans are looked at, for each stone; at most `most_evaluations` in all.
+    most_evaluations : int
+        See there.
+    temperature, coldest : float
+        At the start and at the end.
+    again : float
+        Temperature at which upper courses are planned again, over the first one.
+    """
+
+    step: float = 1.0
+    level: float = 0.3
+    top: float = 1.5
+    joint: float = 1.5
+    reach: float = 0.6
+    overflow: float = 20.0
+    slack: float = 2.0
+    void: float = 1.0
+    turn: float = 0.5
+    rock: float = 1.0
+    support: float = 3.0
+    margin: float = 0.2
+    steepest_deg: float = 8.0
+    overhead: float = 20.0
+    high: float = 6.0
+    flush: float = 1.0
+    left_out: float = 8.0
+    across: float = 0.08
+    down: float = 0.012
+    target: float = 100.0
+    slack_at: Literal["gap", "joints"] = "gap"
+    apart_px: float = 0.0
+    evaluations: int = 5_000
+    most_evaluations: int = 1_000_000
+    temperature: float = 2.0
+    coldest: float = 0.05
+    again: float = 0.3
+
+    def __post_init__(self) -> None:
+        if self.slack_at not in ("gap", "joints"):
+            raise ValueError(f"slack is at the gap or at the joints, not at {self.slack_at!r}")
+        numbers = [getattr(self, item.name) for item in fields(self) if item.name != "slack_at"]
+        if min(numbers) < 0:
+            raise ValueError("weights and lengths must not be negative")
+        if min(
+            self.evaluations, self.most_evaluations
+        ) < 1 or not 0 < self.coldest <= self.temperature * min(1.0, self.again):
+            raise ValueError("there must be evaluations, and it must get colder")
+        if not self.steepest_deg < 45:
+            raise ValueError("a stone turns by less than 45 degrees until it rests")

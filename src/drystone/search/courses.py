@@ -1,0 +1,238 @@
+"""Plan a wall course by course, before any stone is laid (docs/search.md).
+
+Stones are annealed on height profiles: their order, their courses, their quarter turns, and where
+each course has its gap.
+"""
+
+import math
+from collections.abc import Collection, Sequence
+
+import numpy as np
+
+from drystone.kernels.course_moves import Dice
+from drystone.kernels.course_types import (
+    COLUMN_UNITS,
+    SLOPE_ONE,
+    Arrangement,
+    Cooling,
+    Layout,
+    Poses,
+)
+from drystone.kernels.courses import anneal, evaluate
+from drystone.kernels.raster import turn
+from drystone.model.placement import Side
+from drystone.model.stone import Stone
+from drystone.poses import PoseBook
+from drystone.search.course_plan import CoursePlan, PlannedStone
+from drystone.search.course_settings import CourseSettings
+from drystone.search.course_task import Pose, Task, task_of
+from drystone.search.laid_courses import Laid
+
+
+def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
+    stones: Collection[Stone],
+    width_px: float,
+    height_px: float,
+    cell_px: float,
+    tolerance_px: float,
+    settings: CourseSettings,
+    seed: int,
+    *,
+    banned: Collection[Pose] = (),
+    laid: Laid | None = None,
+    book: PoseBook | None = None,
+) -> CoursePlan | None:
+    """Plan a wall course by course.
+
+    Parameters
+    ----------
+    stones : collection of Stone
+        To build with.
+    width_px, height_px : float
+        Of the wall, source px.
+    cell_px : float
+        A working px in source px; profiles have columns half as wide.
+    tolerance_px : float
+        Of the outlines.
+    settings : CourseSettings
+        What a plan costs, and how long it is looked for.
+    seed : int
+        Equal seeds give equal plans.
+    banned : collection of (int, float)
+        Stone ids and angles of poses that must not be used.
+    laid : Laid, optional
+        What the courses are laid on; the bare ground when left out.
+    book : PoseBook, optional
+        Remembers the initial angles of stones.
+
+    Returns
+    -------
+    plan : CoursePlan or None
+        None when no stone fits into the wall.
+    """
+    size = (width_px, height_px)
+    task = task_of(
+        stones, size, cell_px, tolerance_px, settings, banned=banned, laid=laid, book=book
+    )
+    if task is None:
+        return None
+    start = scattered(task, Dice(seed))
+    return annealed(task, start, settings, settings.temperature, seed)
+
+
+def replan_courses(  # noqa: PLR0913 - as above
+    plan: CoursePlan,
+    keep: int,
+    stones: Collection[Stone],
+    width_px: float,
+    height_px: float,
+    cell_px: float,
+    tolerance_px: float,
+    *,
+    settings: CourseSettings,
+    seed: int,
+    laid: Laid,
+    banned: Collection[Pose] = (),
+    book: PoseBook | None = None,
+) -> CoursePlan | None:
+    """Plan the upper courses of a plan again, for what was really laid below.
+
+    Parameters
+    ----------
+    plan : CoursePlan
+        Its upper courses are where annealing starts, at `settings.again` of the temperature.
+    keep : int
+        So many of its courses stay as they are.
+    stones : collection of Stone
+        Those that are not laid yet.
+    width_px, height_px, cell_px, tolerance_px, settings, seed, banned, book
+        As for :func:`plan_courses`.
+    laid : Laid
+        What is there.
+
+    Returns
+    -------
+    plan : CoursePlan or None
+        With the lower courses as they were; its cost is that of the upper ones.  None when no
+        stone fits.
+    """
+    size = (width_px, height_px)
+    task = task_of(
+        stones, size, cell_px, tolerance_px, settings, banned=banned, laid=laid, book=book
+    )
+    if task is None:
+        return None
+    start = resumed(task, plan.courses[keep:])
+    if start is None:
+        start = scattered(task, Dice(seed))
+    found = annealed(task, start, settings, settings.temperature * settings.again, seed)
+    return CoursePlan(plan.courses[:keep] + found.courses, found.cost)
+
+
+def scattered(task: Task, dice: Dice) -> Arrangement:
+    """Return stones in random order, lying flat, in courses that are full, up to the top."""
+    poses = task.quarters.poses
+    count = poses.area.size
+    order = list(range(count))
+    for i in range(count - 1, 0, -1):
+        j = dice.below(i + 1)
+        order[i], order[j] = order[j], order[i]
+    turns = [flat(poses, stone, dice) for stone in range(count)]
+    sizes, width, height, tallest = [0], 0, int(task.ground.tops.mean()), 0
+    for stone in order:
+        pose = 4 * stone + turns[stone]
+        if sizes[-1] and width + int(poses.width[pose]) > task.ground.width:
+            height += tallest // sizes[-1]
+            if height >= task.ground.height:
+                break
+            sizes.append(0)
+            width = tallest = 0
+        sizes[-1] += 1
+        width += int(poses.width[pose])
+        tallest += int(poses.height[pose])
+    return arrangement(order, turns, sizes, [(size + 1) // 2 for size in sizes])
+
+
+def flat(poses: Poses, stone: int, dice: Dice) -> int:
+    """Return one of the turns in which a stone is not higher than in the others."""
+    heights = poses.height[4 * stone : 4 * stone + 4].tolist()
+    turns = [i for i in range(4) if heights[i] <= min(heights) + 1]
+    return turns[dice.below(len(turns))]
+
+
+def arrangement(
+    order: list[int], turns: list[int], sizes: list[int], gaps: list[int]
+) -> Arrangement:
+    """Return an arrangement of lists, its gaps between stones."""
+    inside = [max(1, min(gap, size - 1)) for gap, size in zip(gaps, sizes, strict=True)]
+    return Arrangement(*(np.array(part, np.int32) for part in (order, turns, sizes, inside)))
+
+
+def resumed(task: Task, courses: Sequence[Sequence[PlannedStone]]) -> Arrangement | None:
+    """Return the arrangement of planned courses, without stones that are gone or banned."""
+    quarters = task.quarters
+    number = {stone.id: i for i, stone in enumerate(quarters.stones)}
+    order: list[int] = []
+    turns = [0] * len(number)
+    sizes, gaps = [], []
+    for course in courses:
+        there = [
+            stone
+            for stone in sorted(course, key=lambda stone: stone.left_px)
+            if stone.stone_id in number
+            and stone.angle_deg in quarters.angles_deg[number[stone.stone_id]]
+        ]
+        for stone in there:
+            i = number[stone.stone_id]
+            order.append(i)
+            turns[i] = quarters.angles_deg[i].index(stone.angle_deg)
+        if there:
+            sizes.append(len(there))
+            gaps.append(sum(stone.side == "left" for stone in there))
+    if not sizes:
+        return None
+    order += [i for i in range(len(number)) if i not in set(order)]
+    return arrangement(order, turns, sizes, gaps)
+
+
+def annealed(
+    task: Task, start: Arrangement, settings: CourseSettings, temperature: float, seed: int
+) -> CoursePlan:
+    """Anneal an arrangement, and say where its stones lie in the wall frame."""
+    count = min(settings.evaluations * len(task.quarters.stones), settings.most_evaluations)
+    cooling = Cooling(count, temperature, (settings.coldest / temperature) ** (1.0 / count), seed)
+    poses = task.quarters.poses
+    plan, _ = anneal(poses, start, task.ground, task.rules, cooling)
+    return placed(task, plan, evaluate(poses, plan, task.ground, task.rules))
+
+
+def placed(task: Task, plan: Arrangement, layout: Layout) -> CoursePlan:
+    """Return an arrangement as a plan in the wall frame, source px."""
+    courses, start = [], 0
+    for size, gap in zip(plan.sizes.tolist(), plan.gaps.tolist(), strict=True):
+        left = [planned(task, plan, layout, start + i, "left") for i in range(gap)]
+        right = [planned(task, plan, layout, start + i, "right") for i in range(gap, size)]
+        courses.append((*left, *right[::-1]))
+        start += size
+    return CoursePlan(tuple(courses), layout.cost)
+
+
+def planned(task: Task, plan: Arrangement, layout: Layout, place: int, side: Side) -> PlannedStone:
+    """Return one stone of an arrangement."""
+    stone = int(plan.order[place])
+    quarter = int(plan.turns[stone])
+    corners = task.quarters.corners[4 * stone + quarter]
+    left, bottom = corners.min(axis=0).tolist()
+    tilt_deg = math.degrees(math.atan(int(layout.slope[place]) / (SLOPE_ONE * COLUMN_UNITS)))
+    x = int(layout.x[place]) * task.unit_px - left
+    y = int(layout.y[place]) * task.unit_px - bottom
+    return PlannedStone(
+        task.quarters.stones[stone].id,
+        task.quarters.angles_deg[stone][quarter],
+        side,
+        x,
+        y,
+        x + left,
+        x + float(corners[:, 0].max()),
+        y + float(turn(corners, tilt_deg)[:, 1].max()),
+    )

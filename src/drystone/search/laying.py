@@ -1,0 +1,119 @@
+"""Laying a course plan, stone by stone, on exact outlines.
+
+A plan knows height profiles only.  Here each stone is let go near its planned place, pushed to the
+neighbour on its side of the course, and of all places where it rests one is taken that is near the
+plan, keeps the course's width, and leaves a wall that stands.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from drystone.planner.build import Build
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.workshop import Workshop
+from drystone.search.course_plan import CoursePlan, PlannedStone
+from drystone.search.laying_settings import LayingSettings
+from drystone.search.mason import LAID, Mason, Outcome
+
+
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """A course plan, laid.
+
+    Parameters
+    ----------
+    states : tuple of Build
+        Before the first course, and after each.
+    courses : tuple of tuple of Outcome
+        Of the stones of each course, in the order of the plan.
+    """
+
+    states: tuple[Build, ...]
+    courses: tuple[tuple[Outcome, ...], ...]
+
+    @property
+    def build(self) -> Build:
+        """The wall after the last course."""
+        return self.states[-1]
+
+    @property
+    def laid(self) -> tuple[PlannedStone, ...]:
+        """The planned stones that were laid."""
+        return tuple(one.stone for one in self._outcomes() if one.status in LAID)
+
+    @property
+    def failed(self) -> tuple[Outcome, ...]:
+        """The planned stones that were not, and why."""
+        return tuple(one for one in self._outcomes() if one.status not in LAID)
+
+    def _outcomes(self) -> Iterator[Outcome]:
+        return (one for course in self.courses for one in course)
+
+
+def lay(
+    plan: CoursePlan,
+    build: Build,
+    workshop: Workshop,
+    settings: PlannerSettings,
+    laying: LayingSettings | None = None,
+) -> Laid:
+    """Lay a course plan.
+
+    Parameters
+    ----------
+    plan : CoursePlan
+        Of the workshop's stones; those that are in the wall already are passed over.
+    build : Build
+        To go on from, of exact outlines.
+    workshop : Workshop
+        Stones and site.
+    settings : PlannerSettings
+        How stones settle and are judged.
+    laying : LayingSettings, optional
+        How the plan is laid.
+    """
+    mason = Mason.of(workshop, settings, laying or LayingSettings())
+    return _go_on(Laid((build,), ()), plan.courses, mason)
+
+
+def relaid(
+    laid: Laid,
+    kept: int,
+    plan: CoursePlan,
+    workshop: Workshop,
+    settings: PlannerSettings,
+    laying: LayingSettings | None = None,
+) -> Laid:
+    """Keep the lowest courses of a wall as they are laid, and lay the others of another plan.
+
+    Parameters
+    ----------
+    laid : Laid
+        The wall.
+    kept : int
+        How many of its courses stay.
+    plan : CoursePlan
+        Its courses are laid from there on; as many of them as stay are left out.
+    workshop, settings, laying
+        As for :func:`lay`.
+
+    Raises
+    ------
+    ValueError
+        When the wall has fewer courses.
+    """
+    if not 0 <= kept <= len(laid.courses):
+        raise ValueError(f"{kept} of {len(laid.courses)} courses cannot stay")
+    prefix = Laid(laid.states[: kept + 1], laid.courses[:kept])
+    mason = Mason.of(workshop, settings, laying or LayingSettings())
+    return _go_on(prefix, plan.courses[kept:], mason)
+
+
+def _go_on(laid: Laid, courses: Sequence[tuple[PlannedStone, ...]], mason: Mason) -> Laid:
+    states, outcomes = list(laid.states), list(laid.courses)
+    views = mason.views()
+    for course in courses:
+        build, became = mason.course(states[-1], course, views)
+        states.append(build)
+        outcomes.append(became)
+    return Laid(tuple(states), tuple(outcomes))

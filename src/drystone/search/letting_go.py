@@ -1,0 +1,215 @@
+"""Letting a planned stone go near its place: from where, and where it comes to rest."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from drystone.kernels.polygons import Points
+from drystone.kernels.profiles import Floats, StoneProfile, hanging
+from drystone.kernels.settling import Status
+from drystone.search.laying_settings import LetGoSettings
+from drystone.search.views import View
+from drystone.settle.rest import Repose, Turned, let_go, repose, ways
+from drystone.settle.settings import SettleSettings
+from drystone.settle.wedge import WedgeLimits
+from drystone.settle.wedged import wedged
+from drystone.stabilise.settings import Method
+
+Place = tuple[float, float]
+
+SAME_PX, SAME_DEG = 1.0, 0.05
+"""Stones that rest so near to each other rest alike."""
+
+
+@dataclass(frozen=True)
+class Aim:
+    """Where a stone shall come to rest, as the view of its side sees it; source px.
+
+    Parameters
+    ----------
+    left_px : float or None
+        Its left end; None for anywhere along the wall.
+    top_px : float
+        Its top.
+    angle_deg : float
+        Its turn in the wall frame.
+    highest_px : float
+        Above this no stone may be.
+    unit_px : float
+        Mean stone height: unit of the costs.
+    """
+
+    left_px: float | None
+    top_px: float
+    angle_deg: float
+    highest_px: float
+    unit_px: float
+
+
+@dataclass(frozen=True, eq=False)
+class Resting:
+    """Where a stone came to rest, and what that costs.
+
+    Parameters
+    ----------
+    repose : Repose
+        Where.
+    wedge : (n, 2) float array or None
+        Corners of the wedge that holds it, in the wall frame.
+    cost : float
+        Lower is better.
+    """
+
+    repose: Repose
+    wedge: Points | None
+    cost: float
+
+
+@dataclass(frozen=True, eq=False)
+class Hand:
+    """Lets stones go.
+
+    Parameters
+    ----------
+    settings : LetGoSettings
+        From where, and what it costs to rest elsewhere than planned.
+    settle : SettleSettings
+        How stones settle.
+    limits : WedgeLimits
+        Of wedges.
+    method : {"both", "rotation", "wedge", "none"}
+        What is tried with a stone that does not rest.
+    """
+
+    settings: LetGoSettings
+    settle: SettleSettings
+    limits: WedgeLimits
+    method: Method
+
+    def starts(self, stone: Turned, view: View, aim: Aim) -> list[Place]:
+        """Return from where a stone is let go: where it first touches, the cheapest place first.
+
+        Parameters
+        ----------
+        stone : Turned
+            As the view sees it.
+        view : View
+            What is there.
+        aim : Aim
+            Where the stone shall go.
+
+        Returns
+        -------
+        starts : list of (float, float)
+            Of its centroid, in the view.
+        """
+        settings, column_px = self.settings, view.column_px
+        profile = hanging(stone.corners, column_px)
+        first, last = self._columns(profile, stone.size_px, view, aim)
+        if last < first:
+            return []
+        under = sliding_window_view(view.profile.tops, len(profile.bottoms))[first : last + 1]
+        lift = (under - profile.bottoms).max(axis=1) + 2.0 * self.settle.clearance_px
+        left = np.arange(first, last + 1, dtype=np.float64) * column_px
+        cost = self._place_cost(left, lift + profile.top, aim)
+        # It may go down further as it settles, but not up.
+        cost[lift + profile.top > aim.top_px + settings.astray * aim.unit_px] = np.inf
+        apart = max(1, math.ceil(settings.apart * stone.size_px / column_px))
+        found: list[Place] = []
+        while len(found) < settings.starts:
+            at = int(cost.argmin())
+            if cost[at] == np.inf:
+                break
+            found.append((float(left[at]) - profile.left, float(lift[at])))
+            cost[max(0, at - apart + 1) : at + apart] = np.inf
+        return found
+
+    def _columns(
+        self, stone: StoneProfile, size_px: float, view: View, aim: Aim
+    ) -> tuple[int, int]:
+        """Return the first and the last column on which the stone's left end may be."""
+        room = view.scene.width_px + self.settle.beyond_px - (stone.right - stone.left)
+        last = min(math.floor(room / view.column_px), len(view.profile.tops) - len(stone.bottoms))
+        if aim.left_px is None:
+            return 0, last
+        reach = self.settings.reach * size_px
+        first = max(0, math.floor((aim.left_px - reach) / view.column_px))
+        return first, min(last, math.ceil((aim.left_px + reach) / view.column_px))
+
+    def _place_cost(self, left_px: Floats, top_px: Floats, aim: Aim) -> Floats:
+        """Return what it costs to be at some places."""
+        cost = self.settings.top * np.abs(top_px - aim.top_px)
+        if aim.left_px is not None:
+            cost += self.settings.width * np.maximum(left_px - aim.left_px, 0.0)
+        return np.asarray(cost / aim.unit_px)
+
+    def resting(
+        self, stone: Turned, view: View, aim: Aim, starts: Sequence[Place]
+    ) -> list[Resting]:
+        """Let a stone go, and return where it rests near its place, the cheapest first.
+
+        Where it rests nowhere, it is wedged.
+
+        Parameters
+        ----------
+        stone, view, aim
+            As for :meth:`starts`.
+        starts : sequence of (float, float)
+            From where.
+        """
+        found = [
+            Resting(one, None, self._cost(one, view, aim))
+            for start in starts
+            for one in self._settled(stone, view, start)
+        ]
+        if not found and self.method in ("both", "wedge"):
+            held = [wedged(stone, view.scene, start, self.settle, self.limits) for start in starts]
+            found = [
+                Resting(
+                    one.repose, one.wedge, self._cost(one.repose, view, aim) + self.settings.wedge
+                )
+                for one in held
+                if one is not None
+            ]
+        different: dict[tuple[int, int, int], Resting] = {}
+        for one in found:
+            if one.cost < math.inf:
+                different.setdefault(_place(one.repose), one)
+        # Costs that differ by rounding are equal; then the earlier start goes first.
+        return sorted(different.values(), key=lambda one: round(one.cost, 9))
+
+    def _settled(self, stone: Turned, view: View, start: Place) -> Iterator[Repose]:
+        """Let a stone go from a start in all ways, and say where it rests."""
+        turns = self.method in ("both", "rotation")
+        for rules in ways(stone, view.scene, self.settle, turns=turns):
+            found = let_go(stone, view.scene, start, rules)
+            if found.status == Status.RESTS and found.margin >= self.settle.margin:
+                yield repose(stone, view.scene, found)
+
+    def _cost(self, found: Repose, view: View, aim: Aim) -> float:
+        """Return what it costs to rest somewhere; infinite where it is far from the plan."""
+        settings, corners = self.settings, found.settled.corners
+        top = float(corners[:, 1].max())
+        if top > aim.highest_px or abs(top - aim.top_px) > settings.astray * aim.unit_px:
+            return math.inf
+        if view.scene.side == "left":
+            left = float(corners[:, 0].min())
+        else:
+            left = view.scene.width_px - float(corners[:, 0].max())
+        place = self._place_cost(np.array([left]), np.array([top]), aim)
+        turn = abs((found.angle_deg - aim.angle_deg + 180.0) % 360.0 - 180.0) / 10.0
+        unsure = max(0.0, 1.0 - found.margin)
+        return math.fsum([float(place[0]), settings.turn * turn, settings.rest * unsure])
+
+
+def _place(found: Repose) -> tuple[int, int, int]:
+    """Return what is the same for stones that rest alike."""
+    settled = found.settled
+    return (
+        round(settled.x_px / SAME_PX),
+        round(settled.y_px / SAME_PX),
+        round(found.angle_deg / SAME_DEG),
+    )

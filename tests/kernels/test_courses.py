@@ -1,0 +1,242 @@
+"""Courses, compiled and Python, against loops over columns."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels import courses
+from drystone.kernels.backend import compiled
+from drystone.kernels.course_cost import evaluate_python
+from drystone.kernels.course_moves import NOTHING, Dice, Draft, change
+from drystone.kernels.course_paths import STARTS, path_starts, ways_up
+from drystone.kernels.course_types import (
+    TERMS,
+    Arrangement,
+    Cooling,
+    Ground,
+    Layout,
+    Poses,
+    Rules,
+    Weights,
+)
+from drystone.kernels.courses import anneal, anneal_python, evaluate
+from drystone.kernels.polygons import area_and_centroid
+from drystone.kernels.raster import turn
+from drystone.search.course_poses import poses_of
+from tests.naive.courses import all_terms
+from tests.polygons import random_polygon
+from tests.strategies import repeatable
+
+needs_compiled = pytest.mark.skipif(
+    compiled("courses") is None, reason="kernels are not compiled here"
+)
+Case = tuple[Poses, Arrangement, Ground, Rules]
+
+
+def random_case(seed: int) -> Case:
+    """Some stones, in courses, on what may be there already."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, 13))
+    size = float(rng.choice([0.7, 9.0, 30.0]))
+    outlines = [random_polygon(rng, int(rng.integers(3, 9)), size) for _ in range(count)]
+    corners = [turn(outline, quarter) for outline in outlines for quarter in (0, 90, 180, 270)]
+    areas = np.array([area_and_centroid(outline)[0] for outline in outlines])
+    poses = poses_of(corners, areas, 1.0)
+    columns = int(np.diff(poses.first).max() + rng.integers(0, 80))
+    width = max(int(poses.width.max()), 16 * columns - int(rng.integers(0, 16)))
+    placed = int(rng.integers(1, count + 1))
+    ends = np.sort(rng.choice(np.arange(1, placed), int(rng.integers(0, min(4, placed))), False))
+    sizes = np.diff([0, *ends, placed]).astype(np.int32)
+    gaps = np.array([rng.integers(1, max(1, n - 1) + 1) for n in sizes], np.int32)
+    turns = rng.integers(0, 4, count, np.int32)
+    plan = Arrangement(rng.permutation(count).astype(np.int32), turns, sizes, gaps)
+    return poses, plan, random_ground(rng, columns, width), random_rules(rng, count)
+
+
+def random_ground(rng: np.random.Generator, columns: int, width: int) -> Ground:
+    """Bare, or with a course of some joints."""
+    height = int(rng.integers(10, 1500))
+    if rng.random() < 0.5:
+        nothing = np.zeros((0, 2), np.int32), np.zeros((0, STARTS), np.int32)
+        return Ground(
+            np.zeros(columns, np.int32), *nothing, np.zeros((0, 3), np.int32), width, height
+        )
+    ends = np.sort(rng.integers(0, width, 2 * int(rng.integers(1, 4)), np.int32)).reshape(-1, 2)
+    joints = [(int(a), int(b)) for a, b in ends]
+    ways = ways_up(joints, [], np.zeros((0, STARTS), np.int32), path_starts(width))
+    beds = rng.integers(0, 100, (2, 3), np.int32)
+    return Ground(rng.integers(0, 200, columns, np.int32), ends, ways, beds, width, height)
+
+
+def random_rules(rng: np.random.Generator, count: int) -> Rules:
+    weights = Weights(*rng.uniform(0.0, 1.0, TERMS).tolist())
+    return Rules(
+        weights,
+        reach=int(rng.integers(1, 300)),
+        margin=float(rng.uniform(0.0, 0.4)),
+        steepest=int(rng.integers(0, 20000)),
+        spread=bool(rng.random() < 0.3),
+        joint=int(rng.integers(0, 5)),
+        courses=max(4, count),
+        target=float(rng.uniform(0.0, 100.0)),
+    )
+
+
+cases = st.integers(0, 10**6).map(random_case)
+
+
+def bits(parts: Any) -> list[Any]:
+    return [(p.dtype.str, p.shape, p.tobytes()) if isinstance(p, np.ndarray) else p for p in parts]
+
+
+def priced(layout: Layout, rules: Rules) -> float:
+    return float((layout.terms * np.array(rules.weights)).sum())
+
+
+@repeatable(120)
+@given(case=cases)
+def test_stones_lie_and_count_as_in_loops_over_columns(case: Case) -> None:
+    rules = case[3]
+    layout = evaluate_python(*case)
+    places, level, joints, terms = all_terms(*case)
+    assert list(zip(layout.x, layout.y, layout.slope, strict=True)) == places
+    assert layout.tops.tolist() == level
+    assert [tuple(joint) for joint in layout.joints.tolist()] == joints
+    assert layout.terms == pytest.approx(np.array(terms), rel=1e-12, abs=1e-12)
+    assert layout.cost == pytest.approx(priced(layout, rules), rel=1e-9)
+
+
+@needs_compiled
+@repeatable(150)
+@given(case=cases)
+def test_the_compiled_evaluation_is_the_same_bit_by_bit(case: Case) -> None:
+    assert bits(evaluate(*case)) == bits(evaluate_python(*case))
+
+
+@needs_compiled
+@repeatable(25)
+@given(case=cases, seed=st.integers(-(2**70), 2**70), hot=st.sampled_from([0.0, 5.0, 5000.0]))
+def test_the_compiled_annealing_is_the_same_bit_by_bit(case: Case, seed: int, hot: float) -> None:
+    cooling = Cooling(150, hot, 0.99, seed)
+    fast, fast_cost = anneal(*case, cooling)
+    slow, slow_cost = anneal_python(*case, cooling)
+    assert bits(fast) == bits(slow)
+    assert fast_cost == slow_cost
+
+
+@needs_compiled
+@pytest.mark.parametrize("seed", range(4))
+def test_a_longer_annealing_of_more_stones_is_the_same_bit_by_bit(seed: int) -> None:
+    poses, _, ground, rules = next(
+        case for case in map(random_case, range(100 * seed, 9999)) if case[1].order.size == 12
+    )
+    # From one course of all stones, far too wide for the wall: what splits it gains at once.
+    ground = ground._replace(width=int(poses.width.max()))
+    rules = rules._replace(weights=rules.weights._replace(overflow=9.0), spread=False)
+    one = Arrangement(*(np.array(p, np.int32) for p in ([*range(12)], [0] * 12, [12], [6])))
+    cooling = Cooling(400, 1.0, 0.98, seed)
+    fast, fast_cost = anneal(poses, one, ground, rules, cooling)
+    slow, slow_cost = anneal_python(poses, one, ground, rules, cooling)
+    assert bits(fast) == bits(slow)
+    assert fast_cost == slow_cost
+
+
+@pytest.mark.parametrize("kernel", ["compiled", "python"])
+def test_annealing_returns_the_cheapest_plan_and_its_cost(
+    kernel: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if kernel == "python":
+        monkeypatch.setattr(courses, "_fast", None)
+    gained = 0.0
+    for seed in range(8):
+        case = random_case(seed)
+        poses, plan, ground, rules = case
+        start = evaluate(*case).cost
+        found, cost = anneal(*case, Cooling(200, 1.0, 0.98, seed))
+        assert cost == evaluate(poses, found, ground, rules).cost
+        assert cost <= start
+        gained += start - cost
+        again, same = anneal(*case, Cooling(200, 1.0, 0.98, seed))
+        assert (bits(again), same) == (bits(found), cost)
+        other, _ = anneal(*case, Cooling(0, 1.0, 0.98, seed))
+        assert bits(other) == bits(plan)
+    assert gained > 0.0
+
+
+@repeatable(40)
+@given(case=cases, seed=st.integers(0, 99))
+def test_changes_keep_every_stone_and_say_where_they_begin(case: Case, seed: int) -> None:
+    poses, plan, _, rules = case
+    draft, dice = Draft.of(plan), Dice(seed)
+    for _ in range(60):
+        before = draft.copy()
+        lowest = change(draft, dice, rules.courses)
+        assert sorted(draft.order) == list(range(poses.area.size))
+        assert min(draft.sizes) >= 1
+        assert sum(draft.sizes) <= len(draft.order)
+        for size, gap in zip(draft.sizes, draft.gaps, strict=True):
+            assert 1 <= gap <= max(1, size - 1)
+        assert len(draft.sizes) <= rules.courses
+        if lowest == NOTHING:
+            assert draft == before
+            continue
+        assert 0 <= lowest < len(draft.sizes)
+        below = before.start(lowest)
+        assert draft.order[:below] == before.order[:below]
+        assert draft.sizes[:lowest] == before.sizes[:lowest]
+        assert draft.gaps[:lowest] == before.gaps[:lowest]
+        assert all(draft.turns[stone] == before.turns[stone] for stone in draft.order[:below])
+
+
+def test_every_kind_of_change_happens() -> None:
+    plan = Arrangement(*(np.array(p, np.int32) for p in ([*range(9)], [0] * 9, [3, 2], [1, 1])))
+    draft, dice = Draft.of(plan), Dice(1)
+    counts, placed, gaps = set(), set(), set()
+    for _ in range(4000):
+        change(draft, dice, 4)
+        counts.add(len(draft.sizes))
+        placed.add(draft.placed)
+        gaps.add(tuple(draft.gaps))
+    assert counts == {1, 2, 3, 4}
+    assert placed > {3, 5, 7, 9}
+    assert len(gaps) > 9
+    assert set(draft.turns) == {0, 1, 2, 3}
+
+
+def test_the_dice_are_splitmix64() -> None:
+    dice = Dice(0)
+    assert [dice.below(2**32) for _ in range(3)] == [0xE220A839, 0x6E789E6A, 0x06C45D18]
+    assert Dice(2**64).state == 0
+    numbers = [Dice(seed).below(3) for seed in range(300)]
+    assert set(numbers) == {0, 1, 2}
+
+
+def spoilt(case: Case, **changes: Any) -> Case:
+    def fitting(part: Any) -> Any:
+        return part._replace(**{k: v for k, v in changes.items() if k in part._fields})
+
+    poses, plan, ground, rules = case
+    return poses, fitting(plan), fitting(ground), fitting(rules)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"order": np.zeros(8, np.int32)}, "every stone once"),
+        ({"sizes": np.array([0, 1], np.int32), "gaps": np.ones(2, np.int32)}, "empty"),
+        ({"gaps": np.array([9], np.int32), "sizes": np.array([1], np.int32)}, "gap"),
+        ({"turns": np.full(8, 4, np.int32)}, "quarters"),
+        ({"width": 1}, "wider"),
+        ({"reach": 0}, "negative"),
+        ({"joints": np.zeros((3, 2), np.int32)}, "way"),
+    ],
+)
+def test_arrays_that_do_not_fit_are_refused(changes: dict[str, Any], message: str) -> None:
+    case = next(case for case in map(random_case, range(999)) if case[1].order.size == 8)
+    with pytest.raises(ValueError, match=message):
+        evaluate(*spoilt(case, **changes))
+    with pytest.raises(ValueError, match=message):
+        anneal(*spoilt(case, **changes), Cooling(1, 1.0, 1.0, 0))

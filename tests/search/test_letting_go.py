@@ -1,0 +1,186 @@
+"""Where planned stones are let go, what it costs where they rest, and what they see."""
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+from drystone.kernels.profiles import bare, hanging, raised
+from drystone.model.placement import Side
+from drystone.planner.dropping import wedge_limits
+from drystone.search.laying_settings import LayingSettings, LetGoSettings
+from drystone.search.letting_go import Aim, Hand
+from drystone.search.views import View
+from drystone.settle.rest import Scene, Turned
+from tests.planner.scenes import RUBBLE_SITE, rubble
+from tests.search.yards import Yard
+
+
+class _Drop:
+    """A stone of some rubble over two others."""
+
+    def __init__(self, side: Side, settings: LetGoSettings) -> None:
+        self.yard = Yard(rubble(2, 8), RUBBLE_SITE)
+        laid = self.yard.lay(*self.yard.rows(1).courses)
+        outlines = laid.build.wall.outlines
+        assert outlines is not None
+        self.view = View.bare(100.0, side, 0.58, 1.0).grown(outlines)
+        stone = next(s for s in self.yard.stones if s.id not in dict(outlines.blocks))
+        outline = self.yard.workshop.outlines.outline(stone)
+        self.stone = Turned.of(outline, 0.0, side, stone.area_px**0.5)
+        self.unit_px = self.yard.workshop.stock.mean_height_px
+        limits = wedge_limits(self.yard.settings, self.yard.workshop.stock, 1.0)
+        self.hand = Hand(settings, self.yard.settings.settle, limits, "both")
+
+    def lifts(self) -> list[float]:
+        """Where the stone first touches, column by column."""
+        hung = hanging(self.stone.corners, 1.0)
+        tops, bottoms = self.view.profile.tops.tolist(), hung.bottoms.tolist()
+        places = range(len(tops) - len(bottoms) + 1)
+        return [max(tops[at + k] - b for k, b in enumerate(bottoms)) for at in places]
+
+    def aim(self, left: float | None, top: float) -> Aim:
+        return Aim(left, top, 0.0, 1e9, self.unit_px)
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_stones_are_let_go_where_they_first_touch_the_cheapest_place_first(side: Side) -> None:
+    settings = LetGoSettings(starts=4, apart=0.1, reach=0.4, astray=2.0)
+    drop = _Drop(side, settings)
+    hung, lifts = hanging(drop.stone.corners, 1.0), drop.lifts()
+    size, aim = drop.stone.size_px, drop.aim(30.0, 20.0)
+    starts = drop.hand.starts(drop.stone, drop.view, aim)
+    assert len(starts) == 4
+    costs = []
+    for x, y in starts:
+        at = round(x + hung.left)
+        assert x + hung.left == pytest.approx(at, abs=1e-9)
+        assert y == pytest.approx(lifts[at] + 0.02, abs=1e-9)
+        costs.append(abs(y + hung.top - 20.0) + settings.width * max(0.0, at - 30.0))
+        assert 30 - 0.4 * size - 1 <= at <= 30 + 0.4 * size + 1
+    assert costs == sorted(costs)
+    columns = sorted(x for x, _ in starts)
+    assert min(b - a for a, b in pairwise(columns)) >= 0.1 * size
+    # No place beside these is cheaper.
+    inside = range(30 - int(0.4 * size), 30 + int(0.4 * size) + 1)
+    best = min(abs(lifts[at] + 0.02 + hung.top - 20.0) + 2.0 * max(0, at - 30) for at in inside)
+    assert costs[0] <= best + 1e-9
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_stones_are_let_go_within_reach_on_both_sides(side: Side) -> None:
+    drop = _Drop(side, LetGoSettings(starts=100, apart=0.0, reach=0.5, astray=9.0))
+    left = hanging(drop.stone.corners, 1.0).left
+    starts = drop.hand.starts(drop.stone, drop.view, drop.aim(30.0, 20.0))
+    columns = sorted(round(x + left) for x, _ in starts)
+    reach = 0.5 * drop.stone.size_px
+    first, last = round(30.0 - reach - 0.5), round(30.0 + reach + 0.5)
+    assert columns == list(range(first, last + 1))
+
+
+def test_a_stone_is_not_let_go_too_high_or_outside() -> None:
+    drop = _Drop("left", LetGoSettings(starts=100, apart=0.0, astray=0.3))
+    hung, lifts = hanging(drop.stone.corners, 1.0), drop.lifts()
+    highest = min(lifts) + hung.top
+    starts = drop.hand.starts(drop.stone, drop.view, drop.aim(None, highest))
+    assert starts
+    assert max(y + hung.top for _, y in starts) <= highest + 0.3 * drop.unit_px
+    assert min(x + hung.left for x, _ in starts) >= 0.0
+    assert max(x + hung.right for x, _ in starts) <= 100.25
+    low = drop.aim(None, highest - 0.4 * drop.unit_px)
+    assert drop.hand.starts(drop.stone, drop.view, low) == []
+
+
+def test_where_a_stone_rests_costs_what_the_settings_say() -> None:
+    plain = LetGoSettings(top=0.0, width=0.0, turn=0.0, rest=0.0, astray=5.0)
+    one_weight = {
+        "top": replace(plain, top=1.0),
+        "width": replace(plain, width=1.0),
+        "turn": replace(plain, turn=1.0),
+        "rest": replace(plain, rest=1.0),
+    }
+    for name, settings in one_weight.items():
+        drop = _Drop("right", settings)
+        aim = drop.aim(20.0, 25.0)
+        resting = drop.hand.resting(
+            drop.stone, drop.view, aim, drop.hand.starts(drop.stone, drop.view, aim)
+        )
+        assert resting
+        assert [one.cost for one in resting] == sorted(one.cost for one in resting)
+        for one in resting:
+            box = shapely.Polygon(one.repose.settled.corners).bounds
+            expected = {
+                "top": abs(box[3] - 25.0) / drop.unit_px,
+                "width": max(0.0, 100.0 - box[2] - 20.0) / drop.unit_px,
+                "turn": abs(one.repose.angle_deg) / 10.0,
+                "rest": max(0.0, 1.0 - one.repose.margin),
+            }
+            assert one.cost == pytest.approx(expected[name], abs=1e-9)
+        alike = {
+            (round(r.repose.settled.x_px), round(r.repose.settled.y_px), r.repose.angle_deg)
+            for r in resting
+        }
+        assert len(alike) == len(resting)
+
+
+def test_a_stone_that_rests_above_the_wall_or_far_from_its_top_does_not_count() -> None:
+    drop = _Drop("left", LetGoSettings(astray=5.0))
+    aim = drop.aim(None, 25.0)
+    starts = drop.hand.starts(drop.stone, drop.view, aim)
+    tops = [
+        one.repose.settled.corners[:, 1].max()
+        for one in drop.hand.resting(drop.stone, drop.view, aim, starts)
+    ]
+    lower = sorted(tops)[len(tops) // 2]
+    below = replace(aim, highest_px=float(lower))
+    found = drop.hand.resting(drop.stone, drop.view, below, starts)
+    assert 0 < len(found) < len(tops)
+    near = _Drop("left", LetGoSettings(astray=0.01))
+    aim = near.aim(None, float(lower))
+    found = near.hand.resting(near.stone, near.view, aim, starts)
+    assert 0 < len(found) < len(tops)
+    for one in found:
+        assert one.repose.settled.corners[:, 1].max() == pytest.approx(lower, abs=0.2)
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_view_grows_as_if_all_were_seen_at_once(side: Side) -> None:
+    yard = Yard(rubble(4, 10), RUBBLE_SITE)
+    laid = yard.lay(*yard.rows(2).courses)
+    ground = View.bare(100.0, side, 0.58, 1.3)
+    view = ground
+    for state in laid.build.states():
+        outlines = state.wall.outlines
+        assert outlines is not None
+        view = view.grown(outlines)
+        assert view.grown(outlines) is view
+    outlines = laid.build.wall.outlines
+    assert outlines is not None
+    scene = Scene.of(outlines.polygons, 100.0, side, 0.58)
+    profile = bare(77)
+    for index in range(len(scene.polygons)):
+        profile = raised(profile, scene.polygons.polygon(index), index, 1.3)
+    assert len(scene.polygons) > 4
+    assert view.scene.side == side
+    pairs = [*zip(view.scene.polygons, scene.polygons, strict=True)]
+    for mine, at_once in [*pairs, *zip(view.profile, profile, strict=True)]:
+        assert np.asarray(mine).tobytes() == np.asarray(at_once).tobytes()
+    assert len(ground.scene.polygons) == 0
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"column_px": 0.0}, {"starts": 0}, {"astray": 0.0}, {"apart": -1.0}, {"width": -0.1}],
+)
+def test_settings_that_make_no_sense_are_refused(changes: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match="must"):
+        LetGoSettings(**changes)
+
+
+@pytest.mark.parametrize("changes", [{"analysed": 0}, {"analysed": 5, "judged": 4}, {"llc": -1.0}])
+def test_settings_of_laying_that_make_no_sense_are_refused(changes: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match="must"):
+        LayingSettings(**changes)

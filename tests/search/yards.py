@@ -1,0 +1,84 @@
+"""Stones, a site, and course plans for them."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from drystone.kernels.polygons import Points
+from drystone.kernels.profiles import bare, hanging, raised
+from drystone.kernels.raster import turn
+from drystone.model.placement import Side
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.planner.build import Build
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.workshop import Workshop
+from drystone.search.course_plan import CoursePlan, PlannedStone
+from drystone.search.laying import Laid, lay
+from drystone.search.laying_settings import LayingSettings
+from tests.planner.scenes import greedy
+
+
+class Yard:
+    """Stones, a site, and plans for them."""
+
+    def __init__(
+        self, stones: StoneSet, site: Site, changes: Mapping[str, Any] | None = None
+    ) -> None:
+        self.stones, self.site = stones, site
+        self.settings: PlannerSettings = greedy(changes)
+        self.workshop = Workshop.prepare(stones, site, self.settings)
+
+    def empty(self) -> Build:
+        area_px = self.workshop.stock.mean_area_px
+        return Build.empty(self.site, self.settings.mu, area_px, exact=True)
+
+    def corners(self, stone_id: int, angle_deg: float = 0.0) -> Points:
+        stone = self.stones.by_id(stone_id)
+        return turn(self.workshop.outlines.outline(stone), angle_deg)
+
+    def planned(
+        self, stone_id: int, left: float, bottom: float, side: Side = "left", angle: float = 0.0,
+        top: float | None = None,
+    ) -> PlannedStone:  # fmt: skip
+        corners = self.corners(stone_id, angle)
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        y = bottom - low[1]
+        return PlannedStone(
+            stone_id, angle, side, left - low[0], y, left, left + high[0] - low[0],
+            y + high[1] if top is None else top,
+        )  # fmt: skip
+
+    def lay(self, *courses: Sequence[PlannedStone], laying: LayingSettings | None = None) -> Laid:
+        return lay(plan_of(*courses), self.empty(), self.workshop, self.settings, laying)
+
+    def rows(self, count: int) -> CoursePlan:
+        """Fill courses with stones as they come, from both sides."""
+        width, profile, ids = self.site.width_px, bare(self.site.width_px), 0
+        courses: list[tuple[PlannedStone, ...]] = []
+        stones = iter(self.stones)
+        stone = next(stones, None)
+        while stone is not None and len(courses) < count:
+            course: list[PlannedStone] = []
+            ends = {"left": 0, "right": width}
+            side: Side = "left"
+            while stone is not None:
+                hung = hanging(self.corners(stone.id), 1.0)
+                columns = len(hung.bottoms)
+                if ends["right"] - ends["left"] < columns:
+                    break
+                left = ends["left"] if side == "left" else ends["right"] - columns
+                y = float((profile.tops[left : left + columns] - hung.bottoms).max())
+                course.append(self.planned(stone.id, left, y + hung.bottom, side))
+                corners = self.corners(stone.id) + np.array([left - hung.left, y])
+                profile, ids = raised(profile, corners, ids, 1.0), ids + 1
+                ends[side] = left + columns if side == "left" else left
+                side = "right" if side == "left" else "left"
+                stone = next(stones, None)
+            courses.append(tuple(course))
+        return plan_of(*courses)
+
+
+def plan_of(*courses: Sequence[PlannedStone]) -> CoursePlan:
+    return CoursePlan(tuple(map(tuple, courses)), 0.0)
