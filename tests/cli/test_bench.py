@@ -50,3 +50,33 @@ def test_a_miss_is_a_failed_check(run: Run, monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(bench, "run_suite", lambda *_: (table,))
     assert run("bench", "statics").code == 5
     assert run("bench", "statics", "--markdown").out.startswith("**Cases**")
+
+
+def test_searches_go_by_time_seeds_and_names(run: Run) -> None:
+    ran = run(
+        "bench", "search", "--quick", "--seconds", ".01", "--seeds", "1", "--only", "bricks, r"
+    )
+    assert ran.code == 0
+    assert ran.out.startswith("Best walls after 0.01 s of CPU time, medians of 1 seeds")
+    assert [line.split(":")[0] for line in ran.err.splitlines()] == [
+        "bricks, raster, restarts, seed 0",
+        "bricks, raster, search, seed 0",
+    ]
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("shear", "--seconds", "1"),
+        ("exact", "--seeds", "2"),
+        ("statics", "--only", "R"),
+        ("packing", "--seeds", "2"),
+        ("search", "--only", "Q"),
+        ("search", "--seconds", "0"),
+    ],
+)
+def test_options_that_a_suite_does_not_go_by(options: tuple[str, ...], run: Run) -> None:
+    ran = run("bench", *options)
+    assert ran.code == 2
+    assert "E138" in ran.err
+    assert options[1] in ran.err

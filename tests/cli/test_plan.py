@@ -23,9 +23,9 @@ FILES = {
 }  # fmt: skip
 
 SUMMARY = [
-    "plan", "status", "stopped", "placed", "stones", "unused", "wedges", "F_SF", "F_AV", "F_AH",
-    "F_LR", "F_LR_half", "F_LR_double", "T_LEVEL", "E_FLUSH", "alpha_left", "alpha_right",
-    "wedge_area", "working_scale", "seconds",
+    "plan", "status", "stopped", "placed", "stones", "unused", "wedges", "F_SF", "F_SF_bound",
+    "F_AV", "F_AH", "F_LR", "F_LR_half", "F_LR_double", "T_LEVEL", "E_FLUSH",
+    "alpha_left", "alpha_right", "wedge_area", "working_scale", "seconds",
 ]  # fmt: skip
 
 

@@ -78,7 +78,6 @@ def random_rules(rng: np.random.Generator, count: int) -> Rules:
         reach=int(rng.integers(1, 300)),
         margin=float(rng.uniform(0.0, 0.4)),
         steepest=int(rng.integers(0, 20000)),
-        spread=bool(rng.random() < 0.3),
         joint=int(rng.integers(0, 5)),
         courses=max(4, count),
         target=float(rng.uniform(0.0, 100.0)),
@@ -135,7 +134,7 @@ def test_a_longer_annealing_of_more_stones_is_the_same_bit_by_bit(seed: int) -> 
     )
     # From one course of all stones, far too wide for the wall: what splits it gains at once.
     ground = ground._replace(width=int(poses.width.max()))
-    rules = rules._replace(weights=rules.weights._replace(overflow=9.0), spread=False)
+    rules = rules._replace(weights=rules.weights._replace(overflow=9.0))
     one = Arrangement(*(np.array(p, np.int32) for p in ([*range(12)], [0] * 12, [12], [6])))
     cooling = Cooling(400, 1.0, 0.98, seed)
     fast, fast_cost = anneal(poses, one, ground, rules, cooling)

@@ -109,7 +109,7 @@ def between(one, two):
 
 
 def positions(poses, posed, gap, width, rules):
-    """Stones pushed together from both ends, or at even distances."""
+    """Stones pushed together from both ends."""
     apart = []
     for left, right in itertools.pairwise(posed):
         rights = poses.rights[poses.first_row[left] : poses.first_row[left + 1]].tolist()
@@ -117,10 +117,7 @@ def positions(poses, posed, gap, width, rules):
         apart.append(max(a - b for a, b in zip(rights, lefts, strict=False)) + rules.joint)
     room = width - sum(apart) - int(poses.width[posed[-1]])
     xs = [sum(apart[:i]) for i in range(len(posed))]
-    if rules.spread and len(posed) > 1 and room >= 0:
-        xs = [x + room * i // (len(posed) - 1) for i, x in enumerate(xs)]
-    else:
-        xs = [x + (room if i >= gap else 0) for i, x in enumerate(xs)]
+    xs = [x + (room if i >= gap else 0) for i, x in enumerate(xs)]
     ends = [width - int(poses.width[pose]) for pose in posed]
     return [min(max(0, x), end) for x, end in zip(xs, ends, strict=True)], room
 

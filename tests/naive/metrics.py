@@ -32,14 +32,19 @@ def joint_mask(labels):
 
 
 def shortest_length(joint, start, end):
-    """Dijkstra on a heap, step by step; None when there is no path."""
-    if not (joint[start] and joint[end]):
+    """From one pixel to another; None when there is no path."""
+    return shortest_to(joint, start, {end})
+
+
+def shortest_to(joint, start, ends):
+    """Dijkstra on a heap, step by step, to the nearest of some pixels; None without a path."""
+    if not joint[start]:
         return None
     height, width = joint.shape
     queue, done = [(0.0, start)], set()
     while queue:
         length, here = heapq.heappop(queue)
-        if here == end:
+        if here in ends:
             return length
         if here in done:
             continue
@@ -71,6 +76,33 @@ def vertical_arrangement(joint):
     if not smallest:
         return None
     return sum(100 * (length - straight) / straight for length in smallest) / len(smallest)
+
+
+def second_definition(labels):
+    """F_AV and F_AH as drystone.metrics.second words them."""
+    rows = [row for row in range(labels.shape[0]) if labels[row].any()]
+    cols = [col for col in range(labels.shape[1]) if labels[:, col].any()]
+    stones = labels[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
+    inner = joint_mask(stones)[1:-2, 1:-2]
+    upright = np.vstack([np.ones(inner.shape[1], bool), inner, np.ones(inner.shape[1], bool)])
+    lying = np.vstack([np.ones(inner.shape[0], bool), inner.T, np.ones(inner.shape[0], bool)])
+    return down_and_up(upright), down_and_up(lying)
+
+
+def down_and_up(joint):
+    """Mean excess of ten paths from the first row to the last and ten back, ends free."""
+    last, side = joint.shape[0] - 1, joint.shape[1]
+    columns = [math.floor((part + 0.5) * side / 10 + 1e-9) for part in range(5)]
+    columns += [side - 1 - column for column in columns]
+    excesses = []
+    for start, end in ((0, last), (last, 0)):
+        ends = {(end, column) for column in range(side)}
+        for column in columns:
+            length = shortest_to(joint, (start, column), ends)
+            if length is None:
+                return None
+            excesses.append(100 * (length - last) / last)
+    return sum(excesses) / len(excesses)
 
 
 def level_deviation(labels, mean_stone_height):

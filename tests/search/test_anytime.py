@@ -14,6 +14,7 @@ from drystone.search.found import Found
 from drystone.search.packed import Packed, found_again
 from drystone.search.plan_wall import plan_wall, run_to_end
 from drystone.search.processes import processes
+from drystone.search.work import planned_first
 from drystone.verify.check import check_plan
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble
 
@@ -45,7 +46,7 @@ def same(one: Packed, other: Packed) -> bool:
 
 @pytest.mark.parametrize("geometry", ["raster", "exact"])
 def test_walls_get_better_and_are_complete(geometry: str) -> None:
-    planner = first(12, geometry)
+    planner = first(12, geometry, seed=2)
     found = searched(planner)
     assert found[0].walls == 1
     assert found[0].best.merit == Found.of(planner).merit
@@ -88,7 +89,7 @@ def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls() -> Non
 def test_no_time_is_one_wall() -> None:
     settings = greedy({"search": {"budget": 100, **SMALL}})
     planner = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
-    best, stopped, walls = run_to_end(planner, seconds=0.0)
+    best, stopped, walls, _ = run_to_end(planner, seconds=0.0)
     assert walls == 1
     assert order(best) == order(planner)
     assert stopped == planner.stopped
@@ -120,7 +121,7 @@ def test_nothing_to_build_is_no_trouble() -> None:
     """No stone that is 100 px wide fits."""
     settings = greedy({"search": {"budget": 6, **SMALL}, "skip_too_large": True})
     planner = Planner(rubble(), Site(6, 6), settings=settings)
-    best, stopped, walls = run_to_end(planner)
+    best, stopped, walls, _ = run_to_end(planner)
     assert (best.build.actions, stopped.reason, walls) == ((), "stones", 6)
 
 
@@ -128,3 +129,21 @@ def test_cycles_double() -> None:
     walked = [in_cycle(done, 3) for done in range(22)]
     assert [length for position, length in walked if position == 0] == [3, 6, 12, 24]
     assert all(b[0] in (a[0] + 1, 0) for a, b in pairwise(walked))
+
+
+@pytest.mark.parametrize(
+    ("changes", "planned"),
+    [
+        ({}, True),
+        ({"orientations": "45deg"}, True),
+        ({"orientations": "sf"}, False),
+        ({"orientations": "40deg"}, False),
+        ({"geometry": "raster"}, False),
+        ({"two_sided": False}, False),
+        ({"order": "given"}, False),
+    ],
+)
+def test_courses_are_planned_where_quarter_turns_and_both_ends_may_be_used(
+    changes: dict[str, object], planned: bool
+) -> None:
+    assert planned_first(greedy(changes)) is planned

@@ -237,7 +237,6 @@ def test_stones_too_wide_lying_are_planned_upright() -> None:
 @pytest.mark.parametrize(
     "wrong",
     [
-        {"slack_at": "top"},
         {"joint": -1.0},
         {"evaluations": 0},
         {"coldest": 5.0},

@@ -7,7 +7,7 @@ import pytest
 
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
-from drystone.search.goal import Figures, figures_of, merit_of, possible_filling
+from drystone.search.goal import MISSING, Figures, figures_of, merit_of, possible_filling
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
 
 WALL = Figures(stones=8, F_SF=0.8, F_LR=0.5, F_AV=20.0, F_AH=2.0, T_LEVEL=0.2, E_FLUSH=0.1)
@@ -69,3 +69,23 @@ def test_figures_are_those_of_the_wall() -> None:
 def test_goals_that_mean_nothing_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ValueError, match=r"urgent|aims"):
         GoalSettings(**wrong)
+
+
+def test_a_pinned_stone_that_is_missing_counts_heavily() -> None:
+    lacking = replace(WALL, missing=2)
+    assert merit_of(WALL, 0.9, GOAL) - merit_of(lacking, 0.9, GOAL) == pytest.approx(2 * MISSING)
+    planner = finish(Planner(rubble(), RUBBLE_SITE, settings=greedy()))
+    placed = [action.stone_id for action in planner.build.actions]
+    found = figures_of(planner.build, [*placed[:2], 98, 99])
+    assert found is not None
+    assert found.missing == 2
+
+
+def test_banned_stones_can_fill_nothing() -> None:
+    ban = [stone.id for stone in rubble()][:2]
+    free = Planner(rubble(), RUBBLE_SITE, settings=greedy())
+    without = Planner(rubble(), RUBBLE_SITE, settings=greedy({"ban": ban}))
+    lost = sum(rubble().by_id(stone_id).area_px for stone_id in ban) / 3600
+    assert possible_filling(free.workshop) - possible_filling(without.workshop) == pytest.approx(
+        lost
+    )

@@ -62,11 +62,17 @@ def _plan(command: argparse.ArgumentParser) -> None:
         help="size in px of the source image, or 1.4mx0.4m with --px-per-m",
     )  # fmt: skip
     command.add_argument("-o", "--output", required=True, metavar="DIR", help="folder to write to")
-    command.add_argument(
+    built = command.add_mutually_exclusive_group()
+    built.add_argument(
         "--resume", action="store_true", help="go on from the partial plan in the output folder"
     )
+    built.add_argument(
+        "--from", dest="begin", metavar="PLAN",
+        help="begin the search with the wall of a plan of these stones (its file or folder)",
+    )  # fmt: skip
     add_reading(command)
     _planning(command)
+    _choosing(command)
     _writing(command)
 
 
@@ -136,6 +142,22 @@ def _planning(command: argparse.ArgumentParser) -> None:
     )
 
 
+def _choosing(command: argparse.ArgumentParser) -> None:
+    group = command.add_argument_group("stones")
+    group.add_argument(
+        "--ban", nargs="+", action="extend", type=_seed, default=[], metavar="ID",
+        help="stones that are not used",
+    )  # fmt: skip
+    group.add_argument(
+        "--pin", nargs="+", action="extend", type=_seed, default=[], metavar="ID",
+        help="stones that must be in the wall",
+    )  # fmt: skip
+    group.add_argument(
+        "--fixed-order", action="store_true",
+        help="place stones in the order of their ids; what finds no place then is set aside",
+    )  # fmt: skip
+
+
 def _aim(text: str) -> tuple[str, float]:
     """Read what a figure of merit shall reach."""
     name, _, value = text.partition("=")
@@ -150,6 +172,10 @@ def _writing(command: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--overwrite", action="store_true", help="write into a folder that has files"
     )
+    group.add_argument(
+        "--pareto", action="store_true",
+        help="write the walls too that no wall of the search beats in every figure: pareto/01, ...",
+    )  # fmt: skip
     group.add_argument("--json", action="store_true", help="print the summary as JSON")
     group.add_argument("--quiet", action="store_true", help="no progress")
     group.add_argument("--profile", action="store_true", help="say where the time went")
@@ -190,6 +216,16 @@ def _bench(command: argparse.ArgumentParser) -> None:
     command.add_argument("-o", "--output", metavar="DIR", help="draw pictures into a folder")
     command.add_argument("--seed", type=_seed, default=0)
     command.add_argument("--quick", action="store_true", help="a smaller version")
+    command.add_argument(
+        "--seconds", type=positive, metavar="S", help="of each search (search, packing)"
+    )
+    command.add_argument(
+        "--seeds", type=_count, metavar="N", help="how many, from --seed on (search)"
+    )
+    command.add_argument(
+        "--only", action="append", default=[], metavar="NAME",
+        help="walls whose names begin so; may be repeated (search, packing)",
+    )  # fmt: skip
     command.add_argument("--json", action="store_true", help="print as JSON")
     command.add_argument("--markdown", action="store_true", help="print as Markdown")
 

@@ -7,16 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomli_w
 
+from drystone.cli.beginning import plan_to_begin_with
+from drystone.cli.choice import choice_summary, print_choice, write_built, write_choice
 from drystone.cli.output import number, prepare_folder, print_json, print_table
 from drystone.cli.progress import step_bar
 from drystone.cli.settings import search_seconds, settings_from
 from drystone.cli.timing import print_profile, profile_summary
 from drystone.errors import ExitCode, UsageError
-from drystone.io.blocks_json import write_blocks
-from drystone.io.plan_json import read_plan, write_plan
-from drystone.io.wall_image import write_wall_image
+from drystone.io.plan_json import read_plan
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.planner.settings import PlannerSettings, method_settings
@@ -40,6 +39,7 @@ def plan_and_write(
     if partial is not None and partial.stopped != "interrupted":
         print("drystone: this plan is finished, there is nothing to go on with", file=sys.stderr)
         return ExitCode.DONE
+    begin = plan_to_begin_with(stones, wall, arguments, settings)
     prepare_folder(folder, overwrite=arguments.overwrite or partial is not None)
     seconds = search_seconds(method_settings(arguments.method), len(stones), arguments)
     if seconds is not None and settings.search.budget > 1:
@@ -60,16 +60,25 @@ def plan_and_write(
             n_jobs=arguments.jobs,
             callbacks=callbacks,
             built=None if partial is None else rebuild_wall(partial, stones),
-            course_heights_px=None if partial is None else _course_heights(partial),
+            course_heights_px=_course_heights(partial or begin),
+            begin=None if begin is None else rebuild_wall(begin, stones),
+            choice=arguments.pareto,
         )
     for notice in result.notices:
         print(f"drystone: {notice}", file=sys.stderr)
     write_result(result, stones, folder)
+    if arguments.pareto:
+        write_choice(result, folder)
     profile = profile_summary(result, arguments.jobs) if arguments.profile else None
     if arguments.json:
-        print_json(_summary(result, folder) | ({} if profile is None else {"profile": profile}))
+        summary = _summary(result, folder)
+        if arguments.pareto:
+            summary["pareto"] = choice_summary(result, folder)
+        print_json(summary | ({} if profile is None else {"profile": profile}))
         return _EXIT[result.status]
     _print_summary(result, folder)
+    if arguments.pareto:
+        print_choice(result)
     if profile is not None:
         print_profile(profile)
     return _EXIT[result.status]
@@ -77,13 +86,7 @@ def plan_and_write(
 
 def write_result(result: PlanResult, stones: StoneSet, folder: Path) -> None:
     """Write plan.json, settings.toml, wall.png, the pictures and the report."""
-    write_plan(result.plan, folder / "plan.json")
-    (folder / "settings.toml").write_bytes(tomli_w.dumps(dict(result.plan.settings)).encode())
-    write_blocks(result.wall, result.model, folder)
-    written = write_wall_image(result.wall.labels, folder)
-    for name in {"wall.png", "wall.tif"} - {written.name}:
-        # One that an earlier run left would belong to another wall.
-        (folder / name).unlink(missing_ok=True)
+    write_built(result, folder)
     # Drawing loads matplotlib, which takes as long as a small plan.
     from drystone.plotting import wall_outlines, write_pictures  # noqa: PLC0415
     from drystone.report import write_report  # noqa: PLC0415
@@ -136,7 +139,9 @@ def _partial_plan(
     return plan
 
 
-def _course_heights(plan: Plan) -> dict[int, float]:
+def _course_heights(plan: Plan | None) -> dict[int, float]:
+    if plan is None:
+        return {}
     to_px = plan.working_scale * (plan.px_per_m or 1.0)
     return {
         step.stone: step.course_height * to_px
@@ -156,6 +161,7 @@ def _summary(result: PlanResult, folder: Path) -> dict[str, Any]:
         "unused": list(result.plan.unused),
         "wedges": len(result.plan.wedge_steps),
         "F_SF": metrics.F_SF,
+        "F_SF_bound": result.F_SF_bound,
         "F_AV": metrics.F_AV,
         "F_AH": metrics.F_AH,
         "F_LR": metrics.F_LR,
@@ -180,6 +186,12 @@ def _by_tolerance(result: PlanResult) -> list[tuple[str, str]]:
     return [("", f"{half} and {double} at half and twice the contact tolerance")]
 
 
+def _bound(result: PlanResult) -> str:
+    """Say how large F_SF can be at most, and why."""
+    bound = result.F_SF_bound
+    return f"{number(bound)} ({'a full wall' if bound == 1.0 else 'area of the stones'})"
+
+
 def _print_summary(result: PlanResult, folder: Path) -> None:
     plan, metrics = result.plan, result.metrics
     placed, left = len(plan.stone_steps), len(plan.unused)
@@ -188,7 +200,7 @@ def _print_summary(result: PlanResult, folder: Path) -> None:
         f"{result.status}: {result.message}",
         [
             ("stones", f"{placed} of {placed + left} placed{unused}"),
-            ("F_SF", f"{number(metrics.F_SF)}  filling, higher is better"),
+            ("F_SF", f"{number(metrics.F_SF)} of at most {_bound(result)}"),
             ("F_AV", f"{number(metrics.F_AV, 2)}  vertical arrangement, higher is better"),
             ("F_AH", f"{number(metrics.F_AH, 2)}  horizontal arrangement, lower is better"),
             ("F_LR", f"{number(metrics.F_LR)}  lateral resistance / mu, higher is better"),

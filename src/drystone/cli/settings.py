@@ -32,12 +32,25 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
     )
     if arguments.settle is not None:
         changes["settle"] = {"method": arguments.settle}
+    changes |= _chosen(arguments)
     changes["search"] = _search(settings, arguments)
     if arguments.aim:
         changes["goal"] = dict(arguments.aim)
     if arguments.stabilise is not None:
         changes["stabilise"] = {"method": arguments.stabilise}
     return settings.updated(changes)
+
+
+def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Return what is said about single stones; `demo` has no such options."""
+    changes: dict[str, Any] = {}
+    for name in ("ban", "pin"):
+        ids = getattr(arguments, name, [])
+        if ids:
+            changes[name] = sorted(set(ids))
+    if getattr(arguments, "fixed_order", False):
+        changes["order"] = "given"
+    return changes
 
 
 def _search(settings: PlannerSettings, arguments: argparse.Namespace) -> dict[str, Any]:

@@ -18,8 +18,13 @@ SUITES = {
     "engine": ("walls planned on outlines, built up and tilted in a rigid-body engine", "engine"),
     "settling": ("milliseconds of a settling, and what becomes of proposals", "settlings"),
     "passes": ("single passes of best on outlines, medians over twenty seeds", "passes"),
+    "search": ("methods that look for good walls, compared at equal CPU time", "search"),
+    "packing": ("strips packed without gravity beside planned walls (extra `bench`)", "packing"),
 }
 """What each one is about, and the module of this package whose `run` does it."""
+
+SEARCHES = {"search": ("seconds", "seeds", "only"), "packing": ("seconds", "only")}
+"""Those that search, and what can be asked of them."""
 
 
 def run_suite(name: str, settings: BenchSettings) -> tuple[Table, ...]:

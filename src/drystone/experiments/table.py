@@ -1,6 +1,6 @@
 """What a suite of experiments gives back: tables, as text, Markdown, or records."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -75,12 +75,24 @@ class BenchSettings:
         Of all random choices.
     quick : bool
         A smaller version, for tests.
+    seconds : float or None
+        Time of each search, for suites of searches; None for theirs.
+    seeds : int or None
+        How many seeds they search with, from `seed` on; None for theirs.
+    only : tuple of str
+        How the names of walls begin that are searched; empty for all.
+    say : callable
+        Told of every result of a long suite as it comes.
     """
 
     data: Path | None = None
     output: Path | None = None
     seed: int = 0
     quick: bool = False
+    seconds: float | None = None
+    seeds: int | None = None
+    only: tuple[str, ...] = ()
+    say: Callable[[str], None] = lambda _: None
 
 
 def _written(cell: Cell) -> str:

@@ -241,7 +241,6 @@ def side_by_side(
     count = len(posed)
     apart = [nest(poses, posed[i], posed[i + 1]) + rules.joint for i in range(count - 1)]
     room = width - int(poses.width[posed[-1]]) - sum(apart)
-    free = max(room, 0)
     x = [0] * count
     for i in range(1, gap):
         x[i] = x[i - 1] + apart[i - 1]
@@ -249,10 +248,6 @@ def side_by_side(
         x[-1] = width - int(poses.width[posed[-1]])
         for i in range(count - 2, gap - 1, -1):
             x[i] = x[i + 1] - apart[i]
-    if rules.spread and count > 1:
-        for i in range(count):
-            share = free * i // (count - 1)
-            x[i] += share if i < gap else share - free
     for i in range(count):
         x[i] = max(0, min(x[i], width - int(poses.width[posed[i]])))
     return x, room

@@ -102,8 +102,6 @@ class Rules(NamedTuple):
         The centroid is this far inside its support, over the stone's width.
     steepest : int
         Slope to which a stone turns at most until it rests.
-    spread : bool
-        Whether what a course leaves free is shared by all its head joints; else it is at the gap.
     joint : int
         Stones are this far apart, more than they must.
     courses : int
@@ -116,7 +114,6 @@ class Rules(NamedTuple):
     reach: int
     margin: float
     steepest: int
-    spread: bool
     joint: int
     courses: int
     target: float

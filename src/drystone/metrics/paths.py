@@ -32,7 +32,7 @@ class JointPath:
     def length_px(self) -> float:
         """Length over pixel centres: 1 for a straight step, sqrt 2 for a diagonal one."""
         steps = np.abs(np.diff(self.pixels, axis=0)).sum(axis=1)
-        return _length_px(int((steps == 1).sum()), int((steps == 2).sum()))
+        return length_px(int((steps == 1).sum()), int((steps == 2).sum()))
 
 
 def vertical_lengths(joint: Mask) -> tuple[float, ...]:
@@ -49,7 +49,7 @@ def vertical_lengths(joint: Mask) -> tuple[float, ...]:
 def horizontal_lengths(joint: Mask) -> tuple[float, ...]:
     """Return the lengths of :func:`horizontal_paths`, px, the shortest first."""
     lengths = row_lengths(joint, _starts(joint.shape[0])).tolist()
-    return tuple(sorted(_length_px(*step_counts(length)) for length in lengths if length >= 0))
+    return tuple(sorted(length_px(*step_counts(length)) for length in lengths if length >= 0))
 
 
 def vertical_paths(joint: Mask) -> tuple[JointPath, ...]:
@@ -105,6 +105,7 @@ def _starts(side_px: int) -> NDArray[np.intp]:
     return np.arange(FIRST_PX, side_px - FIRST_PX, max(1, side_px // STARTS))
 
 
-def _length_px(straight: int, diagonal: int) -> float:
+def length_px(straight: int, diagonal: int) -> float:
+    """Return the length of a path of so many straight and diagonal steps, px."""
     # Counted, not summed up, so that paths of equal length are equal to the last bit.
     return float(straight + math.sqrt(2) * diagonal)

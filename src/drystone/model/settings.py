@@ -91,6 +91,8 @@ def _checked(value: Any, hint: Any, where: str) -> Any:
         raise UsageError(
             "E123", f"{where} = {value}.", where="settings", cure="Give a finite number."
         )
+    if get_origin(hint) is tuple:
+        return _whole_numbers(value, where)
     kinds = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
     if float in kinds and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
@@ -103,3 +105,16 @@ def _checked(value: Any, hint: Any, where: str) -> Any:
             cure=f"Give {wanted}.",
         )
     return value
+
+
+def _whole_numbers(value: Any, where: str) -> tuple[int, ...]:
+    """Return a list of whole numbers as a tuple, or raise UsageError."""
+    numbers = value if isinstance(value, list | tuple) else [None]
+    if any(not isinstance(one, int) or isinstance(one, bool) for one in numbers):
+        raise UsageError(
+            "E123",
+            f"{where} = {value!r} has the wrong type.",
+            where="settings",
+            cure="Give a list of whole numbers.",
+        )
+    return tuple(numbers)

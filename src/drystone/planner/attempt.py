@@ -78,9 +78,19 @@ class Attempt:
         """How many candidates were looked at."""
         return self._proposer.tried
 
-    def choose(self, rng: np.random.Generator) -> Candidate | None:
-        """Sample a candidate set and return the best action; None when there is none."""
-        remaining = self._workshop.remaining(self.build)
+    def choose(
+        self, rng: np.random.Generator, among: Sequence[int] | None = None
+    ) -> Candidate | None:
+        """Sample a candidate set and return the best action; None when there is none.
+
+        Parameters
+        ----------
+        rng : numpy.random.Generator
+            Draws the sample.
+        among : sequence of int, optional
+            Ids of stones to sample from; all that are left when missing.
+        """
+        remaining = self._workshop.remaining(self.build) if among is None else tuple(among)
         clusters = self._workshop.clusters
         sample = sample_stones(self._settings.sampling, remaining, clusters, rng)
 

@@ -90,9 +90,10 @@ class Planner:
         self.stopped = None
         attempt = self._attempt()
         failures = 0  # zeta
-        while (stopped := self._why_stop(failures)) is None:  # lines 5 and 27
+        aside: set[int] = set()
+        while (stopped := self._why_stop(failures, aside)) is None:  # lines 5 and 27
             rng = np.random.default_rng([self.seed, len(self.build.actions), failures])
-            action = attempt.choose(rng)  # lines 6-17
+            action = self._choose(attempt, rng, aside)  # lines 6-17
             if action is None:
                 failures += 1  # lines 23-26: resample
                 continue
@@ -106,6 +107,29 @@ class Planner:
         self._count_solves(attempt)
         self.profile.end_without_action(attempt.candidates)
         self.stopped = stopped
+
+    def _choose(
+        self, attempt: Attempt, rng: np.random.Generator, aside: set[int]
+    ) -> Candidate | None:
+        """Return the next action; a stone that is next and cannot be placed is set aside."""
+        left = self._left(aside)
+        if self.settings.order == "given":
+            action = attempt.choose(rng, left[:1])
+            aside.update(left[:1] if action is None else ())
+            return action
+        pinned = [i for i in left if i in self.settings.pin]
+        if pinned and self.settings.selection_rule == "algorithm2":
+            # No cost prefers them there.
+            return attempt.choose(rng, pinned) or attempt.choose(rng)
+        return attempt.choose(rng)
+
+    def _left(self, aside: set[int]) -> tuple[int, ...]:
+        """Return the stones that may be placed next: in a given order those after the last."""
+        left = self.workshop.remaining(self.build)
+        if self.settings.order == "free":
+            return left
+        last = max((action.stone_id for action in self.build.actions), default=-1)
+        return tuple(i for i in left if i > last and i not in aside)
 
     def _attempt(self) -> Attempt:
         self.profile.begin_step()
@@ -126,14 +150,19 @@ class Planner:
         """Return the state after an action; a search goes back to those before."""
         return build.add(action, keep=self.settings.search.budget > 1)
 
-    def _why_stop(self, failures: int) -> Stopped | None:
+    def _why_stop(self, failures: int, aside: set[int]) -> Stopped | None:
         """Say why construction ends here; None when it goes on."""
         stop = self.settings.stop
         if self.build.wall.filling > stop.filling:
             return Stopped("filled", f"filling above {stop.filling}")
         if not self.workshop.remaining(self.build):
-            left = len(self.workshop.stones) - len(self.build.actions)
-            return Stopped("stones", "all stones that fit placed" if left else "all stones placed")
+            banned = len(set(self.settings.ban))
+            left = len(self.workshop.stones) - len(self.build.actions) - banned
+            return Stopped("stones", _all_placed(left, banned))
+        if self.settings.order == "given":
+            if self._left(aside):
+                return None
+            return Stopped("failures", "no stone is left that was not tried in its turn")
         # There is nothing to resample when all stones were tried.
         if failures >= stop.failures or (failures and self.settings.sampling == "full"):
             return Stopped("failures", "no stone that is left can be placed")
@@ -154,3 +183,9 @@ class Planner:
         for group in wall.groups:
             build = self._added(build, judged(build, group, course_heights_px, evaluator))
         self.build = build
+
+
+def _all_placed(left: int, banned: int) -> str:
+    """Say which stones were placed when none is left."""
+    which = [text for text, there in (("are not banned", banned), ("fit", left)) if there]
+    return " that ".join(["all stones", *([" and ".join(which)] if which else [])]) + " placed"

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from drystone.model.pose import PosedStone
 from drystone.planner.stock import Stock
-from drystone.selection.scored import ScoreSettings
+from drystone.selection.scored import PIN_BONUS, ScoreSettings
 
 
 def pose_cost(posed: PosedStone, stock: Stock, score: ScoreSettings) -> float:
@@ -31,10 +31,13 @@ class PoseCosts:
     ----------
     stock : Stock
         Sizes of the stones.
+    pinned : frozenset of int
+        Ids of stones that earn a bonus, as they shall be in the wall.
     """
 
-    def __init__(self, stock: Stock) -> None:
+    def __init__(self, stock: Stock, pinned: frozenset[int] = frozenset()) -> None:
         self._stock = stock
+        self._pinned = pinned
         self._known: tuple[ScoreSettings, dict[tuple[int, float], float]] = (ScoreSettings(), {})
 
     def of(self, poses: Sequence[PosedStone], score: ScoreSettings) -> NDArray[np.float64]:
@@ -48,6 +51,7 @@ class PoseCosts:
             key = posed.stone.id, posed.angle_deg
             cost = known.get(key)
             if cost is None:
-                cost = known[key] = pose_cost(posed, self._stock, score)
+                bonus = PIN_BONUS if posed.stone.id in self._pinned else 0.0
+                cost = known[key] = pose_cost(posed, self._stock, score) - bonus
             costs[at] = cost
         return costs

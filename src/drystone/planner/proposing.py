@@ -15,7 +15,7 @@ from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest
 from drystone.planner.workshop import Workshop
-from drystone.selection.scored import craft_cost
+from drystone.selection.scored import PIN_BONUS, craft_cost
 from drystone.stabilise.stabilise import Stabilised
 
 Key = tuple[int, float, Side]
@@ -62,7 +62,8 @@ def action_cost(
         return 0.0
     assert trial.rest is not None  # noqa: S101 - the attempt gives it then
     craft = action_craft(trial.landscape, stabilised, workshop.stock, trial.rest)
-    return craft_cost(craft, settings.score)
+    bonus = PIN_BONUS if trial.poses[0].stone.id in settings.pin else 0.0
+    return craft_cost(craft, settings.score) - bonus
 
 
 class Proposer(Protocol):

@@ -25,8 +25,8 @@ class GoalSettings:
 
     filling: float = 15.0
     resistance: float = 1.0
-    vertical: float = 0.025
-    horizontal: float = 0.1
+    vertical: float = 0.01
+    horizontal: float = 0.25
     level: float = 0.5
     flush: float = 0.25
     F_SF: float = 0.0
@@ -75,14 +75,14 @@ class SearchSettings:
     """
 
     budget: int = 1
-    passes: int = 8
+    passes: int = 24
     chains: int = 4
     share_every: int = 8
     largest: float = 0.3
     spread: float = 0.5
     polish: float = 0.2
     wedges: int = 6
-    wedge_below: float = 0.25
+    wedge_below: float = 0.12
     warm: float = 0.15
     cold: float = 0.01
     cycle: int = 64

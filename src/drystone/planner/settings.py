@@ -67,6 +67,14 @@ class PlannerSettings:
         weights of a wall.
     skip_too_large : bool
         Leave out stones that fit into the wall in no orientation instead of refusing them.
+    order : {"free", "given"}
+        Which stone is next: any that is left, or the one with the smallest id; one that cannot be
+        placed then is set aside for good.
+    ban : tuple of int
+        Ids of stones that are not used.
+    pin : tuple of int
+        Ids of stones that must be in the wall: they are preferred, and each that is missing counts
+        10 units of merit against a wall.
     clusters, placement, stabilise, settle, selection, score, search, goal, stop
         Settings of the stages.
     """
@@ -80,6 +88,9 @@ class PlannerSettings:
     mu: float = 0.58
     vary: float = 0.0
     skip_too_large: bool = False
+    order: Literal["free", "given"] = "free"
+    ban: tuple[int, ...] = ()
+    pin: tuple[int, ...] = ()
     clusters: ClusterSettings = field(default_factory=ClusterSettings)
     placement: PlacementSettings = field(default_factory=PlacementSettings)
     stabilise: StabiliseSettings = field(default_factory=StabiliseSettings)
@@ -103,6 +114,11 @@ class PlannerSettings:
             raise ValueError(f"unknown selection rule {self.selection_rule!r}")
         if self.vary < 0:
             raise ValueError("vary must not be negative")
+        if self.order not in ("free", "given"):
+            raise ValueError(f"unknown order {self.order!r}")
+        both = sorted(set(self.ban) & set(self.pin))
+        if both:
+            raise ValueError(f"stones cannot be pinned and banned: {', '.join(map(str, both))}")
         if not self.mu > 0:
             raise ValueError("mu must be positive")
 
@@ -113,7 +129,8 @@ class PlannerSettings:
 
     def as_dict(self) -> dict[str, Any]:
         """Return nested dictionaries, as TOML and JSON write them."""
-        return dataclasses.asdict(self)
+        values = dataclasses.asdict(self)
+        return values | {"ban": list(self.ban), "pin": list(self.pin)}
 
     def updated(self, changes: Mapping[str, Any]) -> "PlannerSettings":
         """Return settings with some values replaced.
@@ -142,7 +159,7 @@ METHODS: Mapping[str, PlannerSettings] = types.MappingProxyType(
             selection_rule="score",
             vary=0.3,
             placement=PlacementSettings(rule="snug", reach="above", tries=4, compare=True),
-            stabilise=StabiliseSettings(margin=0.1),
+            stabilise=StabiliseSettings(margin=0.1, min_wedge_px=1),
             score=ScoreSettings(thickness=1.5, llc=4.0),
             search=SearchSettings(budget=16),
         ),

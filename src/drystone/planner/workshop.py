@@ -34,7 +34,7 @@ class Workshop:
     orientations : str
         Which poses of a stone are candidates (DESIGN 4.2).
     fitting : tuple of int
-        Ids of the stones that fit into the wall in a candidate pose, ascending.
+        Ids of the stones that fit into the wall in a candidate pose and are not banned, ascending.
     stock : Stock
         Sizes of the set.
     sides : Sides
@@ -71,25 +71,27 @@ class Workshop:
         ------
         UsageError
             E120: a stone fits into the wall in no orientation, and is not to be skipped; E126:
-            there are no stones.
+            there are no stones; E145: a stone is banned or pinned that does not exist.
         """
         if not len(stones):
             raise UsageError("E126", "there are no stones to build with.", where=stones.source.path)
         book = PoseBook(site.scale)
-        fitting = tuple(s.id for s in stones if _fits(s, site, book, settings.orientations))
-        too_large = sorted({s.id for s in stones}.difference(fitting))
+        banned = _known(stones, settings)
+        usable = [s for s in stones if s.id not in banned]
+        fitting = tuple(s.id for s in usable if _fits(s, site, book, settings.orientations))
+        too_large = sorted({s.id for s in usable}.difference(fitting))
         if too_large and not settings.skip_too_large:
             raise _too_large(too_large, site)
         _leave_ids_for_wedges(stones)
         stock = Stock.of(book.pose(s, book.initial_angle(s)) for s in stones)
-        unfit = [stones.by_id(stone_id) for stone_id in too_large]
+        unfit = [stones.by_id(stone_id) for stone_id in sorted({*too_large, *banned})]
         sides = stock.sides.without(book.pose(s, book.initial_angle(s)) for s in unfit)
         clusters = cluster_stones(stones, book, settings.clusters)
         memory = StabiliseMemory(book, stock.mean_height_px, settings.stabilise)
         outlines = OutlineBook(settings.settle.outline_px, 1.0 / site.scale)
         return cls(
             stones, site, book, clusters, settings.orientations, fitting, stock, sides, memory,
-            outlines, PoseCosts(stock), Views(site),
+            outlines, PoseCosts(stock, frozenset(settings.pin)), Views(site),
         )  # fmt: skip
 
     def poses(self, stone_id: int) -> tuple[PosedStone, ...]:
@@ -133,6 +135,21 @@ def _fits(stone: Stone, site: Site, book: PoseBook, orientations: str) -> bool:
     """Say whether a stone fits into the wall; most do in the first pose, the others can wait."""
     angles = book.angles(stone, orientations)
     return any(_has_room(site, book.pose(stone, angle)) for angle in angles)
+
+
+def _known(stones: StoneSet, settings: PlannerSettings) -> frozenset[int]:
+    """Return which stones are banned; those that are named must exist (E145)."""
+    ids = {stone.id for stone in stones}
+    for name, asked in (("ban", settings.ban), ("pin", settings.pin)):
+        unknown = sorted(set(asked) - ids)
+        if unknown:
+            raise UsageError(
+                "E145",
+                f"there is no stone {', '.join(map(str, unknown))}.",
+                where=f"--{name}",
+                cure="`drystone stones` lists the ids.",
+            )
+    return frozenset(settings.ban)
 
 
 def _leave_ids_for_wedges(stones: StoneSet) -> None:

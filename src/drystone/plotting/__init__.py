@@ -5,6 +5,7 @@ pyplot, so nothing global changes and no window opens.
 """
 
 from drystone.plotting.animation import mechanism_frames, save_mechanism_animation
+from drystone.plotting.choice import plot_choice
 from drystone.plotting.contacts import plot_contacts
 from drystone.plotting.files import save, write_pictures
 from drystone.plotting.forces import plot_forces
@@ -17,6 +18,7 @@ from drystone.plotting.wall import plot_wall
 
 __all__ = [
     "mechanism_frames",
+    "plot_choice",
     "plot_contacts",
     "plot_forces",
     "plot_joint_paths",

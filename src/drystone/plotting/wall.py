@@ -66,7 +66,7 @@ def plot_wall(
         zorder=3,
     )
     ax.add_patch(frame)
-    loops = _loops(wall, outlines)
+    loops = wall_loops(wall, outlines)
     step = 1
     for group in wall.groups:
         _draw_group(ax, wall, group, loops, clusters, step)
@@ -80,7 +80,9 @@ def plot_wall(
     return ax
 
 
-def _loops(wall: Wall, outlines: Mapping[int, Loop] | None) -> dict[int, tuple[Loop, ...]]:
+def wall_loops(
+    wall: Wall, outlines: Mapping[int, Loop] | None = None
+) -> dict[int, tuple[Loop, ...]]:
     """Return the boundary of every stone and wedge in the plan's units."""
     if outlines is None and wall.outlines is not None:
         outlines = wall_outlines(wall)

@@ -15,6 +15,7 @@ from typing import TypeVar
 
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
+from drystone.search.archive import archived
 from drystone.search.found import Found, Solves
 from drystone.search.packed import Packed
 from drystone.search.work import Job, PackedLink, more_links, one_pass
@@ -34,11 +35,14 @@ class Progress:
         The best of them.
     solves : Solves
         What trouble there was with all of them.
+    kept : tuple of Packed
+        Those that none beats in every figure of merit (:mod:`drystone.search.archive`).
     """
 
     walls: int
     best: Packed
     solves: Solves
+    kept: tuple[Packed, ...]
 
 
 def searching(
@@ -76,13 +80,15 @@ def searching(
     job = Job(tools, seed, time.time() + seconds)
     search, start = settings.search, Packed.of(first)
     found = [start]
-    yield Progress(1, start, start.solves)
+    kept = archived((), found)
+    yield Progress(1, start, start.solves, kept)
     passes = range(1, min(search.passes, search.budget))
     for wall in _mapped(executor, one_pass, [(job, number) for number in passes]):
         if wall is None:
             return
         found.append(wall)
-        yield Progress(len(found), _best(found), _all_solves(found))
+        kept = archived(kept, [wall])
+        yield Progress(len(found), _best(found), _all_solves(found), kept)
     links = _links(found, search.chains)
     walls, before = len(found), _all_solves(found)
     while walls < search.budget:
@@ -94,7 +100,8 @@ def searching(
             links[k] = link
             walls += counts[k]
             best = _best([one.best for one in links])
-            yield Progress(walls, best, before + _all_solves(links))
+            kept = archived(kept, link.kept)
+            yield Progress(walls, best, before + _all_solves(links), kept)
         links = _shared(links)
 
 

@@ -36,6 +36,7 @@ def newly_planned(workshop: Workshop, settings: PlannerSettings, rng: Generator)
         CourseSettings(),
         int(rng.integers(2**31)),
         book=workshop.book,
+        pinned=settings.pin,
     )
     if plan is None:
         return None
@@ -65,6 +66,7 @@ def replanned(
         seed=int(rng.integers(2**31)),
         laid=Laid.of(outlines, site.extent_px[0], 1.0 / site.scale),
         book=workshop.book,
+        pinned=settings.pin,
     )
     if plan is None:
         return None

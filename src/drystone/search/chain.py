@@ -19,6 +19,7 @@ from drystone.planner.search_settings import SearchSettings
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.vary import varied
 from drystone.planner.workshop import Workshop
+from drystone.search.archive import archived
 from drystone.search.by_courses import newly_planned, relaid, replanned
 from drystone.search.found import Found, Solves, course_heights
 from drystone.search.packed import Packed, found_again
@@ -46,6 +47,8 @@ class Link:
         The best that it found.
     solves : Solves
         What trouble there was with all of them.
+    kept : tuple of Packed
+        Those of the last ones that none of them beats in every figure.
     """
 
     number: int
@@ -53,6 +56,7 @@ class Link:
     now: Found
     best: Packed
     solves: Solves
+    kept: tuple[Packed, ...] = ()
 
 
 def lengthened(
@@ -106,7 +110,8 @@ def lengthened(
         now = link.now
         if goes_on and _accepted(found, now, position / length, search, rng):
             now = found
-        link = Link(link.number, link.done + 1, now, best, link.solves + found.solves)
+        kept = archived(link.kept, [Packed.of(found)])
+        link = Link(link.number, link.done + 1, now, best, link.solves + found.solves, kept)
     return link
 
 
@@ -177,6 +182,10 @@ def recreated(found: Found, workshop: Workshop, settings: PlannerSettings, rng: 
     """
     if found.figures is None:
         build = found.build
+    elif settings.order == "given":
+        states = found.build.states()  # as many of the last stones as any ruin may choose
+        most = max(1, round(settings.search.largest * len(found.build.actions)))
+        build = states[-1 - int(rng.integers(1, most + 1))]
     else:
         names = list(RUINS)
         ruin = RUINS[names[int(rng.integers(len(names)))]]

@@ -1,7 +1,6 @@
 """Settings of planning course by course."""
 
 from dataclasses import dataclass, fields
-from typing import Literal
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,10 +53,8 @@ class CourseSettings:
         Of a percent by which F_AV is short of `target`, as far as its head joints tell; the same.
     target : float
         F_AV that is enough, percent.
-    slack_at : {"gap", "joints"}
-        Whether what a course leaves free is at one gap or shared by its head joints.
-    apart_px : float
-        Stones are planned so much further apart than their faces need, source px.
+    apart : float
+        Stones are planned so much further apart than their faces need.
     evaluations : int
         How many plans are looked at, for each stone; at most `most_evaluations` in all.
     most_evaluations : int
@@ -68,8 +65,8 @@ class CourseSettings:
         Temperature at which upper courses are planned again, over the first one.
     """
 
-    step: float = 1.0
-    level: float = 0.3
+    step: float = 2.0
+    level: float = 0.6
     top: float = 1.5
     joint: float = 1.5
     reach: float = 0.6
@@ -88,8 +85,7 @@ class CourseSettings:
     across: float = 0.08
     down: float = 0.012
     target: float = 100.0
-    slack_at: Literal["gap", "joints"] = "gap"
-    apart_px: float = 0.0
+    apart: float = 0.01
     evaluations: int = 5_000
     most_evaluations: int = 1_000_000
     temperature: float = 2.0
@@ -97,9 +93,7 @@ class CourseSettings:
     again: float = 0.3
 
     def __post_init__(self) -> None:
-        if self.slack_at not in ("gap", "joints"):
-            raise ValueError(f"slack is at the gap or at the joints, not at {self.slack_at!r}")
-        numbers = [getattr(self, item.name) for item in fields(self) if item.name != "slack_at"]
+        numbers = [getattr(self, item.name) for item in fields(self)]
         if min(numbers) < 0:
             raise ValueError("weights and lengths must not be negative")
         if min(

@@ -67,11 +67,11 @@ def task_of(  # noqa: PLR0913 - the wall, its stones and how
     if quarters is None:
         return None
     ground = ground_of(laid, size_px, column_px)
-    rules = rules_of(settings, quarters.poses, unit_px, ground.height)
+    rules = rules_of(settings, quarters.poses, ground.height)
     return Task(quarters, ground, rules, unit_px)
 
 
-def rules_of(settings: CourseSettings, poses: Poses, unit_px: float, height: int) -> Rules:
+def rules_of(settings: CourseSettings, poses: Poses, height: int) -> Rules:
     """Return settings in units."""
     area = float(poses.area.mean()) * COLUMN_UNITS
     size = math.sqrt(area)
@@ -100,8 +100,7 @@ def rules_of(settings: CourseSettings, poses: Poses, unit_px: float, height: int
         reach=max(1, round(settings.reach * size)),
         margin=settings.margin,
         steepest=round(math.tan(math.radians(settings.steepest_deg)) * COLUMN_UNITS * SLOPE_ONE),
-        spread=settings.slack_at == "joints",
-        joint=round(settings.apart_px / unit_px),
+        joint=round(settings.apart * size),
         courses=most_courses(poses, height),
         target=settings.target,
     )

@@ -23,10 +23,14 @@ from drystone.kernels.raster import turn
 from drystone.model.placement import Side
 from drystone.model.stone import Stone
 from drystone.poses import PoseBook
+from drystone.search.course_choice import choosing, taken
 from drystone.search.course_plan import CoursePlan, PlannedStone
 from drystone.search.course_settings import CourseSettings
 from drystone.search.course_task import Pose, Task, task_of
 from drystone.search.laid_courses import Laid
+
+LOOKED_AT = 2
+"""A plan is looked for as if there were at most so many times the stones that the wall takes."""
 
 
 def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
@@ -41,6 +45,7 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
     banned: Collection[Pose] = (),
     laid: Laid | None = None,
     book: PoseBook | None = None,
+    pinned: Collection[int] = (),
 ) -> CoursePlan | None:
     """Plan a wall course by course.
 
@@ -64,6 +69,8 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
         What the courses are laid on; the bare ground when left out.
     book : PoseBook, optional
         Remembers the initial angles of stones.
+    pinned : collection of int
+        Ids of stones that are left out last of all.
 
     Returns
     -------
@@ -76,6 +83,7 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
     )
     if task is None:
         return None
+    task = choosing(task, pinned)
     start = scattered(task, Dice(seed))
     return annealed(task, start, settings, settings.temperature, seed)
 
@@ -94,6 +102,7 @@ def replan_courses(  # noqa: PLR0913 - as above
     laid: Laid,
     banned: Collection[Pose] = (),
     book: PoseBook | None = None,
+    pinned: Collection[int] = (),
 ) -> CoursePlan | None:
     """Plan the upper courses of a plan again, for what was really laid below.
 
@@ -105,7 +114,7 @@ def replan_courses(  # noqa: PLR0913 - as above
         So many of its courses stay as they are.
     stones : collection of Stone
         Those that are not laid yet.
-    width_px, height_px, cell_px, tolerance_px, settings, seed, banned, book
+    width_px, height_px, cell_px, tolerance_px, settings, seed, banned, book, pinned
         As for :func:`plan_courses`.
     laid : Laid
         What is there.
@@ -122,6 +131,7 @@ def replan_courses(  # noqa: PLR0913 - as above
     )
     if task is None:
         return None
+    task = choosing(task, pinned)
     start = resumed(task, plan.courses[keep:])
     if start is None:
         start = scattered(task, Dice(seed))
@@ -199,7 +209,8 @@ def annealed(
     task: Task, start: Arrangement, settings: CourseSettings, temperature: float, seed: int
 ) -> CoursePlan:
     """Anneal an arrangement, and say where its stones lie in the wall frame."""
-    count = min(settings.evaluations * len(task.quarters.stones), settings.most_evaluations)
+    stones = min(len(task.quarters.stones), LOOKED_AT * taken(task))
+    count = min(settings.evaluations * stones, settings.most_evaluations)
     cooling = Cooling(count, temperature, (settings.coldest / temperature) ** (1.0 / count), seed)
     poses = task.quarters.poses
     plan, _ = anneal(poses, start, task.ground, task.rules, cooling)

@@ -86,7 +86,7 @@ class Found:
         courses: Courses | None = None,
     ) -> "Found":
         """Measure a wall."""
-        figures = figures_of(build)
+        figures = figures_of(build, settings.pin)
         merit = merit_of(figures, possible_filling(workshop), settings.goal)
         return cls(build, figures, merit, solves or Solves(), courses)
 

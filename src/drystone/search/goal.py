@@ -1,12 +1,16 @@
 """How good a finished wall is: its figures of merit, weighed into one number."""
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from drystone.metrics.measure import measure_labels
 from drystone.planner.build import Build
 from drystone.planner.search_settings import GoalSettings
 from drystone.planner.workshop import Workshop
+
+MISSING = 10.0
+"""Units of merit that a pinned stone counts which is not in the wall."""
 
 
 @dataclass(frozen=True)
@@ -19,6 +23,8 @@ class Figures:
         How many it has.
     F_SF, F_LR, F_AV, F_AH, T_LEVEL, E_FLUSH : float
         As :class:`drystone.metrics.measure.WallMetrics`; 0 where a figure is not defined.
+    missing : int
+        How many pinned stones it lacks.
     """
 
     stones: int
@@ -28,10 +34,11 @@ class Figures:
     F_AH: float
     T_LEVEL: float
     E_FLUSH: float
+    missing: int = 0
 
 
-def figures_of(build: Build) -> Figures | None:
-    """Measure a wall; None when it is empty."""
+def figures_of(build: Build, pinned: Collection[int] = ()) -> Figures | None:
+    """Measure a wall, and count the pinned stones that it lacks; None when it is empty."""
     if not build.actions:
         return None
     site = build.wall.site
@@ -48,13 +55,19 @@ def figures_of(build: Build) -> Figures | None:
         F_AH=measured.F_AH or 0.0,
         T_LEVEL=measured.T_LEVEL,
         E_FLUSH=measured.E_FLUSH,
+        missing=len(set(pinned) - {action.stone_id for action in build.actions}),
     )
 
 
+def usable_area_px(workshop: Workshop) -> int:
+    """Return the area of all stones that fit and are not banned, source px."""
+    return sum(workshop.stones.by_id(stone_id).area_px for stone_id in workshop.fitting)
+
+
 def possible_filling(workshop: Workshop) -> float:
-    """Return the area bound on F_SF: all stones, or a full wall."""
+    """Return the area bound on F_SF: all stones that may be used, or a full wall."""
     site = workshop.site
-    stones = workshop.stones.total_area_px * site.scale**2
+    stones = usable_area_px(workshop) * site.scale**2
     return min(1.0, stones / (site.width_px * site.height_px))
 
 
@@ -85,6 +98,7 @@ def merit_of(figures: Figures | None, possible: float, goal: GoalSettings) -> fl
             -goal.horizontal * _down(figures.F_AH, goal.F_AH, goal.urgent),
             -goal.level * figures.T_LEVEL,
             -goal.flush * figures.E_FLUSH,
+            -MISSING * figures.missing,
         ]
     )
 

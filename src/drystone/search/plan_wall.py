@@ -7,7 +7,7 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from importlib.metadata import version
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,8 +25,11 @@ from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.search.anytime import Progress, searching
 from drystone.search.found import Found
+from drystone.search.goal import usable_area_px
+from drystone.search.notices import missing_stones, planning_notices
 from drystone.search.packed import Packed, found_again
 from drystone.search.processes import processes
+from drystone.search.warm_start import begin_with
 from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
@@ -51,7 +54,8 @@ class PlanResult:
     success : bool
         True unless the wall is incomplete or planning was interrupted.
     status : {"complete", "incomplete", "interrupted"}
-        Incomplete: filling below .99 and a mean top below .9 of the height.
+        Incomplete: filling below .99 and a mean top below .9 of the height, or without a stone
+        that is pinned.
     message : str
         Why construction ended.
     plan : Plan
@@ -68,11 +72,18 @@ class PlanResult:
         Cluster of each stone.
     seconds : float
         From the stones to the last step.
+    F_SF_bound : float
+        What F_SF can be at most: the area of the stones that may be used over that of the wall,
+        or 1.
     notices : tuple of Notice
-        W303 when the solver gave up on some candidates, which were then passed over, and when
-        it had to solve some from the start, which costs time alone.
+        W120 when pinned stones are missing, W121 when stones of the wall that was begun with are
+        not used; W303 when the solver gave up on some candidates, which were then passed over,
+        and when it had to solve some from the start, which costs time alone.
     profile : Profile
         Where the time went.
+    choice : tuple of PlanResult
+        When they were asked for: walls of the search that none beats in every figure of merit,
+        that of most merit first.
     """
 
     success: bool
@@ -85,8 +96,10 @@ class PlanResult:
     resistance: LateralResistance
     clusters: dict[int, int]
     seconds: float
+    F_SF_bound: float
     notices: tuple[Notice, ...] = ()
     profile: Profile = field(default_factory=Profile)
+    choice: "tuple[PlanResult, ...]" = ()
 
 
 def working_scale(stones: StoneSet) -> float:
@@ -114,6 +127,8 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     callbacks: Callbacks | None = None,
     built: Wall | None = None,
     course_heights_px: Mapping[int, float] | None = None,
+    begin: Wall | None = None,
+    choice: bool = False,
 ) -> PlanResult:
     """Plan a wall.
 
@@ -145,6 +160,11 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         Told of every step of the first wall, and of the best wall of a search.
     built, course_heights_px : Wall and mapping, optional
         What is built already, to go on from (:meth:`Planner.restore`).
+    begin : Wall, optional
+        A wall of the same stones, size, resolution and geometry, to begin with as far as its
+        stones may be used and stand (:func:`drystone.search.warm_start.begin_with`).
+    choice : bool
+        Keep the walls of the search that none beats in every figure of merit.
 
     Returns
     -------
@@ -181,32 +201,44 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         )
         if built is not None:
             first.restore(built, course_heights_px or {})
-        planner, stopped, walls = run_to_end(first, seconds=seconds, executor=workers)
+        left_out = () if begin is None else begin_with(first, begin, course_heights_px or {})
+        ended = run_to_end(first, seconds=seconds, executor=workers)
     took = time.perf_counter() - started
-    used = replace(settings, search=replace(settings.search, budget=walls))
+    used = replace(settings, search=replace(settings.search, budget=ended.walls))
     provenance = {
         "version": version("drystone"),
         "method": method,
         "seed": seed,
         "settings": used.as_dict(),
     }
-    result = finish(planner, frame, stopped, provenance, took)
-    return replace(result, notices=_notices(first))
+    result = finish(ended.planner, frame, ended.stopped, provenance, took)
+    others = [_ended(first, wall) for wall in ended.kept] if choice else []
+    return replace(
+        result,
+        notices=planning_notices(first, ended.planner, left_out),
+        choice=tuple(finish(one, frame, why, provenance, took) for one, why in others),
+    )
 
 
-def _notices(planner: Planner) -> tuple[Notice, ...]:
-    said = []
-    if planner.failed_solves:
-        said.append(
-            f"the solver gave up on {planner.failed_solves} candidates, which were passed over."
-        )
-    if planner.cold_solves:
-        said.append(
-            f"the solver had no certificate for {planner.cold_solves} candidates at first, which "
-            "were solved again from the start."
-        )
-    cure = "Please report this with the stones and the settings."
-    return tuple(Notice("W303", text, cure) for text in said)
+class Ended(NamedTuple):
+    """How a search ended.
+
+    Parameters
+    ----------
+    planner : Planner
+        The one that built the best wall.
+    stopped : Stopped
+        Why its construction ended.
+    walls : int
+        How many walls were built: the budget that repeats it.
+    kept : tuple of Packed
+        Walls that none beats in every figure of merit; none of a single pass.
+    """
+
+    planner: Planner
+    stopped: Stopped
+    walls: int
+    kept: tuple[Packed, ...]
 
 
 def run_to_end(
@@ -214,7 +246,7 @@ def run_to_end(
     *,
     seconds: float = math.inf,
     executor: Executor | None = None,
-) -> tuple[Planner, Stopped, int]:
+) -> Ended:
     """Build a first wall, and look for better ones; an interrupt keeps the best so far.
 
     Parameters
@@ -228,37 +260,34 @@ def run_to_end(
 
     Returns
     -------
-    planner : Planner
-        The one that built the best wall.
-    stopped : Stopped
-        Why its construction ended.
-    walls : int
-        How many walls were built: the budget that repeats it.
+    ended : Ended
+        With the best wall.
     """
     started = time.perf_counter()
     try:
         for _ in planner.steps():
             pass
     except KeyboardInterrupt:
-        return planner, Stopped("interrupted", "interrupted"), 1
+        return Ended(planner, Stopped("interrupted", "interrupted"), 1, ())
     assert planner.stopped is not None  # noqa: S101 - steps() ended by itself
-    if planner.settings.search.budget == 1:
-        return planner, planner.stopped, 1
     workshop, settings = planner.workshop, planner.settings
+    if settings.search.budget == 1:
+        return Ended(planner, planner.stopped, 1, ())
     first = Found.of(planner)
     left = seconds - (time.perf_counter() - started)
     best, walls = Packed.of(first), 1
+    kept: tuple[Packed, ...] = (best,)
     try:
         for progress in searching(
             first, workshop, settings, planner.seed, seconds=left, executor=executor
         ):
-            best, walls = progress.best, progress.walls
+            best, walls, kept = progress.best, progress.walls, progress.kept
             planner.failed_solves = progress.solves.failed
             planner.cold_solves = progress.solves.cold
             planner.callbacks.on_walls(_incumbent(progress))
     except KeyboardInterrupt:
         pass  # every wall of a search is complete
-    return *_ended(planner, best), walls
+    return Ended(*_ended(planner, best), walls, kept)
 
 
 def _ended(planner: Planner, best: Packed) -> tuple[Planner, Stopped]:
@@ -311,7 +340,7 @@ def finish(
     status = "complete"
     if stopped.reason == "interrupted":
         status = "interrupted"
-    elif metrics.F_SF < FILLED and mean_top(build.wall) < FILLED_TOP:
+    elif missing_stones(planner) or (metrics.F_SF < FILLED and mean_top(build.wall) < FILLED_TOP):
         status = "incomplete"
     return PlanResult(
         success=status == "complete",
@@ -324,6 +353,7 @@ def finish(
         resistance=resistance,
         clusters=planner.workshop.clusters,
         seconds=seconds,
+        F_SF_bound=min(1.0, usable_area_px(planner.workshop) / (frame.width * frame.height)),
         profile=planner.profile,
     )
 

@@ -1,5 +1,6 @@
 """What the processes of a search do: whole walls, from what fits into a message."""
 
+import math
 import pickle
 import time
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ import numpy as np
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
+from drystone.poses import orientation_step_deg
 from drystone.search.by_courses import newly_planned
 from drystone.search.chain import Link, lengthened, wedged
 from drystone.search.found import Found, Solves
@@ -51,6 +53,7 @@ class PackedLink:
     now: Packed
     best: Packed
     solves: Solves
+    kept: tuple[Packed, ...] = ()
 
 
 def one_pass(job: Job, number: int) -> Packed | None:
@@ -58,11 +61,12 @@ def one_pass(job: Job, number: int) -> Packed | None:
     workshop, settings = _opened(job.tools)
     if job.late():
         return None
-    seed = job.seed + number
-    if settings.geometry == "exact" and number % GREEDY_EVERY:
-        planned = newly_planned(workshop, settings, np.random.default_rng([seed, 4_000_000]))
+    rng = np.random.default_rng([job.seed, 4_000_000 + number])
+    if planned_first(settings) and number % GREEDY_EVERY:
+        planned = newly_planned(workshop, settings, rng)
         if planned is not None:
             return Packed.of(wedged(planned, workshop, settings))
+    seed = int(rng.integers(2**31))
     planner = Planner(
         workshop.stones, workshop.site, seed=seed, settings=settings, workshop=workshop
     )
@@ -71,15 +75,27 @@ def one_pass(job: Job, number: int) -> Packed | None:
     return Packed.of(wedged(Found.of(planner), workshop, settings))
 
 
+def planned_first(settings: PlannerSettings) -> bool:
+    """Say whether courses may be planned, in quarter turns, and laid from both ends."""
+    step_deg = 90.0
+    if settings.orientations != "quarter":
+        step_deg = orientation_step_deg(settings.orientations) or math.inf
+    turns = math.isfinite(step_deg) and 90.0 % step_deg == 0.0
+    return (
+        turns and settings.geometry == "exact" and settings.order == "free" and settings.two_sided
+    )
+
+
 def more_links(job: Job, link: PackedLink, count: int) -> PackedLink | None:
     """Build some more walls of a chain; None when it became too late."""
     workshop, settings = _opened(job.tools)
-    now = found_again(link.now, workshop, settings)
-    start = Link(link.number, link.done, now, link.best, link.solves)
+    begun = found_again(link.now, workshop, settings)
+    start = Link(link.number, link.done, begun, link.best, link.solves)
     end = lengthened(start, count, job.seed, workshop, settings, job.late)
     if end is None:
         return None
-    return PackedLink(end.number, end.done, Packed.of(end.now), end.best, end.solves)
+    now = Packed.of(end.now)
+    return PackedLink(end.number, end.done, now, end.best, end.solves, end.kept)
 
 
 @lru_cache(maxsize=1)

@@ -10,6 +10,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
+PIN_BONUS = 2.0
+"""Bonus of an action that places a pinned stone: so it goes in early where it fits about as well as
+others."""
+
 
 @dataclass(frozen=True)
 class Craft:

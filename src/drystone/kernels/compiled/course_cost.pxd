@@ -28,7 +28,6 @@ cdef struct Scene:
     int32_t reach
     double margin
     int32_t steepest
-    bint spread
     int32_t joint
     double target
     const int32_t *beds

@@ -120,7 +120,7 @@ cdef int fill_scene(Scene *scene, poses, ground, rules, const double[::1] weight
     scene.columns = ground.tops.shape[0]
     scene.wall_width, scene.wall_height = ground.width, ground.height
     scene.reach, scene.margin, scene.steepest = rules.reach, rules.margin, rules.steepest
-    scene.spread, scene.joint = rules.spread, rules.joint
+    scene.joint = rules.joint
     scene.target, scene.beds, scene.bed_count = rules.target, &beds[0, 0], beds.shape[0]
     scene.start_count = path_starts(scene.wall_width, scene.starts)
     scene.lift = <int32_t *> malloc(scene.columns * sizeof(int32_t))
@@ -284,7 +284,7 @@ cdef int32_t side_by_side(
 ) noexcept nogil:
     """Find the left ends of the stones of a course; return the room that they leave."""
     cdef Py_ssize_t i
-    cdef int32_t pose, before = 4 * stones[0] + turns[stones[0]], room, free_, share, most
+    cdef int32_t pose, before = 4 * stones[0] + turns[stones[0]], room, most
     # Distances first, then places.
     room = scene.wall_width
     x[0] = 0
@@ -294,17 +294,12 @@ cdef int32_t side_by_side(
         room -= x[i]
         before = pose
     room -= scene.width[before]
-    free_ = room if room > 0 else 0
     for i in range(1, count):
         x[i] += x[i - 1]
     if gap < count:
         # What is laid from the right end is as far from there as it would be from a full course.
         for i in range(gap, count):
             x[i] += room
-    if scene.spread and count > 1:
-        for i in range(count):
-            share = <int32_t> (<int64_t> free_ * i / (count - 1))
-            x[i] += share if i < gap else share - free_
     for i in range(count):
         most = scene.wall_width - scene.width[4 * stones[i] + turns[stones[i]]]
         x[i] = max(0, min(x[i], most))

@@ -1,0 +1,85 @@
+"""Several walls of one search, to choose from (`--pareto`)."""
+
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from drystone.cli.output import make_folder, number
+from drystone.io.blocks_json import write_blocks
+from drystone.io.plan_json import write_plan
+from drystone.io.wall_image import write_wall_image
+from drystone.search.plan_wall import PlanResult
+
+FOLDER, PICTURE = "pareto", "pareto.png"
+WRITTEN = ("plan.json", "settings.toml", "blocks.json", "wall.png", "wall.tif")
+FIGURES = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 3}
+"""Figures of merit of the table, with their digits."""
+
+
+def write_built(result: PlanResult, folder: Path) -> None:
+    """Write plan.json, settings.toml, blocks.json and wall.png."""
+    write_plan(result.plan, folder / "plan.json")
+    (folder / "settings.toml").write_bytes(tomli_w.dumps(dict(result.plan.settings)).encode())
+    write_blocks(result.wall, result.model, folder)
+    written = write_wall_image(result.wall.labels, folder)
+    for name in {"wall.png", "wall.tif"} - {written.name}:
+        # One that an earlier run left would belong to another wall.
+        (folder / name).unlink(missing_ok=True)
+
+
+def walls_to_choose_from(result: PlanResult) -> tuple[PlanResult, ...]:
+    """Return the walls that none beats in every figure; a single pass has one."""
+    return result.choice or (result,)
+
+
+def write_choice(result: PlanResult, folder: Path) -> None:
+    """Write the walls to choose from, a folder each, and one picture of all."""
+    walls = walls_to_choose_from(result)
+    for index, one in enumerate(walls, 1):
+        place = _place(folder, index)
+        make_folder(place)
+        write_built(one, place)
+    # What an earlier run left would belong to another search.
+    index = len(walls) + 1
+    while (_place(folder, index) / "plan.json").exists():
+        for name in WRITTEN:
+            (_place(folder, index) / name).unlink(missing_ok=True)
+        if not any(_place(folder, index).iterdir()):
+            _place(folder, index).rmdir()
+        index += 1
+    # Drawing loads matplotlib, which takes as long as a small plan.
+    from drystone.plotting import plot_choice, save  # noqa: PLC0415
+
+    figure = plot_choice([one.wall for one in walls], [_figures(one) for one in walls])
+    save(figure, folder / PICTURE)
+
+
+def print_choice(result: PlanResult) -> None:
+    """Print the walls to choose from, one a line."""
+    columns = " ".join(f"{name:>8}" for name in FIGURES)
+    print(f"\nwalls that none beats in every figure (pareto.png)\n{'':9} {columns}   stones")
+    for index, one in enumerate(walls_to_choose_from(result), 1):
+        figures = _figures(one)
+        values = " ".join(f"{number(figures[name], FIGURES[name]):>8}" for name in FIGURES)
+        print(f"{FOLDER}/{index:02} {values} {len(one.plan.stone_steps):>8}")
+
+
+def choice_summary(result: PlanResult, folder: Path) -> list[dict[str, Any]]:
+    """Return the same for JSON."""
+    return [
+        {
+            "plan": str(_place(folder, index) / "plan.json"),
+            "placed": len(one.plan.stone_steps),
+            **_figures(one),
+        }
+        for index, one in enumerate(walls_to_choose_from(result), 1)
+    ]
+
+
+def _figures(result: PlanResult) -> dict[str, float | None]:
+    return {name: getattr(result.metrics, name) for name in FIGURES}
+
+
+def _place(folder: Path, index: int) -> Path:
+    return folder / FOLDER / f"{index:02}"

@@ -1,0 +1,199 @@
+"""Ways to look for a good wall, held to the same CPU time."""
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+from drystone.experiments.exact_walls import one_pass
+from drystone.experiments.search_targets import SearchTarget
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings
+from drystone.search.anytime import searching
+from drystone.search.chain import wedged
+from drystone.search.found import Found
+from drystone.search.goal import possible_filling
+from drystone.search.packed import found_again
+
+Clock = Callable[[], float]
+
+ENDLESS = 10**9
+"""A budget that is never used up: the clock ends all ways."""
+
+BETWEEN_SEEDS = 10_000
+"""Restarts of two seeds that are nearer to each other than this have no pass in common."""
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """How far a way is.
+
+    Parameters
+    ----------
+    walls : int
+        How many walls it has built.
+    best : callable
+        Gives the best of them.
+    """
+
+    walls: int
+    best: Callable[[], Found]
+
+
+@dataclass(frozen=True)
+class Way:
+    """A way to look for a good wall.
+
+    Parameters
+    ----------
+    name : str
+        For people.
+    states : callable
+        Goes on from the planner of the first wall, which is built, for as long as it is asked.
+    on_raster : bool
+        Whether it differs from the others where stones are pixels.
+    """
+
+    name: str
+    states: Callable[[Planner], Iterator[State]]
+    on_raster: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Looked:
+    """What a way came to.
+
+    Parameters
+    ----------
+    found : Found
+        Its best wall.
+    walls : int
+        How many walls it built in time.
+    possible : float
+        Area bound on F_SF.
+    """
+
+    found: Found
+    walls: int
+    possible: float
+
+
+def _restarts(first: Planner) -> Iterator[State]:
+    return _passes(first, lambda found, _: found)
+
+
+def _restarts_with_wedges(first: Planner) -> Iterator[State]:
+    settings = first.settings
+
+    def finished(found: Found, best: Found) -> Found:
+        # As a chain of the search does it: the others are not worth the time.
+        if found.merit <= best.merit - settings.search.wedge_below:
+            return found
+        return wedged(found, first.workshop, settings)
+
+    return _passes(first, finished)
+
+
+def _passes(first: Planner, finished: Callable[[Found, Found], Found]) -> Iterator[State]:
+    """Build wall after wall from other seeds, and keep the best."""
+    start = Found.of(first)
+    best, walls = finished(start, start), 1
+    while True:
+        yield State(walls, lambda best=best: best)  # type: ignore[misc]
+        planner = Planner(
+            first.workshop.stones,
+            first.workshop.site,
+            seed=first.seed + BETWEEN_SEEDS * walls,
+            settings=first.settings,
+            workshop=first.workshop,
+        )
+        for _ in planner.steps():
+            pass
+        found = finished(Found.of(planner), best)
+        best, walls = max(best, found, key=lambda one: one.merit), walls + 1
+
+
+def _search(first: Planner) -> Iterator[State]:
+    return _searched(first, first.settings)
+
+
+def _without_courses(first: Planner) -> Iterator[State]:
+    # Courses are planned in further first walls only, and chains of other walls never do.
+    settings = first.settings
+    return _searched(first, replace(settings, search=replace(settings.search, passes=1)))
+
+
+def _searched(first: Planner, settings: PlannerSettings) -> Iterator[State]:
+    workshop = first.workshop
+    for progress in searching(Found.of(first), workshop, settings, first.seed):
+        packed = progress.best
+        yield State(
+            progress.walls,
+            lambda packed=packed: found_again(packed, workshop, settings),  # type: ignore[misc]
+        )
+
+
+RESTARTS, WEDGED = "restarts", "restarts with wedges"
+SEARCH, NO_COURSES = "search", "without courses"
+
+WAYS = (
+    Way(RESTARTS, _restarts),
+    Way(WEDGED, _restarts_with_wedges, on_raster=False),
+    Way(SEARCH, _search),
+    Way(NO_COURSES, _without_courses, on_raster=False),
+)
+
+
+def ways_of(target: SearchTarget) -> tuple[Way, ...]:
+    """Return the ways that differ on the geometry of a wall."""
+    return tuple(way for way in WAYS if way.on_raster or target.geometry == "exact")
+
+
+def looked_for(
+    way: Way,
+    stones: StoneSet,
+    target: SearchTarget,
+    seconds: float,
+    seed: int,
+    clock: Clock = time.process_time,
+) -> Looked:
+    """Look for a good wall until the time is used up.
+
+    What is begun before the end and finished after it does not count, but for the first wall.
+
+    Parameters
+    ----------
+    way : Way
+        How.
+    stones : StoneSet
+        To build with.
+    target : SearchTarget
+        What is to be built.
+    seconds : float
+        CPU time of this process, from the stones to the best wall.
+    seed : int
+        Of all that is drawn.
+    clock : callable
+        Gives the time that is used up, s.
+    """
+    end = clock() + seconds
+    # Another budget for every seed, so that nothing is left over from a search of another seed.
+    settings = one_pass(target.geometry, ENDLESS + seed)
+    width, height = target.target.size(stones)
+    site = Site.from_source(width, height, target.target.scale)
+    first = Planner(stones, site, seed=seed, settings=settings)
+    for _ in first.steps():
+        pass
+    last = _in_time(way.states(first), end, clock)
+    return Looked(last.best(), last.walls, possible_filling(first.workshop))
+
+
+def _in_time(states: Iterator[State], end: float, clock: Clock) -> State:
+    """Return the last state that is reached in time, or else the first one."""
+    last = next(states)
+    for state in states:
+        if clock() > end:
+            break
+        last = state
+    return last

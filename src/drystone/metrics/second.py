@@ -1,0 +1,142 @@
+"""F_AV and F_AH by another sensible definition, against walls that suit only the first.
+
+A search finds walls that are good by the definition it goes by.  This one is used by no search; it
+differs in what DESIGN 5 had to choose: the resolution, and so how wide joints are; where paths
+start, that they end where they like and cannot pass by the wall; that all of them count and not
+the shortest alone.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.kernels.paths import row_lengths, step_counts
+from drystone.kernels.raster import Mask
+from drystone.metrics.frame import frame_wall
+from drystone.metrics.joints import PAD_BOTTOM, PAD_LEFT, PAD_RIGHT, PAD_TOP, joint_mask
+from drystone.metrics.paths import length_px
+from drystone.model.outlines import Outlined, Outlines
+from drystone.model.site import Site
+from drystone.model.wall import Labels
+
+FINER = 3
+"""Resolution at which joints are looked at, over the working resolution."""
+
+STARTS = 10
+"""Paths from each of the two sides between which they lead; even."""
+
+
+@dataclass(frozen=True)
+class SecondArrangement:
+    """Interlocking and straightness by the second definition.
+
+    Parameters
+    ----------
+    F_AV : float or None
+        By how much paths between the top and the foot of the wall are longer than straight,
+        percent; higher is better.  None where a stone from end to end leaves no path.
+    F_AH : float or None
+        The same between its ends; lower is better.  None where a stone is as high as the wall.
+    """
+
+    F_AV: float | None
+    F_AH: float | None
+
+
+def second_arrangement(labels: Labels) -> SecondArrangement:
+    """Measure a wall by the second definition.
+
+    Stones are eroded and all else is joint, as in :func:`drystone.metrics.joints.joint_mask`, but
+    there is open joint only along the sides where paths start and end, one px of it: paths cannot
+    pass by the wall.  :data:`STARTS` paths start evenly spread on each of two sides that face each
+    other, and end anywhere on the other one: 100 (v - s) / s, with v their length and s that of a
+    straight one, is averaged over all of them.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        The wall at :data:`FINER` times the working resolution, of :func:`finer_labels` or
+        :func:`outlined_labels`; wedges count as stones.  It is cut to its stones: where a wall is
+        a little shorter than planned, paths must not run through the slit at its end.
+
+    Raises
+    ------
+    LabelImageError
+        E104 when there is no stone in the image.
+
+    Examples
+    --------
+    >>> bed_joint = np.repeat(np.array([[1], [2]], np.uint32), 30, axis=0).repeat(200, axis=1)
+    >>> second_arrangement(bed_joint).F_AV is None, second_arrangement(bed_joint.T).F_AH is None
+    (True, True)
+    """
+    joint = joint_mask(frame_wall(labels).labels)
+    rows, cols = slice(PAD_TOP, -PAD_BOTTOM), slice(PAD_LEFT, -PAD_RIGHT)
+    # As wide on both sides, so that a wall and its mirror image are worth the same.
+    with_top_and_foot = joint[PAD_TOP - 1 : 1 - PAD_BOTTOM, cols]
+    with_ends = joint[rows, PAD_LEFT - 1 : 1 - PAD_RIGHT]
+    return SecondArrangement(F_AV=_mean_excess(with_top_and_foot.T), F_AH=_mean_excess(with_ends))
+
+
+def finer_labels(labels: Labels) -> Labels:
+    """Repeat every pixel of a wall that is known at the working resolution only.
+
+    Examples
+    --------
+    >>> finer_labels(np.array([[1, 2]], np.uint32)).tolist()
+    [[1, 1, 1, 2, 2, 2], [1, 1, 1, 2, 2, 2], [1, 1, 1, 2, 2, 2]]
+    """
+    return labels.repeat(FINER, axis=0).repeat(FINER, axis=1)
+
+
+def outlined_labels(blocks: Sequence[Outlined], site: Site) -> Labels:
+    """Draw outlines at the resolution of the second definition.
+
+    Parameters
+    ----------
+    blocks : sequence of (int, (n, 2) float array)
+        Ids and corners of stones and wedges in the wall frame, source px.
+    site : Site
+        Of the wall, at the working resolution.
+
+    Returns
+    -------
+    labels : (h, w) uint32 array
+        As of :class:`drystone.model.wall.Wall`, on finer px.
+    """
+    scale = FINER * site.scale
+    finer = Site(FINER * site.width_px, FINER * site.height_px, scale)
+    return Outlines.empty(finer).added(blocks, scale).shares.labels
+
+
+def _mean_excess(joint: Mask) -> float | None:
+    """Return by how much paths between the left and the right side are longer than straight.
+
+    All pixels of a side are joint, so there is a path from each of them, or from none.
+    """
+    straight = joint.shape[1] - 1
+    starts = _starts(joint.shape[0])
+    lengths = [*_lengths_across(joint, starts), *_lengths_across(joint[:, ::-1], starts)]
+    if not lengths:
+        return None
+    return 100.0 * math.fsum(length / straight - 1.0 for length in lengths) / len(lengths)
+
+
+def _lengths_across(joint: Mask, rows: NDArray[np.intp]) -> list[float]:
+    """Return the lengths of the shortest ways from the left end of rows to anywhere at the right.
+
+    A way on through the mirror image to its end of the same row is twice as long as the way to the
+    last column, where both images meet.
+    """
+    both = np.hstack([joint, joint[:, -2::-1]])
+    lengths = row_lengths(both, rows).tolist()
+    return [length_px(*step_counts(length // 2)) for length in lengths if length >= 0]
+
+
+def _starts(side_px: int) -> NDArray[np.intp]:
+    """Return where paths start along a side: in the middle of equal parts, from both ends alike."""
+    first = (2 * np.arange(STARTS // 2) + 1) * side_px // (2 * STARTS)
+    return np.concatenate([first, side_px - 1 - first[::-1]])

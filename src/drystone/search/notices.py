@@ -1,0 +1,62 @@
+"""What a user should know of how a wall was planned."""
+
+from collections.abc import Iterator, Sequence
+
+from drystone.errors import Notice
+from drystone.planner.planner import Planner
+
+
+def missing_stones(planner: Planner) -> tuple[int, ...]:
+    """Return the ids of pinned stones that are not in the wall of a planner."""
+    placed = {action.stone_id for action in planner.build.actions}
+    return tuple(sorted(set(planner.settings.pin) - placed))
+
+
+def planning_notices(asked: Planner, built: Planner, left_out: Sequence[int]) -> tuple[Notice, ...]:
+    """Return the notices of a plan.
+
+    Parameters
+    ----------
+    asked : Planner
+        Counted the trouble with the solver.
+    built : Planner
+        Built the wall.
+    left_out : sequence of int
+        Stones of the wall that was begun with that were not used.
+    """
+    return (*_left_out(left_out), *_missing(missing_stones(built)), *_solves(asked))
+
+
+def _left_out(stone_ids: Sequence[int]) -> Iterator[Notice]:
+    if stone_ids:
+        yield Notice(
+            "W121",
+            f"stones {', '.join(map(str, stone_ids))} of the plan to begin with were taken out: "
+            "banned, out of their turn, or not standing without the others or with these settings.",
+        )
+
+
+def _missing(stone_ids: Sequence[int]) -> Iterator[Notice]:
+    if stone_ids:
+        yield Notice(
+            "W120",
+            f"pinned stones found no place in the wall: {', '.join(map(str, stone_ids))}.",
+            "Look for longer (--time), or pin fewer stones.",
+        )
+
+
+def _solves(planner: Planner) -> Iterator[Notice]:
+    cure = "Please report this with the stones and the settings."
+    if planner.failed_solves:
+        yield Notice(
+            "W303",
+            f"the solver gave up on {planner.failed_solves} candidates, which were passed over.",
+            cure,
+        )
+    if planner.cold_solves:
+        yield Notice(
+            "W303",
+            f"the solver had no certificate for {planner.cold_solves} candidates at first, which "
+            "were solved again from the start.",
+            cure,
+        )

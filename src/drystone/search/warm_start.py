@@ -1,0 +1,41 @@
+"""A search that begins with a wall that was planned before."""
+
+from collections.abc import Mapping
+
+from drystone.model.wall import Wall
+from drystone.planner.planner import Planner
+from drystone.planner.replay import replayed
+
+
+def begin_with(
+    planner: Planner, wall: Wall, course_heights_px: Mapping[int, float]
+) -> tuple[int, ...]:
+    """Let a planner begin with a wall, as far as its stones may be used and stand.
+
+    Parameters
+    ----------
+    planner : Planner
+        Has built nothing yet; of the same stones, size and resolution as the wall.
+    wall : Wall
+        Any wall of these stones.
+    course_heights_px : mapping of int to float
+        For stones that began a course: the height that Eq. 8 compared with.
+
+    Returns
+    -------
+    left_out : tuple of int
+        Ids of the stones of the wall that are not used: banned, out of their turn in a given
+        order, or not standing with these settings, as when what carried them is left out.
+    """
+    workshop, settings = planner.workshop, planner.settings
+    allowed, groups, last = set(workshop.fitting), [], -1
+    for group in wall.groups:
+        stone_id = group.placement.stone_id
+        if stone_id in allowed and (settings.order == "free" or stone_id > last):
+            groups.append(group)
+            last = stone_id
+    planner.build, _ = replayed(
+        planner.build, groups, course_heights_px, workshop, settings, strict=False
+    )
+    used = {action.stone_id for action in planner.build.actions}
+    return tuple(p.stone_id for p in wall.placements if p.stone_id not in used)

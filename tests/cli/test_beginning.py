@@ -1,0 +1,127 @@
+"""--from begins a search with the wall of a plan."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from drystone.io.plan_json import read_plan
+from tests.cli.conftest import EXACT, WALL, Run
+
+
+def stones_of(folder: Path) -> list[int]:
+    return [step.stone for step in read_plan(folder).stone_steps]
+
+
+@pytest.mark.parametrize("file", ["", "plan.json"])
+def test_the_plan_is_the_same_when_nothing_is_added(
+    file: str, settled: Path, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    # Another seed would give another wall.
+    other = ["plan", rubble, *EXACT, "--seed", 5]
+    assert run(*other, "-o", tmp_path / "alone").code in (0, 4)
+    assert run(*other, "--from", settled / file, "-o", tmp_path / "out").code in (0, 4)
+    assert read_plan(tmp_path / "out").steps == read_plan(settled).steps
+    assert read_plan(tmp_path / "alone").steps != read_plan(settled).steps
+
+
+def test_a_search_goes_on_from_a_plan(
+    finished: Path, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    ran = run("plan", rubble, *WALL, "--budget", 3, "--from", finished, "-o", tmp_path / "out")
+    assert ran.code in (0, 4)
+    assert read_plan(tmp_path / "out").metrics.F_SF >= read_plan(finished).metrics.F_SF - 0.02
+    assert run("check", tmp_path / "out", "--stones", rubble).code == 0
+
+
+def test_what_is_banned_now_is_taken_out(
+    settled: Path, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    first = stones_of(settled)[0]
+    ran = run("plan", rubble, *EXACT, "--from", settled, "--ban", first, "-o", tmp_path / "out")
+    assert ran.code in (0, 4)
+    assert f"W121 stones {first}" in ran.err
+    assert first not in stones_of(tmp_path / "out")
+    assert first in read_plan(tmp_path / "out").unused
+    assert run("check", tmp_path / "out", "--stones", rubble).code == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--wall", "110x36"], "the plan is of another wall (100x36 px, not 110x36)."),
+        (["--scale", ".5"], "the plan is of another resolution. Add --scale 1."),
+        (["--geometry", "raster"], "the plan is of another geometry. Add --geometry exact."),
+        (
+            ["--scale", ".5", "--geometry", "raster"],
+            "another resolution, another geometry. Add --scale 1 --geometry exact.",
+        ),
+        (["--orientations", "sf"], "other orientations. Add --orientations quarter."),
+        (["--one-sided"], "both sides. Add --two-sided."),
+        (["--pieces", "split"], "stones that were read otherwise"),
+    ],
+)
+def test_a_plan_of_something_else_is_refused(
+    options: list[str], said: str, settled: Path, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    ran = run("plan", rubble, *EXACT, "--from", settled, *options, "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert "E144" in ran.err
+    assert said in ran.err
+    assert not (tmp_path / "out").exists()
+
+
+def test_other_stones_are_refused(settled: Path, bricks: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", bricks, *EXACT, "--from", settled, "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert "E144" in ran.err
+    assert "the plan is of other stones." in ran.err
+
+
+def test_no_plan_is_refused(rubble: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", rubble, *EXACT, "--from", tmp_path, "-o", tmp_path / "out")
+    assert ran.code == 3
+    assert "E202" in ran.err
+    both = run("plan", rubble, *EXACT, "--from", tmp_path, "--resume", "-o", tmp_path / "out")
+    assert both.code == 2
+    assert "E138" in both.err
+
+
+def test_single_stones_are_settings(rubble: Path, tmp_path: Path, run: Run) -> None:
+    options = ["--ban", 2, "--ban", 5, 2, "--pin", 7, "--fixed-order"]
+    assert run("plan", rubble, *WALL, *options, "-o", tmp_path / "out").code in (0, 4)
+    plan = json.loads((tmp_path / "out" / "plan.json").read_text())
+    assert plan["settings"]["ban"] == [2, 5]
+    assert plan["settings"]["pin"] == [7]
+    assert plan["settings"]["order"] == "given"
+    placed = stones_of(tmp_path / "out")
+    assert placed == sorted(placed)
+    assert not {2, 5} & set(placed)
+    assert run("check", tmp_path / "out", "--stones", rubble).code == 0
+    again = ["--settings", tmp_path / "out" / "settings.toml"]
+    assert run("plan", rubble, *WALL, *again, "-o", tmp_path / "again").code in (0, 4)
+    assert (tmp_path / "again" / "plan.json").read_bytes() == (
+        tmp_path / "out" / "plan.json"
+    ).read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [(["--ban", "99"], "E145"), (["--pin", "99"], "E145"), (["--ban", "2", "--pin", "2"], "E123"),
+     (["--ban", "-1"], "E138"), (["--pin", "a"], "E138")],
+)  # fmt: skip
+def test_stones_that_cannot_be_meant(
+    options: list[str], code: str, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    ran = run("plan", rubble, *WALL, *options, "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert code in ran.err
+
+
+def test_a_pinned_stone_that_is_missing_is_said(rubble: Path, tmp_path: Path, run: Run) -> None:
+    every = [str(i) for i in range(1, 9)]
+    small = ["--wall", "60x20", "--scale", "1", "--method", "paper", "--skip-too-large"]
+    ran = run("plan", rubble, *small, "--pin", *every, "-o", tmp_path / "out")
+    assert ran.code == 4
+    assert "W120 pinned stones found no place" in ran.err
+    assert ran.out.startswith("incomplete: ")

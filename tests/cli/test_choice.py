@@ -1,0 +1,70 @@
+"""--pareto writes walls to choose from; the bound on F_SF is always printed."""
+
+from pathlib import Path
+
+import pytest
+
+from drystone.io.plan_json import read_plan
+from drystone.search.plan_wall import PlanResult
+from tests.cli.conftest import EXACT, WALL, Run
+
+SEARCH = ("--wall", "100x36", "--scale", "1", "--budget", "9", "--seed", "4")
+
+
+def test_walls_to_choose_from(rubble: Path, tmp_path: Path, run: Run) -> None:
+    out = tmp_path / "out"
+    ran = run("plan", rubble, *SEARCH, "--pareto", "--json", "-o", out)
+    assert ran.code in (0, 4)
+    summary = ran.json()
+    walls = summary["pareto"]
+    assert len(walls) > 1
+    assert [one["plan"] for one in walls] == [
+        str(out / "pareto" / f"{k:02}" / "plan.json") for k in range(1, len(walls) + 1)
+    ]
+    assert (out / "pareto" / "01" / "plan.json").read_bytes() == (out / "plan.json").read_bytes()
+    for one in walls:
+        plan = read_plan(Path(one["plan"]))
+        assert one["placed"] == len(plan.stone_steps)
+        for name in ("F_SF", "F_AV", "F_AH", "F_LR"):
+            assert one[name] == getattr(plan.metrics, name)
+        assert run("check", one["plan"], "--stones", rubble).code == 0
+    assert (out / "pareto.png").read_bytes().startswith(b"\x89PNG")
+
+    # Fewer walls than before leave none of an earlier search.
+    (out / "pareto" / "02" / "mine.txt").write_text("kept")
+    few = run("plan", rubble, *EXACT, "--pareto", "--overwrite", "-o", out)
+    assert few.out.splitlines()[-1].startswith("pareto/01 ")
+    assert sorted(p.name for p in (out / "pareto").iterdir()) == ["01", "02"]
+    assert [p.name for p in (out / "pareto" / "02").iterdir()] == ["mine.txt"]
+
+
+def test_the_table_has_the_figures(rubble: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", rubble, *EXACT, "--pareto", "-o", tmp_path / "out")
+    header, row = ran.out.splitlines()[-2:]
+    assert header.split() == ["F_SF", "F_AV", "F_AH", "F_LR", "stones"]
+    metrics = read_plan(tmp_path / "out").metrics
+    assert metrics.F_AV is not None
+    assert row.split()[:3] == ["pareto/01", f"{metrics.F_SF:.3f}", f"{metrics.F_AV:.1f}"]
+
+
+def test_nothing_more_is_written_unasked(
+    settled: Path, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    assert not (settled / "pareto").exists()
+    assert not (settled / "pareto.png").exists()
+    ran = run("plan", rubble, *WALL, "--json", "-o", tmp_path / "out")
+    assert "pareto" not in ran.json()
+    assert PlanResult.choice == ()
+
+
+@pytest.mark.parametrize(
+    ("wall", "text"), [("100x36", "(area of the stones)"), ("60x20", "1.000 (a full wall)")]
+)
+def test_the_bound_is_printed(wall: str, text: str, rubble: Path, tmp_path: Path, run: Run) -> None:
+    options = ["--wall", wall, "--scale", "1", "--method", "paper", "--skip-too-large"]
+    lines = run("plan", rubble, *options, "-o", tmp_path / "a").out.splitlines()
+    (line,) = [line for line in lines if line.startswith("F_SF")]
+    assert text in line
+    summary = run("plan", rubble, *options, "--json", "-o", tmp_path / "b").json()
+    assert f"of at most {summary['F_SF_bound']:.3f}" in line
+    assert summary["F_SF"] <= summary["F_SF_bound"]

@@ -1,0 +1,148 @@
+"""Ways to look for a wall stop when the time is used up, and give the best wall until then."""
+
+from collections.abc import Iterator
+from itertools import chain, count, repeat
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from drystone.experiments import search_ways
+from drystone.experiments.exact_walls import Target, one_pass
+from drystone.experiments.search_targets import SearchTarget
+from drystone.experiments.search_ways import BETWEEN_SEEDS, State, Way, looked_for, ways_of
+from drystone.generate.brick import BrickSettings, brick_stones
+from drystone.search.plan_wall import plan_wall
+
+STONES = brick_stones(BrickSettings(count=4), np.random.default_rng(1))
+WALLS = {
+    geometry: SearchTarget(Target("bricks", lambda _: STONES, 72, 24, 1.0), geometry)
+    for geometry in ("exact", "raster")
+}
+WAYS = {way.name: way for way in search_ways.WAYS}
+
+
+def ticking() -> search_ways.Clock:
+    """A clock that goes on by a second whenever it is looked at."""
+    ticks = count()
+    return lambda: next(ticks)
+
+
+def clock_of(*times: float) -> search_ways.Clock:
+    values = chain(times, repeat(times[-1]))
+    return lambda: next(values)
+
+
+@pytest.mark.parametrize(
+    ("name", "geometry", "seconds", "walls"),
+    [
+        ("restarts", "exact", 3, 4),
+        ("restarts", "raster", 3, 4),
+        ("restarts with wedges", "exact", 3, 4),
+        ("search", "exact", 3, 4),
+        ("search", "raster", 3, 4),
+        # No further first walls: eight walls of a chain at once.
+        ("without courses", "exact", 1, 9),
+    ],
+)
+def test_what_is_finished_in_time_counts(name, geometry, seconds, walls):
+    looked = looked_for(WAYS[name], STONES, WALLS[geometry], seconds, 1, ticking())
+    assert looked.walls == walls
+    assert looked.possible == 1.0
+    assert looked.found.figures.stones == 4
+    assert looked.found.build.wall.filling == pytest.approx(1.0)
+    assert (looked.found.build.wall.outlines is None) == (geometry == "raster")
+
+
+@pytest.mark.parametrize(("geometry", "seconds"), [("exact", 2), ("raster", 8)])
+def test_the_search_is_that_of_a_plan_with_the_same_budget(geometry, seconds):
+    looked = looked_for(WAYS["search"], STONES, WALLS[geometry], seconds, 1, ticking())
+    settings = one_pass(geometry, looked.walls)
+    plan = plan_wall(STONES, 72, 24, seed=1, settings=settings, scale=1.0)
+    np.testing.assert_array_equal(looked.found.build.wall.labels, plan.wall.labels)
+    assert looked.found.figures.F_LR == pytest.approx(plan.metrics.F_LR, abs=1e-12)
+
+
+def test_without_courses_there_are_none():
+    assert (
+        looked_for(WAYS["without courses"], STONES, WALLS["exact"], 1, 1, ticking()).found.courses
+        is None
+    )
+
+
+def test_the_first_wall_counts_however_long_it_takes():
+    looked = looked_for(WAYS["search"], STONES, WALLS["exact"], 1, 1, clock_of(0, 100))
+    assert looked.walls == 1
+
+
+def test_the_time_is_counted_from_the_start():
+    asked: list[int] = []
+
+    def states(_: object) -> Iterator[State]:
+        for number in count(1):
+            asked.append(number)
+            yield State(number, lambda number=number: number)  # type: ignore[misc, return-value]
+
+    way = Way("by hand", states)
+    looked = looked_for(way, STONES, WALLS["exact"], 5, 1, clock_of(10, 14.9, 15, 15.1, 15.2))
+    assert (looked.found, looked.walls) == (3, 3)
+    assert asked == [1, 2, 3, 4]  # the fourth was finished too late
+
+
+class Fake:
+    """In place of a planner: builds nothing, and its wall is worth what is said."""
+
+    merits: Iterator[float]
+    seeds: list[int]
+
+    def __init__(self, *_: object, seed: int, **__: object) -> None:
+        self.seeds.append(seed)
+
+    @staticmethod
+    def steps() -> tuple[()]:
+        return ()
+
+
+@pytest.fixture
+def worth(monkeypatch):
+    """Walls that are worth what is said, in place of built ones."""
+
+    def of(*merits: float) -> SimpleNamespace:
+        values = iter(merits)
+        Fake.seeds = []
+        found = SimpleNamespace(of=lambda _: SimpleNamespace(merit=next(values)))
+        monkeypatch.setattr(search_ways, "Found", found)
+        monkeypatch.setattr(search_ways, "Planner", Fake)
+        return SimpleNamespace(
+            seed=3,
+            workshop=SimpleNamespace(stones=None, site=None),
+            settings=SimpleNamespace(search=SimpleNamespace(wedge_below=0.25)),
+        )
+
+    return of
+
+
+def test_restarts_keep_the_best_of_different_seeds(worth):
+    states = search_ways._restarts(worth(1.0, 3.0, 2.0, 4.0))
+    found = [next(states) for _ in range(4)]
+    assert [state.walls for state in found] == [1, 2, 3, 4]
+    assert [state.best().merit for state in found] == [1.0, 3.0, 3.0, 4.0]
+    assert Fake.seeds == [3 + BETWEEN_SEEDS * k for k in (1, 2, 3)]
+
+
+def test_wedges_go_into_walls_that_are_nearly_the_best(worth, monkeypatch):
+    tried = []
+
+    def wedged(found, *_):
+        tried.append(found.merit)
+        return SimpleNamespace(merit=found.merit + 0.2)
+
+    monkeypatch.setattr(search_ways, "wedged", wedged)
+    states = search_ways._restarts_with_wedges(worth(1.0, 0.9, 0.96, 1.1))
+    assert [next(states).best().merit for _ in range(4)] == pytest.approx([1.2, 1.2, 1.2, 1.3])
+    assert tried == [1.0, 0.96, 1.1]
+
+
+def test_ways_that_do_the_same_on_pixels_are_left_out():
+    assert [way.name for way in ways_of(WALLS["exact"])] == list(WAYS)
+    assert [way.name for way in ways_of(WALLS["raster"])] == ["restarts", "search"]

@@ -1,0 +1,125 @@
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from drystone.errors import LabelImageError
+from drystone.io.wall_image import read_wall_image
+from drystone.metrics.reduce import reduce_labels
+from drystone.metrics.second import finer_labels, outlined_labels, second_arrangement
+from drystone.model.site import Site
+from tests.metrics.walls import bricks, walls
+from tests.naive import metrics as naive
+from tests.strategies import repeatable
+
+
+def both(labels):
+    found = second_arrangement(labels)
+    return found.F_AV, found.F_AH
+
+
+def stack(rows, cols, height, width):
+    numbers = np.arange(1, rows * cols + 1, dtype=np.uint32).reshape(rows, cols)
+    return np.kron(numbers, np.ones((height, width), np.uint32))
+
+
+@repeatable(40)
+@given(walls(max_px=22))
+def test_is_its_slow_twin(labels):
+    for found, expected in zip(both(labels), naive.second_definition(labels), strict=True):
+        assert (found is None) == (expected is None)
+        assert found == pytest.approx(expected, abs=1e-9)
+
+
+def test_is_its_slow_twin_on_a_wall_of_bricks():
+    labels = finer_labels(bricks(3, 3, 5, 12))
+    assert both(labels) == pytest.approx(naive.second_definition(labels), abs=1e-9)
+
+
+@repeatable()
+@given(walls(max_px=40))
+def test_a_mirrored_wall_is_worth_the_same(labels):
+    found = both(labels)
+    assert both(labels[:, ::-1]) == found
+    assert both(labels[::-1]) == found
+    assert both(labels.T) == found[::-1]
+
+
+def test_four_square_stones():
+    """From a start that is d px from the joint: d steps along the rim, the last one downwards."""
+    side, straight = 20, 21
+    starts = [1, 3, 5, 7, 9, 10, 12, 14, 16, 18]
+    to_joint = [max(0, 9 - start, start - 10) for start in starts]
+    aside = [distance + math.sqrt(2) - 2 if distance else 0.0 for distance in to_joint]
+    expected = 100 * sum(aside) / len(aside) / straight
+    assert both(stack(2, 2, side // 2, side // 2)) == pytest.approx((expected, expected))
+
+
+def test_all_paths_count_and_not_the_shortest_alone():
+    """Bed joints are straight, but a path that begins beside a stone must find the joint."""
+    wall = stack(2, 1, 40, 300)
+    assert both(wall)[0] is None
+    assert both(wall)[1] == pytest.approx(naive.second_definition(wall)[1])
+    assert both(wall)[1] > 5.0
+
+
+def test_a_path_cannot_pass_by_the_wall():
+    assert both(np.ones((30, 30), np.uint32)) == (None, None)
+    assert both(stack(1, 2, 30, 30))[1] is None
+    assert both(stack(2, 1, 30, 30))[0] is None
+
+
+def test_a_slit_at_the_end_is_no_way():
+    wall = finer_labels(bricks(4, 3, 6, 14))
+    assert both(np.pad(wall, ((5, 0), (1, 2)))) == both(wall)
+
+
+def test_a_stack_bond_is_worse_than_a_running_bond():
+    assert both(stack(6, 6, 24, 60))[0] < both(bricks(6, 6, 24, 60))[0]
+
+
+def test_stepped_courses_are_worse_than_straight_ones():
+    straight = bricks(6, 6, 24, 60)
+    stepped = straight.copy()
+    for left in range(0, 360, 120):
+        stepped[:, left : left + 60] = np.roll(straight[:, left : left + 60], 9, axis=0)
+    assert both(straight)[1] < both(stepped)[1]
+
+
+def test_an_image_without_stones():
+    with pytest.raises(LabelImageError, match="E104"):
+        second_arrangement(np.zeros((4, 4), np.uint32))
+
+
+def test_pixels_are_repeated():
+    wall = bricks(2, 2, 3, 4)
+    np.testing.assert_array_equal(finer_labels(wall), np.kron(wall, np.ones((3, 3), np.uint32)))
+
+
+def test_outlines_are_drawn_three_times_as_fine():
+    left, bottom, right, top = 4.0, 2.0, 20.0, 10.0
+    corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
+    labels = outlined_labels([(7, corners), (9, corners + np.array([16, -2]))], Site(20, 8, 0.5))
+    assert labels.shape == (24, 60)
+    expected = np.zeros((24, 60), np.uint32)
+    expected[24 - 15 : 24 - 3, 6:30] = 7
+    expected[24 - 12 : 24, 30:54] = 9
+    np.testing.assert_array_equal(labels, expected)
+
+
+def test_outlines_show_more_than_pixels_do():
+    """A gap of half a working px is one px wide here, as is what is left at the end."""
+    corners = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 6.0], [0.0, 6.0]])
+    labels = outlined_labels([(1, corners), (2, corners + np.array([10.5, 0.0]))], Site(21, 6))
+    assert np.flatnonzero((labels == 0).all(axis=0)).tolist() == [30, 62]
+
+
+@pytest.mark.parametrize(
+    ("name", "scale", "expected"),
+    [("R", 0.2, (51.08, 2.05)), ("PR", 0.5, (39.73, 2.48)), ("IR", 0.3, (31.66, 5.09))],
+)
+def test_the_masons_walls(data_dir: Path, name, scale, expected):
+    labels = reduce_labels(read_wall_image(data_dir / "almeida" / f"{name}.png"), scale)
+    assert both(finer_labels(labels)) == pytest.approx(expected, abs=0.006)

@@ -1,0 +1,138 @@
+"""Stones that are banned or pinned, and stones in a given order."""
+
+from dataclasses import replace
+
+import pytest
+
+from drystone.errors import UsageError
+from drystone.model.site import Site
+from drystone.planner.planner import Planner
+from drystone.planner.pose_costs import PoseCosts
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.workshop import Workshop
+from drystone.selection.scored import PIN_BONUS, ScoreSettings
+from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, order, rubble
+
+
+def stones_of(planner: Planner) -> list[int]:
+    return [action.stone_id for action in planner.build.actions]
+
+
+@pytest.mark.parametrize("changes", [{}, {"geometry": "raster"}, {"selection_rule": "algorithm2"}])
+def test_banned_stones_are_not_used(changes: dict[str, object]) -> None:
+    free = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy(changes)))
+    ban = stones_of(free)[1:3]
+    settings = greedy({**changes, "ban": ban})
+    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
+    assert planner.build.actions
+    assert not set(stones_of(planner)) & set(ban)
+
+
+def test_why_a_wall_ends_without_banned_stones() -> None:
+    def said(changes: dict[str, object], stones: int = 3) -> str:
+        settings = PlannerSettings().updated(changes)
+        planner = finish(Planner(bricks(stones), Site(60, 10), settings=settings))
+        assert planner.stopped is not None
+        return planner.stopped.text
+
+    ids = [stone.id for stone in bricks(4)]
+    assert said({"ban": [ids[0]]}) == "all stones that are not banned placed"
+    assert said({}) == "filling above 0.99"
+    assert said({}, 2) == "all stones placed"
+    assert said({"ban": ids[:3]}) == "all stones that are not banned placed"
+
+
+def test_a_banned_stone_may_be_too_large() -> None:
+    stones, site = blocks({1: (20, 10), 2: (200, 100), 3: (20, 10)}), Site(60, 20)
+    with pytest.raises(UsageError, match="E120"):
+        Workshop.prepare(stones, site, PlannerSettings())
+    workshop = Workshop.prepare(stones, site, PlannerSettings(ban=(2,)))
+    assert workshop.fitting == (1, 3)
+    # Nobody waits for its sides, and wedges are numbered after all stones, banned ones too.
+    assert sum(workshop.sides.counts.values()) == 2
+    assert Workshop.prepare(stones, site, PlannerSettings(ban=(2, 3))).stock.largest_id == 3
+
+
+@pytest.mark.parametrize("name", ["ban", "pin"])
+def test_unknown_stones_are_refused(name: str) -> None:
+    with pytest.raises(UsageError, match="E145") as caught:
+        Planner(rubble(), RUBBLE_SITE, settings=greedy({name: [1, 77, 99]}))
+    assert caught.value.where == f"--{name}"
+    assert "77, 99" in caught.value.what
+
+
+@pytest.mark.parametrize("value", [7, [1.5], [True], ["7"], {"a": 1}])
+def test_ids_are_a_list_of_whole_numbers(value: object) -> None:
+    with pytest.raises(UsageError, match="E123"):
+        PlannerSettings().updated({"pin": value})
+
+
+def test_no_stone_is_pinned_and_banned() -> None:
+    with pytest.raises(UsageError, match=r"E123.*: 3\."):
+        PlannerSettings().updated({"pin": [1, 3], "ban": [3, 4]})
+    with pytest.raises(ValueError, match="unknown order"):
+        PlannerSettings(order="wurst")  # type: ignore[arg-type]
+
+
+def test_lists_of_settings_are_lists() -> None:
+    settings = PlannerSettings().updated({"ban": [3], "pin": [1, 2]})
+    assert (settings.ban, settings.pin) == ((3,), (1, 2))
+    written = settings.as_dict()
+    assert (written["ban"], written["pin"]) == ([3], [1, 2])
+    assert PlannerSettings().updated(written) == settings
+
+
+def test_a_pinned_stone_costs_less_by_the_bonus() -> None:
+    workshop = Workshop.prepare(rubble(), RUBBLE_SITE, PlannerSettings())
+    poses = [workshop.initial(stone_id) for stone_id in workshop.fitting]
+    plain = PoseCosts(workshop.stock).of(poses, ScoreSettings())
+    pinned = PoseCosts(workshop.stock, frozenset({workshop.fitting[1]})).of(poses, ScoreSettings())
+    assert (plain - pinned).tolist() == pytest.approx(
+        [PIN_BONUS if k == 1 else 0.0 for k in range(len(poses))]
+    )
+
+
+@pytest.mark.parametrize(
+    "changes", [{}, {"geometry": "raster"}, {"selection_rule": "algorithm2", "sampling": "variant"}]
+)
+def test_a_pinned_stone_goes_in_earlier(changes: dict[str, object]) -> None:
+    free = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy(changes)))
+    last = stones_of(free)[-1]
+    settings = greedy({**changes, "pin": [last]})
+    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
+    assert stones_of(planner).index(last) < len(free.build.actions) - 2
+
+
+def test_a_pinned_stone_that_never_fits_does_not_stop_others() -> None:
+    stones = blocks({1: (20, 10), 2: (200, 100), 3: (20, 10)})
+    settings = PlannerSettings(pin=(2,), skip_too_large=True)
+    planner = finish(Planner(stones, Site(60, 20), settings=settings))
+    assert sorted(stones_of(planner)) == [1, 3]
+
+
+@pytest.mark.parametrize("changes", [{}, {"geometry": "raster"}, {"selection_rule": "algorithm2"}])
+def test_in_a_given_order_ids_ascend(changes: dict[str, object]) -> None:
+    settings = greedy({**changes, "order": "given"})
+    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
+    assert len(planner.build.actions) >= 5
+    assert stones_of(planner) == sorted(stones_of(planner))
+    # What is built says where to go on.
+    again = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
+    for step in again.steps():
+        if step.number == 3:
+            break
+    assert order(finish(again)) == order(planner)
+
+
+def test_what_finds_no_place_in_its_turn_is_set_aside() -> None:
+    stones = blocks({1: (20, 10), 2: (70, 10), 3: (20, 10), 4: (20, 10), 5: (20, 10)})
+    settings = greedy({"geometry": "raster", "order": "given", "orientations": "sf"})
+    settings = replace(settings, skip_too_large=True)
+    small = finish(Planner(stones, Site(60, 10), settings=settings))
+    assert stones_of(small) == [1, 3, 4]
+    assert small.stopped is not None
+    assert small.stopped.reason == "filled"
+    narrow = finish(Planner(stones, Site(45, 10), settings=settings))
+    assert stones_of(narrow) == [1, 3]
+    assert narrow.stopped is not None
+    assert narrow.stopped.text == "no stone is left that was not tried in its turn"

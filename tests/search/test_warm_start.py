@@ -1,0 +1,87 @@
+"""Searches that begin with a wall."""
+
+import pytest
+
+from drystone.model.wall import Wall
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings
+from drystone.search.plan_wall import plan_wall
+from drystone.search.warm_start import begin_with
+from drystone.verify.check import check_plan
+from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, outlines, rubble
+from tests.search.test_anytime import SMALL
+
+
+def built(geometry: str = "exact") -> Planner:
+    settings = greedy({"geometry": geometry})
+    return finish(Planner(rubble(), RUBBLE_SITE, seed=3, settings=settings))
+
+
+def new(settings: PlannerSettings) -> Planner:
+    return Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
+
+
+@pytest.mark.parametrize("geometry", ["raster", "exact"])
+def test_the_wall_is_as_it_was(geometry: str) -> None:
+    old = built(geometry)
+    planner = new(old.settings)
+    assert begin_with(planner, old.build.wall, {}) == ()
+    assert order(planner) == order(old)
+    assert outlines(planner) == outlines(old)
+    assert planner.build.wall.labels.tobytes() == old.build.wall.labels.tobytes()
+
+
+@pytest.mark.parametrize("geometry", ["raster", "exact"])
+def test_banned_stones_are_taken_out_with_what_falls_then(geometry: str) -> None:
+    old = built(geometry)
+    before = [action.stone_id for action in old.build.actions]
+    fell, stayed = set(), set()
+    for banned in before:
+        planner = new(greedy({"geometry": geometry, "ban": [banned]}))
+        gone = begin_with(planner, old.build.wall, {})
+        used = [action.stone_id for action in planner.build.actions]
+        assert gone[0] == banned
+        assert [stone_id for stone_id in before if stone_id not in gone] == used
+        assert all(a.sturdy and a.resistance.stable for a in planner.build.actions)
+        fell.update(gone[1:])
+        if len(gone) > 1:
+            stayed.update(used[before.index(gone[1]) :])
+    # Some fall without what carried them, and later ones that stand without these stay.
+    assert fell
+    assert stayed
+
+
+def test_in_a_given_order_only_what_ascends_is_used() -> None:
+    old = built()
+    ids = [action.stone_id for action in old.build.actions]
+    assert ids != sorted(ids)
+    planner = new(greedy({"order": "given"}))
+    gone = begin_with(planner, old.build.wall, {})
+    used = [action.stone_id for action in planner.build.actions]
+    assert used == sorted(used)
+    assert used[0] == ids[0]
+    assert set(gone) == set(ids) - set(used)
+    done = [action.stone_id for action in finish(planner).build.actions]
+    assert done == sorted(done)
+    assert done[: len(used)] == used
+
+
+@pytest.mark.parametrize("budget", [1, 6])
+def test_a_plan_that_begins_with_a_wall_is_no_worse(budget: int) -> None:
+    settings = greedy({"search": {"budget": 8, **SMALL}})
+    before = plan_wall(rubble(), 100, 36, scale=1.0, seed=1, settings=settings)
+    less = settings.updated({"search": {"budget": budget}})
+
+    def begun(wall: Wall | None) -> tuple[int, float, object]:
+        result = plan_wall(
+            rubble(), 100, 36, scale=1.0, seed=9, settings=less, begin=wall, choice=True
+        )
+        report = check_plan(result.plan, rubble(), wall_labels=result.wall.labels)
+        assert report.problems == ()
+        return len(result.plan.stone_steps), result.metrics.F_SF, result.plan.steps
+
+    again = begun(before.wall)
+    assert again[:2] >= (len(before.plan.stone_steps), before.metrics.F_SF)
+    if budget == 1:
+        assert again[2] == before.plan.steps
+    assert begun(before.wall) == again
