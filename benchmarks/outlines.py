@@ -12,7 +12,7 @@ from drystone.kernels.polygons import Points, Polygons
 from drystone.kernels.profiles import HeightProfile
 from drystone.kernels.settling import Rules, Settling, Status, settle
 from drystone.model.landscape import Landscape
-from drystone.planner.dropping import Drop, shortlist
+from drystone.planner.dropping import Drop
 from drystone.planner.planner import Planner
 from drystone.planner.proposing import Trial, one_by_one
 from drystone.planner.settings import method_settings
@@ -114,8 +114,7 @@ def outline_scene(stones: Stock) -> OutlineScene:
         for stone in workshop.remaining(build)
         for posed in workshop.poses(stone)
     ]
-    drops = [drop for mine in proposer.drops(trials, one_by_one) for drop in mine]
-    chosen, _ = shortlist(drops, settings.settle)
+    chosen = next(proposer.batches(trials, one_by_one), [])
 
     def let_go(drop: Drop) -> LetGo:
         posed = drop.trial.poses[0]

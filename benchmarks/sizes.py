@@ -22,8 +22,8 @@ class Sizes:
         Number of generated stones instead of published ones.
     steps : int or None
         Steps that are taken by the slow planner too; None for a whole wall.
-    rounds : int
-        Of rework, in method best.
+    walls : int
+        Budget of the search, in method best.
     repeats : int
         Of whole walls.
     traced : tuple of str
@@ -34,7 +34,7 @@ class Sizes:
     counts: tuple[int, ...]
     generated: int | None = None
     steps: int | None = None
-    rounds: int = METHODS["best"].rework.rounds
+    walls: int = METHODS["best"].search.budget
     repeats: int = 1
     traced: tuple[str, ...] = ("paper",)
 
@@ -43,12 +43,12 @@ class Sizes:
         name, _, full = method.partition(",")
         changes: dict[str, object] = {"sampling": "full"} if full else {}
         if name == "best":
-            changes["rework"] = {"rounds": self.rounds}
+            changes["search"] = {"budget": self.walls}
         return METHODS[name].updated(changes)
 
 
 SIZES = {
     "full": Sizes(("small", "medium", "large"), (10, 30, 60), repeats=3, traced=("paper", "best")),
     "quick": Sizes(("small",), (10, 30), steps=12),
-    "smoke": Sizes(("small",), (5,), generated=8, steps=2, rounds=0),
+    "smoke": Sizes(("small",), (5,), generated=8, steps=2, walls=1),
 }

@@ -12,10 +12,10 @@ from benchmarks.outlines import CELL, OutlineScene, outline_scene
 from benchmarks.scenes import Stock
 from drystone.kernels.coverage import coverage
 from drystone.kernels.crevice import crevice
-from drystone.kernels.drops import drops
+from drystone.kernels.drops import Wanted, drops
 from drystone.kernels.meetings import meetings
 from drystone.kernels.polygons import Points
-from drystone.kernels.profiles import HeightProfile, bare, extremes, raised
+from drystone.kernels.profiles import HeightProfile, bare, extremes, in_a_row, raised
 from drystone.kernels.settling_python import settle_python
 
 SHARES = "share of every pixel that an outline covers"
@@ -98,14 +98,15 @@ def test_view(timer: Timer, wall: OutlineScene) -> None:
 
 def test_drops(timer: Timer, wall: OutlineScene) -> None:
     """Find the best places of stones."""
-    settings = wall.settings
-
-    def call() -> None:
-        for one in wall.let_go:
-            apart = settings.apart * one.hung.turned.size_px
-            drops(wall.profile, one.hung.profile, wall.terms, 0.0, settings.spots, apart)
-
-    timer.times(ROUNDS, row(wall, DROPS, len(wall.let_go)), call)
+    stones = in_a_row([one.hung.profile for one in wall.let_go])
+    apart_px = np.array([wall.settings.apart * one.hung.turned.size_px for one in wall.let_go])
+    count = len(wall.let_go)
+    wanted = Wanted(wall.settings.spots, apart_px, np.arange(count))
+    timer.times(
+        ROUNDS,
+        row(wall, DROPS, count),
+        lambda: drops(wall.profile, stones, wall.terms, np.zeros(count), wanted),
+    )
 
 
 @pytest.mark.slow
