@@ -74,7 +74,7 @@ def read_wall(path: Path) -> GivenWall:
             where=str(path),
             cure="Keep the files of a plan together, or give the label image itself.",
         )
-    if set(np.unique(labels).tolist()) - {0} != set(_ids(plan)):
+    if not shows(labels, plan):
         raise InputError(
             "E133",
             f"the {image_name(plan)} beside the plan shows other stones than the plan.",
@@ -84,6 +84,17 @@ def read_wall(path: Path) -> GivenWall:
     if plan.settings.get("geometry") != "exact":
         return GivenWall(labels, plan)
     return GivenWall(labels, plan, _blocks_of(plan, path))
+
+
+def shows(labels: Labels, plan: Plan) -> bool:
+    """Say whether an image shows the stones and wedges of a plan and nothing else.
+
+    Of a plan on outlines wedges may be missing that fill no pixel.
+    """
+    found = set(np.unique(labels).tolist()) - {0}
+    wedges = {step.id for step in plan.wedge_steps}
+    may_miss = wedges if plan.settings.get("geometry") == "exact" else set()
+    return set(_ids(plan)) - may_miss <= found <= set(_ids(plan))
 
 
 def image_name(plan: Plan) -> str:
