@@ -139,7 +139,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     width, height : float
         Of the wall, in px of the source image.
     seed : int
-        Of the random choices; the same seed gives the same plan.
+        Of the random choices; the same seed and budget give the same plan.
     method : str, optional
         Named settings: ``"best"`` (default) or ``"paper"``.
     settings : PlannerSettings, optional
