@@ -95,3 +95,23 @@ def test_a_finished_plan_is_left_as_it_is(rubble: Path, tmp_path: Path, run: Run
     assert ran.code == 0
     assert "finished" in ran.err
     assert {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()} == before
+
+
+def test_a_search_goes_on_from_an_interrupted_first_wall(
+    rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a first wall that was interrupted no search is recorded, whatever was asked for."""
+
+    def interrupt(_: Callbacks, step: Step) -> None:
+        if step.number == 3:
+            raise KeyboardInterrupt
+
+    plan = ("plan", rubble, "--wall", "100x36", "--scale", "1", "--seed", 1, "--budget", 3)
+    with monkeypatch.context() as patch:
+        patch.setattr(Callbacks, "on_step", interrupt)
+        assert run(*plan, "-o", tmp_path / "part").code == 130
+    whole = run(*plan, "-o", tmp_path / "whole")
+    ran = run(*plan, "-o", tmp_path / "part", "--resume")
+    assert ran.code == whole.code
+    plans = [(tmp_path / name / "plan.json").read_bytes() for name in ("part", "whole")]
+    assert plans[0] == plans[1]

@@ -180,7 +180,7 @@ def test_a_wall_that_goes_back_goes_on_as_it_did(back: int) -> None:
 
 def test_walls_of_a_search_are_true() -> None:
     stones = few_stones()
-    best, _, walls, _ = run_to_end(Planner(stones, SITE, seed=3, settings=WEDGES))
+    best, _, walls, *_ = run_to_end(Planner(stones, SITE, seed=3, settings=WEDGES))
     assert walls == 4
     states = best.build.states()
     for before, after in pairwise(states):

@@ -1,5 +1,6 @@
 """A search: the same budget gives the same wall, and a larger one none that is worse."""
 
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from itertools import pairwise
 
@@ -89,7 +90,7 @@ def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls() -> Non
 def test_no_time_is_one_wall() -> None:
     settings = greedy({"search": {"budget": 100, **SMALL}})
     planner = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
-    best, stopped, walls, _ = run_to_end(planner, seconds=0.0)
+    best, stopped, walls, *_ = run_to_end(planner, seconds=0.0)
     assert walls == 1
     assert order(best) == order(planner)
     assert stopped == planner.stopped
@@ -121,7 +122,7 @@ def test_nothing_to_build_is_no_trouble() -> None:
     """No stone that is 100 px wide fits."""
     settings = greedy({"search": {"budget": 6, **SMALL}, "skip_too_large": True})
     planner = Planner(rubble(), Site(6, 6), settings=settings)
-    best, stopped, walls, _ = run_to_end(planner)
+    best, stopped, walls, *_ = run_to_end(planner)
     assert (best.build.actions, stopped.reason, walls) == ((), "stones", 6)
 
 
@@ -147,3 +148,17 @@ def test_courses_are_planned_where_quarter_turns_and_both_ends_may_be_used(
     changes: dict[str, object], planned: bool
 ) -> None:
     assert planned_first(greedy(changes)) is planned
+
+
+def test_a_process_that_dies_ends_the_search_with_the_best_so_far() -> None:
+    class Dying(Callbacks):
+        def on_walls(self, incumbent: Incumbent) -> None:
+            if incumbent.walls >= 3:
+                raise BrokenProcessPool
+
+    settings = greedy({"search": {"budget": 50, **SMALL}})
+    stones = rubble()
+    result = plan_wall(stones, 100, 36, scale=1.0, seed=1, settings=settings, callbacks=Dying())
+    assert [notice.code for notice in result.notices] == ["W122"]
+    assert result.plan.settings["search"]["budget"] == 3
+    assert check_plan(result.plan, stones, wall_labels=result.wall.labels).problems == ()

@@ -22,6 +22,7 @@ from drystone.planner.dropping import wedge_limits
 from drystone.planner.events import Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.replay import replayed
+from drystone.search import wedging
 from drystone.search.plan_wall import finish as finished
 from drystone.search.wedge_places import Motion, wedge_places
 from drystone.search.wedging import wedged_up
@@ -35,9 +36,9 @@ from drystone.statics.contacts.settled import (
 )
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
-from drystone.statics.result import Mechanism
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, Mechanism
 from drystone.verify import check_plan
-from tests.planner.scenes import finish, greedy, stones_of_masks
+from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble, stones_of_masks
 
 NOTHING = np.zeros((0, 0), bool)
 ONE_PX = greedy({"stabilise": {"min_wedge_px": 1}, "search": {"budget": 2}})
@@ -394,3 +395,13 @@ def test_a_wall_of_pixels_is_refused() -> None:
 def test_nothing_is_wedged_up_where_nothing_is_built() -> None:
     made = planner()
     assert wedged(made, 3) is made.build
+
+
+def test_a_solver_that_gives_up_is_no_reason_to_stop(monkeypatch: pytest.MonkeyPatch) -> None:
+    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy()))
+    gave_up = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
+    failed = LateralResistance(gave_up[0], gave_up[1], 0.58)
+    monkeypatch.setattr(wedging, "lateral_resistance", lambda *_, **__: failed)
+    limits = wedge_limits(planner.settings, planner.workshop.stock, 1.0)
+    wall = wedged_up(planner.build, planner.workshop, planner.settings, limits, 3)
+    assert wall.actions[-1].resistance.value == planner.build.actions[-1].resistance.value

@@ -40,19 +40,26 @@ def write_choice(result: PlanResult, folder: Path) -> None:
         place = _place(folder, index)
         make_folder(place)
         write_built(one, place)
-    # What an earlier run left would belong to another search.
-    index = len(walls) + 1
+    clear_choice(folder, len(walls) + 1)
+    # Drawing loads matplotlib, which takes as long as a small plan.
+    from drystone.plotting import plot_choice, save  # noqa: PLC0415
+
+    figure = plot_choice([one.wall for one in walls], [_figures(one) for one in walls])
+    save(figure, folder / PICTURE)
+
+
+def clear_choice(folder: Path, index: int = 1) -> None:
+    """Take out what an earlier run left, from a wall on: it belongs to another search."""
+    if (_place(folder, 1) / "plan.json").exists():
+        (folder / PICTURE).unlink(missing_ok=True)
     while (_place(folder, index) / "plan.json").exists():
         for name in WRITTEN:
             (_place(folder, index) / name).unlink(missing_ok=True)
         if not any(_place(folder, index).iterdir()):
             _place(folder, index).rmdir()
         index += 1
-    # Drawing loads matplotlib, which takes as long as a small plan.
-    from drystone.plotting import plot_choice, save  # noqa: PLC0415
-
-    figure = plot_choice([one.wall for one in walls], [_figures(one) for one in walls])
-    save(figure, folder / PICTURE)
+    if (folder / FOLDER).is_dir() and not any((folder / FOLDER).iterdir()):
+        (folder / FOLDER).rmdir()
 
 
 def print_choice(result: PlanResult) -> None:

@@ -164,7 +164,7 @@ def _aim(text: str) -> tuple[str, float]:
     if name not in AIMS:
         message = f"{text!r} is not one of {', '.join(f'{known}=VALUE' for known in AIMS)}"
         raise argparse.ArgumentTypeError(message)
-    return name, float(value)
+    return name, positive(value)
 
 
 def _writing(command: argparse.ArgumentParser) -> None:

@@ -3,13 +3,20 @@
 import argparse
 import math
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from drystone.cli.beginning import plan_to_begin_with
-from drystone.cli.choice import choice_summary, print_choice, write_built, write_choice
+from drystone.cli.choice import (
+    choice_summary,
+    clear_choice,
+    print_choice,
+    write_built,
+    write_choice,
+)
 from drystone.cli.output import number, prepare_folder, print_json, print_table
 from drystone.cli.progress import step_bar
 from drystone.cli.settings import search_seconds, settings_from
@@ -42,7 +49,8 @@ def plan_and_write(
     begin = plan_to_begin_with(stones, wall, arguments, settings)
     prepare_folder(folder, overwrite=arguments.overwrite or partial is not None)
     seconds = search_seconds(method_settings(arguments.method), len(stones), arguments)
-    if seconds is not None and settings.search.budget > 1:
+    said_aloud = not (arguments.quiet or arguments.json)
+    if seconds is not None and settings.search.budget > 1 and said_aloud:
         said = f"looking for better walls for about {seconds:.0f} s (--time, --budget)"
         print(f"drystone: {said}", file=sys.stderr)
     with step_bar(
@@ -69,6 +77,8 @@ def plan_and_write(
     write_result(result, stones, folder)
     if arguments.pareto:
         write_choice(result, folder)
+    else:
+        clear_choice(folder)
     profile = profile_summary(result, arguments.jobs) if arguments.profile else None
     if arguments.json:
         summary = _summary(result, folder)
@@ -125,7 +135,7 @@ def _partial_plan(
         "--scale": plan.working_scale == scale,
         "--seed": plan.seed == arguments.seed,
         "--method": plan.method == arguments.method,
-        "settings": dict(plan.settings) == settings.as_dict(),
+        "settings": _without_budget(plan.settings) == _without_budget(settings.as_dict()),
     }
     different = [name for name, same in equal.items() if not same]
     if different:
@@ -137,6 +147,12 @@ def _partial_plan(
         )
     print(f"drystone: going on after {len(plan.stone_steps)} stones", file=sys.stderr)
     return plan
+
+
+def _without_budget(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Leave out how many walls a search builds: an interrupted plan says how many it had built."""
+    search = {name: value for name, value in settings["search"].items() if name != "budget"}
+    return {**settings, "search": search}
 
 
 def _course_heights(plan: Plan | None) -> dict[int, float]:

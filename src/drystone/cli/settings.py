@@ -35,6 +35,12 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
     changes |= _chosen(arguments)
     changes["search"] = _search(settings, arguments)
     if arguments.aim:
+        if changes["search"].get("budget", settings.search.budget) == 1:
+            raise UsageError(
+                "E138",
+                "--aim would do nothing with a single pass.",
+                cure="Leave it out, or let walls be searched: --time, --budget.",
+            )
         changes["goal"] = dict(arguments.aim)
     if arguments.stabilise is not None:
         changes["stabilise"] = {"method": arguments.stabilise}
@@ -79,8 +85,16 @@ def search_seconds(
     """
     if arguments.time is not None:
         return float(arguments.time)
-    timed = arguments.budget is None and arguments.settings is None
+    timed = arguments.budget is None and not _file_has_budget(arguments)
     return stones * SECONDS_A_STONE if timed and settings.search.budget > 1 else None
+
+
+def _file_has_budget(arguments: argparse.Namespace) -> bool:
+    """Say whether the settings file says how many walls are built."""
+    if arguments.settings is None:
+        return False
+    search = read_toml(Path(arguments.settings)).get("search", {})
+    return isinstance(search, dict) and "budget" in search
 
 
 def _check_geometry(settings: PlannerSettings, arguments: argparse.Namespace) -> None:

@@ -83,9 +83,10 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
     )
     if task is None:
         return None
+    looked_at = stones_looked_at(task)
     task = choosing(task, pinned)
     start = scattered(task, Dice(seed))
-    return annealed(task, start, settings, settings.temperature, seed)
+    return annealed(task, start, settings, settings.temperature, looked_at, seed)
 
 
 def replan_courses(  # noqa: PLR0913 - as above
@@ -131,11 +132,13 @@ def replan_courses(  # noqa: PLR0913 - as above
     )
     if task is None:
         return None
+    looked_at = stones_looked_at(task)
     task = choosing(task, pinned)
     start = resumed(task, plan.courses[keep:])
     if start is None:
         start = scattered(task, Dice(seed))
-    found = annealed(task, start, settings, settings.temperature * settings.again, seed)
+    warm = settings.temperature * settings.again
+    found = annealed(task, start, settings, warm, looked_at, seed)
     return CoursePlan(plan.courses[:keep] + found.courses, found.cost)
 
 
@@ -205,11 +208,20 @@ def resumed(task: Task, courses: Sequence[Sequence[PlannedStone]]) -> Arrangemen
     return arrangement(order, turns, sizes, gaps)
 
 
+def stones_looked_at(task: Task) -> int:
+    """Return for how many stones plans are looked at; of a large stock not for all."""
+    return min(len(task.quarters.stones), LOOKED_AT * taken(task))
+
+
 def annealed(
-    task: Task, start: Arrangement, settings: CourseSettings, temperature: float, seed: int
+    task: Task,
+    start: Arrangement,
+    settings: CourseSettings,
+    temperature: float,
+    stones: int,
+    seed: int,
 ) -> CoursePlan:
     """Anneal an arrangement, and say where its stones lie in the wall frame."""
-    stones = min(len(task.quarters.stones), LOOKED_AT * taken(task))
     count = min(settings.evaluations * stones, settings.most_evaluations)
     cooling = Cooling(count, temperature, (settings.coldest / temperature) ** (1.0 / count), seed)
     poses = task.quarters.poses

@@ -12,7 +12,9 @@ def missing_stones(planner: Planner) -> tuple[int, ...]:
     return tuple(sorted(set(planner.settings.pin) - placed))
 
 
-def planning_notices(asked: Planner, built: Planner, left_out: Sequence[int]) -> tuple[Notice, ...]:
+def planning_notices(
+    asked: Planner, built: Planner, left_out: Sequence[int], *, lost: bool = False
+) -> tuple[Notice, ...]:
     """Return the notices of a plan.
 
     Parameters
@@ -23,8 +25,11 @@ def planning_notices(asked: Planner, built: Planner, left_out: Sequence[int]) ->
         Built the wall.
     left_out : sequence of int
         Stones of the wall that was begun with that were not used.
+    lost : bool
+        A process of the search died.
     """
-    return (*_left_out(left_out), *_missing(missing_stones(built)), *_solves(asked))
+    missing = _missing(missing_stones(built))
+    return (*_left_out(left_out), *missing, *_lost(lost=lost), *_solves(asked))
 
 
 def _left_out(stone_ids: Sequence[int]) -> Iterator[Notice]:
@@ -42,6 +47,15 @@ def _missing(stone_ids: Sequence[int]) -> Iterator[Notice]:
             "W120",
             f"pinned stones found no place in the wall: {', '.join(map(str, stone_ids))}.",
             "Look for longer (--time), or pin fewer stones.",
+        )
+
+
+def _lost(*, lost: bool) -> Iterator[Notice]:
+    if lost:
+        yield Notice(
+            "W122",
+            "a process of the search died, and the search ended there with the best wall so far.",
+            "Give less --jobs if memory ran out.",
         )
 
 

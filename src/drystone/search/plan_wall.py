@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from importlib.metadata import version
@@ -215,7 +216,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     others = [_ended(first, wall) for wall in ended.kept] if choice else []
     return replace(
         result,
-        notices=planning_notices(first, ended.planner, left_out),
+        notices=planning_notices(first, ended.planner, left_out, lost=ended.lost),
         choice=tuple(finish(one, frame, why, provenance, took) for one, why in others),
     )
 
@@ -233,12 +234,15 @@ class Ended(NamedTuple):
         How many walls were built: the budget that repeats it.
     kept : tuple of Packed
         Walls that none beats in every figure of merit; none of a single pass.
+    lost : bool
+        A process of the search died, and it ended there.
     """
 
     planner: Planner
     stopped: Stopped
     walls: int
     kept: tuple[Packed, ...]
+    lost: bool = False
 
 
 def run_to_end(
@@ -273,11 +277,12 @@ def run_to_end(
     workshop, settings = planner.workshop, planner.settings
     if settings.search.budget == 1:
         return Ended(planner, planner.stopped, 1, ())
-    first = Found.of(planner)
     left = seconds - (time.perf_counter() - started)
-    best, walls = Packed.of(first), 1
-    kept: tuple[Packed, ...] = (best,)
+    best: Packed | None = None
+    walls, lost = 1, False
+    kept: tuple[Packed, ...] = ()
     try:
+        first = Found.of(planner)
         for progress in searching(
             first, workshop, settings, planner.seed, seconds=left, executor=executor
         ):
@@ -287,7 +292,11 @@ def run_to_end(
             planner.callbacks.on_walls(_incumbent(progress))
     except KeyboardInterrupt:
         pass  # every wall of a search is complete
-    return Ended(*_ended(planner, best), walls, kept)
+    except BrokenProcessPool:
+        lost = True
+    if best is None:
+        return Ended(planner, planner.stopped, 1, (), lost)
+    return Ended(*_ended(planner, best), walls, kept, lost)
 
 
 def _ended(planner: Planner, best: Packed) -> tuple[Planner, Stopped]:

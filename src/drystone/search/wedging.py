@@ -164,6 +164,8 @@ def _resisting(build: Build, yard: _Yard) -> list[tuple[WedgePlace, RigidBlockMo
     outlines = build.wall.outlines
     assert outlines is not None  # noqa: S101 - it was looked at before
     failing = lateral_resistance(build.model, mechanism=True)
+    if not failing.stable:  # the solver gave up: it stood when it was built
+        return []
     one = failing.left if _weaker(failing) == "left" else failing.right
     if one.mechanism is None:
         return []

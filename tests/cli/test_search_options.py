@@ -1,0 +1,67 @@
+"""How long is searched, and for what."""
+
+from pathlib import Path
+
+import pytest
+
+from drystone.cli.parser import build_parser
+from drystone.cli.settings import UNLIMITED, search_seconds, settings_from
+from drystone.io.plan_json import read_plan
+from drystone.planner.settings import method_settings
+from tests.cli.conftest import EXACT, Run
+
+
+def asked(*options: object) -> tuple[float | None, int]:
+    """Seconds and budget of a plan of 30 stones."""
+    words = ["plan", "stones.png", "--wall", "100x36", "-o", "out", *map(str, options)]
+    arguments = build_parser().parse_args(words)
+    settings = settings_from(arguments)
+    return search_seconds(method_settings(arguments.method), 30, arguments), settings.search.budget
+
+
+def test_the_clock_ends_a_search_unless_a_budget_does(tmp_path: Path) -> None:
+    assert asked() == (10.0, UNLIMITED)
+    assert asked("--time", 2.5) == (2.5, UNLIMITED)
+    assert asked("--budget", 7) == (None, 7)
+    assert asked("--method", "paper") == (None, 1)
+    assert asked("--method", "paper", "--time", 2) == (2.0, UNLIMITED)
+    toml = tmp_path / "settings.toml"
+    toml.write_text("mu = 0.6\n", encoding="utf-8")
+    assert asked("--settings", toml) == (10.0, UNLIMITED)
+    toml.write_text("mu = 0.6\n[search]\npasses = 3\n", encoding="utf-8")
+    assert asked("--settings", toml) == (10.0, UNLIMITED)
+    toml.write_text("[search]\nbudget = 5\n", encoding="utf-8")
+    assert asked("--settings", toml) == (None, 5)
+    assert asked("--settings", toml, "--time", 3) == (3.0, UNLIMITED)
+
+
+@pytest.mark.parametrize("aim", ["F_LR", "F_LR=", "F_LR=much", "T_LEVEL=1", "F_AH=0", "F_SF=-1"])
+def test_aims_that_mean_nothing_are_refused(aim: str, run: Run) -> None:
+    ran = run("plan", "stones.png", "--wall", "100x36", "-o", "out", "--aim", aim)
+    assert (ran.code, "E138" in ran.err, "--aim" in ran.err) == (2, True, True)
+
+
+def test_an_aim_is_no_use_to_a_single_pass(rubble: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", rubble, *EXACT, "-o", tmp_path / "out", "--aim", "F_LR=.5")
+    assert (ran.code, "E138" in ran.err) == (2, True)
+    assert not (tmp_path / "out").exists()
+
+
+def test_aims_are_settings(rubble: Path, tmp_path: Path, run: Run) -> None:
+    out = tmp_path / "out"
+    options = (*EXACT[:-1], 2, "--aim", "F_LR=.5", "F_AH=2")
+    assert run("plan", rubble, *options, "-o", out).code in (0, 4)
+    goal = read_plan(out).settings["goal"]
+    assert (goal["F_LR"], goal["F_AH"], goal["F_SF"]) == (0.5, 2.0, 0.0)
+
+
+def test_walls_to_choose_from_do_not_outlive_their_search(
+    rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    out = tmp_path / "out"
+    assert run("plan", rubble, *EXACT[:-1], 3, "--pareto", "-o", out).code in (0, 4)
+    assert (out / "pareto.png").exists()
+    assert (out / "pareto" / "01" / "plan.json").exists()
+    assert run("plan", rubble, *EXACT, "-o", out, "--overwrite").code in (0, 4)
+    assert not (out / "pareto.png").exists()
+    assert not (out / "pareto").exists()
