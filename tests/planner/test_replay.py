@@ -77,7 +77,7 @@ def test_what_is_taken_down_is_built_again_as_it_was(settings: PlannerSettings, 
     build = planner.build
     states = build.states()
     assert sum(len(g.wedges) for g in build.wall.groups[kept:]) > 0
-    again, left_out = replayed(
+    again, left_out, _ = replayed(
         states[kept], build.wall.groups[kept:], heights(build), planner.workshop, planner.settings
     )
     assert left_out == ()
@@ -98,7 +98,7 @@ def test_turned_stones_of_both_sides_are_built_again_as_they_were(
     build, start = planner.build, Planner(rubble(), RUBBLE_SITE, settings=settings).build
     assert {action.side for action in build.actions} == {"left", "right"}
     assert any(p.rotation_moves for p in build.wall.placements)
-    again, left_out = replayed(
+    again, left_out, _ = replayed(
         start, build.wall.groups, heights(build), planner.workshop, planner.settings
     )
     assert left_out == ()
@@ -109,7 +109,7 @@ def test_turned_stones_of_both_sides_are_built_again_as_they_were(
 def test_states_are_kept_when_they_are_asked_for(settings: PlannerSettings) -> None:
     planner = wedged_wall(settings)
     groups = planner.build.wall.groups
-    again, _ = replayed(
+    again, _, _ = replayed(
         planner.build.states()[0], groups, {}, planner.workshop, planner.settings, keep=False
     )
     assert len(again.actions) == len(groups)
@@ -123,7 +123,7 @@ def test_wedges_are_numbered_in_the_order_in_which_they_come_now(settings: Plann
     groups = [
         replace(g, wedges=tuple(replace(w, id=w.id + 100) for w in g.wedges)) for g in wall.groups
     ]
-    again, left_out = replayed(empty, groups, {}, planner.workshop, planner.settings)
+    again, left_out, _ = replayed(empty, groups, {}, planner.workshop, planner.settings)
     assert left_out == ()
     assert [w.id for w in again.wall.wedges] == [w.id for w in wall.wedges]
     assert [w.under for w in again.wall.wedges] == [w.under for w in wall.wedges]
@@ -177,12 +177,12 @@ def test_what_cannot_stand_is_left_out(
 ) -> None:
     planner, groups = scene(settings)
     chosen = [groups[name] for name in steps]
-    build, left_out = replayed(
+    build, left_out, _ = replayed(
         planner.build, chosen, {}, planner.workshop, planner.settings, strict=False
     )
     assert [action.stone_id for action in build.actions] == kept
     assert left_out == out
-    strict, rest = replayed(planner.build, chosen, {}, planner.workshop, planner.settings)
+    strict, rest, _ = replayed(planner.build, chosen, {}, planner.workshop, planner.settings)
     ids = [group.placement.stone_id for group in chosen]
     first = ids.index(out[0]) if out else len(ids)
     assert [action.stone_id for action in strict.actions] == ids[:first]
@@ -200,7 +200,7 @@ def test_wedges_must_have_room_as_well(settings: PlannerSettings) -> None:
             None if settings.geometry == "raster" else corners,
         )  # fmt: skip
         steps = [groups["ground"], Group(placement, (wedge,))]
-        build, left_out = replayed(planner.build, steps, {}, planner.workshop, planner.settings)
+        build, left_out, _ = replayed(planner.build, steps, {}, planner.workshop, planner.settings)
         assert left_out == (() if room else (4,))
         assert [w.id for w in build.wall.wedges] == ([5] if room else [])
 
@@ -209,7 +209,7 @@ def test_what_needs_the_friction_of_upright_faces_is_left_out() -> None:
     planner, _ = scene(greedy())
     steps = [laid(planner, 1, 0.0, 0), laid(planner, 2, 40.02, 0), laid(planner, 3, 20.01, 0.4)]
     evaluator = Evaluator(planner.settings, planner.workshop.stock)
-    piers, left_out = replayed(planner.build, steps, {}, planner.workshop, planner.settings)
+    piers, left_out, _ = replayed(planner.build, steps, {}, planner.workshop, planner.settings)
     assert left_out == (3,)
     assert judged(piers, steps[2], {}, evaluator).resistance.stable
 
@@ -218,8 +218,8 @@ def test_pixels_are_those_that_a_stone_fills_now() -> None:
     """Of a pixel that two stones share the one that comes second makes it more than half full."""
     planner = Planner(STONES, Site.from_source(60, 40, 0.1), settings=greedy())
     one, other = laid(planner, 1, 4, 0), laid(planner, 2, 26, 0)
-    first, _ = replayed(planner.build, [one, other], {}, planner.workshop, planner.settings)
-    second, _ = replayed(planner.build, [other, one], {}, planner.workshop, planner.settings)
+    first, _, _ = replayed(planner.build, [one, other], {}, planner.workshop, planner.settings)
+    second, _, _ = replayed(planner.build, [other, one], {}, planner.workshop, planner.settings)
     for build in (first, second):
         filled = sum(p.posed.area_px for p in build.wall.placements)
         assert filled == np.count_nonzero(build.wall.labels)
@@ -231,7 +231,7 @@ def test_what_fills_no_pixel_is_left_out() -> None:
     planner = Planner(STONES, Site.from_source(60, 40, 0.1), settings=greedy())
     one = laid(planner, 1, 5, 0)
     small = Planner(STONES, Site.from_source(60, 40, 0.02), settings=greedy())
-    build, left_out = replayed(small.build, [one], {}, small.workshop, small.settings)
+    build, left_out, _ = replayed(small.build, [one], {}, small.workshop, small.settings)
     assert left_out == (1,)
     assert build is small.build
 
@@ -240,14 +240,16 @@ def test_what_fills_no_pixel_is_left_out() -> None:
 def test_a_course_is_begun_with_the_height_it_was_begun_with(settings: PlannerSettings) -> None:
     planner, groups = scene(settings)
     steps = [groups["ground"], groups["upon"]]
-    build, _ = replayed(planner.build, steps, {1: 8.0}, planner.workshop, planner.settings)
+    build, _, _ = replayed(planner.build, steps, {1: 8.0}, planner.workshop, planner.settings)
     assert [a.course_height_px for a in build.actions] == [8.0, None]
     assert build.actions[0].indices.NHR == pytest.approx(0.2)
 
 
 def test_what_stands_stands_in_both_models_and_carries_a_load() -> None:
     planner, groups = scene(greedy())
-    build, _ = replayed(planner.build, [groups["ground"]], {}, planner.workshop, planner.settings)
+    build, _, _ = replayed(
+        planner.build, [groups["ground"]], {}, planner.workshop, planner.settings
+    )
     action: Candidate = build.actions[0]
     assert stands(action)
     assert not stands(replace(action, sturdy=False))

@@ -1,15 +1,20 @@
 """Walls that are planned course by course, and laid."""
 
 from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.random import Generator
 
+from drystone.planner.build import Candidate
+from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.search.by_courses import newly_planned, relaid, replanned
+from drystone.search.chain import recreated
 from drystone.search.found import Found
 from drystone.search.packed import Packed, found_again
 from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
@@ -114,3 +119,26 @@ def test_nothing_can_be_planned_without_stones() -> None:
     workshop = Workshop.prepare(rubble(), small, settings)
     assert newly_planned(workshop, settings, np.random.default_rng(0)) is None
     assert Planner(rubble(), small, settings=settings).build.actions == ()
+
+
+@pytest.mark.parametrize("change", [newly_planned, relaid, recreated])
+def test_every_solve_that_failed_is_counted(
+    change: Callable[..., Found | None],
+    planned: Found,
+    workshop: Workshop,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """While a plan is laid, while steps are taken again, and while stones are added."""
+    judge, judged = Evaluator.judge, []
+
+    def gives_up(*arguments: Any) -> Candidate:
+        action = judge(*arguments)
+        failed = len(judged) % 3 == 2
+        judged.append(failed)
+        return replace(action, failed=True, sturdy=False) if failed else action
+
+    monkeypatch.setattr(Evaluator, "judge", gives_up)
+    known = () if change is newly_planned else (planned,)
+    found = change(*known, workshop, SETTINGS, np.random.default_rng(5))
+    assert found is not None
+    assert found.solves.failed == sum(judged) > 0

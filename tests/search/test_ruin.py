@@ -59,7 +59,7 @@ def test_what_stays_is_where_it_was(planner: Planner) -> None:
     build = planner.build
     first = build.wall.placements[0].stone_id
     gone = with_all_above(build, frozenset({first}))
-    left = without(build, gone, planner.workshop, planner.settings)
+    left = without(build, gone, planner.workshop, planner.settings).build
     before = {p.stone_id: p for p in build.wall.placements}
     kept = list(left.wall.placements)
     assert gone.isdisjoint(p.stone_id for p in kept)
@@ -72,4 +72,4 @@ def test_what_stays_is_where_it_was(planner: Planner) -> None:
             assert was.settled is not None
             assert (p.settled.corners == was.settled.corners).all()
     assert all(a.resistance.stable and a.sturdy for a in left.actions)
-    assert without(build, frozenset(), planner.workshop, planner.settings) is build
+    assert without(build, frozenset(), planner.workshop, planner.settings).build is build

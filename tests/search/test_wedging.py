@@ -99,7 +99,7 @@ def built(
         own = (wedges or {}).get(stone_id, [])
         under = tuple(Wedge(0, stone_id, NOTHING, 0, 0, on_grid(corners)) for corners in own)
         groups.append(Group(placement, under))
-    made.build, left_out = replayed(made.build, groups, {}, made.workshop, made.settings)
+    made.build, left_out, _ = replayed(made.build, groups, {}, made.workshop, made.settings)
     assert left_out == ()
     return made
 
@@ -221,7 +221,7 @@ def test_a_wall_without_its_states_is_the_same_wall_when_nothing_changes() -> No
     made = built((5, 2.0, 0.01), (2, 40.0, 0.01))
     groups = made.build.wall.groups
     start = made.build.states()[0]
-    made.build, _ = replayed(start, groups, {}, made.workshop, made.settings, keep=False)
+    made.build, _, _ = replayed(start, groups, {}, made.workshop, made.settings, keep=False)
     assert made.build.states() == (made.build,)
     assert wedged(made, 0) is made.build
 
@@ -276,7 +276,7 @@ def test_walls_that_are_wedged_up_are_true(wall: int) -> None:
     assert len(after.states()) == len(after.actions) + 1
     assert all(action.sturdy for action in after.actions)
     # As good as without the states, which are then made again.
-    alone, _ = replayed(
+    alone, _, _ = replayed(
         before.states()[0], before.wall.groups, {}, made.workshop, made.settings, keep=False
     )
     again = wedged_up(alone, made.workshop, made.settings, limits_of(made), 3)
@@ -293,7 +293,7 @@ def test_the_first_wedge_is_the_best_one(wall: int) -> None:
         wedge = Wedge(0, group.placement.stone_id, NOTHING, 0, 0, place.corners)
         with_it = Group(group.placement, (*group.wedges, wedge))
         start = made.build.states()[place.step]
-        build, left_out = replayed(start, [with_it, *rest], {}, made.workshop, made.settings)
+        build, left_out, _ = replayed(start, [with_it, *rest], {}, made.workshop, made.settings)
         if not left_out:
             gained.append(value(build))
     after = wedged(made, 1)
@@ -315,7 +315,7 @@ def test_no_wedge_is_left_that_does_not_matter(wall: int) -> None:
         for wedge in group.wedges:
             less = Group(group.placement, tuple(w for w in group.wedges if w is not wedge))
             steps = [less, *after.wall.groups[step + 1 :]]
-            build, left_out = replayed(
+            build, left_out, _ = replayed(
                 after.states()[step], steps, {}, made.workshop, made.settings
             )
             assert left_out or value(build) < value(after)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from drystone.kernels.crossings import crosses_any
 from drystone.model.landscape import Landscape
@@ -11,9 +12,29 @@ from drystone.model.wall import Group, Wall, outlined
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.stabilise.stabilise import Stabilised
+
+
+class Replayed(NamedTuple):
+    """Steps taken again.
+
+    Parameters
+    ----------
+    build : Build
+        After the steps that could be taken.
+    left_out : tuple of int
+        Ids of the stones of the others: they overlap what is there, fill no pixel of the wall, or
+        leave a wall that does not stand in both models.
+    solves : Solves
+        What trouble the solver had; a step on which it gave up is left out.
+    """
+
+    build: Build
+    left_out: tuple[int, ...]
+    solves: Solves
 
 
 def replayed(
@@ -25,7 +46,7 @@ def replayed(
     *,
     keep: bool = True,
     strict: bool = True,
-) -> tuple[Build, tuple[int, ...]]:
+) -> Replayed:
     """Place stones with their wedges where they were, judging every step anew.
 
     Poses and outlines stay as they are.  The pixels that a settled stone fills depend on what is
@@ -51,24 +72,24 @@ def replayed(
 
     Returns
     -------
-    build : Build
-        After the steps that could be taken.
-    left_out : tuple of int
-        Ids of the stones of the others: they overlap what is there, fill no pixel of the wall, or
-        leave a wall that does not stand in both models.
+    replayed : Replayed
+        What is built then.
     """
     evaluator = Evaluator(settings, workshop.stock)
     build = start
     left_out: list[int] = []
+    solves = Solves()
     for group in groups:
         action = None
         if not (strict and left_out):
             action = _again(build, group, course_heights_px, workshop, evaluator)
-        if action is None:
+        if action is not None:
+            solves += Solves.of(action)
+        if action is None or not stands(action):
             left_out.append(group.placement.stone_id)
         else:
             build = build.add(action, keep=keep)
-    return build, tuple(left_out)
+    return Replayed(build, tuple(left_out), solves)
 
 
 def judged(
@@ -108,14 +129,13 @@ def _again(
     workshop: Workshop,
     evaluator: Evaluator,
 ) -> Candidate | None:
-    """Return the action that takes a step again; None when it cannot be taken."""
+    """Return the action that takes a step again; None when there is no room for it."""
     if not _has_room(build.wall, group):
         return None
     fitted = _fitted(build.wall, group, workshop.next_wedge(build))
     if fitted is None:
         return None
-    action = judged(build, fitted, course_heights_px, evaluator)
-    return action if stands(action) else None
+    return judged(build, fitted, course_heights_px, evaluator)
 
 
 def _has_room(wall: Wall, group: Group) -> bool:

@@ -11,7 +11,6 @@ from drystone.kernels.drops import DropTerms, Wanted, drops
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import OVER, HeightProfile, StoneProfile, in_a_row
 from drystone.model.placement import Side
-from drystone.model.wall import outlined
 from drystone.planner.build import Build, Proposal
 from drystone.planner.dropping import (
     Drop,
@@ -24,8 +23,8 @@ from drystone.planner.dropping import (
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import Apply, Key, Trial, action_cost
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.settled import settled_in
 from drystone.planner.workshop import Workshop
-from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import Repose, Scene, come_to_rest
 from drystone.settle.wedged import wedged
 from drystone.stabilise.stabilise import Stabilised
@@ -225,22 +224,14 @@ class ExactProposer:
     ) -> Stabilised | None:
         """Return a stone that rests, with the pixels that it fills; None when it is too high."""
         wall, posed = self._build.wall, drop.trial.poses[0]
-        assert wall.outlines is not None  # noqa: S101 - the planner builds on outlines
         beyond_px = self._settings.settle.beyond_px
         if repose.settled.corners[:, 1].max() > wall.site.extent_px[1] + beyond_px:
             return None
-        placement = settled_placement(
-            wall.outlines,
-            wall.site,
+        return settled_in(
+            wall,
             posed.stone,
-            repose.angle_deg,
-            repose.settled,
             drop.trial.landscape.side,
-            int(repose.turned),
+            repose,
+            wedge,
+            wedge_id=self._workshop.next_wedge(self._build),
         )
-        if placement is None or wedge is None:
-            return None if placement is None else Stabilised(placement)
-        number = self._workshop.next_wedge(self._build)
-        with_stone = wall.outlines.added(outlined(placement, ()), wall.site.scale)
-        under = settled_wedge(with_stone, wall.site, number, posed.stone.id, wedge)
-        return Stabilised(placement, (under,))

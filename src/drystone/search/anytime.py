@@ -14,9 +14,10 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.archive import archived
-from drystone.search.found import Found, Solves
+from drystone.search.found import Found
 from drystone.search.packed import Packed
 from drystone.search.work import Job, PackedLink, more_links, one_pass
 

@@ -11,8 +11,8 @@ from drystone.kernels.polygons import Points
 from drystone.planner.build import Build
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.vary import varied
 from drystone.planner.workshop import Workshop
+from drystone.search.built_up import built_up
 from drystone.search.course_plan import CoursePlan
 from drystone.search.course_settings import CourseSettings
 from drystone.search.courses import plan_courses, replan_courses
@@ -107,17 +107,8 @@ def _laid(
     left = CoursePlan(begun.plan.courses[len(begun.ends) - 1 :], begun.plan.cost)
     laid = lay(left, start, workshop, settings, laying)
     ends = (*begun.ends, *(len(state.actions) for state in laid.states[1:]))
-    planner = Planner(
-        workshop.stones,
-        workshop.site,
-        seed=int(rng.integers(2**31)),
-        settings=varied(settings, settings.search.spread, rng),
-        workshop=workshop,
-    )
-    planner.build = laid.build
-    for _ in planner.steps():
-        pass
-    return Found.of(planner, Courses(begun.plan, ends))
+    planner = built_up(laid.build, workshop, settings, rng)
+    return Found.of(planner, Courses(begun.plan, ends), laid.solves)
 
 
 def _outlines(build: Build, ends: Sequence[int]) -> list[list[Points]]:

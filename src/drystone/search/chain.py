@@ -13,15 +13,15 @@ from numpy.random import Generator
 
 from drystone.planner.build import Build
 from drystone.planner.dropping import wedge_limits
-from drystone.planner.planner import Planner
-from drystone.planner.replay import replayed
+from drystone.planner.replay import Replayed, replayed
 from drystone.planner.search_settings import SearchSettings
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.vary import varied
+from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.archive import archived
+from drystone.search.built_up import built_up
 from drystone.search.by_courses import newly_planned, relaid, replanned
-from drystone.search.found import Found, Solves, course_heights
+from drystone.search.found import Found, course_heights
 from drystone.search.packed import Packed, found_again
 from drystone.search.ruin import RUINS, taken_down
 from drystone.search.wedging import wedged_up
@@ -180,6 +180,7 @@ def recreated(found: Found, workshop: Workshop, settings: PlannerSettings, rng: 
     rng : numpy.random.Generator
         Draws what is taken down, and the weights with which it is built up.
     """
+    solves = Solves()
     if found.figures is None:
         build = found.build
     elif settings.order == "given":
@@ -190,33 +191,16 @@ def recreated(found: Found, workshop: Workshop, settings: PlannerSettings, rng: 
         names = list(RUINS)
         ruin = RUINS[names[int(rng.integers(len(names)))]]
         gone = taken_down(found.build, ruin, settings.search, rng)
-        build = without(found.build, gone, workshop, settings)
-    return Found.of(built_up(build, workshop, settings, rng))
+        build, _, solves = without(found.build, gone, workshop, settings)
+    return Found.of(built_up(build, workshop, settings, rng), before=solves)
 
 
 def without(
     build: Build, gone: frozenset[int], workshop: Workshop, settings: PlannerSettings
-) -> Build:
+) -> Replayed:
     """Return a wall without some stones; those that do not stand without them go as well."""
     groups = build.wall.groups
     first = next((k for k, g in enumerate(groups) if g.placement.stone_id in gone), len(groups))
     kept = [g for g in groups[first:] if g.placement.stone_id not in gone]
     start = build.states()[first]
-    return replayed(start, kept, course_heights(build), workshop, settings, strict=False)[0]
-
-
-def built_up(
-    build: Build, workshop: Workshop, settings: PlannerSettings, rng: Generator
-) -> Planner:
-    """Build on to the end, with craft weights varied."""
-    planner = Planner(
-        workshop.stones,
-        workshop.site,
-        seed=int(rng.integers(2**31)),
-        settings=varied(settings, settings.search.spread, rng),
-        workshop=workshop,
-    )
-    planner.build = build
-    for _ in planner.steps():
-        pass
-    return planner
+    return replayed(start, kept, course_heights(build), workshop, settings, strict=False)

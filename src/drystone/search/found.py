@@ -5,29 +5,10 @@ from dataclasses import dataclass, field
 from drystone.planner.build import Build
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.course_plan import CoursePlan
 from drystone.search.goal import Figures, figures_of, merit_of, possible_filling
-
-
-@dataclass(frozen=True)
-class Solves:
-    """How often the solver had trouble with a candidate while walls were built.
-
-    Parameters
-    ----------
-    failed : int
-        It gave up, and the candidate was passed over.
-    cold : int
-        It had to start anew, which costs time alone.
-    """
-
-    failed: int = 0
-    cold: int = 0
-
-    def __add__(self, other: "Solves") -> "Solves":
-        """Add up."""
-        return Solves(self.failed + other.failed, self.cold + other.cold)
 
 
 @dataclass(frozen=True)
@@ -71,9 +52,11 @@ class Found:
     courses: Courses | None = None
 
     @classmethod
-    def of(cls, planner: Planner, courses: Courses | None = None) -> "Found":
-        """Measure what a planner has built."""
-        solves = Solves(planner.failed_solves, planner.cold_solves)
+    def of(
+        cls, planner: Planner, courses: Courses | None = None, before: Solves | None = None
+    ) -> "Found":
+        """Measure what a planner has built, after what trouble there was before."""
+        solves = (before or Solves()) + Solves(planner.failed_solves, planner.cold_solves)
         return cls.measured(planner.build, planner.workshop, planner.settings, solves, courses)
 
     @classmethod

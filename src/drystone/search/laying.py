@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from drystone.planner.build import Build
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.course_plan import CoursePlan, PlannedStone
 from drystone.search.laying_settings import LayingSettings
@@ -45,6 +46,11 @@ class Laid:
     def failed(self) -> tuple[Outcome, ...]:
         """The planned stones that were not, and why."""
         return tuple(one for one in self._outcomes() if one.status not in LAID)
+
+    @property
+    def solves(self) -> Solves:
+        """What trouble the solver had."""
+        return sum((one.solves for one in self._outcomes()), Solves())
 
     def _outcomes(self) -> Iterator[Outcome]:
         return (one for course in self.courses for one in course)

@@ -2,24 +2,24 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Side
-from drystone.model.wall import outlined
+from drystone.model.stone import Stone
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.dropping import wedge_limits
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.settled import settled_in
+from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
 from drystone.search.course_plan import PlannedStone
 from drystone.search.laying_settings import LayingSettings
 from drystone.search.letting_go import Aim, Hand, Resting
 from drystone.search.views import View
-from drystone.settle.placing import settled_placement, settled_wedge
-from drystone.stabilise.stabilise import Stabilised
 
 Status = Literal["as planned", "half turn", "elsewhere", "used", "no place", "no rest", "falls"]
 """What became of a planned stone.
@@ -48,10 +48,13 @@ class Outcome:
         As it was planned.
     status : str
         One of :data:`Status`.
+    solves : Solves
+        What trouble the solver had with its places.
     """
 
     stone: PlannedStone
     status: Status
+    solves: Solves = field(default_factory=Solves)
 
 
 @dataclass(frozen=True)
@@ -84,6 +87,7 @@ class _Chosen:
     status: Status
     action: Candidate | None = None
     cost: float = math.inf
+    solves: Solves = field(default_factory=Solves)
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,12 +150,12 @@ class Mason:
         """
         width_px = self.workshop.site.extent_px[0]
         fronts: dict[Side, _Front] = {"left": _Front(), "right": _Front()}
-        statuses: list[Status] = []
+        outcomes: list[Outcome] = []
         for stone in course:
             left, right = _seen((stone.left_px, stone.right_px), stone.side, width_px)
             front = fronts[stone.side]
             chosen = self._chosen(build, stone, stone.side, front.aim_px(left), views)
-            statuses.append(chosen.status)
+            outcomes.append(Outcome(stone, chosen.status, chosen.solves))
             reached = front.reached_px
             if chosen.action is not None:
                 build = build.add(chosen.action, keep=True)
@@ -159,22 +163,25 @@ class Mason:
                 assert settled is not None  # noqa: S101 - it settled on outlines
                 reached = _seen(settled.corners[:, 0].tolist(), stone.side, width_px)[1]
             fronts[stone.side] = _Front(right, reached)
-        build = self._again(build, course, statuses, views)
-        return build, tuple(map(Outcome, course, statuses))
+        return self._again(build, outcomes, views)
 
     def _again(
-        self, build: Build, course: Sequence[PlannedStone], statuses: list[Status], views: Views
-    ) -> Build:
+        self, build: Build, outcomes: Sequence[Outcome], views: Views
+    ) -> tuple[Build, tuple[Outcome, ...]]:
         """Try the stones that could not be laid anywhere in their course."""
-        for k, stone in enumerate(course):
-            if statuses[k] in LAID or statuses[k] == "used":
+        ended = list(outcomes)
+        for k, one in enumerate(outcomes):
+            if one.status in LAID or one.status == "used":
                 continue
-            both = [self._chosen(build, stone, side, None, views) for side in views]
-            best = min(both, key=lambda one: one.cost)
+            both = [self._chosen(build, one.stone, side, None, views) for side in views]
+            best = min(both, key=lambda chosen: chosen.cost)
+            status = one.status
             if best.action is not None:
                 build = build.add(best.action, keep=True)
-                statuses[k] = "elsewhere"
-        return build
+                status = "elsewhere"
+            solves = sum((chosen.solves for chosen in both), one.solves)
+            ended[k] = Outcome(one.stone, status, solves)
+        return build, tuple(ended)
 
     def _chosen(
         self, build: Build, planned: PlannedStone, side: Side, left_px: float | None, views: Views
@@ -189,36 +196,41 @@ class Mason:
         highest_px = site.extent_px[1] + self.settings.settle.beyond_px
         stone = self.workshop.stones.by_id(planned.stone_id)
         reasons: list[Status] = []
+        solves = Solves()
         for status, half_deg in HALVES:
             angle_deg = wrap_deg(planned.angle_deg + half_deg)
             turned = self.workshop.outlines.hung(stone, angle_deg, side).turned
             aim = Aim(left_px, planned.top_px, angle_deg, highest_px, unit_px)
             starts = self.hand.starts(turned, view, aim)
             resting = self.hand.resting(turned, view, aim, starts)
-            cost, action = self._best(build, planned, side, resting)
+            cost, action, trouble = self._best(build, stone, angle_deg, side, resting)
+            solves += trouble
             if action is not None:
-                return _Chosen(status, action, cost)
+                return _Chosen(status, action, cost, solves)
             reasons.append("falls" if resting else "no rest" if starts else "no place")
         # How far the pose came that came furthest.
         for reason in ("falls", "no rest"):
             if reason in reasons:
-                return _Chosen(reason)
-        return _Chosen("no place")
+                return _Chosen(reason, solves=solves)
+        return _Chosen("no place", solves=solves)
 
     def _best(
-        self, build: Build, planned: PlannedStone, side: Side, resting: Sequence[Resting]
-    ) -> tuple[float, Candidate | None]:
+        self, build: Build, stone: Stone, angle_deg: float, side: Side, resting: Sequence[Resting]
+    ) -> tuple[float, Candidate | None, Solves]:
         """Judge the cheapest places, and return the best after which the wall stands."""
-        laying = self.laying
+        laying, number = self.laying, self.workshop.next_wedge(build)
         best: tuple[float, Candidate | None] = (math.inf, None)
-        standing = 0
+        standing, solves = 0, Solves()
         landscape = Landscape.of(build.wall, side)
         for spot, place in enumerate(resting[: laying.judged]):
-            stabilised = self._stabilised(build, planned.stone_id, side, place)
+            stabilised = settled_in(
+                build.wall, stone, side, place.repose, place.wedge, wedge_id=number
+            )
             if stabilised is None:
                 continue
-            proposal = Proposal(stabilised, planned.angle_deg, cost=place.cost, spot=spot)
+            proposal = Proposal(stabilised, angle_deg, cost=place.cost, spot=spot)
             action = self.evaluator.judge(build, landscape, proposal)
+            solves += Solves.of(action)
             llc = action.indices.LLC or 0.0
             if not action.sturdy or llc <= 0.0:
                 continue
@@ -228,24 +240,7 @@ class Mason:
             standing += 1
             if standing == laying.analysed:
                 break
-        return best
-
-    def _stabilised(
-        self, build: Build, stone_id: int, side: Side, place: Resting
-    ) -> Stabilised | None:
-        """Return a stone and its wedge with the pixels that they fill; None when it fills none."""
-        wall, found = build.wall, place.repose
-        assert wall.outlines is not None  # noqa: S101 - a course plan is laid on outlines
-        stone = self.workshop.stones.by_id(stone_id)
-        placement = settled_placement(
-            wall.outlines, wall.site, stone, found.angle_deg, found.settled, side, int(found.turned)
-        )
-        if placement is None or place.wedge is None:
-            return None if placement is None else Stabilised(placement)
-        with_stone = wall.outlines.added(outlined(placement, ()), wall.site.scale)
-        number = self.workshop.next_wedge(build)
-        wedge = settled_wedge(with_stone, wall.site, number, stone_id, place.wedge)
-        return Stabilised(placement, (wedge,))
+        return *best, solves
 
 
 def _seen(x_px: Iterable[float], side: Side, width_px: float) -> tuple[float, float]:

@@ -12,8 +12,9 @@ from drystone.model.wall import Group
 from drystone.planner.planner import Planner
 from drystone.planner.replay import replayed
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
-from drystone.search.found import Courses, Found, Solves, course_heights
+from drystone.search.found import Courses, Found, course_heights
 from drystone.search.goal import Figures
 
 UNSEEN: Mask = np.ones((1, 1), bool)
@@ -108,7 +109,7 @@ def found_again(one: Packed, workshop: Workshop, settings: PlannerSettings) -> F
     groups = one.groups
     heights = {g.stone_id: g.course_height_px for g in groups if g.course_height_px is not None}
     again = [_group(group, workshop) for group in groups]
-    build, left_out = replayed(start, again, heights, workshop, settings)
+    build, left_out, _ = replayed(start, again, heights, workshop, settings)
     if left_out:
         raise ValueError(f"stones {left_out} do not stand where they stood")
     return Found(build, one.figures, one.merit, one.solves, one.courses)

@@ -34,7 +34,7 @@ def begin_with(
         if stone_id in allowed and (settings.order == "free" or stone_id > last):
             groups.append(group)
             last = stone_id
-    planner.build, _ = replayed(
+    planner.build, _, _ = replayed(
         planner.build, groups, course_heights_px, workshop, settings, strict=False
     )
     used = {action.stone_id for action in planner.build.actions}

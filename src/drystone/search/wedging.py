@@ -48,7 +48,7 @@ class _Yard:
 
     def again(self, start: Build, groups: Sequence[Group]) -> Build | None:
         """Take steps again on what is built; None when one of them cannot be taken."""
-        build, left_out = replayed(
+        build, left_out, _ = replayed(
             start, groups, self.course_heights_px, self.workshop, self.settings
         )
         return None if left_out else build

@@ -10,11 +10,12 @@ import numpy as np
 
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.poses import orientation_step_deg
 from drystone.search.by_courses import newly_planned
 from drystone.search.chain import Link, lengthened, wedged
-from drystone.search.found import Found, Solves
+from drystone.search.found import Found
 from drystone.search.packed import Packed, found_again
 
 GREEDY_EVERY = 4

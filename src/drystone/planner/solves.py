@@ -1,0 +1,30 @@
+"""How often the solver had trouble with candidates."""
+
+from dataclasses import dataclass
+
+from drystone.planner.build import Candidate
+
+
+@dataclass(frozen=True)
+class Solves:
+    """How often the solver had trouble with a candidate while walls were built.
+
+    Parameters
+    ----------
+    failed : int
+        It gave up, and the candidate was passed over.
+    cold : int
+        It had to start anew, which costs time alone.
+    """
+
+    failed: int = 0
+    cold: int = 0
+
+    @classmethod
+    def of(cls, candidate: Candidate) -> "Solves":
+        """Count the trouble with one candidate."""
+        return cls(int(candidate.failed), int(candidate.solved_cold))
+
+    def __add__(self, other: "Solves") -> "Solves":
+        """Add up."""
+        return Solves(self.failed + other.failed, self.cold + other.cold)
