@@ -17,7 +17,7 @@ from drystone.search.course_plan import CoursePlan
 from drystone.search.course_settings import CourseSettings
 from drystone.search.course_task import task_of
 from drystone.search.courses import plan_courses, replan_courses, resumed
-from drystone.search.laid_courses import Laid, ground_of
+from drystone.search.laid_courses import LaidCourses, ground_of
 from drystone.settle.rest import placed_outline
 
 TOLERANCE_PX = 0.35
@@ -175,7 +175,7 @@ def test_upper_courses_are_planned_again_on_what_was_laid() -> None:
     wall = (96.0, 32.0, 1.0, TOLERANCE_PX)
     first = plan_courses(stones.stones, *wall, settings, 1)
     assert first is not None
-    laid = Laid.of(outlines(first, stones)[:2], 96.0, 1.0)
+    laid = LaidCourses.of(outlines(first, stones)[:2], 96.0, 1.0)
     assert np.unique(laid.tops_px).tolist() == pytest.approx([16.0], abs=0.01)
     there = {stone.stone_id for course in first.courses[:2] for stone in course}
     left = [stone for stone in stones if stone.id not in there]
@@ -194,7 +194,7 @@ def test_planning_again_without_upper_courses_starts_anew(rubble: StoneSet) -> N
     wall = (*size_of(rubble), 4.0, TOLERANCE_PX)
     plan = plan_courses(rubble.stones, *wall, QUICK, 1)
     assert plan is not None
-    laid = Laid.of(outlines(plan, rubble)[:1], wall[0], 4.0)
+    laid = LaidCourses.of(outlines(plan, rubble)[:1], wall[0], 4.0)
     there = {stone.stone_id for stone in plan.courses[0]}
     left = [stone for stone in rubble if stone.id not in there]
     start = CoursePlan(plan.courses[:1], 0.0)
@@ -210,7 +210,7 @@ def test_what_is_laid_has_joints_beds_and_ways() -> None:
 
     first = [block(50.0, 0.0, 100.0, 12.0), block(2.0, 0.0, 48.0, 10.0)]
     second = [block(0.0, 10.0, 30.0, 20.0)]
-    laid = Laid.of([first, second, []], 100.0, 2.0)
+    laid = LaidCourses.of([first, second, []], 100.0, 2.0)
     ground = ground_of(laid, (100.0, 60.0), 1.0)
     unit = 16
     assert ground.tops[[0, 40, 49, 70]].tolist() == [20 * unit, 10 * unit, 0, 12 * unit]
@@ -221,7 +221,7 @@ def test_what_is_laid_has_joints_beds_and_ways() -> None:
     assert ground.ways[1, 0] == (48 - 19) * unit
     assert (ground.width, ground.height) == (100 * unit, 60 * unit)
     with pytest.raises(ValueError, match="columns"):
-        ground_of(Laid(np.zeros(7)), (100.0, 60.0), 1.0)
+        ground_of(LaidCourses(np.zeros(7)), (100.0, 60.0), 1.0)
 
 
 def test_stones_too_wide_lying_are_planned_upright() -> None:

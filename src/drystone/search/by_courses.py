@@ -17,7 +17,7 @@ from drystone.search.course_plan import CoursePlan
 from drystone.search.course_settings import CourseSettings
 from drystone.search.courses import plan_courses, replan_courses
 from drystone.search.found import Courses, Found
-from drystone.search.laid_courses import Laid
+from drystone.search.laid_courses import LaidCourses
 from drystone.search.laying import lay
 from drystone.search.laying_settings import LayingSettings
 
@@ -64,7 +64,7 @@ def replanned(
         settings.settle.outline_px,
         settings=quick,
         seed=int(rng.integers(2**31)),
-        laid=Laid.of(outlines, site.extent_px[0], 1.0 / site.scale),
+        laid=LaidCourses.of(outlines, site.extent_px[0], 1.0 / site.scale),
         book=workshop.book,
         pinned=settings.pin,
     )

@@ -18,7 +18,7 @@ from drystone.model.stone import Stone
 from drystone.poses import PoseBook
 from drystone.search.course_poses import Quarters, quarters_of
 from drystone.search.course_settings import CourseSettings
-from drystone.search.laid_courses import Laid, ground_of
+from drystone.search.laid_courses import LaidCourses, ground_of
 
 Pose = tuple[int, float]
 
@@ -53,7 +53,7 @@ def task_of(  # noqa: PLR0913 - the wall, its stones and how
     settings: CourseSettings,
     *,
     banned: Collection[Pose] = (),
-    laid: Laid | None = None,
+    laid: LaidCourses | None = None,
     book: PoseBook | None = None,
 ) -> Task | None:
     """Return what the kernels are asked; None when no stone fits into the wall.

@@ -27,7 +27,7 @@ from drystone.search.course_choice import choosing, taken
 from drystone.search.course_plan import CoursePlan, PlannedStone
 from drystone.search.course_settings import CourseSettings
 from drystone.search.course_task import Pose, Task, task_of
-from drystone.search.laid_courses import Laid
+from drystone.search.laid_courses import LaidCourses
 
 LOOKED_AT = 2
 """A plan is looked for as if there were at most so many times the stones that the wall takes."""
@@ -43,7 +43,7 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
     seed: int,
     *,
     banned: Collection[Pose] = (),
-    laid: Laid | None = None,
+    laid: LaidCourses | None = None,
     book: PoseBook | None = None,
     pinned: Collection[int] = (),
 ) -> CoursePlan | None:
@@ -65,7 +65,7 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
         Equal seeds give equal plans.
     banned : collection of (int, float)
         Stone ids and angles of poses that must not be used.
-    laid : Laid, optional
+    laid : LaidCourses, optional
         What the courses are laid on; the bare ground when left out.
     book : PoseBook, optional
         Remembers the initial angles of stones.
@@ -100,7 +100,7 @@ def replan_courses(  # noqa: PLR0913 - as above
     *,
     settings: CourseSettings,
     seed: int,
-    laid: Laid,
+    laid: LaidCourses,
     banned: Collection[Pose] = (),
     book: PoseBook | None = None,
     pinned: Collection[int] = (),
@@ -117,7 +117,7 @@ def replan_courses(  # noqa: PLR0913 - as above
         Those that are not laid yet.
     width_px, height_px, cell_px, tolerance_px, settings, seed, banned, book, pinned
         As for :func:`plan_courses`.
-    laid : Laid
+    laid : LaidCourses
         What is there.
 
     Returns

@@ -19,7 +19,7 @@ def columns_of(width_px: float, column_px: float) -> int:
 
 
 @dataclass(frozen=True, eq=False)
-class Laid:
+class LaidCourses:
     """What is there already, as height profiles see it.
 
     Parameters
@@ -35,7 +35,9 @@ class Laid:
     courses: tuple[tuple[Points, ...], ...] = field(default=())
 
     @classmethod
-    def of(cls, courses: Sequence[Sequence[Points]], width_px: float, cell_px: float) -> "Laid":
+    def of(
+        cls, courses: Sequence[Sequence[Points]], width_px: float, cell_px: float
+    ) -> "LaidCourses":
         """Return what laid stones leave for the next course.
 
         Parameters
@@ -55,12 +57,12 @@ class Laid:
         return cls(profile.tops, tuple(tuple(course) for course in courses if len(course)))
 
 
-def ground_of(laid: Laid | None, size_px: tuple[float, float], column_px: float) -> Ground:
+def ground_of(laid: LaidCourses | None, size_px: tuple[float, float], column_px: float) -> Ground:
     """Return what kernels see of what is laid, or of the bare ground.
 
     Parameters
     ----------
-    laid : Laid or None
+    laid : LaidCourses or None
         What is there.
     size_px : (float, float)
         Width and height of the wall, source px.
@@ -75,7 +77,7 @@ def ground_of(laid: Laid | None, size_px: tuple[float, float], column_px: float)
     unit_px = column_px / COLUMN_UNITS
     columns = columns_of(size_px[0], column_px)
     width, height = (math.floor(side / unit_px + 1e-6) for side in size_px)
-    laid = laid or Laid(np.zeros(columns))
+    laid = laid or LaidCourses(np.zeros(columns))
     if laid.tops_px.shape != (columns,):
         raise ValueError(f"{columns} columns are needed, not {laid.tops_px.shape}")
     joints: Joints = []
