@@ -71,6 +71,34 @@ def test_a_part_of_a_search_is_a_search_with_a_smaller_budget() -> None:
         assert same(again.best, part.best)
 
 
+class Ticks:
+    """A clock that goes on by one whenever it is looked at."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def __call__(self) -> float:
+        self.count += 1
+        return float(self.count)
+
+
+@pytest.mark.parametrize("ticks", [4, 7, 8, 12])
+def test_what_was_built_in_time_counts_even_where_a_chain_was_cut_off(ticks: int) -> None:
+    planner = first(1000)
+    timed = list(
+        searching(
+            Found.of(planner), planner.workshop, planner.settings, planner.seed,
+            seconds=float(ticks), clock=Ticks(),
+        )
+    )  # fmt: skip
+    # The clock is looked at once at the start, then once for every wall, and once when it is late.
+    assert timed[-1].walls == ticks + 1
+    again = searched(first(timed[-1].walls))[-1]
+    assert again.walls == timed[-1].walls
+    assert same(again.best, timed[-1].best)
+    assert again.solves == timed[-1].solves
+
+
 def test_processes_change_nothing() -> None:
     one, two = searched(first(9)), searched(first(9), jobs=2)
     assert [p.walls for p in one] == [p.walls for p in two]

@@ -17,7 +17,9 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.archive import archived
+from drystone.search.first_walls import batches, planned_share
 from drystone.search.found import Found
+from drystone.search.operators import Credits
 from drystone.search.packed import Packed
 from drystone.search.work import Job, PackedLink, more_links, one_pass
 
@@ -54,6 +56,7 @@ def searching(
     *,
     seconds: float = math.inf,
     executor: Executor | None = None,
+    clock: Callable[[], float] = time.time,
 ) -> Iterator[Progress]:
     """Look for better walls than a first one.
 
@@ -71,6 +74,8 @@ def searching(
         Time after which no further wall is begun, as far as the budget does not end before.
     executor : concurrent.futures.Executor, optional
         Processes that build walls side by side; the walls do not depend on it.
+    clock : callable
+        Gives the seconds, in every process the same.
 
     Yields
     ------
@@ -78,18 +83,19 @@ def searching(
         After the first wall, and whenever walls have been added.
     """
     tools = pickle.dumps((workshop.stones, workshop.site, settings))
-    job = Job(tools, seed, time.time() + seconds)
+    job = Job(tools, seed, clock() + seconds, clock)
     search, start = settings.search, Packed.of(first)
     found = [start]
     kept = archived((), found)
     yield Progress(1, start, start.solves, kept)
-    passes = range(1, min(search.passes, search.budget))
-    for wall in _mapped(executor, one_pass, [(job, number) for number in passes]):
-        if wall is None:
-            return
-        found.append(wall)
-        kept = archived(kept, [wall])
-        yield Progress(len(found), _best(found), _all_solves(found), kept)
+    for batch in batches(min(search.passes, search.budget)):
+        share = planned_share(found)
+        for wall in _mapped(executor, one_pass, [(job, number, share) for number in batch]):
+            if wall is None:
+                return
+            found.append(wall)
+            kept = archived(kept, [wall])
+            yield Progress(len(found), _best(found), _all_solves(found), kept)
     links = _links(found, search.chains)
     walls, before = len(found), _all_solves(found)
     while walls < search.budget:
@@ -98,12 +104,15 @@ def searching(
         for k, link in enumerate(_mapped(executor, more_links, tasks)):
             if link is None:
                 return
+            built = link.done - links[k].done
             links[k] = link
-            walls += counts[k]
+            walls += built
             best = _best([one.best for one in links])
             kept = archived(kept, link.kept)
             yield Progress(walls, best, before + _all_solves(links), kept)
-        links = _shared(links)
+            if built < counts[k]:
+                return  # it became too late; what later chains have built is not in the budget
+        links = _shared(_knowing(links))
 
 
 def _best(walls: Sequence[Packed]) -> Packed:
@@ -125,6 +134,12 @@ def _links(found: Sequence[Packed], chains: int) -> list[PackedLink]:
 def _shares(left: int, chains: int, each: int) -> list[int]:
     """Say how many walls each chain builds next: all the same, but for the end of the budget."""
     return [min(each, max(0, left - k * each)) for k in range(chains)]
+
+
+def _knowing(links: list[PackedLink]) -> list[PackedLink]:
+    """Let all chains know which changes have helped in each."""
+    known = sum((link.learnt for link in links), links[0].known)
+    return [replace(link, known=known, learnt=Credits()) for link in links]
 
 
 def _shared(links: list[PackedLink]) -> list[PackedLink]:

@@ -6,7 +6,7 @@ weights.  Better walls are kept, worse ones with a probability that falls with t
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.random import Generator
@@ -22,13 +22,10 @@ from drystone.search.archive import archived
 from drystone.search.built_up import built_up
 from drystone.search.by_courses import newly_planned, relaid, replanned
 from drystone.search.found import Found, course_heights
+from drystone.search.operators import NEW, RECREATED, REPLANNED, Credits, shares
 from drystone.search.packed import Packed, found_again
 from drystone.search.ruin import RUINS, taken_down
 from drystone.search.wedging import wedged_up
-
-NEW, REPLANNED = 0.05, 0.45
-"""Shares of the changes of a planned wall that are new plans, and plans changed; others are laid
-again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +46,8 @@ class Link:
         What trouble there was with all of them.
     kept : tuple of Packed
         Those of the last ones that none of them beats in every figure.
+    known, learnt : Credits
+        Which changes have helped in all chains, and in this one since then.
     """
 
     number: int
@@ -57,6 +56,8 @@ class Link:
     best: Packed
     solves: Solves
     kept: tuple[Packed, ...] = ()
+    known: Credits = field(default_factory=Credits)
+    learnt: Credits = field(default_factory=Credits)
 
 
 def lengthened(
@@ -66,8 +67,8 @@ def lengthened(
     workshop: Workshop,
     settings: PlannerSettings,
     late: Callable[[], bool] = lambda: False,
-) -> Link | None:
-    """Build some more walls of a chain.
+) -> Link:
+    """Build some more walls of a chain, until it is too late for another.
 
     Parameters
     ----------
@@ -87,45 +88,54 @@ def lengthened(
 
     Returns
     -------
-    Link or None
-        None when it was too late: the walls that were built by then are forgotten, as how many
-        they are depends on the machine.
+    Link
+        Where it is then; `done` says how many walls were built in time.
     """
     search = settings.search
     for _ in range(count):
         if late():
-            return None
+            break
         position, length = in_cycle(link.done, search.cycle)
         if position == 0 and link.best.courses is not None:
             link = replace(link, now=found_again(link.best, workshop, settings))
         rng = np.random.default_rng([seed, 3_000_000 + link.number, link.done])
-        if link.now.courses is not None and rng.random() < search.polish:
-            base = found_again(link.best, workshop, settings)
-            found, goes_on = recreated(base, workshop, settings, rng), False
-        else:
-            found, goes_on = _changed(link.now, workshop, settings, rng), True
+        planned = link.now.courses is not None
+        usual = shares(planned, search.polish)
+        operator = (link.known + link.learnt).drawn(usual, rng)
+        # A part of a planned wall that is built up freely has no plan any more.
+        aside = planned and operator == RECREATED
+        base = found_again(link.best, workshop, settings) if aside else link.now
+        found = _changed(base, operator, workshop, settings, rng)
         if found.merit > link.best.merit - search.wedge_below:
             found = wedged(found, workshop, settings)
-        best = Packed.of(found) if found.merit > link.best.merit + 1e-12 else link.best
         now = link.now
-        if goes_on and _accepted(found, now, position / length, search, rng):
+        if not aside and _accepted(found, now, position / length, search, rng):
             now = found
-        kept = archived(link.kept, [Packed.of(found)])
-        link = Link(link.number, link.done + 1, now, best, link.solves + found.solves, kept)
+        link = Link(
+            link.number,
+            link.done + 1,
+            now,
+            Packed.of(found) if found.merit > link.best.merit + 1e-12 else link.best,
+            link.solves + found.solves,
+            archived(link.kept, [Packed.of(found)]),
+            link.known,
+            link.learnt.after(operator, found.merit > base.merit + 1e-12),
+        )
     return link
 
 
-def _changed(found: Found, workshop: Workshop, settings: PlannerSettings, rng: Generator) -> Found:
-    """Change a wall: its plan, how it is laid, or, when it was not planned, a part of it."""
-    if found.courses is None:
-        return recreated(found, workshop, settings, rng)
-    share = rng.random()
+def _changed(
+    base: Found, operator: str, workshop: Workshop, settings: PlannerSettings, rng: Generator
+) -> Found:
+    """Change a wall; where nothing can be planned, lay it again."""
+    if operator == RECREATED:
+        return recreated(base, workshop, settings, rng)
     new: Found | None = None
-    if share < NEW:
+    if operator == NEW:
         new = newly_planned(workshop, settings, rng)
-    elif share < NEW + REPLANNED:
-        new = replanned(found, workshop, settings, rng)
-    return relaid(found, workshop, settings, rng) if new is None else new
+    elif operator == REPLANNED:
+        new = replanned(base, workshop, settings, rng)
+    return relaid(base, workshop, settings, rng) if new is None else new
 
 
 def wedged(found: Found, workshop: Workshop, settings: PlannerSettings) -> Found:

@@ -3,7 +3,8 @@
 import math
 import pickle
 import time
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -16,10 +17,8 @@ from drystone.poses import orientation_step_deg
 from drystone.search.by_courses import newly_planned
 from drystone.search.chain import Link, lengthened, wedged
 from drystone.search.found import Found
+from drystone.search.operators import Credits
 from drystone.search.packed import Packed, found_again
-
-GREEDY_EVERY = 4
-"""Every so many first walls on outlines is built stone by stone; the others are planned first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,16 +32,19 @@ class Job:
     seed : int
         Of the search.
     deadline : float
-        When it is too late for another wall, in the seconds of :func:`time.time`.
+        When it is too late for another wall, by the clock.
+    clock : callable
+        Gives seconds; the same in all processes, where there are several.
     """
 
     tools: bytes
     seed: int
     deadline: float
+    clock: Callable[[], float] = time.time
 
     def late(self) -> bool:
         """Say whether it is too late for another wall."""
-        return time.time() > self.deadline
+        return self.clock() > self.deadline
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,15 +57,27 @@ class PackedLink:
     best: Packed
     solves: Solves
     kept: tuple[Packed, ...] = ()
+    known: Credits = field(default_factory=Credits)
+    learnt: Credits = field(default_factory=Credits)
 
 
-def one_pass(job: Job, number: int) -> Packed | None:
-    """Build a first wall from its seed; None when it is too late."""
+def one_pass(job: Job, number: int, planned_share: float) -> Packed | None:
+    """Build a first wall from its seed; None when it is too late.
+
+    Parameters
+    ----------
+    job : Job
+        What is searched.
+    number : int
+        Of the wall.
+    planned_share : float
+        Probability that it is planned course by course, where walls may be.
+    """
     workshop, settings = _opened(job.tools)
     if job.late():
         return None
     rng = np.random.default_rng([job.seed, 4_000_000 + number])
-    if planned_first(settings) and number % GREEDY_EVERY:
+    if planned_first(settings) and rng.random() < planned_share:
         planned = newly_planned(workshop, settings, rng)
         if planned is not None:
             return Packed.of(wedged(planned, workshop, settings))
@@ -88,15 +102,17 @@ def planned_first(settings: PlannerSettings) -> bool:
 
 
 def more_links(job: Job, link: PackedLink, count: int) -> PackedLink | None:
-    """Build some more walls of a chain; None when it became too late."""
+    """Build some more walls of a chain, fewer when it becomes too late; None when it is."""
     workshop, settings = _opened(job.tools)
     begun = found_again(link.now, workshop, settings)
-    start = Link(link.number, link.done, begun, link.best, link.solves)
+    start = Link(link.number, link.done, begun, link.best, link.solves, known=link.known)
     end = lengthened(start, count, job.seed, workshop, settings, job.late)
-    if end is None:
+    if end.done == link.done:
         return None
     now = Packed.of(end.now)
-    return PackedLink(end.number, end.done, now, end.best, end.solves, end.kept)
+    return PackedLink(
+        end.number, end.done, now, end.best, end.solves, end.kept, end.known, end.learnt
+    )
 
 
 @lru_cache(maxsize=1)
