@@ -23,7 +23,7 @@ TARGET = SearchTarget(exact_walls.QUICK[0], "exact")
 
 
 def result(walls=1, **figures):
-    return Result(dict.fromkeys(FIGURES, 1.0) | figures, walls, 0.75)
+    return Result(dict.fromkeys(FIGURES, 1.0) | figures, walls, 0.75, 2.5)
 
 
 @pytest.fixture(scope="module")
@@ -73,10 +73,15 @@ def test_rows_are_medians_of_the_seeds():
         {"search": [result(5, placed=7, F_AV=None), result(8, placed=9, F_AV=3.0), result(6)]},
     )
     (row,) = search._rows(compared)
-    columns = ("wall", "method", "range", *FIGURES[:2], "possible F_SF", *FIGURES[2:], "walls")
+    columns = ("wall", "method", "range", *FIGURES[:2], "possible F_SF", *FIGURES[2:], "walls", "s")
     found = dict(zip(columns, row, strict=True))
     assert (found["wall"], found["range"], found["placed"]) == ("bricks, exact", "1.0-9 of 9", 7)
-    assert (found["F_AV"], found["possible F_SF"], found["walls"]) == (2.0, 0.75, 6)
+    assert (found["F_AV"], found["possible F_SF"], found["walls"], found["s"]) == (
+        2.0,
+        0.75,
+        6,
+        2.5,
+    )
 
 
 def test_differences_are_those_of_the_search_over_the_other():
@@ -101,17 +106,17 @@ def test_a_result_holds_the_figures_by_both_definitions():
         stones=7, F_SF=0.8, F_AV=30.0, F_AH=2.0, F_LR=0.5, T_LEVEL=0.1, E_FLUSH=0.2
     )
     found = SimpleNamespace(figures=figures, merit=12.0, build=SimpleNamespace(wall=wall))
-    made = Result.of(SimpleNamespace(found=found, walls=4, possible=0.9))
+    made = Result.of(SimpleNamespace(found=found, walls=4, possible=0.9, seconds=20.5))
     second = second_arrangement(finer_labels(wall.labels))
     assert made.figures == {
         "placed": 7, "F_SF": 0.8, "F_AV": 30.0, "F_AH": 2.0, "F_LR": 0.5,
         "2nd F_AV": second.F_AV, "2nd F_AH": second.F_AH, "T_LEVEL": 0.1, "E_FLUSH": 0.2,
         "merit": 12.0,
     }  # fmt: skip
-    assert (made.walls, made.possible) == (4, 0.9)
+    assert (made.walls, made.possible, made.seconds) == (4, 0.9, 20.5)
     found.figures = None
     with pytest.raises(ValueError, match="no stone"):
-        Result.of(SimpleNamespace(found=found, walls=4, possible=0.9))
+        Result.of(SimpleNamespace(found=found, walls=4, possible=0.9, seconds=20.5))
 
 
 def test_a_wall_of_outlines_is_looked_at_on_its_outlines():

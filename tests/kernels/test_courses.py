@@ -22,7 +22,14 @@ from drystone.kernels.course_types import (
     Rules,
     Weights,
 )
-from drystone.kernels.courses import anneal, anneal_python, evaluate
+from drystone.kernels.courses import (
+    Built,
+    anneal,
+    anneal_python,
+    evaluate,
+    highest_changed,
+    laid_again,
+)
 from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.raster import turn
 from drystone.search.course_poses import poses_of
@@ -34,6 +41,7 @@ needs_compiled = pytest.mark.skipif(
     compiled("courses") is None, reason="kernels are not compiled here"
 )
 Case = tuple[Poses, Arrangement, Ground, Rules]
+NOTHING_BUILT = Built(Draft([], [], [], []), [], 0.0, 0.0)
 
 
 def random_case(seed: int) -> Case:
@@ -117,9 +125,16 @@ def test_the_compiled_evaluation_is_the_same_bit_by_bit(case: Case) -> None:
 
 @needs_compiled
 @repeatable(25)
-@given(case=cases, seed=st.integers(-(2**70), 2**70), hot=st.sampled_from([0.0, 5.0, 5000.0]))
-def test_the_compiled_annealing_is_the_same_bit_by_bit(case: Case, seed: int, hot: float) -> None:
-    cooling = Cooling(150, hot, 0.99, seed)
+@given(
+    case=cases,
+    seed=st.integers(-(2**70), 2**70),
+    hot=st.sampled_from([0.0, 5.0, 5000.0]),
+    doubt=st.sampled_from([0.0, 50.0, np.inf]),
+)
+def test_the_compiled_annealing_is_the_same_bit_by_bit(
+    case: Case, seed: int, hot: float, doubt: float
+) -> None:
+    cooling = Cooling(150, hot, 0.99, seed, doubt)
     fast, fast_cost = anneal(*case, cooling)
     slow, slow_cost = anneal_python(*case, cooling)
     assert bits(fast) == bits(slow)
@@ -136,11 +151,66 @@ def test_a_longer_annealing_of_more_stones_is_the_same_bit_by_bit(seed: int) -> 
     ground = ground._replace(width=int(poses.width.max()))
     rules = rules._replace(weights=rules.weights._replace(overflow=9.0))
     one = Arrangement(*(np.array(p, np.int32) for p in ([*range(12)], [0] * 12, [12], [6])))
-    cooling = Cooling(400, 1.0, 0.98, seed)
+    cooling = Cooling(400, 1.0, 0.98, seed, (np.inf, 0.0, 1.0, 30.0)[seed])
     fast, fast_cost = anneal(poses, one, ground, rules, cooling)
     slow, slow_cost = anneal_python(poses, one, ground, rules, cooling)
     assert bits(fast) == bits(slow)
     assert fast_cost == slow_cost
+
+
+@needs_compiled
+@pytest.mark.parametrize("hot", [0.1, 10.0, 300.0])
+def test_what_is_kept_of_old_courses_never_drifts(hot: float) -> None:
+    """After very many changes the cost is still that of the plan laid anew."""
+    for case in map(random_case, range(40)):
+        poses, _, ground, rules = case
+        for doubt in (1.0, np.inf):
+            found, cost = anneal(*case, Cooling(3000, hot, 0.9995, 1, doubt))
+            assert cost == evaluate(poses, found, ground, rules).cost
+
+
+def test_a_plan_is_given_up_when_its_changed_courses_cost_too_much() -> None:
+    found = [0, 0]
+    for case in map(random_case, range(25)):
+        poses, plan, ground, rules = case
+        now = laid_again(poses, Draft.of(plan), NOTHING_BUILT, 0, ground, rules)
+        assert now is not None
+        dice = Dice(1)
+        for _ in range(12):
+            draft = now.draft.copy()
+            lowest = change(draft, dice, rules.courses)
+            if lowest == NOTHING:
+                continue
+            args = (poses, draft, now, lowest, ground, rules)
+            trial = laid_again(*args)
+            assert trial is not None
+            assert trial.cost == evaluate(poses, draft.done(), ground, rules).cost
+            # What is given up for doubt costs more than it may below a course that is as it was.
+            limit = now.cost + 5.0
+            kept = laid_again(*args, limit=limit)
+            doubted = laid_again(*args, limit=limit, doubt=0.0)
+            assert (kept is None) == (trial.cost > limit)
+            if doubted is None and kept is not None:
+                up_to = highest_changed(draft, now.draft) + 1
+                below = [
+                    side.outer + sum(laid.cost for laid in side.laid[:end])
+                    for end in range(up_to, len(draft.sizes))
+                    for side in (kept, now)
+                ]
+                more = np.subtract(below[::2], below[1::2])
+                assert more.max() > 5.0 - 1e-9 * abs(now.cost)
+                found[0] += 1
+            found[1] += doubted is not None
+    assert min(found) > 0
+
+
+def test_the_highest_changed_course_is_found() -> None:
+    old = Draft([0, 1, 2, 3, 4], [0] * 5, [2, 2, 1], [1, 1, 1])
+    assert highest_changed(old.copy(), old) == 0
+    assert highest_changed(Draft([0, 1, 3, 2, 4], [0] * 5, [2, 2, 1], [1, 1, 1]), old) == 1
+    assert highest_changed(Draft([0, 1, 2, 3, 4], [0, 0, 0, 0, 1], [2, 2, 1], [1] * 3), old) == 2
+    assert highest_changed(Draft([0, 1, 2, 3, 4], [0] * 5, [2, 2, 1], [2, 1, 1]), old) == 0
+    assert highest_changed(Draft([0, 1, 2, 3, 4], [0] * 5, [2, 2], [1, 2]), old) == 1
 
 
 @pytest.mark.parametrize("kernel", ["compiled", "python"])
@@ -211,6 +281,22 @@ def test_the_dice_are_splitmix64() -> None:
     assert Dice(2**64).state == 0
     numbers = [Dice(seed).below(3) for seed in range(300)]
     assert set(numbers) == {0, 1, 2}
+
+
+@needs_compiled
+@repeatable(20)
+@given(case=cases, seed=st.integers(0, 99))
+def test_stones_over_more_columns_than_room_are_the_same_bit_by_bit(case: Case, seed: int) -> None:
+    """Courses too wide for the wall: their joints go to and fro."""
+    poses, plan, ground, rules = case
+    ground = ground._replace(width=int(poses.width.max()))
+    assert bits(evaluate(poses, plan, ground, rules)) == bits(
+        evaluate_python(poses, plan, ground, rules)
+    )
+    cooling = Cooling(60, 1e6, 0.99, seed)
+    fast, fast_cost = anneal(poses, plan, ground, rules, cooling)
+    slow, slow_cost = anneal_python(poses, plan, ground, rules, cooling)
+    assert (bits(fast), fast_cost) == (bits(slow), slow_cost)
 
 
 def spoilt(case: Case, **changes: Any) -> Case:

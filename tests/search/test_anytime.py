@@ -167,7 +167,7 @@ def test_cycles_double() -> None:
         ({"orientations": "45deg"}, True),
         ({"orientations": "sf"}, False),
         ({"orientations": "40deg"}, False),
-        ({"geometry": "raster"}, False),
+        ({"geometry": "raster"}, True),
         ({"two_sided": False}, False),
         ({"order": "given"}, False),
     ],

@@ -1,22 +1,25 @@
 """Course plans laid on outlines: as planned where that is possible, and the truth where not."""
 
-from dataclasses import replace
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 import pytest
 import shapely
 
 from drystone.kernels.polygons import Points
+from drystone.model.landscape import Landscape
+from drystone.model.outlines import Outlined
 from drystone.model.placement import Side
 from drystone.model.site import Site
-from drystone.planner.build import Build, Candidate
-from drystone.planner.evaluate import Evaluator
+from drystone.planner.build import Build
+from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.planner import Planner
 from drystone.search.course_plan import PlannedStone
 from drystone.search.laying import Laid, lay, relaid
 from drystone.search.laying_settings import LayingSettings, LetGoSettings
+from drystone.statics.grown import Grown
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import Block, RigidBlockModel
 from tests.planner.scenes import RUBBLE_SITE, blocks, rubble, stones_of_masks
 from tests.search.yards import Yard, plan_of
 
@@ -166,16 +169,59 @@ TIP = np.array([[abs(x - 11.5) <= 12 - row for x in range(24)] for row in range(
 
 
 def test_a_wall_that_is_not_sturdy_counts_as_fallen(monkeypatch: pytest.MonkeyPatch) -> None:
-    judge = Evaluator.judge
+    def never(*_: object) -> Loaded:
+        # Nothing is below the stone.
+        model = RigidBlockModel((), (), 0.0).with_added((Block(9, 1.0, (0.0, 5.0)),), ())
+        return Loaded(model, Grown(lateral_resistance(model)))
 
-    def severe(this: Evaluator, *args: Any) -> Candidate:
-        return replace(judge(this, *args), sturdy=False)
-
-    monkeypatch.setattr(Evaluator, "judge", severe)
+    monkeypatch.setattr(Evaluator, "sturdily", never)
     yard = Yard(stones_of_masks({1: np.ones((12, 24), bool), 2: TIP}), Site(60, 30))
     for angle in (0.0, -180.0):  # one of the poses does not rest at all
         course = [yard.planned(1, 0, 0), yard.planned(2, 24, 0, angle=angle)]
         assert _statuses(yard.lay(course)) == [["falls", "falls"]]
+
+
+def test_an_action_is_what_is_judged_of_its_place() -> None:
+    yard = Yard(rubble(1, 14), RUBBLE_SITE)
+    laid = yard.lay(*yard.rows(3).courses)
+    evaluator = Evaluator(yard.settings, yard.workshop.stock)
+    states = laid.build.states()
+    assert len(states) > 6
+    for before, action in zip(states, laid.build.actions, strict=False):
+        landscape = Landscape.of(before.wall, action.side)
+        again = evaluator.judge(before, landscape, action.proposal)
+        assert again.indices == action.indices
+        assert again.resistance.value == action.resistance.value
+        assert again.sturdy == action.sturdy is True
+        assert again.sturdy_model is not None
+        assert action.sturdy_model is not None
+        for mine, same in ((action.model, again.model), (action.sturdy_model, again.sturdy_model)):
+            assert mine.blocks == same.blocks
+            assert [(i.block, i.other, i.mu) for i in mine.interfaces] == [
+                (i.block, i.other, i.mu) for i in same.interfaces
+            ]
+
+
+def test_of_places_that_do_not_stand_sturdily_the_next_best_is_taken(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    sturdily, asked = Evaluator.sturdily, []
+
+    def not_at_once(this: Evaluator, build: Build, blocks: list[Outlined]) -> Loaded | None:
+        asked.append(float(blocks[0][1][:, 0].min()))
+        found = sturdily(this, build, blocks)
+        assert found is not None
+        falls = RigidBlockModel((), (), 0.0).with_added((Block(9, 1.0, (0.0, 5.0)),), ())
+        return Loaded(falls, Grown(lateral_resistance(falls))) if len(asked) == 1 else found
+
+    monkeypatch.setattr(Evaluator, "sturdily", not_at_once)
+    yard = Yard(blocks(BRICKS), Site(60, 20))
+    many = LetGoSettings(apart=0.1, enough=9)
+    laid = yard.lay([yard.planned(1, 10, 0)], laying=LayingSettings(let_go=many))
+    assert _statuses(laid) == [["as planned"]]
+    assert len(asked) == 2
+    assert _boxes(laid)[1][0] == pytest.approx(asked[1])
+    assert asked[0] != pytest.approx(asked[1], abs=1.0)
 
 
 def test_a_stone_on_its_tip_is_turned_by_half() -> None:
@@ -267,7 +313,7 @@ def test_relaid_keeps_courses_and_lays_the_rest_of_anotherplan_of() -> None:
 
 def test_a_stone_goes_where_the_wall_resists_more() -> None:
     yard = Yard(blocks({1: (22, 10), 2: (40, 10), 3: (12, 10)}), Site(50, 40))
-    free = LetGoSettings(starts=30, reach=3.0, width=0.0, top=0.0, turn=0.0, rest=0.0)
+    free = LetGoSettings(starts=30, enough=99, reach=3.0, width=0.0, top=0.0, turn=0.0, rest=0.0)
     below = [yard.planned(1, 0, 0)], [yard.planned(2, 0, 10)]
     walls = [
         yard.lay(*below, [yard.planned(3, 28, 20, "right")], laying=laying)

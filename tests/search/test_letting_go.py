@@ -15,6 +15,7 @@ from drystone.search.laying_settings import LayingSettings, LetGoSettings
 from drystone.search.letting_go import Aim, Hand
 from drystone.search.views import View
 from drystone.settle.rest import Scene, Turned
+from drystone.settle.wedged import wedged
 from tests.planner.scenes import RUBBLE_SITE, rubble
 from tests.search.yards import Yard
 
@@ -103,7 +104,7 @@ def test_where_a_stone_rests_costs_what_the_settings_say() -> None:
         "rest": replace(plain, rest=1.0),
     }
     for name, settings in one_weight.items():
-        drop = _Drop("right", settings)
+        drop = _Drop("right", replace(settings, enough=99))
         aim = drop.aim(20.0, 25.0)
         resting = drop.hand.resting(
             drop.stone, drop.view, aim, drop.hand.starts(drop.stone, drop.view, aim)
@@ -126,8 +127,61 @@ def test_where_a_stone_rests_costs_what_the_settings_say() -> None:
         assert len(alike) == len(resting)
 
 
+def test_starts_along_the_whole_wall_are_further_from_each_other() -> None:
+    drop = _Drop("left", LetGoSettings(starts=3, apart=0.0, spread=0.4, astray=9.0))
+    near = drop.hand.starts(drop.stone, drop.view, drop.aim(30.0, 20.0))
+    columns = sorted(x for x, _ in drop.hand.starts(drop.stone, drop.view, drop.aim(None, 20.0)))
+    assert len(near) == len(columns) == 3
+    assert min(b - a for a, b in pairwise(columns)) >= 0.4 * drop.stone.size_px
+    beside = sorted(x for x, _ in near)
+    assert min(b - a for a, b in pairwise(beside)) < 0.4 * drop.stone.size_px
+
+
+def test_a_stone_is_let_go_until_it_rests_in_enough_places() -> None:
+    drop = _Drop("left", LetGoSettings(astray=5.0, apart=0.2, enough=99))
+    aim = drop.aim(None, 25.0)
+    starts = drop.hand.starts(drop.stone, drop.view, aim)
+
+    def places(enough: int, starts: list[tuple[float, float]]) -> set[tuple[float, float]]:
+        hand = replace(drop.hand, settings=replace(drop.hand.settings, enough=enough))
+        found = hand.resting(drop.stone, drop.view, aim, starts)
+        return {(one.repose.settled.x_px, one.repose.settled.y_px) for one in found}
+
+    of_starts = [places(99, starts[: k + 1]) for k in range(len(starts))]
+    assert len(of_starts[0]) >= 1
+    assert len(of_starts[-1]) > len(of_starts[0])
+    for enough in range(1, len(of_starts[-1]) + 1):
+        first = next(found for found in of_starts if len(found) >= enough)
+        assert places(enough, starts) == first
+
+
+def test_a_stone_is_wedged_at_the_cheapest_place_first() -> None:
+    drop = _Drop("left", LetGoSettings(astray=5.0, apart=0.1, starts=9))
+    hand = replace(drop.hand, method="wedge", settle=replace(drop.hand.settle, margin=1.4))
+    hand = replace(hand, limits=replace(hand.limits, rest=0.05))
+    aim = drop.aim(None, 25.0)
+    starts = hand.starts(drop.stone, drop.view, aim)
+    found = hand.resting(drop.stone, drop.view, aim, starts)
+    scene = drop.view.scene
+    one_by_one = [wedged(drop.stone, scene, start, hand.settle, hand.limits) for start in starts]
+    expected = {
+        (round(one.repose.settled.x_px), round(one.repose.settled.y_px)): one.wedge.tobytes()
+        for one in reversed(one_by_one)
+        if one is not None
+    }
+    assert len(found) == len(expected) > 1
+    assert [one.cost for one in found] == sorted(one.cost for one in found)
+    for one in found:
+        settled = one.repose.settled
+        assert one.wedge is not None
+        top = float(settled.corners[:, 1].max())
+        unsure = hand.settings.rest * max(0.0, 1.0 - one.repose.margin)
+        assert one.cost == pytest.approx(abs(top - 25.0) / drop.unit_px + 0.2 + unsure)
+        assert one.wedge.tobytes() == expected[round(settled.x_px), round(settled.y_px)]
+
+
 def test_a_stone_that_rests_above_the_wall_or_far_from_its_top_does_not_count() -> None:
-    drop = _Drop("left", LetGoSettings(astray=5.0))
+    drop = _Drop("left", LetGoSettings(astray=5.0, enough=99))
     aim = drop.aim(None, 25.0)
     starts = drop.hand.starts(drop.stone, drop.view, aim)
     tops = [
@@ -138,7 +192,7 @@ def test_a_stone_that_rests_above_the_wall_or_far_from_its_top_does_not_count() 
     below = replace(aim, highest_px=float(lower))
     found = drop.hand.resting(drop.stone, drop.view, below, starts)
     assert 0 < len(found) < len(tops)
-    near = _Drop("left", LetGoSettings(astray=0.01))
+    near = _Drop("left", LetGoSettings(astray=0.01, enough=99))
     aim = near.aim(None, float(lower))
     found = near.hand.resting(near.stone, near.view, aim, starts)
     assert 0 < len(found) < len(tops)
@@ -173,7 +227,15 @@ def test_a_view_grows_as_if_all_were_seen_at_once(side: Side) -> None:
 
 @pytest.mark.parametrize(
     "changes",
-    [{"column_px": 0.0}, {"starts": 0}, {"astray": 0.0}, {"apart": -1.0}, {"width": -0.1}],
+    [
+        {"column_px": 0.0},
+        {"starts": 0},
+        {"enough": 0},
+        {"astray": 0.0},
+        {"apart": -1.0},
+        {"spread": -1.0},
+        {"width": -0.1},
+    ],
 )
 def test_settings_that_make_no_sense_are_refused(changes: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match="must"):

@@ -1,6 +1,7 @@
 """Wedges in the gaps of finished walls: they raise the resistance, and the plan stays true."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 
@@ -8,7 +9,6 @@ import numpy as np
 import pytest
 import shapely
 
-from drystone.generate import PolygonSettings, RubbleSettings, polygon_stones, rubble_stones
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.kernels.polygons import Points, on_grid
 from drystone.kernels.raster import Mask
@@ -18,30 +18,27 @@ from drystone.model.stone import StoneSet
 from drystone.model.wall import Group, outlined
 from drystone.planner.assemble import Frame
 from drystone.planner.build import Build
-from drystone.planner.dropping import wedge_limits
 from drystone.planner.events import Stopped
 from drystone.planner.planner import Planner
-from drystone.planner.replay import replayed
+from drystone.planner.replay import Replayed, replayed
+from drystone.planner.solves import Solves
 from drystone.search import wedging
 from drystone.search.plan_wall import finish as finished
-from drystone.search.wedge_places import Motion, wedge_places
+from drystone.search.wedge_draft import Draft
 from drystone.search.wedging import wedged_up
 from drystone.settle.placing import settled_placement
 from drystone.settle.rest import placed_outline
-from drystone.settle.wedge import WedgeLimits
 from drystone.statics.contacts.settled import (
     PlacedPolygons,
     model_of_outlines,
-    model_with_outlines,
 )
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
-from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, Mechanism
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify import check_plan
-from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble, stones_of_masks
+from tests.planner.scenes import greedy, stones_of_masks
+from tests.search.wedge_walls import ONE_PX, all_places, limits_of, small_walls
 
 NOTHING = np.zeros((0, 0), bool)
-ONE_PX = greedy({"stabilise": {"min_wedge_px": 1}, "search": {"budget": 2}})
 SITE = Site(80, 40)
 
 
@@ -70,10 +67,6 @@ STONES = stones_of_masks(
 
 def planner() -> Planner:
     return Planner(STONES, SITE, settings=ONE_PX)
-
-
-def limits_of(made: Planner) -> WedgeLimits:
-    return wedge_limits(made.settings, made.workshop.stock, made.workshop.site.scale)
 
 
 def wedged(made: Planner, most: int) -> Build:
@@ -228,7 +221,7 @@ def test_a_wall_without_its_states_is_the_same_wall_when_nothing_changes() -> No
 
 def test_wedges_keep_clear_of_what_comes_later_and_do_not_rest_on_it() -> None:
     made = built((4, 20.0, 0.01), (3, 33.5, 0.01), wedges={4: [box(28.1, 0.01, 30.1, 8.0)]})
-    places = list(wedge_places(made.build.wall, replace(limits_of(made), largest_px=20.0)))
+    places = all_places(made.build, replace(limits_of(made), largest_px=20.0))
     under = [p for p in places if p.step == 0]
     later = shapely.Polygon(made.build.wall.groups[1].placement.settled.corners)  # type: ignore[union-attr]
     assert under
@@ -240,22 +233,11 @@ def test_wedges_keep_clear_of_what_comes_later_and_do_not_rest_on_it() -> None:
 
 
 def test_no_stone_gets_more_than_two_wedges() -> None:
-    wedges = wedged(built((1, 20.0, 0.01)), 2).wall
-    assert len(wedges.wedges) == 2
-    assert list(wedge_places(wedges, limits_of(planner()))) == []
-
-
-def small_walls() -> list[tuple[StoneSet, Planner]]:
-    """Walls of stones about 20 px wide."""
-    rubble = RubbleSettings(count=8, width_px=90, height_px=40, courses=2)
-    sharp = PolygonSettings(count=8, width_px=28, height_px=18)
-    made = []
-    for seed, scale in ((0, 1.0), (1, 0.5)):
-        rng = np.random.default_rng(seed)
-        for stones in (rubble_stones(rubble, rng), polygon_stones(sharp, rng)):
-            site = Site.from_source(90.0, 48.0, scale)
-            made.append((stones, finish(Planner(stones, site, seed=seed, settings=ONE_PX))))
-    return made
+    two = wedged(built((1, 20.0, 0.01)), 2)
+    assert len(two.wall.wedges) == 2
+    made = planner()
+    made.build = two
+    assert wedged(made, 3) is two
 
 
 WALLS = small_walls()
@@ -288,7 +270,7 @@ def test_the_first_wedge_is_the_best_one(wall: int) -> None:
     """Of all with which all steps can be taken."""
     _, made = WALLS[wall]
     gained = [value(made.build)]
-    for place in wedge_places(made.build.wall, limits_of(made)):
+    for place in all_places(made.build, limits_of(made)):
         group, *rest = made.build.wall.groups[place.step :]
         wedge = Wedge(0, group.placement.stone_id, NOTHING, 0, 0, place.corners)
         with_it = Group(group.placement, (*group.wedges, wedge))
@@ -321,70 +303,6 @@ def test_no_wedge_is_left_that_does_not_matter(wall: int) -> None:
             assert left_out or value(build) < value(after)
 
 
-def test_what_the_mechanism_does_not_violate_does_not_help() -> None:
-    seen = {True: 0, False: 0}
-    for _, made in WALLS:
-        build = made.build
-        failing = lateral_resistance(build.model, mechanism=True)
-        assert failing.left.alpha is not None
-        assert failing.right.alpha is not None
-        one = failing.left if failing.left.alpha <= failing.right.alpha else failing.right
-        assert one.mechanism is not None
-        motion = Motion(build.model, one.mechanism)
-        outlines = build.wall.outlines
-        assert outlines is not None
-        for place in wedge_places(build.wall, limits_of(made)):
-            model = model_with_outlines(build.model, [(999, place.corners)], outlines, 0.1)
-            assert model.added is not None
-            violated = motion.resisted_by(999, model.added.interfaces) > 1e-9
-            # The weight of the wedge is another thing: here it has none.
-            weightless = replace(model.blocks[-1], density=1e-9)
-            after = lateral_resistance(replace(model, blocks=(*model.blocks[:-1], weightless)))
-            alpha = after.left.alpha if one.direction == "left" else after.right.alpha
-            assert alpha is not None
-            assert one.alpha is not None
-            assert violated or alpha <= one.alpha + 1e-6
-            seen[violated] += 1
-    assert min(seen.values()) > 10
-
-
-def motion(*velocity: float) -> Motion:
-    """A block 4 px wide and 2 high over the ground, 1 px above it, that moves."""
-    model = RigidBlockModel((Block(1, 8.0, (2.0, 2.0)),), (), 0.5)
-    return Motion(model, Mechanism((1,), np.array([velocity])))
-
-
-def between(*normal: float) -> tuple[Interface, Interface]:
-    """Contacts of a wedge under the right end of that block."""
-    low = Interface(9, GROUND, np.array([[3.0, 0.0], [4.0, 0.0]]), (0.0, 1.0))
-    return low, Interface(9, 1, np.array([[3.0, 1.0], [4.0, 1.0]]), (normal[0], normal[1]))
-
-
-@pytest.mark.parametrize(
-    ("velocity", "rate"),
-    [
-        ((0.0, -1.0, 0.0), 1.0),  # down onto the wedge
-        ((0.0, 1.0, 0.0), 0.0),  # up
-        ((1.0, 0.5, 0.0), 0.0),  # along it, and up as friction asks for
-        ((1.0, 0.25, 0.0), 0.25),
-        ((-1.0, 0.25, 0.0), 0.25),
-        # Clockwise about the centroid: 2 down at its end, 1 or 2 to the left below.
-        ((0.0, 0.0, -1.0), 2.5),
-    ],
-)
-def test_the_rate_is_that_of_the_worst_point_and_the_best_neighbour(
-    velocity: tuple[float, ...], rate: float
-) -> None:
-    assert motion(*velocity).resisted_by(9, between(0.0, -1.0)) == pytest.approx(rate)
-
-
-def test_what_touches_one_side_only_moves_along() -> None:
-    low, high = between(0.0, -1.0)
-    assert motion(0.0, -1.0, 0.0).resisted_by(9, [low]) == 0.0
-    assert motion(0.0, -1.0, 0.0).resisted_by(9, [high]) == 0.0
-    assert motion(0.0, -1.0, 0.0).resisted_by(9, []) == 0.0
-
-
 def test_a_wall_of_pixels_is_refused() -> None:
     settings = greedy({"geometry": "raster"})
     made = Planner(STONES, SITE, settings=settings)
@@ -397,11 +315,87 @@ def test_nothing_is_wedged_up_where_nothing_is_built() -> None:
     assert wedged(made, 3) is made.build
 
 
+def refusing(monkeypatch: pytest.MonkeyPatch, outlines: set[bytes]) -> list[int]:
+    """No step can be taken with a wedge of some outlines; how many steps are taken again."""
+    taken: list[int] = []
+
+    def refuse(start: Build, groups: Sequence[Group], *rest: object) -> Replayed:
+        taken.append(len(groups))
+        wedges = [w.corners for group in groups for w in group.wedges if w.corners is not None]
+        if any(corners.tobytes() in outlines for corners in wedges):
+            return Replayed(start, (groups[0].placement.stone_id,), Solves())
+        return replayed(start, groups, *rest)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(wedging, "replayed", refuse)
+    return taken
+
+
+def new_wedges(before: Build, after: Build) -> list[Wedge]:
+    there = {id(wedge.corners) for wedge in before.wall.wedges}
+    return [wedge for wedge in after.wall.wedges if id(wedge.corners) not in there]
+
+
+@pytest.mark.parametrize("wall", range(2))
+def test_a_wedge_with_which_the_wall_does_not_stand_is_barred(
+    wall: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stones, made = WALLS[wall]
+    before = made.build
+    refused: set[bytes] = set()
+    taken = refusing(monkeypatch, refused)
+    for _ in range(2):
+        last = new_wedges(before, wedged(made, 3))
+        refused |= {wedge.corners.tobytes() for wedge in last[:1]}  # type: ignore[union-attr]
+        after = wedged(made, 3)
+        found = {wedge.corners.tobytes() for wedge in new_wedges(before, after)}  # type: ignore[union-attr]
+        assert not found & refused
+        assert len(found) <= 3
+        assert value(after) >= value(before) - 1e-6
+        check(made, after, stones)
+        made.build = before
+    assert taken
+
+
+def test_other_wedges_are_found_when_the_best_is_barred(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = built((6, 20.0, 0.01))
+    best = wedged(made, 1)
+    (wedge,) = best.wall.wedges
+    assert wedge.corners is not None
+    refusing(monkeypatch, {wedge.corners.tobytes()})
+    after = wedged(made, 1)
+    assert value(after) == pytest.approx(value(best))
+    assert after.wall.wedges[0].corners is not None
+    assert after.wall.wedges[0].corners.tobytes() != wedge.corners.tobytes()
+
+
+def test_the_steps_are_taken_again_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = built((1, 5.0, 0.01), (6, 40.0, 0.01))
+    taken = refusing(monkeypatch, set())
+    assert len(wedged(made, 4).wall.wedges) > 1
+    assert len(taken) == 1
+
+
+def test_what_cannot_be_dropped_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both wedges may go as the finished wall is, but not one after the other."""
+    two = {2: [box(36.5, 0.01, 38.0, 3.0), box(38.2, 0.01, 39.7, 3.0)]}
+    made = built((2, 20.0, 0.01), (5, 45.0, 0.01), wedges=two)
+    assert wedged(made, 0).wall.wedges == ()
+
+    def refuse(start: Build, groups: Sequence[Group], *rest: object) -> Replayed:
+        if len(groups) == 2 and not any(group.wedges for group in groups):
+            return Replayed(start, (2,), Solves())
+        return replayed(start, groups, *rest)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(wedging, "replayed", refuse)
+    after = wedged(made, 0)
+    assert [w.corners.tolist() for w in after.wall.wedges] == [on_grid(two[2][1]).tolist()]  # type: ignore[union-attr]
+
+
 def test_a_solver_that_gives_up_is_no_reason_to_stop(monkeypatch: pytest.MonkeyPatch) -> None:
-    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy()))
+    made = built((1, 20.0, 0.01))
+    monkeypatch.setattr(Draft, "motion", lambda *_: None)
+    assert wedged(made, 3) is made.build
     gave_up = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
     failed = LateralResistance(gave_up[0], gave_up[1], 0.58)
-    monkeypatch.setattr(wedging, "lateral_resistance", lambda *_, **__: failed)
-    limits = wedge_limits(planner.settings, planner.workshop.stock, 1.0)
-    wall = wedged_up(planner.build, planner.workshop, planner.settings, limits, 3)
-    assert wall.actions[-1].resistance.value == planner.build.actions[-1].resistance.value
+    monkeypatch.setattr(Draft, "resistance", failed)
+    assert wedged(built((2, 20.0, 0.01), wedges={2: [box(37.0, 0.01, 39.5, 3.0)]}), 3).wall.wedges

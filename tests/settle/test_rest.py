@@ -17,7 +17,7 @@ from drystone.kernels.polygons import (
     on_grid,
 )
 from drystone.kernels.raster import turn
-from drystone.kernels.settling import settle
+from drystone.kernels.settling import Status, settle
 from drystone.model.placement import Side
 from drystone.settle.rest import (
     Repose,
@@ -25,8 +25,10 @@ from drystone.settle.rest import (
     Turned,
     come_to_rest,
     lay,
+    let_go,
     placed_outline,
     repose,
+    rests,
     touch_down,
     ways,
 )
@@ -215,6 +217,35 @@ def test_ways_to_settle() -> None:
     assert only == third._replace(sticks=True, turns=False)
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("side", SIDES)
+def test_all_ways_are_tried_but_for_those_that_lead_nowhere(side: Side, method: Method) -> None:
+    rng = np.random.default_rng(5)
+    settings = SettleSettings(method=method)
+    patterns: set[tuple[bool, ...]] = set()
+    for _ in range(60):
+        height = rng.uniform(4.0, 16.0)
+        post = moved(BRICK * [rng.uniform(0.2, 0.6), height / 10.0], 50.0, 0.5 * height)
+        scene = scene_of([post, moved(box(20.0, 40.0), 32.0, 20.0)], side)
+        stone = turned(BRICK, float(rng.uniform(-25.0, 25.0)), side)
+        start = float(rng.uniform(50.0, 66.0)), height + float(rng.uniform(1.0, 9.0))
+        found = [let_go(stone, scene, start, rules) for rules in ways(stone, scene, settings)]
+        good = [one.status == Status.RESTS and one.margin >= settings.margin for one in found]
+        expected = [one for one, rest in zip(found, good, strict=True) if rest]
+        assert list(rests(stone, scene, start, settings)) == expected
+        first = come_to_rest(stone, scene, start, settings)
+        assert (first is None) == (not expected)
+        if first is not None:
+            there = repose(stone, scene, expected[0])
+            assert first.settled.corners.tobytes() == there.settled.corners.tobytes()
+        patterns.add(tuple(good))
+    if method == "energy":
+        assert patterns >= {(True,) * 3, (False,) * 3, (False, False, True)}
+        assert len(patterns) > 3
+    else:
+        assert patterns == {(True,), (False,)}
+
+
 @pytest.mark.parametrize("side", SIDES)
 def test_poses_are_on_a_grid_and_angles_in_one_turn(side: Side) -> None:
     outline = BRICK + np.array([0.1, -0.03])
@@ -248,7 +279,7 @@ def test_the_pose_of_a_scene_from_the_right_is_the_stones_own() -> None:
 
 
 @st.composite
-def let_go(draw: st.DrawFn) -> tuple[Points, tuple[float, float], Polygons, float]:
+def released(draw: st.DrawFn) -> tuple[Points, tuple[float, float], Polygons, float]:
     """A stone from its centroid, where it is let go among others on the grid, and its angle."""
     stone, around = draw(piles())
     _, x, y = area_and_centroid(stone)
@@ -259,7 +290,7 @@ def let_go(draw: st.DrawFn) -> tuple[Points, tuple[float, float], Polygons, floa
 
 
 @repeatable(25)
-@given(scene=let_go(), method=st.sampled_from(METHODS), turns=st.booleans())
+@given(scene=released(), method=st.sampled_from(METHODS), turns=st.booleans())
 def test_from_the_right_everything_is_mirrored(
     scene: tuple[Points, tuple[float, float], Polygons, float], method: Method, turns: bool
 ) -> None:
@@ -291,7 +322,7 @@ def test_from_the_right_everything_is_mirrored(
 
 
 @repeatable(60)
-@given(scene=let_go(), method=st.sampled_from(METHODS), side=st.sampled_from(SIDES))
+@given(scene=released(), method=st.sampled_from(METHODS), side=st.sampled_from(SIDES))
 def test_what_may_not_turn_has_the_angle_of_its_pose(
     scene: tuple[Points, tuple[float, float], Polygons, float], method: Method, side: Side
 ) -> None:

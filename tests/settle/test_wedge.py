@@ -15,7 +15,15 @@ from drystone.kernels.polygons import (
     no_polygons,
 )
 from drystone.kernels.settling import rest_margin
-from drystone.settle.wedge import WedgeLimits, _holds, falling_side, wedge_under
+from drystone.settle.wedge import (
+    WedgeLimits,
+    _holds,
+    _near,
+    falling_side,
+    in_order,
+    met_below,
+    wedge_under,
+)
 from drystone.settle.wedge_spans import Slabs, parts
 from tests.naive.crevice import gap_at
 from tests.settle.piles import WIDTH, moved, piles
@@ -283,3 +291,47 @@ def test_limits_are_checked() -> None:
     for change in bad:
         with pytest.raises(ValueError, match="must"):
             WedgeLimits(**{**good, **change})
+
+
+@repeatable()
+@given(piles(), st.data())
+def test_polygons_in_order_are_those_added_in_order(
+    pile: tuple[Points, Polygons], data: st.DataObject
+) -> None:
+    stone, around = pile
+    wall = around.added([stone])
+    chosen = data.draw(st.lists(st.sampled_from(range(len(wall))), unique=True))
+    found = in_order(wall, chosen)
+    expected = no_polygons().added([wall.polygon(i) for i in chosen])
+    for one, other in zip(
+        (found.corners, found.first, found.boxes, found.edges),
+        (expected.corners, expected.first, expected.boxes, expected.edges),
+        strict=True,
+    ):
+        assert one.dtype == other.dtype
+        assert one.tolist() == other.tolist()
+        assert one.flags.c_contiguous
+
+
+def test_a_stone_meets_what_is_beside_it_and_so_far_below_as_a_wedge_is_high() -> None:
+    stone = box(10.0, 20.0, 20.0, 24.0)
+    reach = LIMITS.contact_px + 4.0 * LIMITS.clearance_px
+    deep = 20.0 - reach - LIMITS.largest_px
+    around = [
+        stone,
+        box(10.0, deep - 2.0, 20.0, deep + 0.01),
+        box(10.0, deep - 2.0, 20.0, deep - 0.01),
+        box(20.01 - reach, 20.0, 20.0, 24.0),
+        box(5.0, 20.0, 10.01 - reach, 24.0),
+        box(5.0, 20.0, 9.99 - reach, 24.0),
+        box(19.99 + reach, 20.0, 25.0, 24.0),
+        box(20.01 + reach, 20.0, 25.0, 24.0),
+        box(10.0, 23.99 + reach, 20.0, 30.0),
+        box(10.0, 24.01 + reach, 20.0, 30.0),
+    ]
+    wall = no_polygons().added(around)
+    met = met_below(stone, wall.boxes, LIMITS)
+    assert np.flatnonzero(met).tolist() == [0, 1, 3, 4, 6, 8]
+    near = _near(stone, wall, LIMITS, 0)
+    assert near.boxes.tolist() == wall.boxes[[1, 3, 4, 6, 8]].tolist()
+    assert len(_near(stone, wall, LIMITS)) == 6

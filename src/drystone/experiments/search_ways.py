@@ -41,6 +41,9 @@ class State:
     best: Callable[[], Found]
 
 
+States = Callable[[Planner, float, Clock], Iterator[State]]
+
+
 @dataclass(frozen=True)
 class Way:
     """A way to look for a good wall.
@@ -50,13 +53,14 @@ class Way:
     name : str
         For people.
     states : callable
-        Goes on from the planner of the first wall, which is built, for as long as it is asked.
+        Goes on from the planner of the first wall, which is built, for as long as it is asked, or
+        until a time of a clock.
     on_raster : bool
         Whether it differs from the others where stones are pixels.
     """
 
     name: str
-    states: Callable[[Planner], Iterator[State]]
+    states: States
     on_raster: bool = True
 
 
@@ -72,18 +76,21 @@ class Looked:
         How many walls it built in time.
     possible : float
         Area bound on F_SF.
+    seconds : float
+        How long it took.
     """
 
     found: Found
     walls: int
     possible: float
+    seconds: float
 
 
-def _restarts(first: Planner) -> Iterator[State]:
+def _restarts(first: Planner, _end: float, _clock: Clock) -> Iterator[State]:
     return _passes(first, lambda found, _: found)
 
 
-def _restarts_with_wedges(first: Planner) -> Iterator[State]:
+def _restarts_with_wedges(first: Planner, _end: float, _clock: Clock) -> Iterator[State]:
     settings = first.settings
 
     def finished(found: Found, best: Found) -> Found:
@@ -114,19 +121,25 @@ def _passes(first: Planner, finished: Callable[[Found, Found], Found]) -> Iterat
         best, walls = max(best, found, key=lambda one: one.merit), walls + 1
 
 
-def _search(first: Planner) -> Iterator[State]:
-    return _searched(first, first.settings)
+def _search(first: Planner, end: float, clock: Clock) -> Iterator[State]:
+    return _searched(first, first.settings, end, clock)
 
 
-def _without_courses(first: Planner) -> Iterator[State]:
+def _without_courses(first: Planner, end: float, clock: Clock) -> Iterator[State]:
     # Courses are planned in further first walls only, and chains of other walls never do.
     settings = first.settings
-    return _searched(first, replace(settings, search=replace(settings.search, passes=1)))
+    alone = replace(settings, search=replace(settings.search, passes=1))
+    return _searched(first, alone, end, clock)
 
 
-def _searched(first: Planner, settings: PlannerSettings) -> Iterator[State]:
+def _searched(
+    first: Planner, settings: PlannerSettings, end: float, clock: Clock
+) -> Iterator[State]:
     workshop = first.workshop
-    for progress in searching(Found.of(first), workshop, settings, first.seed):
+    left = end - clock()
+    for progress in searching(
+        Found.of(first), workshop, settings, first.seed, seconds=left, clock=clock
+    ):
         packed = progress.best
         yield State(
             progress.walls,
@@ -160,7 +173,7 @@ def looked_for(
 ) -> Looked:
     """Look for a good wall until the time is used up.
 
-    What is begun before the end and finished after it does not count, but for the first wall.
+    The last wall is the one that is begun before the end and finished after it.
 
     Parameters
     ----------
@@ -177,7 +190,8 @@ def looked_for(
     clock : callable
         Gives the time that is used up, s.
     """
-    end = clock() + seconds
+    started = clock()
+    end = started + seconds
     # Another budget for every seed, so that nothing is left over from a search of another seed.
     settings = one_pass(target.geometry, ENDLESS + seed)
     width, height = target.target.size(stones)
@@ -185,15 +199,8 @@ def looked_for(
     first = Planner(stones, site, seed=seed, settings=settings)
     for _ in first.steps():
         pass
-    last = _in_time(way.states(first), end, clock)
-    return Looked(last.best(), last.walls, possible_filling(first.workshop))
-
-
-def _in_time(states: Iterator[State], end: float, clock: Clock) -> State:
-    """Return the last state that is reached in time, or else the first one."""
-    last = next(states)
-    for state in states:
+    for state in way.states(first, end, clock):
+        last = state
         if clock() > end:
             break
-        last = state
-    return last
+    return Looked(last.best(), last.walls, possible_filling(first.workshop), clock() - started)

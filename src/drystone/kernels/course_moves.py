@@ -79,6 +79,12 @@ class Draft:
         """Return the place of the first stone of a course, or of what is left out."""
         return sum(self.sizes[:course])
 
+    def posed(self, course: int) -> list[int]:
+        """Return the poses of the stones of a course, from left to right."""
+        start = self.start(course)
+        stones = self.order[start : start + self.sizes[course]]
+        return [4 * stone + self.turns[stone] for stone in stones]
+
     def course_of(self, place: int) -> int:
         """Return the course of a place; the number of courses for what is left out."""
         course = 0

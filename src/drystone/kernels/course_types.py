@@ -5,6 +5,7 @@ Lengths are whole numbers of a unit of which a column of the height profiles has
 0; stone s after q quarter turns is pose 4 s + q.
 """
 
+import math
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -225,12 +226,16 @@ class Cooling(NamedTuple):
         Of the temperature, after each evaluation.
     seed : int
         Any integer; equal seeds give equal plans.
+    doubt : float
+        A changed plan is given up when, up to the highest course that changed or one above it, it
+        costs more by this than it may: what is above seldom makes up for it.
     """
 
     evaluations: int
     temperature: float
     factor: float
     seed: int
+    doubt: float = math.inf
 
 
 class Layout(NamedTuple):

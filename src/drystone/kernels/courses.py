@@ -1,7 +1,7 @@
 """Plan a wall course by course: anneal the order of its stones on height profiles."""
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -124,54 +124,111 @@ def check(poses: Poses, plan: Arrangement, ground: Ground, rules: Rules) -> None
         raise ValueError("weights and lengths must not be negative")
 
 
+class Built(NamedTuple):
+    """A draft whose courses are laid.
+
+    Parameters
+    ----------
+    draft : Draft
+        Which is not changed any more.
+    laid : list of LaidCourse
+        Its courses.
+    outer : float
+        What the stones that are left out cost.
+    cost : float
+        Of all.
+    """
+
+    draft: Draft
+    laid: list[LaidCourse]
+    outer: float
+    cost: float
+
+
 def anneal_python(
     poses: Poses, plan: Arrangement, ground: Ground, rules: Rules, cooling: Cooling
 ) -> tuple[Arrangement, float]:
     """Return what :func:`anneal` returns, by Python."""
     dice = Dice(cooling.seed)
-    draft = Draft.of(plan)
-    laid: list[LaidCourse] = []
-    cost, laid = laid_again(poses, draft, laid, 0, ground, rules, math.inf)
-    best, least = draft.copy(), cost
+    nothing = Built(Draft([], [], [], []), [], 0.0, 0.0)
+    now = laid_again(poses, Draft.of(plan), nothing, 0, ground, rules)
+    assert now is not None  # noqa: S101 - there was no limit
+    best = now
     temperature = cooling.temperature
     for _ in range(cooling.evaluations):
         temperature *= cooling.factor
-        trial = draft.copy()
-        lowest = change(trial, dice, rules.courses)
+        draft = now.draft.copy()
+        lowest = change(draft, dice, rules.courses)
         if lowest == NOTHING:
             continue
-        limit = cost + temperature * float(_LUCK[dice.below(LOGS)])
-        trial_cost, trial_laid = laid_again(poses, trial, laid, lowest, ground, rules, limit)
-        if trial_cost <= limit:
-            draft, cost, laid = trial, trial_cost, trial_laid
-            if cost < least:
-                best, least = draft.copy(), cost
-    return best.done(), least
+        limit = now.cost + temperature * float(_LUCK[dice.below(LOGS)])
+        trial = laid_again(
+            poses, draft, now, lowest, ground, rules, limit=limit, doubt=cooling.doubt
+        )
+        if trial is not None:
+            now = trial
+            best = now if now.cost < best.cost else best
+    return best.draft.done(), best.cost
 
 
-def laid_again(
+def laid_again(  # noqa: PLR0913 - the wall, its stones and how
     poses: Poses,
     draft: Draft,
-    laid: list[LaidCourse],
+    now: Built,
     lowest: int,
     ground: Ground,
     rules: Rules,
-    limit: float,
-) -> tuple[float, list[LaidCourse]]:
-    """Lay the courses of a draft from the lowest that changed, until it costs more than a limit."""
-    cost = weighted(outer_terms(poses, draft.order[draft.placed :]), rules)
-    kept = laid[:lowest]
-    for known in kept:
+    *,
+    limit: float = math.inf,
+    doubt: float = math.inf,
+) -> Built | None:
+    """Lay the courses of a draft from the lowest that changed; None when it costs too much.
+
+    Parameters
+    ----------
+    poses, ground, rules
+        As for :func:`anneal`.
+    draft : Draft
+        Changed.
+    now : Built
+        What it was before.
+    lowest : int
+        Below this course nothing changed.
+    limit : float
+        What the draft may cost.
+    doubt : float
+        See :class:`Cooling`.
+    """
+    outer = weighted(outer_terms(poses, draft.order[draft.placed :]), rules)
+    cost, was = outer, now.outer
+    laid = now.laid[:lowest]
+    for known in laid:
         cost += known.cost
-    below = kept[-1].above if kept else on_ground(ground)
-    for course in range(lowest, len(draft.sizes)):
+        was += known.cost
+    courses = len(draft.sizes)
+    highest = highest_changed(draft, now.draft)
+    below = laid[-1].above if laid else on_ground(ground)
+    for course in range(lowest, courses):
+        posed, gap = draft.posed(course), draft.gaps[course]
+        laid.append(lay_course(poses, posed, gap, below, ground, rules, last=course == courses - 1))
+        below = laid[-1].above
+        cost += laid[-1].cost
         if cost > limit:
-            return cost, kept
-        start = draft.start(course)
-        stones = draft.order[start : start + draft.sizes[course]]
-        posed = [4 * stone + draft.turns[stone] for stone in stones]
-        last = course == len(draft.sizes) - 1
-        kept.append(lay_course(poses, posed, draft.gaps[course], below, ground, rules, last=last))
-        below = kept[-1].above
-        cost += kept[-1].cost
-    return cost + weighted(path_terms(kept, ground, rules), rules), kept
+            return None
+        if courses == len(now.laid):
+            was += now.laid[course].cost
+            if highest <= course < courses - 1 and cost - was > limit - now.cost + doubt:
+                return None
+    cost += weighted(path_terms(laid, ground, rules), rules)
+    return Built(draft, laid, outer, cost) if cost <= limit else None
+
+
+def highest_changed(draft: Draft, old: Draft) -> int:
+    """Return the highest course of a draft that an old one with as many courses has otherwise."""
+    courses = range(min(len(draft.sizes), len(old.sizes)))
+    changed = [
+        course
+        for course in courses
+        if draft.posed(course) != old.posed(course) or draft.gaps[course] != old.gaps[course]
+    ]
+    return max(changed, default=0)

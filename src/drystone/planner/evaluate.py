@@ -11,6 +11,7 @@ from drystone.indices.neighbour_height import left_neighbour, neighbour_height_r
 from drystone.indices.shape_factor import shape_factor
 from drystone.indices.values import Indices
 from drystone.model.landscape import Landscape, view_box
+from drystone.model.outlines import Outlined
 from drystone.model.placement import Placement
 from drystone.model.wall import outlined
 from drystone.planner.build import Build, Candidate, Proposal
@@ -21,8 +22,25 @@ from drystone.planner.sturdy import sturdy_model_with
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.contacts.blocks import model_with
 from drystone.statics.contacts.settled import model_with_outlines
+from drystone.statics.grown import Grown
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """A wall with one more stone, and what it carries.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Of the wall with the stone.
+    grown : Grown
+        Its resistance, and how that was found.
+    """
+
+    model: RigidBlockModel
+    grown: Grown
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,53 +73,87 @@ class Evaluator:
         proposal : Proposal
             The action.
         """
-        stabilised, analysis = proposal.stabilised, build.analysis
-        with self.profile.part("contacts"):
-            model = self._model(build, stabilised)
-        with self.profile.part("limit analysis"):
-            grown = analysis.resistance_with(model)
+        if build.wall.outlines is None:
+            return self.candidate(landscape, proposal, self._of_pixels(build, proposal.stabilised))
+        placement, wedges = proposal.stabilised.placement, proposal.stabilised.wedges
+        blocks = outlined(placement, wedges)
+        loaded = self.loaded(build, blocks)
+        return self.candidate(landscape, proposal, loaded, self.sturdily(build, blocks))
+
+    def candidate(
+        self, landscape: Landscape, proposal: Proposal, loaded: Loaded, sturdy: Loaded | None = None
+    ) -> Candidate:
+        """Return the candidate of a proposal of which it is known what the wall carries after it.
+
+        Parameters
+        ----------
+        landscape : Landscape
+            Of the wall before the action, seen from the side from which the stone is placed.
+        proposal : Proposal
+            The action.
+        loaded : Loaded
+            The wall after it.
+        sturdy : Loaded or None
+            Its sturdy model; None for pixels.
+        """
+        resistance = loaded.grown.resistance
         with self.profile.part("indices"):
             indices, course_height = action_indices(
                 landscape,
-                stabilised,
-                grown.resistance,
+                proposal.stabilised,
+                resistance,
                 proposal.course_height_px,
                 self.stock.narrowest_px,
             )
         candidate = Candidate(
-            proposal, indices, course_height, model, grown.resistance, grown.solved_cold,
-            failed=grown.resistance.failed,
+            proposal, indices, course_height, loaded.model, resistance, loaded.grown.solved_cold,
+            failed=resistance.failed,
         )  # fmt: skip
-        return self._sturdily(build, candidate)
-
-    def _sturdily(self, build: Build, candidate: Candidate) -> Candidate:
-        """Judge a wall of outlines by its sturdy model, too."""
-        outlines, analysis = build.wall.outlines, build.sturdy_analysis
-        if outlines is None or analysis is None:
+        if sturdy is None:
             return candidate
-        stabilised = candidate.stabilised
-        with self.profile.part("contacts"):
-            blocks = outlined(stabilised.placement, stabilised.wedges)
-            model = sturdy_model_with(analysis.model, blocks, outlines, self.settings.settle)
-        with self.profile.part("limit analysis"):
-            grown = analysis.resistance_with(model)
         return replace(
             candidate,
-            sturdy_model=model,
-            sturdy=grown.resistance.stable,
-            solved_cold=candidate.solved_cold or grown.solved_cold,
-            failed=candidate.failed or grown.resistance.failed,
+            sturdy_model=sturdy.model,
+            sturdy=sturdy.grown.resistance.stable,
+            solved_cold=candidate.solved_cold or sturdy.grown.solved_cold,
+            failed=candidate.failed or sturdy.grown.resistance.failed,
         )
 
-    def _model(self, build: Build, stabilised: Stabilised) -> RigidBlockModel:
-        """Return the model of the wall with an action done."""
+    def loaded(self, build: Build, blocks: list[Outlined]) -> Loaded:
+        """Return what a wall of outlines carries with a stone and its wedges.
+
+        Parameters
+        ----------
+        build : Build
+            The wall without them.
+        blocks : list of (int, (n, 2) float array)
+            Ids and outlines of the stone and its wedges, source px.
+        """
+        outlines, analysis = build.wall.outlines, build.analysis
+        assert outlines is not None  # noqa: S101 - its caller knows
+        with self.profile.part("contacts"):
+            tolerance_px = self.settings.settle.contact_px
+            model = model_with_outlines(analysis.model, blocks, outlines, tolerance_px)
+        with self.profile.part("limit analysis"):
+            return Loaded(model, analysis.resistance_with(model))
+
+    def sturdily(self, build: Build, blocks: list[Outlined]) -> Loaded | None:
+        """Return the same of its sturdy model; None when nothing is known of that of the wall."""
+        outlines, analysis = build.wall.outlines, build.sturdy_analysis
+        if outlines is None or analysis is None:
+            return None
+        with self.profile.part("contacts"):
+            model = sturdy_model_with(analysis.model, blocks, outlines, self.settings.settle)
+        with self.profile.part("limit analysis"):
+            return Loaded(model, analysis.resistance_with(model))
+
+    def _of_pixels(self, build: Build, stabilised: Stabilised) -> Loaded:
+        analysis, labels = build.analysis, build.wall.labels
         placement, wedges = stabilised.placement, stabilised.wedges
-        model, wall = build.analysis.model, build.wall
-        if wall.outlines is None:
-            return model_with(model, wall.labels, placement, wedges, build.points)
-        blocks = outlined(placement, wedges)
-        tolerance_px = self.settings.settle.contact_px
-        return model_with_outlines(model, blocks, wall.outlines, tolerance_px)
+        with self.profile.part("contacts"):
+            model = model_with(analysis.model, labels, placement, wedges, build.points)
+        with self.profile.part("limit analysis"):
+            return Loaded(model, analysis.resistance_with(model))
 
     def compared(self, landscape: Landscape, proposal: Proposal, judged: Candidate) -> Candidate:
         """Return a candidate that was judged before, compared with other candidates (Eq. 8)."""

@@ -159,6 +159,8 @@ def _fitted(wall: Wall, group: Group, number: int) -> Group | None:
     placement = _placed_again(wall.outlines, wall, group.placement)
     if placement is None:
         return None
+    if not group.wedges:
+        return Group(placement, ())
     outlines = wall.outlines.added(outlined(placement, ()), wall.site.scale)
     fitted: list[Wedge] = []
     for wedge in group.wedges:

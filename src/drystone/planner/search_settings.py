@@ -51,7 +51,8 @@ class SearchSettings:
     budget : int
         How many walls are built, the first one among them; 1 in the paper.
     passes : int
-        How many of them are first walls, from seed to seed; then the search goes on from the best.
+        How many of them at most are first walls, from seed to seed; then the search goes on from
+        the best.
     chains : int
         How many walls are improved side by side, each from its own.
     share_every : int

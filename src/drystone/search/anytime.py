@@ -17,7 +17,7 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.archive import archived
-from drystone.search.first_walls import batches, planned_share
+from drystone.search.first_walls import batches, planned_share, stale
 from drystone.search.found import Found
 from drystone.search.operators import Credits
 from drystone.search.packed import Packed
@@ -89,7 +89,9 @@ def searching(
     kept = archived((), found)
     yield Progress(1, start, start.solves, kept)
     for batch in batches(min(search.passes, search.budget)):
-        share = planned_share(found)
+        if stale(found):
+            break
+        share = planned_share(found, settings.geometry)
         for wall in _mapped(executor, one_pass, [(job, number, share) for number in batch]):
             if wall is None:
                 return

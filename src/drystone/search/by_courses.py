@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from itertools import pairwise
+from typing import Any, TypeVar
 
 from numpy.random import Generator
 
@@ -19,7 +20,15 @@ from drystone.search.courses import plan_courses, replan_courses
 from drystone.search.found import Courses, Found
 from drystone.search.laid_courses import LaidCourses
 from drystone.search.laying import lay
-from drystone.search.laying_settings import LayingSettings
+from drystone.search.laying_settings import LayingSettings, LetGoSettings, PutDownSettings
+from drystone.search.pixel_courses import (
+    pixel_extent,
+    plan_pixel_courses,
+    replan_pixel_courses,
+)
+from drystone.search.pixel_outlines import placed_outline
+
+Weighed = TypeVar("Weighed", LayingSettings, LetGoSettings, PutDownSettings)
 
 AGAIN = 0.3
 """Evaluations of a plan that is changed, over those of a new one."""
@@ -27,51 +36,76 @@ AGAIN = 0.3
 
 def newly_planned(workshop: Workshop, settings: PlannerSettings, rng: Generator) -> Found | None:
     """Plan a wall, and lay it; None when no stone can be planned."""
-    site = workshop.site
-    plan = plan_courses(
+    plan = _new_plan(workshop, settings, int(rng.integers(2**31)))
+    if plan is None:
+        return None
+    start = Planner(workshop.stones, workshop.site, settings=settings, workshop=workshop).build
+    return _laid(Courses(plan, (0,)), start, workshop, settings, LayingSettings(), rng)
+
+
+def _new_plan(workshop: Workshop, settings: PlannerSettings, seed: int) -> CoursePlan | None:
+    if settings.geometry == "raster":
+        return plan_pixel_courses(workshop, CourseSettings(), seed, pinned=settings.pin)
+    return plan_courses(
         [workshop.stones.by_id(i) for i in workshop.fitting],
-        *site.extent_px,
-        1.0 / site.scale,
+        *workshop.site.extent_px,
+        1.0 / workshop.site.scale,
         settings.settle.outline_px,
         CourseSettings(),
-        int(rng.integers(2**31)),
+        seed,
         book=workshop.book,
         pinned=settings.pin,
     )
-    if plan is None:
-        return None
-    start = Planner(workshop.stones, site, settings=settings, workshop=workshop).build
-    return _laid(Courses(plan, (0,)), start, workshop, settings, LayingSettings(), rng)
 
 
 def replanned(
     found: Found, workshop: Workshop, settings: PlannerSettings, rng: Generator
 ) -> Found | None:
     """Plan the upper courses of a wall again, and lay them; None when nothing can be planned."""
-    courses, site = found.courses, workshop.site
+    courses = found.courses
     assert courses is not None  # noqa: S101 - its caller looked
     kept = int(rng.integers(len(courses.ends) - 1))
     start = found.build.states()[courses.ends[kept]]
-    settings_of_plan = CourseSettings()
-    quick = replace(settings_of_plan, evaluations=round(AGAIN * settings_of_plan.evaluations))
-    outlines = _outlines(start, courses.ends[: kept + 1])
-    plan = replan_courses(
-        courses.plan,
+    ends = courses.ends[: kept + 1]
+    plan = _upper_plan(courses.plan, start, ends, workshop, settings, int(rng.integers(2**31)))
+    if plan is None:
+        return None
+    begun = Courses(_each_once(plan, kept), ends)
+    return _laid(begun, start, workshop, settings, LayingSettings(), rng)
+
+
+def _upper_plan(
+    plan: CoursePlan,
+    start: Build,
+    ends: Sequence[int],
+    workshop: Workshop,
+    settings: PlannerSettings,
+    seed: int,
+) -> CoursePlan | None:
+    """Plan what goes on top of the courses that are laid."""
+    kept, known, left = len(ends) - 1, CourseSettings(), workshop.remaining(start)
+    quick = replace(known, evaluations=round(AGAIN * known.evaluations))
+    outlines = _outlines(start, ends)
+    cell_px = 1.0 / workshop.site.scale
+    if settings.geometry == "raster":
+        laid = LaidCourses.of(outlines, pixel_extent(workshop.site)[0], cell_px)
+        return replan_pixel_courses(
+            plan, kept, left, workshop, quick, seed, laid=laid, pinned=settings.pin
+        )
+    extent = workshop.site.extent_px
+    return replan_courses(
+        plan,
         kept,
-        [workshop.stones.by_id(i) for i in workshop.remaining(start)],
-        *site.extent_px,
-        1.0 / site.scale,
+        [workshop.stones.by_id(i) for i in left],
+        *extent,
+        cell_px,
         settings.settle.outline_px,
         settings=quick,
-        seed=int(rng.integers(2**31)),
-        laid=LaidCourses.of(outlines, site.extent_px[0], 1.0 / site.scale),
+        seed=seed,
+        laid=LaidCourses.of(outlines, extent[0], cell_px),
         book=workshop.book,
         pinned=settings.pin,
     )
-    if plan is None:
-        return None
-    begun = Courses(_each_once(plan, kept), courses.ends[: kept + 1])
-    return _laid(begun, start, workshop, settings, LayingSettings(), rng)
 
 
 def _each_once(plan: CoursePlan, kept: int) -> CoursePlan:
@@ -91,7 +125,7 @@ def relaid(found: Found, workshop: Workshop, settings: PlannerSettings, rng: Gen
     kept = int(rng.integers(len(courses.ends) - 1))
     start = found.build.states()[courses.ends[kept]]
     begun = Courses(courses.plan, courses.ends[: kept + 1])
-    laying = _varied(LayingSettings(), settings.search.spread, rng)
+    laying = _varied(LayingSettings(), settings, rng)
     return _laid(begun, start, workshop, settings, laying, rng)
 
 
@@ -113,22 +147,30 @@ def _laid(
 
 def _outlines(build: Build, ends: Sequence[int]) -> list[list[Points]]:
     """Return the outlines of the stones of the courses that are laid, the lowest first."""
-    settled = [placement.settled for placement in build.wall.placements]
-    corners = [one.corners for one in settled if one is not None]
-    return [corners[start:end] for start, end in pairwise(ends)]
+    height_px = build.wall.site.height_px
+    outlines = [
+        placed_outline(placement, height_px)
+        if placement.settled is None
+        else placement.settled.corners
+        for placement in build.wall.placements
+    ]
+    return [outlines[start:end] for start, end in pairwise(ends)]
 
 
-def _varied(laying: LayingSettings, spread: float, rng: Generator) -> LayingSettings:
-    """Return settings with every weight multiplied by a random factor."""
+def _varied(laying: LayingSettings, settings: PlannerSettings, rng: Generator) -> LayingSettings:
+    """Return settings with every weight of a geometry multiplied by a random factor."""
+    spread = settings.search.spread
+    if settings.geometry == "raster":
+        weights = ("top", "width", "void", "turn", "wedge", "llc")
+        return replace(laying, put_down=_drawn(laying.put_down, weights, spread, rng))
     weights = ("apart", "top", "width", "turn", "rest", "wedge")
-    known = {field.name for field in fields(laying.let_go)}
-    drawn = {
-        name: getattr(laying.let_go, name) * math.exp(spread * rng.normal())
-        for name in weights
-        if name in known
+    let_go = _drawn(laying.let_go, weights, spread, rng)
+    return replace(_drawn(laying, ("llc",), spread, rng), let_go=let_go)
+
+
+def _drawn(weighed: Weighed, names: Sequence[str], spread: float, rng: Generator) -> Weighed:
+    """Multiply weights by random factors."""
+    drawn: dict[str, Any] = {
+        name: getattr(weighed, name) * math.exp(spread * rng.normal()) for name in names
     }
-    return replace(
-        laying,
-        llc=laying.llc * math.exp(spread * rng.normal()),
-        let_go=replace(laying.let_go, **drawn),
-    )
+    return replace(weighed, **drawn)

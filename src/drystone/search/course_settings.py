@@ -61,6 +61,9 @@ class CourseSettings:
         See there.
     temperature, coldest : float
         At the start and at the end.
+    doubt : float
+        A changed plan is given up when, up to the highest course that changed or one above it, it
+        costs more by this than it may: what is above seldom makes up for it.
     again : float
         Temperature at which upper courses are planned again, over the first one.
     """
@@ -86,11 +89,12 @@ class CourseSettings:
     down: float = 0.012
     target: float = 100.0
     apart: float = 0.01
-    evaluations: int = 5_000
+    evaluations: int = 1_500
     most_evaluations: int = 1_000_000
-    temperature: float = 2.0
+    temperature: float = 6.0
     coldest: float = 0.05
-    again: float = 0.3
+    doubt: float = 2.0
+    again: float = 0.035
 
     def __post_init__(self) -> None:
         numbers = [getattr(self, item.name) for item in fields(self)]

@@ -223,7 +223,8 @@ def annealed(
 ) -> CoursePlan:
     """Anneal an arrangement, and say where its stones lie in the wall frame."""
     count = min(settings.evaluations * stones, settings.most_evaluations)
-    cooling = Cooling(count, temperature, (settings.coldest / temperature) ** (1.0 / count), seed)
+    factor = (settings.coldest / temperature) ** (1.0 / count)
+    cooling = Cooling(count, temperature, factor, seed, settings.doubt)
     poses = task.quarters.poses
     plan, _ = anneal(poses, start, task.ground, task.rules, cooling)
     return placed(task, plan, evaluate(poses, plan, task.ground, task.rules))

@@ -1,4 +1,4 @@
-"""Which of the first walls of a search are planned course by course: more, the better they do."""
+"""The first walls of a search: how many, and which of them are planned course by course."""
 
 from collections.abc import Iterator, Sequence
 
@@ -7,9 +7,15 @@ from drystone.search.packed import Packed
 BATCH = 4
 """Walls after which it is looked how the planned ones do: however many processes there are."""
 
-SHARE, WEIGHT = 0.75, 2.0
-"""The share of the first walls that are planned before anything is known, and for how many walls
-that counts."""
+SHARE = {"exact": 0.75, "raster": 0.9}
+"""The share of the first walls that are planned before anything is known, on each geometry: a pass
+on pixels takes as long as eight plans."""
+
+WEIGHT = 2.0
+"""For how many walls that counts."""
+
+STALE = 8
+"""After so many first walls that are not better than one that was not planned there are no more."""
 
 
 def batches(count: int) -> Iterator[range]:
@@ -24,7 +30,16 @@ def batches(count: int) -> Iterator[range]:
         yield range(max(1, start), min(start + BATCH, count))
 
 
-def planned_share(found: Sequence[Packed]) -> float:
+def stale(found: Sequence[Packed]) -> bool:
+    """Say whether it is time to improve the best wall, as the last were none better.
+
+    A planned wall is improved less than other plans may win: further first walls are looked at.
+    """
+    best = max(range(len(found)), key=lambda k: (found[k].merit, -k))
+    return found[best].courses is None and len(found) - 1 - best >= STALE
+
+
+def planned_share(found: Sequence[Packed], geometry: str) -> float:
     """Return the share of the next walls that are planned: that of the better half so far.
 
     On stones of masons plans win; stones with many corners are laid too unlike their plans.
@@ -33,6 +48,8 @@ def planned_share(found: Sequence[Packed]) -> float:
     ----------
     found : sequence of Packed
         All first walls so far.
+    geometry : {"exact", "raster"}
+        Of their stones.
 
     Returns
     -------
@@ -42,4 +59,4 @@ def planned_share(found: Sequence[Packed]) -> float:
     order = sorted(range(len(found)), key=lambda k: (-found[k].merit, k))
     better = [found[k] for k in order[: (len(found) + 1) // 2]] if len(found) > 1 else []
     planned = sum(wall.courses is not None for wall in better)
-    return (planned + SHARE * WEIGHT) / (len(better) + WEIGHT)
+    return (planned + SHARE[geometry] * WEIGHT) / (len(better) + WEIGHT)

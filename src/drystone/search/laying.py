@@ -1,11 +1,11 @@
-"""Laying a course plan, stone by stone, on exact outlines.
+"""Laying a course plan, stone by stone, on exact outlines or on pixels.
 
 A plan knows height profiles only.  Here each stone is let go near its planned place, pushed to the
 neighbour on its side of the course, and of all places where it rests one is taken that is near the
 plan, keeps the course's width, and leaves a wall that stands.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from drystone.planner.build import Build
@@ -14,7 +14,12 @@ from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.course_plan import CoursePlan, PlannedStone
 from drystone.search.laying_settings import LayingSettings
-from drystone.search.mason import LAID, Mason, Outcome
+from drystone.search.mason import Mason
+from drystone.search.one_course import LAID, Outcome
+from drystone.search.pixel_mason import PixelMason
+
+Layer = Callable[[Build, Sequence[PlannedStone]], tuple[Build, tuple[Outcome, ...]]]
+"""Lays a course on a wall, and says what became of its stones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +75,7 @@ def lay(
     plan : CoursePlan
         Of the workshop's stones; those that are in the wall already are passed over.
     build : Build
-        To go on from, of exact outlines.
+        To go on from, in the geometry of the settings.
     workshop : Workshop
         Stones and site.
     settings : PlannerSettings
@@ -78,8 +83,8 @@ def lay(
     laying : LayingSettings, optional
         How the plan is laid.
     """
-    mason = Mason.of(workshop, settings, laying or LayingSettings())
-    return _go_on(Laid((build,), ()), plan.courses, mason)
+    layer = _layer(workshop, settings, laying or LayingSettings())
+    return _go_on(Laid((build,), ()), plan.courses, layer)
 
 
 def relaid(
@@ -111,15 +116,23 @@ def relaid(
     if not 0 <= kept <= len(laid.courses):
         raise ValueError(f"{kept} of {len(laid.courses)} courses cannot stay")
     prefix = Laid(laid.states[: kept + 1], laid.courses[:kept])
-    mason = Mason.of(workshop, settings, laying or LayingSettings())
-    return _go_on(prefix, plan.courses[kept:], mason)
+    layer = _layer(workshop, settings, laying or LayingSettings())
+    return _go_on(prefix, plan.courses[kept:], layer)
 
 
-def _go_on(laid: Laid, courses: Sequence[tuple[PlannedStone, ...]], mason: Mason) -> Laid:
-    states, outcomes = list(laid.states), list(laid.courses)
+def _layer(workshop: Workshop, settings: PlannerSettings, laying: LayingSettings) -> Layer:
+    """Return who lays courses in the geometry of a wall."""
+    if settings.geometry == "raster":
+        return PixelMason.of(workshop, settings, laying).course
+    mason = Mason.of(workshop, settings, laying)
     views = mason.views()
+    return lambda build, course: mason.course(build, course, views)
+
+
+def _go_on(laid: Laid, courses: Sequence[tuple[PlannedStone, ...]], layer: Layer) -> Laid:
+    states, outcomes = list(laid.states), list(laid.courses)
     for course in courses:
-        build, became = mason.course(states[-1], course, views)
+        build, became = layer(states[-1], course)
         states.append(build)
         outcomes.append(became)
     return Laid(tuple(states), tuple(outcomes))

@@ -17,6 +17,10 @@ class LetGoSettings:
         From how many places a stone is let go in each pose.
     apart : float
         Least distance between these, over the stone's size (the root of its area).
+    spread : float
+        The same of a stone that may be laid anywhere along the wall.
+    enough : int
+        A stone is let go from no more places in a pose once it rests in so many near the plan.
     reach : float
         How far beside its planned place a stone is let go, over its size.
     astray : float
@@ -36,6 +40,8 @@ class LetGoSettings:
     column_px: float = 1.0
     starts: int = 5
     apart: float = 0.03
+    spread: float = 0.3
+    enough: int = 3
     reach: float = 0.5
     astray: float = 0.5
     top: float = 1.0
@@ -45,10 +51,50 @@ class LetGoSettings:
     wedge: float = 0.2
 
     def __post_init__(self) -> None:
-        if not self.column_px > 0 or self.starts < 1 or not self.astray > 0:
-            raise ValueError("column_px, starts and astray must be positive")
+        if not self.column_px > 0 or min(self.starts, self.enough) < 1 or not self.astray > 0:
+            raise ValueError("column_px, starts, enough and astray must be positive")
         weights = (self.top, self.width, self.turn, self.rest, self.wedge)
-        if min(self.apart, self.reach, *weights) < 0:
+        if min(self.apart, self.spread, self.reach, *weights) < 0:
+            raise ValueError("distances and weights must not be negative")
+
+
+@dataclass(frozen=True, kw_only=True)
+class PutDownSettings:
+    """Where a planned stone of pixels is put down, and what it costs to lie elsewhere than planned.
+
+    Costs are sums of these weights; heights and widths are shares of the mean stone height.
+
+    Parameters
+    ----------
+    places : int
+        At how many places a stone is put down in each pose.
+    reach, astray, top, width, turn, wedge
+        As for :class:`LetGoSettings`.
+    void : float
+        Cost of a void below as large as the stone.
+    analysed, judged, llc
+        As for :class:`LayingSettings`.
+    """
+
+    places: int = 8
+    reach: float = 0.5
+    astray: float = 0.5
+    top: float = 1.0
+    width: float = 2.0
+    void: float = 1.0
+    turn: float = 0.3
+    wedge: float = 0.2
+    analysed: int = 4
+    judged: int = 8
+    llc: float = 3.0
+
+    def __post_init__(self) -> None:
+        if self.places < 1 or not self.astray > 0:
+            raise ValueError("places and astray must be positive")
+        if not 1 <= self.analysed <= self.judged:
+            raise ValueError("analysed must be positive, and judged not less")
+        weights = (self.top, self.width, self.void, self.turn, self.wedge, self.llc)
+        if min(self.reach, *weights) < 0:
             raise ValueError("distances and weights must not be negative")
 
 
@@ -60,6 +106,8 @@ class LayingSettings:
     ----------
     let_go : LetGoSettings
         From where stones are let go, and what it costs to rest elsewhere than planned.
+    put_down : PutDownSettings
+        The same of stones that are pixels, with what follows here for those on outlines.
     analysed : int
         How many of the cheapest places after which the wall stands are compared by LLC.
     judged : int
@@ -69,6 +117,7 @@ class LayingSettings:
     """
 
     let_go: LetGoSettings = field(default_factory=LetGoSettings)
+    put_down: PutDownSettings = field(default_factory=PutDownSettings)
     analysed: int = 6
     judged: int = 10
     llc: float = 3.0

@@ -1,7 +1,7 @@
 """Letting a planned stone go near its place: from where, and where it comes to rest."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,13 +9,12 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import Floats, StoneProfile, hanging
-from drystone.kernels.settling import Status
 from drystone.search.laying_settings import LetGoSettings
 from drystone.search.views import View
-from drystone.settle.rest import Repose, Turned, let_go, repose, ways
+from drystone.settle.rest import Repose, Turned, repose, rests, touch_down
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import WedgeLimits
-from drystone.settle.wedged import wedged
+from drystone.settle.wedged import held
 from drystone.stabilise.settings import Method
 
 Place = tuple[float, float]
@@ -117,7 +116,8 @@ class Hand:
         cost = self._place_cost(left, lift + profile.top, aim)
         # It may go down further as it settles, but not up.
         cost[lift + profile.top > aim.top_px + settings.astray * aim.unit_px] = np.inf
-        apart = max(1, math.ceil(settings.apart * stone.size_px / column_px))
+        least = settings.apart if aim.left_px is not None else settings.spread
+        apart = max(1, math.ceil(least * stone.size_px / column_px))
         found: list[Place] = []
         while len(found) < settings.starts:
             at = int(cost.argmin())
@@ -160,34 +160,45 @@ class Hand:
         starts : sequence of (float, float)
             From where.
         """
-        found = [
-            Resting(one, None, self._cost(one, view, aim))
-            for start in starts
-            for one in self._settled(stone, view, start)
-        ]
-        if not found and self.method in ("both", "wedge"):
-            held = [wedged(stone, view.scene, start, self.settle, self.limits) for start in starts]
-            found = [
-                Resting(
-                    one.repose, one.wedge, self._cost(one.repose, view, aim) + self.settings.wedge
-                )
-                for one in held
-                if one is not None
-            ]
-        different: dict[tuple[int, int, int], Resting] = {}
-        for one in found:
-            if one.cost < math.inf:
-                different.setdefault(_place(one.repose), one)
-        # Costs that differ by rounding are equal; then the earlier start goes first.
-        return sorted(different.values(), key=lambda one: round(one.cost, 9))
-
-    def _settled(self, stone: Turned, view: View, start: Place) -> Iterator[Repose]:
-        """Let a stone go from a start in all ways, and say where it rests."""
         turns = self.method in ("both", "rotation")
-        for rules in ways(stone, view.scene, self.settle, turns=turns):
-            found = let_go(stone, view.scene, start, rules)
-            if found.status == Status.RESTS and found.margin >= self.settle.margin:
-                yield repose(stone, view.scene, found)
+        settled = (
+            [
+                repose(stone, view.scene, found)
+                for found in rests(stone, view.scene, start, self.settle, turns=turns)
+            ]
+            for start in starts
+        )
+        found = self._cheapest(settled, self.settings.enough, view, aim)
+        if found or self.method not in ("both", "wedge"):
+            return found
+        lowered = (touch_down(stone, view.scene, start, self.settle) for start in starts)
+        there = ([] if one is None else [one] for one in lowered)
+        return list(self._wedged(self._cheapest(there, math.inf, view, aim), view))
+
+    def _cheapest(
+        self, found: Iterable[list[Repose]], enough: float, view: View, aim: Aim
+    ) -> list[Resting]:
+        """Return the different places near the plan, the cheapest first.
+
+        Start after start is looked at until there are enough of them.
+        """
+        near: dict[tuple[int, int, int], Resting] = {}
+        for of_start in found:
+            for one in of_start:
+                cost = self._cost(one, view, aim)
+                if cost < math.inf:
+                    near.setdefault(_place(one), Resting(one, None, cost))
+            if len(near) >= enough:
+                break
+        # Costs that differ by rounding are equal; then the earlier start goes first.
+        return sorted(near.values(), key=lambda one: round(one.cost, 9))
+
+    def _wedged(self, places: Iterable[Resting], view: View) -> Iterator[Resting]:
+        """Wedge a stone where it was lowered, and list where that holds it."""
+        for place in places:
+            found = held(place.repose, view.scene, self.limits)
+            if found is not None:
+                yield Resting(found.repose, found.wedge, place.cost + self.settings.wedge)
 
     def _cost(self, found: Repose, view: View, aim: Aim) -> float:
         """Return what it costs to rest somewhere; infinite where it is far from the plan."""

@@ -5,26 +5,31 @@ does so only if the mechanism in which the wall fails would close it, or slide a
 opening it as much as friction asks for.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate
 
 import numpy as np
+from numpy.typing import NDArray
 
+from drystone.kernels.meetings import meetings
 from drystone.kernels.polygons import Points, area_and_centroid
-from drystone.model.wall import Wall
 from drystone.settle.wedge import WedgeLimits, rests, wedges_below
-from drystone.statics.model import GROUND, Interface, RigidBlockModel
-from drystone.statics.result import Mechanism
+from drystone.statics.contacts.settled import PlacedPolygons
+from drystone.statics.model import GROUND
 
-MOST_UNDER_ONE = 2
-"""Wedges under one stone; ids are left for so many (:mod:`drystone.planner.workshop`)."""
+Ids = NDArray[np.int64]
+Twist = tuple[float, float, float]
+"""How a block moves: velocity of its point at the origin of the wall frame, rate of turning."""
+
+STILL: Twist = (0.0, 0.0, 0.0)
+SLOW = 1e-9
+"""What moves no faster than this stands still; the fastest block has a velocity of 1."""
 
 
 @dataclass(frozen=True, eq=False)
 class WedgePlace:
-    """A wedge that has room in a finished wall.
+    """A wedge that has room in a finished wall, and what it would touch.
 
     Parameters
     ----------
@@ -32,38 +37,69 @@ class WedgePlace:
         Which step places the stone that would lie on it.
     corners : (n, 2) float array
         Its outline in the wall frame, counter-clockwise, source px.
+    others : (m,) int array
+        At each contact point, the id of the block that it touches; GROUND for the ground.
+    points, normals : (m, 2) float arrays
+        The contact points, and unit vectors into the wedge.
     """
 
     step: int
     corners: Points
+    others: Ids
+    points: Points
+    normals: Points
+
+    @classmethod
+    def of(
+        cls, step: int, corners: Points, placed: PlacedPolygons, contact_px: float
+    ) -> "WedgePlace":
+        """Find what a wedge touches of all blocks of a wall."""
+        found = meetings(corners, placed.polygons, contact_px)
+        ids = [placed.ids[other] if other >= 0 else GROUND for other in found.others.tolist()]
+        # A contact at a point comes twice, which changes no rate.
+        return cls(
+            step,
+            corners,
+            np.repeat(np.array(ids, np.int64), 2),
+            found.points.reshape(-1, 2),
+            np.repeat(found.normals, 2, axis=0),
+        )
 
     @cached_property
     def area_px(self) -> float:
         """Its area, square source px."""
         return area_and_centroid(self.corners)[0]
 
+    @cached_property
+    def carriers(self) -> Ids:
+        """Ids of what it touches, each once, ascending."""
+        return np.unique(self.others)
 
-def wedge_places(wall: Wall, limits: WedgeLimits) -> Iterator[WedgePlace]:
-    """List wedges under the stones of a wall.
+
+def wedge_places(
+    placed: PlacedPolygons, step: int, first: int, width: float, limits: WedgeLimits
+) -> Iterator[WedgePlace]:
+    """List wedges under a stone of a wall.
 
     They overlap nothing that is there, and rest on what was there before the stone.
 
     Parameters
     ----------
-    wall : Wall
-        Of outlines.
+    placed : PlacedPolygons
+        All blocks of the wall, in the order of construction.
+    step : int
+        Which step places the stone.
+    first : int
+        Which of the blocks is the stone.
+    width : float
+        Of the wall.
     limits : WedgeLimits
         What a wedge may be.
     """
-    assert wall.outlines is not None  # noqa: S101 - for walls of outlines only
-    polygons, width = wall.outlines.polygons, wall.site.extent_px[0]
-    firsts = accumulate((1 + len(group.wedges) for group in wall.groups), initial=0)
-    for step, (group, first) in enumerate(zip(wall.groups, firsts, strict=False)):
-        if len(group.wedges) >= MOST_UNDER_ONE:
-            continue
-        for corners in wedges_below(polygons, first, limits):
-            if rests(corners, polygons.leading(first), width, limits):
-                yield WedgePlace(step, corners)
+    before = placed.polygons.leading(first)
+    for corners in wedges_below(placed.polygons, first, limits):
+        if rests(corners, before, width, limits):
+            yield WedgePlace.of(step, corners, placed, limits.contact_px)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,57 +108,68 @@ class Motion:
 
     Parameters
     ----------
-    model : RigidBlockModel
-        The wall.
-    mechanism : Mechanism
-        Of its failure.
+    twists : mapping of int to (float, float, float)
+        Of all blocks, by id, and of the ground.
+    mu : float
+        Coefficient of friction.
     """
 
-    model: RigidBlockModel
-    mechanism: Mechanism
+    twists: Mapping[int, Twist]
+    mu: float
 
-    def at(self, block: int, points: Points) -> Points:
-        """Return the velocity of a block at some points; the ground stays."""
-        if block == GROUND or block not in self.mechanism.block_ids:
-            return np.zeros_like(points)
-        row = self.mechanism.block_ids.index(block)
-        x, y, turning = self.mechanism.velocity[row].tolist()
-        arm = points - self._centroids[block]
-        return np.column_stack([x - turning * arm[:, 1], y + turning * arm[:, 0]])
+    @classmethod
+    def of(
+        cls,
+        velocity: Mapping[int, Sequence[float]],
+        centroids: Mapping[int, tuple[float, float]],
+        mu: float,
+    ) -> "Motion":
+        """Make it of the velocities of centroids and the rates of turning of the free blocks."""
+        twists = {GROUND: STILL}
+        for block, (x, y) in centroids.items():
+            along, up, turning = velocity.get(block, STILL)
+            twists[block] = (along + turning * y, up - turning * x, turning)
+        return cls(twists, mu)
 
-    @cached_property
-    def _centroids(self) -> dict[int, tuple[float, float]]:
-        return {block.id: block.centroid for block in self.model.blocks}
+    def stands_still(self, blocks: Sequence[int]) -> bool:
+        """Say whether none of some blocks moves: nothing between them matters."""
+        return all(max(map(abs, self.twists[block])) <= SLOW for block in blocks)
 
-    def resisted_by(self, wedge: int, interfaces: Sequence[Interface]) -> float:
-        """Return how fast the mechanism violates the contacts of a wedge.
+    def resisted_by(self, places: Sequence[WedgePlace]) -> NDArray[np.float64]:
+        """Return how fast the mechanism violates the contacts of wedges.
 
         Parameters
         ----------
-        wedge : int
-            Its id.
-        interfaces : sequence of Interface
-            All between it and what it touches, normals into it.
+        places : sequence of WedgePlace
+            The wedges.
 
         Returns
         -------
-        rate : float
-            At the point where it is violated most, when the wedge moves along with the one of its
-            neighbours with which it is violated least.  0 or less: the wall fails as it did.
+        rates : (k,) float array
+            Of each at the point where it is violated most, when the wedge moves along with the
+            one of its neighbours with which it is violated least.  0: the wall fails as it did.
         """
-        others = {interface.other for interface in interfaces}
-        assert all(interface.block == wedge for interface in interfaces)  # noqa: S101
-        return min((self._violated(carrier, interfaces) for carrier in sorted(others)), default=0.0)
+        rates = np.zeros(len(places))
+        touching = [k for k, place in enumerate(places) if len(place.others)]
+        if not touching:
+            return rates
+        met = [places[k] for k in touching]
+        counts = np.array([len(place.carriers) for place in met])
+        sizes = np.repeat([len(place.others) for place in met], counts)
+        # One row for every contact point of a wedge and every neighbour that it moves along with.
+        others = np.concatenate([np.tile(place.others, len(place.carriers)) for place in met])
+        carriers = np.repeat(np.concatenate([place.carriers for place in met]), sizes)
+        x, y = np.concatenate([np.tile(place.points, (len(place.carriers), 1)) for place in met]).T
+        out_x, out_y = np.concatenate(
+            [np.tile(place.normals, (len(place.carriers), 1)) for place in met]
+        ).T
+        along, up, turning = (self._rows(carriers) - self._rows(others)).T
+        along, up = along - turning * y, up + turning * x
+        needed = self.mu * np.abs(along * out_y - up * out_x) - (along * out_x + up * out_y)
+        worst = np.maximum.reduceat(needed, np.cumsum(sizes) - sizes)
+        rates[touching] = np.minimum.reduceat(worst, np.cumsum(counts) - counts).clip(0.0)
+        return rates
 
-    def _violated(self, carrier: int, interfaces: Sequence[Interface]) -> float:
-        """Return how fast contacts are violated by a block that moves along with another."""
-        worst = 0.0
-        for interface in interfaces:
-            points = interface.points
-            apart = self.at(carrier, points) - self.at(interface.other, points)
-            x, y = interface.normal
-            opening = apart[:, 0] * x + apart[:, 1] * y
-            sliding = np.abs(apart[:, 0] * y - apart[:, 1] * x)
-            needed = self.model.friction(interface) * sliding - opening
-            worst = max(worst, float(needed.max()))
-        return worst
+    def _rows(self, blocks: Ids) -> NDArray[np.float64]:
+        ids, where = np.unique(blocks, return_inverse=True)
+        return np.array([self.twists[block] for block in ids.tolist()])[where]

@@ -1,26 +1,26 @@
-"""Small wedges in the gaps of a finished wall, where they raise its lateral resistance most."""
+"""Small wedges in the gaps of a finished wall, where they raise its lateral resistance most.
+
+They are tried in a draft of the wall (:mod:`drystone.search.wedge_draft`), which stands as a whole;
+then all steps above the lowest one are taken again with all of them.  Where that fails they are
+added one after the other, and the one that cannot be is barred from the next draft.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from drystone.kernels.polygons import Points
 from drystone.model.placement import Wedge
-from drystone.model.wall import Group, outlined
+from drystone.model.wall import Group
 from drystone.planner.build import Build
 from drystone.planner.replay import replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
-from drystone.search.wedge_places import Motion, WedgePlace, wedge_places
+from drystone.search.wedge_draft import Draft
+from drystone.search.wedge_places import Motion, WedgePlace
 from drystone.settle.wedge import WedgeLimits
-from drystone.statics.contacts.settled import (
-    PlacedPolygons,
-    model_of_outlines,
-    model_with_outlines,
-)
-from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LateralResistance
 
 LEAST = 0.003
 """A wedge is added when the weaker direction gains so much, in F_LR."""
@@ -31,10 +31,41 @@ SAME = 1e-7
 ANALYSED = 24
 """Most wedges of a round that are analysed: those that the mechanism violates most."""
 
-REPLAYED = 4
-"""Most of these with which the steps are taken again."""
+DRAFTS = 4
+"""Most drafts of a wall; each but the last had a wedge with which the steps cannot be taken."""
 
 NOTHING = np.zeros((0, 0), bool)
+
+Barred = frozenset[tuple[int, bytes]]
+"""Steps and outlines of wedges with which the wall does not stand after every step."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Change:
+    """A wedge more or less.
+
+    Parameters
+    ----------
+    step : int
+        Which step places the stone on it.
+    corners : (n, 2) float array
+        Its outline; that of the very wedge of the wall if it is dropped.
+    dropped : bool
+        Whether it is dropped, not added.
+    """
+
+    step: int
+    corners: Points
+    dropped: bool = False
+
+    def of(self, group: Group) -> Group:
+        """Return the step with the change."""
+        if self.dropped:
+            wedges = tuple(wedge for wedge in group.wedges if wedge.corners is not self.corners)
+        else:
+            new = Wedge(0, group.placement.stone_id, NOTHING, 0, 0, self.corners)
+            wedges = (*group.wedges, new)
+        return Group(group.placement, wedges)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,11 +84,22 @@ class _Yard:
         )
         return None if left_out else build
 
-    def from_step(self, build: Build, step: int, wedges: tuple[Wedge, ...]) -> Build | None:
-        """Return a wall that has other wedges in one step; None when it would not stand."""
-        groups = build.wall.groups[step:]
-        changed = Group(groups[0].placement, wedges)
-        return self.again(build.states()[step], (changed, *groups[1:]))
+    def changed(self, build: Build, changes: Sequence[_Change]) -> Build | None:
+        """Return a wall with all changes; None when it would not stand."""
+        if not changes:
+            return build
+        groups = list(build.wall.groups)
+        for change in changes:
+            groups[change.step] = change.of(groups[change.step])
+        first = min(change.step for change in changes)
+        return self.again(build.states()[first], groups[first:])
+
+    def one_by_one(self, build: Build, changes: Sequence[_Change]) -> Iterator[Build | None]:
+        """Make changes one after the other; None for each that is not made."""
+        for change in changes:
+            wall = self.changed(build, [change])
+            yield wall
+            build = build if wall is None else wall
 
 
 def wedged_up(
@@ -98,10 +140,18 @@ def wedged_up(
     begun = _with_states(build, yard)
     if begun is None or not begun.actions:
         return build
-    wall, added = begun, 0
-    while added < most and (better := _with_one_more(wall, yard)) is not None:
-        wall, added = better, added + 1
-    wall = _without_needless(wall, yard)
+    wall, barred = begun, Barred()
+    for _ in range(DRAFTS):
+        added, dropped = _drafted(wall, yard, most, barred)
+        better = _with_all(wall, added, dropped, yard)
+        if better is not None:
+            wall = better
+            break
+        for change, one in zip(added, yard.one_by_one(wall, added), strict=True):
+            if one is None:
+                barred |= {(change.step, change.corners.tobytes())}
+                break
+            wall, most = one, most - 1
     return build if wall is begun else wall
 
 
@@ -114,108 +164,110 @@ def _with_states(build: Build, yard: _Yard) -> Build | None:
     return yard.again(empty, build.wall.groups)
 
 
-def _value(build: Build) -> float:
-    return build.actions[-1].resistance.value or 0.0
+def _with_all(
+    build: Build, added: Sequence[_Change], dropped: Sequence[_Change], yard: _Yard
+) -> Build | None:
+    """Return a wall with wedges added and dropped; None when it does not stand with them.
+
+    What cannot be dropped stays.
+    """
+    wall = yard.changed(build, [*added, *dropped])
+    if wall is not None or not dropped:
+        return wall
+    wall = yard.changed(build, added)
+    if wall is None:
+        return None
+    return [wall, *filter(None, yard.one_by_one(wall, dropped))][-1]
 
 
-def _with_one_more(build: Build, yard: _Yard) -> Build | None:
-    """Return the wall with one more wedge, the best that it can stand with; None: none helps."""
-    weaker = _weaker(build.actions[-1].resistance)
-    before = _shares(build.actions[-1].resistance, weaker)
-    worth: list[tuple[float, float, WedgePlace]] = []
-    for place, model in _resisting(build, yard):
-        after = _shares(build.analysis.resistance_with(model).resistance, weaker)
-        if after[1] >= before[1] + LEAST and after[0] >= before[0] - SAME:
-            worth.append((*after, place))
+def _drafted(
+    build: Build, yard: _Yard, most: int, barred: Barred
+) -> tuple[list[_Change], list[_Change]]:
+    """Return which wedges a wall should get, the most useful first, and which it does not need."""
+    draft = Draft.of(build, yard.limits)
+    number = yard.workshop.next_wedge(build)
+    while len(draft.added) < most:
+        better = _with_one_more(draft, number + len(draft.added), barred)
+        if better is None:
+            break
+        draft = better
+    return _needed(build, draft, yard)
+
+
+def _with_one_more(draft: Draft, number: int, barred: Barred) -> Draft | None:
+    """Return a draft with one more wedge, the best one; None when none helps."""
+    value, mu = draft.resistance.value, draft.resistance.mu
+    if value is None:  # the solver gave up: it stood when it was built
+        return None
+    weaker = draft.weaker
+    motion = draft.motion(weaker)
+    if motion is None:
+        return None
+    draft = draft.looked_at(motion)
+    worth: list[tuple[float, float, WedgePlace, RigidBlockModel]] = []
+    for place in _resisting(draft, motion, barred):
+        model = draft.model_with(number, place)
+        gained = draft.alpha_with(model, weaker) / mu
+        if gained < value + LEAST:
+            continue
+        after = min(gained, draft.alpha_with(model, "right" if weaker == "left" else "left") / mu)
+        if after >= value - SAME:
+            worth.append((after, gained, place, model))
+    if not worth:
+        return None
     # When the other direction becomes the weaker one, more is gained for the next wedge; of
     # those that are about as good, the smallest is cut.
-    worth.sort(key=lambda one: (-round(one[0], 2), -round(one[1], 2), one[2].area_px))
-    for _, _, place in worth[:REPLAYED]:
-        group = build.wall.groups[place.step]
-        wedge = Wedge(0, group.placement.stone_id, NOTHING, 0, 0, place.corners)
-        wall = yard.from_step(build, place.step, (*group.wedges, wedge))
-        if wall is not None:
-            return wall
-    return None
+    *_, best, model = min(
+        worth, key=lambda one: (-round(one[0], 2), -round(one[1], 2), one[2].area_px)
+    )
+    return draft.wedged(number, best, model)
 
 
-def _weaker(resistance: LateralResistance) -> str:
-    """Return the direction in which the wall carries less."""
-    left, right = resistance.left.alpha, resistance.right.alpha
-    assert left is not None  # noqa: S101 - the wall stands
-    assert right is not None  # noqa: S101
-    return "left" if left <= right else "right"
-
-
-def _shares(resistance: LateralResistance, direction: str) -> tuple[float, float]:
-    """Return F_LR, and what one direction alone would make of it; 0 when it does not stand."""
-    value = resistance.value
-    if value is None:
-        return 0.0, 0.0
-    alpha = resistance.left.alpha if direction == "left" else resistance.right.alpha
-    return value, (alpha or 0.0) / resistance.mu
-
-
-def _resisting(build: Build, yard: _Yard) -> list[tuple[WedgePlace, RigidBlockModel]]:
-    """List the wedges that the mechanism of the wall violates, the most violated first.
-
-    Each with the model of the wall with it.
-    """
-    outlines = build.wall.outlines
-    assert outlines is not None  # noqa: S101 - it was looked at before
-    failing = lateral_resistance(build.model, mechanism=True)
-    if not failing.stable:  # the solver gave up: it stood when it was built
-        return []
-    one = failing.left if _weaker(failing) == "left" else failing.right
-    if one.mechanism is None:
-        return []
-    motion = Motion(build.model, one.mechanism)
-    number = yard.workshop.next_wedge(build)
-    found = []
-    for place in wedge_places(build.wall, yard.limits):
-        model = model_with_outlines(
-            build.analysis.model,
-            [(number, place.corners)],
-            outlines,
-            yard.settings.settle.contact_px,
-        )
-        assert model.added is not None  # noqa: S101 - it was made by adding
-        rate = motion.resisted_by(number, model.added.interfaces)
-        if rate > 0.0:
-            found.append((rate, place, model))
-    found.sort(key=lambda one: -round(one[0], 9))
-    return [(place, model) for _, place, model in found[:ANALYSED]]
-
-
-def _without_needless(build: Build, yard: _Yard) -> Build:
-    """Drop wedges, one after the other, without which the wall carries as much and still stands."""
-    shorter: Build | None = build
-    while shorter is not None:
-        build = shorter
-        shorter = next(_with_one_less(build, yard), None)
-    return build
-
-
-def _with_one_less(build: Build, yard: _Yard) -> Iterator[Build]:
-    """List the walls without one of the wedges that carry as much."""
-    least = _value(build) - SAME
-    for step, group in enumerate(build.wall.groups):
-        for wedge in group.wedges:
-            if (_resistance_without(build, wedge, yard.settings) or 0.0) >= least:
-                others = tuple(other for other in group.wedges if other is not wedge)
-                wall = yard.from_step(build, step, others)
-                if wall is not None:
-                    yield wall
-
-
-def _resistance_without(build: Build, wedge: Wedge, settings: PlannerSettings) -> float | None:
-    """Return F_LR of the finished wall without a wedge."""
-    blocks = [
-        block
-        for group in build.wall.groups
-        for block in outlined(group.placement, group.wedges)
-        if block[0] != wedge.id
+def _resisting(draft: Draft, motion: Motion, barred: Barred) -> list[WedgePlace]:
+    """List the places that a mechanism violates most, then such as only their weight could help."""
+    places = [
+        place
+        for place in draft.places()
+        if (place.step, place.corners.tobytes()) not in barred
+        and not motion.stands_still(place.carriers.tolist())
     ]
-    placed = PlacedPolygons.of(blocks)
-    model = model_of_outlines(placed, settings.mu, settings.settle.contact_px)
-    return lateral_resistance(model).value
+    order = np.argsort(-motion.resisted_by(places).round(9), kind="stable")
+    return [places[k] for k in order[:ANALYSED].tolist()]
+
+
+def _needed(build: Build, draft: Draft, yard: _Yard) -> tuple[list[_Change], list[_Change]]:
+    """Return the wedges of a draft that matter, and those of the wall that do not.
+
+    Those that are needed when others are there are needed without them: each is asked for once.
+    """
+    added = {number: _Change(place.step, place.corners) for number, place in draft.added}
+    there = {
+        wedge.id: _Change(step, wedge.corners, dropped=True)
+        for step, group in enumerate(build.wall.groups)
+        for wedge in group.wedges
+        if wedge.corners is not None
+    }
+    dropped: list[_Change] = []
+    for number in sorted([*there, *added], key=draft.placed.ids.index):
+        model = draft.idle(number)
+        value, carried = draft.resistance.value, draft.analysis.resistance_with(model).resistance
+        if value is None or (carried.value or 0.0) < value - SAME:
+            continue
+        if number in added:
+            del added[number]
+        elif _stands_at(build, [*added.values(), *dropped, there[number]], yard):
+            dropped.append(there[number])
+        else:
+            continue
+        draft = draft.without(model)
+    return list(added.values()), dropped
+
+
+def _stands_at(build: Build, changes: Sequence[_Change], yard: _Yard) -> bool:
+    """Say whether the step of the last of some changes can be taken with them."""
+    step = changes[-1].step
+    group = build.wall.groups[step]
+    for change in changes:
+        if change.step == step:
+            group = change.of(group)
+    return yard.again(build.states()[step], [group]) is not None

@@ -96,9 +96,7 @@ def planned_first(settings: PlannerSettings) -> bool:
     if settings.orientations != "quarter":
         step_deg = orientation_step_deg(settings.orientations) or math.inf
     turns = math.isfinite(step_deg) and 90.0 % step_deg == 0.0
-    return (
-        turns and settings.geometry == "exact" and settings.order == "free" and settings.two_sided
-    )
+    return turns and settings.order == "free" and settings.two_sided
 
 
 def more_links(job: Job, link: PackedLink, count: int) -> PackedLink | None:

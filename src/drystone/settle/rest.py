@@ -1,6 +1,7 @@
 """Letting a stone go above others until it rests (§3.7 without pixels; DESIGN 4.9)."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -140,11 +141,45 @@ def come_to_rest(
     turns : bool
         Whether it may turn.
     """
-    for rules in ways(stone, scene, settings, turns=turns):
-        found = let_go(stone, scene, start, rules)
-        if found.status == Status.RESTS and found.margin >= settings.margin:
-            return repose(stone, scene, found)
+    for found in rests(stone, scene, start, settings, turns=turns):
+        return repose(stone, scene, found)
     return None
+
+
+def rests(
+    stone: Turned,
+    scene: Scene,
+    start: tuple[float, float],
+    settings: SettleSettings,
+    *,
+    turns: bool = True,
+) -> Iterator[Settling]:
+    """List where a stone rests that is let go in all ways (:func:`ways`), in their order.
+
+    Parameters
+    ----------
+    stone, scene, start, settings, turns
+        As for :func:`come_to_rest`.
+    """
+    *earlier, last = ways(stone, scene, settings, turns=turns)
+    stopped = None
+    for rules in earlier:
+        if stopped is None and rules._replace(stop=last.stop) == last:
+            # Where the last way, which stops where the stone rests, never stops, the same way
+            # without stops ends in the same place, and does not rest either.
+            stopped = let_go(stone, scene, start, last)
+            if stopped.status != Status.OVERLAPS and not _rests(stopped, settings):
+                return
+        found = let_go(stone, scene, start, rules)
+        if _rests(found, settings):
+            yield found
+    stopped = stopped or let_go(stone, scene, start, last)
+    if _rests(stopped, settings):
+        yield stopped
+
+
+def _rests(found: Settling, settings: SettleSettings) -> bool:
+    return found.status == Status.RESTS and found.margin >= settings.margin
 
 
 def touch_down(

@@ -7,6 +7,7 @@ below it all along.
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drystone.kernels.crevice import SAME, Crevice, between, crevice, slabs
 from drystone.kernels.polygons import (
@@ -14,7 +15,6 @@ from drystone.kernels.polygons import (
     Polygons,
     area_and_centroid,
     mirrored_polygon,
-    no_polygons,
     on_grid,
 )
 from drystone.kernels.settling import rest_margin
@@ -29,7 +29,15 @@ from drystone.settle.wedge_spans import (
     parts,
 )
 
-__all__ = ["WedgeLimits", "falling_side", "rests", "wedge_under", "wedges_below"]
+__all__ = [
+    "WedgeLimits",
+    "falling_side",
+    "in_order",
+    "met_below",
+    "rests",
+    "wedge_under",
+    "wedges_below",
+]
 
 PLACES = 4
 """How many places are tried in each part of the gap, from the nearest to the furthest."""
@@ -206,16 +214,48 @@ def _spans(space: Crevice, x_c: float, limits: WedgeLimits) -> Iterator[Span]:
     yield from high
 
 
+def met_below(stone: Points, around: Points, limits: WedgeLimits) -> NDArray[np.bool_]:
+    """Say which polygons a stone, or a wedge under it, could meet.
+
+    Parameters
+    ----------
+    stone : (n, 2) float array
+        Corners of the stone.
+    around : (k, 4) float array
+        Boxes of the polygons: left, bottom, right and top of each.
+    limits : WedgeLimits
+        What a wedge may be.
+
+    Returns
+    -------
+    met : (k,) bool array
+        The stone itself is met, if it is one of them.
+    """
+    reach = limits.contact_px + 4.0 * limits.clearance_px
+    left, low = stone.min(axis=0) - reach
+    right, high = stone.max(axis=0) + reach
+    met = (around[:, 0] < right) & (around[:, 2] > left) & (around[:, 1] < high)
+    return np.asarray(met & (around[:, 3] > low - limits.largest_px))
+
+
 def _near(
     stone: Points, around: Polygons, limits: WedgeLimits, itself: int | None = None
 ) -> Polygons:
     """Return the polygons that a stone or a wedge under it could meet, but not the stone itself."""
-    reach = limits.contact_px + 4.0 * limits.clearance_px
-    left, low = stone.min(axis=0) - reach
-    right, high = stone.max(axis=0) + reach
-    boxes = around.boxes
-    met = (boxes[:, 0] < right) & (boxes[:, 2] > left) & (boxes[:, 1] < high)
-    met &= boxes[:, 3] > low - limits.largest_px
-    return no_polygons().added(
-        around.polygon(i) for i in np.flatnonzero(met).tolist() if i != itself
+    met = met_below(stone, around.boxes, limits)
+    if itself is not None:
+        met[itself] = False
+    return in_order(around, np.flatnonzero(met).tolist())
+
+
+def in_order(polygons: Polygons, chosen: list[int]) -> Polygons:
+    """Return some of the polygons, or all in another order."""
+    first = polygons.first
+    ends = [slice(first[i], first[i + 1]) for i in chosen]
+    sizes = np.diff(first)[np.array(chosen, np.int64)]
+    return Polygons(
+        np.concatenate([polygons.corners[:0], *(polygons.corners[part] for part in ends)]),
+        np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32),
+        polygons.boxes[chosen],
+        np.concatenate([polygons.edges[:0], *(polygons.edges[part] for part in ends)]),
     )

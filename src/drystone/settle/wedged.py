@@ -47,8 +47,21 @@ def wedged(
         Sizes of wedges.
     """
     repose = touch_down(stone, scene, start, settings)
-    if repose is None:
-        return None
+    return None if repose is None else held(repose, scene, limits)
+
+
+def held(repose: Repose, scene: Scene, limits: WedgeLimits) -> Wedged | None:
+    """Wedge a stone where it was lowered; None when no wedge holds it.
+
+    Parameters
+    ----------
+    repose : Repose
+        Of the stone, as :func:`drystone.settle.rest.touch_down` found it.
+    scene : Scene
+        What is there.
+    limits : WedgeLimits
+        Sizes of wedges.
+    """
     x, corners = repose.settled.x_px, repose.settled.corners
     if scene.side == "right":
         x, corners = scene.width_px - x, mirrored_polygon(corners, scene.width_px)

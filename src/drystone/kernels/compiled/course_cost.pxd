@@ -1,73 +1,15 @@
 """See `course_cost.pyx`."""
 
-from libc.stdint cimport int32_t, int64_t
+from libc.stdint cimport int32_t
 
-from drystone.kernels.compiled.course_paths cimport STARTS
+from drystone.kernels.compiled.course_scene cimport Course, Scene
 
-cdef enum:
-    TERMS = 16
-
-cdef struct Scene:
-    const int64_t *first
-    const int32_t *bottoms
-    const int32_t *tops
-    const int64_t *first_row
-    const int32_t *lefts
-    const int32_t *rights
-    const int32_t *width
-    const int32_t *middle
-    const int32_t *peaks
-    const int32_t *part_at
-    const int32_t *faces
-    const int64_t *area
-    const double *weights
-    Py_ssize_t stones
-    int32_t columns
-    int32_t wall_width
-    int32_t wall_height
-    int32_t reach
-    double margin
-    int32_t steepest
-    int32_t joint
-    double target
-    const int32_t *beds
-    Py_ssize_t bed_count
-    int32_t starts[STARTS]
-    int32_t start_count
-    int32_t *lift
-
-cdef struct Course:
-    int32_t *tops
-    int32_t *joints
-    int32_t *ways
-    Py_ssize_t joint_count
-    int32_t bed[3]
-    double cost
-
-cdef struct Places:
-    int32_t *x
-    int32_t *y
-    int32_t *slope
-    double *terms
-
-cdef int fill_scene(Scene *scene, poses, ground, rules, const double[::1] weights) except -1
-cdef void free_scene(Scene *scene) noexcept nogil
 cdef double left_out(
     const Scene *scene, const int32_t *stones, Py_ssize_t count, double *terms
 ) noexcept nogil
-cdef double paths(
-    const Scene *scene, const Course *courses, Py_ssize_t count, double *terms
+cdef void go_up(const Scene *scene, const Course *below, Course *out) noexcept nogil
+cdef int32_t top_of(const Scene *scene, const Course *last) noexcept nogil
+cdef double across(
+    const Scene *scene, const Course *const *courses, Py_ssize_t count, int32_t top
 ) noexcept nogil
-cdef void lay_course(
-    const Scene *scene, const int32_t *stones, const int32_t *turns, Py_ssize_t count,
-    Py_ssize_t gap, const Course *below, bint last, Course *out, Places places
-) noexcept nogil
-
-
-cdef class Layers:
-    cdef Course *courses
-    cdef Course *seen
-    cdef int32_t[:, ::1] tops
-    cdef int32_t[:, :, ::1] joints
-    cdef int32_t[:, :, ::1] ways
-    cpdef tuple last(self, Py_ssize_t course)
+cdef double down(const Scene *scene, const Course *last, int32_t top) noexcept nogil

@@ -9,6 +9,8 @@ cdef enum:
     SHORTEST = 5
     PADDING_PX = 3
     DIAGONAL = 424
+    # More than any way, and far from what an integer cannot hold.
+    FAR = 1 << 29
 
 
 cdef int32_t path_starts(int32_t side, int32_t *starts) noexcept nogil:
@@ -27,6 +29,24 @@ cdef inline int32_t apart(const int32_t *one, int32_t left, int32_t right) noexc
     return max(0, max(one[0] - right, left - one[1]))
 
 
+cdef inline bint ordered(const int32_t *joints, Py_ssize_t count) noexcept nogil:
+    """Return whether both ends of joints go from left to right."""
+    cdef Py_ssize_t i
+    for i in range(2, 2 * count):
+        if joints[i] < joints[i - 2]:
+            return False
+    return True
+
+
+cdef inline void shorten(int32_t *way, const int32_t *other, int32_t aside) noexcept nogil:
+    """Shorten ways to other ways that go aside somewhat more, where these are shorter."""
+    cdef Py_ssize_t s
+    cdef int32_t here
+    for s in range(STARTS):
+        here = other[s] + aside
+        way[s] = here if here < way[s] else way[s]
+
+
 cdef void ways_up(
     const int32_t *joints,
     Py_ssize_t count,
@@ -39,29 +59,62 @@ cdef void ways_up(
 ) noexcept nogil:
     """Find how far paths from the bottom to joints go aside."""
     cdef Py_ssize_t i, j, s
-    cdef int32_t aside, here
     cdef int32_t *way
-    cdef const int32_t *other
     for j in range(count):
         way = ways + STARTS * j
         for s in range(STARTS):
-            way[s] = 0
+            way[s] = FAR if s < start_count else 0
         if below_count == 0:
             for s in range(start_count):
                 way[s] = apart(joints + 2 * j, starts[s], starts[s])
-            continue
+    if below_count == 0:
+        return
+    if ordered(joints, count) and ordered(below, below_count):
+        sweep(joints, count, below, below_count, below_ways, ways)
+        return
+    for j in range(count):
         for i in range(below_count):
-            aside = apart(joints + 2 * j, below[2 * i], below[2 * i + 1])
-            other = below_ways + STARTS * i
-            if i == 0:
-                for s in range(STARTS):
-                    way[s] = other[s] + aside
-            else:
-                for s in range(STARTS):
-                    here = other[s] + aside
-                    way[s] = here if here < way[s] else way[s]
-        for s in range(start_count, STARTS):
-            way[s] = 0
+            shorten(
+                ways + STARTS * j, below_ways + STARTS * i,
+                apart(joints + 2 * j, below[2 * i], below[2 * i + 1]),
+            )
+
+
+cdef void sweep(
+    const int32_t *joints,
+    Py_ssize_t count,
+    const int32_t *below,
+    Py_ssize_t below_count,
+    const int32_t *below_ways,
+    int32_t *ways,
+) noexcept nogil:
+    """Shorten ways to those over joints below, all from left to right.
+
+    The best way to some place over joints that end left of it stays the best further right.
+    """
+    cdef Py_ssize_t i, j, s
+    cdef int32_t best[STARTS]
+    for s in range(STARTS):
+        best[s] = FAR
+    i = 0
+    for j in range(count):
+        while i < below_count and below[2 * i + 1] <= joints[2 * j]:
+            shorten(best, below_ways + STARTS * i, -below[2 * i + 1])
+            i += 1
+        shorten(ways + STARTS * j, best, joints[2 * j])
+        # Right above.
+        s = i
+        while s < below_count and below[2 * s] < joints[2 * j + 1]:
+            shorten(ways + STARTS * j, below_ways + STARTS * s, 0)
+            s += 1
+    for s in range(STARTS):
+        best[s] = FAR
+    i = below_count - 1
+    for j in range(count - 1, -1, -1):
+        while i >= 0 and below[2 * i] >= joints[2 * j + 1]:
+            shorten(best, below_ways + STARTS * i, below[2 * i])
+            i -= 1
+        shorten(ways + STARTS * j, best, -joints[2 * j + 1])
 
 
 cdef double crossing_percent(

@@ -1,0 +1,50 @@
+"""Small finished walls, and where wedges have room in them."""
+
+from functools import cache
+
+import numpy as np
+
+from drystone.generate import PolygonSettings, RubbleSettings, polygon_stones, rubble_stones
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.planner.build import Build
+from drystone.planner.dropping import wedge_limits
+from drystone.planner.planner import Planner
+from drystone.search.wedge_draft import MOST_UNDER_ONE
+from drystone.search.wedge_places import WedgePlace, wedge_places
+from drystone.settle.wedge import WedgeLimits
+from drystone.statics.contacts.settled import PlacedPolygons
+from tests.planner.scenes import finish, greedy
+
+ONE_PX = greedy({"stabilise": {"min_wedge_px": 1}, "search": {"budget": 2}})
+
+
+def limits_of(made: Planner) -> WedgeLimits:
+    return wedge_limits(made.settings, made.workshop.stock, made.workshop.site.scale)
+
+
+def all_places(build: Build, limits: WedgeLimits) -> list[WedgePlace]:
+    """Wedges under all stones that may get one more."""
+    assert build.wall.outlines is not None
+    placed = PlacedPolygons(build.wall.outlines.ids, build.wall.outlines.polygons)
+    width = build.wall.site.extent_px[0]
+    found: list[WedgePlace] = []
+    for step, group in enumerate(build.wall.groups):
+        if len(group.wedges) < MOST_UNDER_ONE:
+            first = placed.ids.index(group.placement.stone_id)
+            found += wedge_places(placed, step, first, width, limits)
+    return found
+
+
+@cache
+def small_walls() -> tuple[tuple[StoneSet, Planner], ...]:
+    """Walls of stones about 20 px wide."""
+    rubble = RubbleSettings(count=8, width_px=90, height_px=40, courses=2)
+    sharp = PolygonSettings(count=8, width_px=28, height_px=18)
+    made = []
+    for seed, scale in ((0, 1.0), (1, 0.5)):
+        rng = np.random.default_rng(seed)
+        for stones in (rubble_stones(rubble, rng), polygon_stones(sharp, rng)):
+            site = Site.from_source(90.0, 48.0, scale)
+            made.append((stones, finish(Planner(stones, site, seed=seed, settings=ONE_PX))))
+    return tuple(made)
