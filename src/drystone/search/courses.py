@@ -81,12 +81,7 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
     task = task_of(
         stones, size, cell_px, tolerance_px, settings, banned=banned, laid=laid, book=book
     )
-    if task is None:
-        return None
-    looked_at = stones_looked_at(task)
-    task = choosing(task, pinned)
-    start = scattered(task, Dice(seed))
-    return annealed(task, start, settings, settings.temperature, looked_at, seed)
+    return None if task is None else planned_anew(task, settings, seed, pinned)
 
 
 def replan_courses(  # noqa: PLR0913 - as above
@@ -130,8 +125,28 @@ def replan_courses(  # noqa: PLR0913 - as above
     task = task_of(
         stones, size, cell_px, tolerance_px, settings, banned=banned, laid=laid, book=book
     )
-    if task is None:
-        return None
+    return None if task is None else planned_again(task, plan, keep, settings, seed, pinned)
+
+
+def planned_anew(
+    task: Task, settings: CourseSettings, seed: int, pinned: Collection[int]
+) -> CoursePlan:
+    """Plan a wall from stones in random order; parameters as for :func:`plan_courses`."""
+    looked_at = stones_looked_at(task)
+    task = choosing(task, pinned)
+    start = scattered(task, Dice(seed))
+    return annealed(task, start, settings, settings.temperature, looked_at, seed)
+
+
+def planned_again(
+    task: Task,
+    plan: CoursePlan,
+    keep: int,
+    settings: CourseSettings,
+    seed: int,
+    pinned: Collection[int],
+) -> CoursePlan:
+    """Plan upper courses again from what they are; parameters as for :func:`replan_courses`."""
     looked_at = stones_looked_at(task)
     task = choosing(task, pinned)
     start = resumed(task, plan.courses[keep:])

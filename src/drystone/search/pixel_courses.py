@@ -4,18 +4,16 @@ from collections.abc import Collection
 
 import numpy as np
 
-from drystone.kernels.course_moves import Dice
 from drystone.kernels.course_types import COLUMN_UNITS
 from drystone.kernels.polygons import Points
 from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.planner.workshop import Workshop
-from drystone.search.course_choice import choosing
 from drystone.search.course_plan import CoursePlan
 from drystone.search.course_poses import Quarters, poses_of
 from drystone.search.course_settings import CourseSettings
 from drystone.search.course_task import Task, rules_of
-from drystone.search.courses import annealed, resumed, scattered, stones_looked_at
+from drystone.search.courses import planned_again, planned_anew
 from drystone.search.laid_courses import LaidCourses, ground_of
 from drystone.search.pixel_outlines import posed_outline
 
@@ -37,12 +35,7 @@ def plan_pixel_courses(
         As for :func:`drystone.search.courses.plan_courses`.
     """
     task = pixel_task(workshop, workshop.fitting, settings)
-    if task is None:
-        return None
-    looked_at = stones_looked_at(task)
-    task = choosing(task, pinned)
-    start = scattered(task, Dice(seed))
-    return annealed(task, start, settings, settings.temperature, looked_at, seed)
+    return None if task is None else planned_anew(task, settings, seed, pinned)
 
 
 def replan_pixel_courses(  # noqa: PLR0913 - as above
@@ -72,16 +65,7 @@ def replan_pixel_courses(  # noqa: PLR0913 - as above
         What is there.
     """
     task = pixel_task(workshop, stone_ids, settings, laid)
-    if task is None:
-        return None
-    looked_at = stones_looked_at(task)
-    task = choosing(task, pinned)
-    start = resumed(task, plan.courses[keep:])
-    if start is None:
-        start = scattered(task, Dice(seed))
-    warm = settings.temperature * settings.again
-    found = annealed(task, start, settings, warm, looked_at, seed)
-    return CoursePlan(plan.courses[:keep] + found.courses, found.cost)
+    return None if task is None else planned_again(task, plan, keep, settings, seed, pinned)
 
 
 def pixel_task(
