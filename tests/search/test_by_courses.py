@@ -40,7 +40,8 @@ def workshop(settings: PlannerSettings) -> Workshop:
 
 @pytest.fixture(scope="module")
 def planned(workshop: Workshop, settings: PlannerSettings) -> Found:
-    found = newly_planned(workshop, settings, np.random.default_rng(2))
+    # Not the cheapest plan of all, which would only be found again.
+    found = newly_planned(workshop, settings, np.random.default_rng(6))
     assert found is not None
     return found
 
@@ -81,7 +82,7 @@ def test_a_plan_is_laid_and_the_rest_goes_on_top(
     check(planned, workshop, settings)
     assert planned.figures is not None
     assert planned.figures.stones >= 6
-    again = newly_planned(workshop, settings, np.random.default_rng(2))
+    again = newly_planned(workshop, settings, np.random.default_rng(6))
     assert again is not None
     assert poses(again) == poses(planned)
     others = [newly_planned(workshop, settings, np.random.default_rng(k)) for k in (3, 4)]

@@ -89,7 +89,7 @@ class CourseSettings:
     down: float = 0.012
     target: float = 100.0
     apart: float = 0.01
-    evaluations: int = 1_500
+    evaluations: int = 3_000
     most_evaluations: int = 1_000_000
     temperature: float = 6.0
     coldest: float = 0.05
