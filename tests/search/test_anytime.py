@@ -4,8 +4,10 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
+from drystone.generate.polygon import PolygonSettings, polygon_stones
 from drystone.model.site import Site
 from drystone.planner.events import Callbacks, Incumbent
 from drystone.planner.planner import Planner
@@ -164,10 +166,12 @@ def test_cycles_double() -> None:
     ("changes", "planned"),
     [
         ({}, True),
-        ({"orientations": "45deg"}, True),
+        ({"orientations": "45deg"}, False),
+        ({"orientations": "90deg"}, False),
         ({"orientations": "sf"}, False),
         ({"orientations": "40deg"}, False),
         ({"geometry": "raster"}, True),
+        ({"geometry": "raster", "placement": {"clearance_px": 1}}, False),
         ({"two_sided": False}, False),
         ({"order": "given"}, False),
     ],
@@ -190,3 +194,15 @@ def test_a_process_that_dies_ends_the_search_with_the_best_so_far() -> None:
     assert [notice.code for notice in result.notices] == ["W122"]
     assert result.plan.settings["search"]["budget"] == 3
     assert check_plan(result.plan, stones, wall_labels=result.wall.labels).problems == ()
+
+
+@pytest.mark.parametrize("geometry", ["raster", "exact"])
+@pytest.mark.parametrize("orientations", ["45deg", "90deg"])
+def test_walls_of_other_orientations_hold(geometry: str, orientations: str) -> None:
+    settings = greedy(
+        {"geometry": geometry, "orientations": orientations, "search": {"budget": 8, **SMALL}}
+    )
+    stones = polygon_stones(PolygonSettings(count=8, noise=0.5), np.random.default_rng(4))
+    result = plan_wall(stones, 400, 200, scale=0.2, seed=1, settings=settings)
+    report = check_plan(result.plan, stones, wall_labels=result.wall.labels)
+    assert report.problems == ()

@@ -13,12 +13,13 @@ from drystone.kernels.polygons import Points
 from drystone.model.stone import Stone, StoneSet
 from drystone.poses import PoseBook
 from drystone.search import courses
-from drystone.search.course_plan import CoursePlan
+from drystone.search.course_plan import CoursePlan, PlannedStone
 from drystone.search.course_settings import CourseSettings
 from drystone.search.course_task import task_of
 from drystone.search.courses import plan_courses, replan_courses, resumed
 from drystone.search.laid_courses import LaidCourses, ground_of
 from drystone.settle.rest import placed_outline
+from tests.planner.scenes import blocks
 
 TOLERANCE_PX = 0.35
 QUICK = CourseSettings(evaluations=30)
@@ -247,3 +248,28 @@ def test_stones_too_wide_lying_are_planned_upright() -> None:
 def test_settings_that_make_no_sense_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ValueError, match=r"must|slack|stone"):
         CourseSettings(**wrong)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_plan_has_more_courses_than_it_may(seed: int) -> None:
+    """Half of the stones are slabs: the median stone is high, and few courses are allowed."""
+    stones = blocks({k: (390, 4) if k <= 40 else (36, 36) for k in range(1, 82)})
+    plan = plan_courses(
+        list(stones), 400, 700, 2.0, 0.5, CourseSettings(evaluations=20), seed, book=PoseBook()
+    )
+    assert plan is not None
+
+
+def test_a_plan_of_more_courses_than_are_allowed_now_is_cut() -> None:
+    stones = blocks(dict.fromkeys(range(1, 21), (36, 36)))
+    task = task_of(list(stones), (400.0, 80.0), 2.0, 0.5, CourseSettings())
+    assert task is not None
+    angles = dict(zip((s.id for s in task.quarters.stones), task.quarters.angles_deg, strict=True))
+    single = [
+        (PlannedStone(i, angles[i][0], "left", 18.0, 18.0, 0.0, 36.0, 36.0),) for i in range(1, 21)
+    ]
+    start = resumed(task, single)
+    assert start is not None
+    assert start.sizes.tolist() == [1] * task.rules.courses
+    assert task.rules.courses < 20
+    assert sorted(start.order.tolist()) == list(range(20))

@@ -33,8 +33,8 @@ def test_nothing_is_known_of_a_single_wall(geometry: str) -> None:
 def test_the_share_follows_the_better_half() -> None:
     planned_win = [wall(k, planned=k >= 4) for k in range(8)]
     greedy_win = [wall(k, planned=k < 4) for k in range(8)]
-    assert planned_share(planned_win, "exact") == (4 + 1.5) / 6
-    assert planned_share(greedy_win, "exact") == 1.5 / 6
+    assert planned_share(planned_win, "exact") == (4 + 1) / 6
+    assert planned_share(greedy_win, "exact") == 1 / 6
     assert planned_share(planned_win[::-1], "exact") == planned_share(planned_win, "exact")
 
 

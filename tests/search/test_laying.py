@@ -15,13 +15,13 @@ from drystone.planner.build import Build
 from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.planner import Planner
 from drystone.search.course_plan import PlannedStone
-from drystone.search.laying import Laid, lay, relaid
+from drystone.search.laying import Laid, lay
 from drystone.search.laying_settings import LayingSettings, LetGoSettings
 from drystone.statics.grown import Grown
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import Block, RigidBlockModel
 from tests.planner.scenes import RUBBLE_SITE, blocks, rubble, stones_of_masks
-from tests.search.yards import Yard, plan_of
+from tests.search.yards import Yard
 
 
 def _statuses(laid: Laid) -> list[list[str]]:
@@ -283,32 +283,6 @@ def test_laying_is_repeatable_and_the_greedy_goes_on_from_it() -> None:
     assert planner.build.actions[: len(one.laid)] == one.build.actions
     assert len(planner.build.actions) == len(one.laid) + added
     assert added > 0
-
-
-def test_relaid_keeps_courses_and_lays_the_rest_of_anotherplan_of() -> None:
-    yard = Yard(blocks(BRICKS), Site(60, 20))
-    below, above = _bond(yard)
-    laid = yard.lay(below, above)
-    place = yard.planned
-    # A stone of the course that stays comes once more, and another course below is not looked at.
-    other = plan_of([place(5, 0, 0)], [place(6, 0, 10), place(2, 20, 10), place(5, 40, 10)])
-    again = relaid(laid, 1, other, yard.workshop, yard.settings)
-    assert again.states[:2] == laid.states[:2]
-    assert again.courses[0] == laid.courses[0]
-    assert _statuses(again) == [["as planned"] * 3, ["as planned", "used", "as planned"]]
-    assert again.build.actions[:3] == laid.build.actions[:3]
-    assert _boxes(again)[6][0] == pytest.approx(0.0, abs=0.3)
-    assert sorted(_corners(again.build)) == [1, 2, 3, 5, 6]
-    assert [one.status for one in again.failed] == ["used"]
-    same = relaid(laid, 1, plan_of(below, above), yard.workshop, yard.settings)
-    assert _bytes(same) == _bytes(laid)
-    whole = relaid(laid, 2, other, yard.workshop, yard.settings)
-    assert whole.build is laid.build
-    fresh = relaid(laid, 0, other, yard.workshop, yard.settings)
-    assert _statuses(fresh)[0] == ["as planned"]
-    for kept in (-1, 3):
-        with pytest.raises(ValueError, match="of 2 courses cannot stay"):
-            relaid(laid, kept, other, yard.workshop, yard.settings)
 
 
 def test_a_stone_goes_where_the_wall_resists_more() -> None:

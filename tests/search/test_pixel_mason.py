@@ -11,11 +11,9 @@ from drystone.model.site import Site
 from drystone.planner.build import Candidate
 from drystone.planner.evaluate import Evaluator
 from drystone.search.course_plan import PlannedStone
-from drystone.search.laying import relaid
 from drystone.search.laying_settings import LayingSettings, PutDownSettings
 from tests.planner.scenes import blocks, stones_of_masks
 from tests.search.pixel_yards import PixelYard, pixel_boxes, statuses
-from tests.search.yards import plan_of
 
 BRICKS = {1: (20, 10), 2: (20, 10), 3: (20, 10), 4: (10, 10), 5: (20, 10), 6: (20, 10), 7: (10, 10)}
 """A course of three stones, and one of two with a half at each end."""
@@ -188,15 +186,3 @@ def test_every_solve_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     yard = PixelYard(blocks(BRICKS), Site(60, 20))
     laid = yard.lay(*_bond(yard), laying=_near(analysed=1))
     assert laid.solves.cold == 7
-
-
-def test_relaid_keeps_courses_and_lays_the_rest_of_another_plan() -> None:
-    yard = PixelYard(blocks(BRICKS), Site(60, 20))
-    below, above = _bond(yard)
-    laid = yard.lay(below, above)
-    place = yard.planned
-    other = plan_of([place(5, 0, 0)], [place(6, 0, 10), place(2, 20, 10), place(5, 40, 10)])
-    again = relaid(laid, 1, other, yard.workshop, yard.settings)
-    assert again.states[:2] == laid.states[:2]
-    assert statuses(again) == [["as planned"] * 3, ["as planned", "used", "as planned"]]
-    assert sorted(pixel_boxes(again)) == [1, 2, 3, 5, 6]

@@ -73,9 +73,11 @@ def test_a_plan_that_begins_with_a_wall_is_no_worse(budget: int) -> None:
     less = settings.updated({"search": {"budget": budget}})
 
     def begun(wall: Wall | None) -> tuple[int, float, object]:
+        heights = {step.stone: step.course_height for step in before.plan.stone_steps}
         result = plan_wall(
-            rubble(), 100, 36, scale=1.0, seed=9, settings=less, begin=wall, choice=True
-        )
+            rubble(), 100, 36, scale=1.0, seed=9, settings=less, begin=wall, choice=True,
+            course_heights_px={stone: px for stone, px in heights.items() if px is not None},
+        )  # fmt: skip
         report = check_plan(result.plan, rubble(), wall_labels=result.wall.labels)
         assert report.problems == ()
         return len(result.plan.stone_steps), result.metrics.F_SF, result.plan.steps

@@ -4,6 +4,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pytest
@@ -70,7 +71,7 @@ def planner() -> Planner:
 
 
 def wedged(made: Planner, most: int) -> Build:
-    return wedged_up(made.build, made.workshop, made.settings, limits_of(made), most)
+    return wedged_up(made.build, made.workshop, made.settings, limits_of(made), most).build
 
 
 def built(
@@ -261,7 +262,7 @@ def test_walls_that_are_wedged_up_are_true(wall: int) -> None:
     alone, _, _ = replayed(
         before.states()[0], before.wall.groups, {}, made.workshop, made.settings, keep=False
     )
-    again = wedged_up(alone, made.workshop, made.settings, limits_of(made), 3)
+    again = wedged_up(alone, made.workshop, made.settings, limits_of(made), 3).build
     assert value(again) == pytest.approx(value(after))
 
 
@@ -399,3 +400,19 @@ def test_a_solver_that_gives_up_is_no_reason_to_stop(monkeypatch: pytest.MonkeyP
     failed = LateralResistance(gave_up[0], gave_up[1], 0.58)
     monkeypatch.setattr(Draft, "resistance", failed)
     assert wedged(built((2, 20.0, 0.01), wedges={2: [box(37.0, 0.01, 39.5, 3.0)]}), 3).wall.wedges
+
+
+def test_trouble_with_steps_that_are_taken_again_is_counted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    _, made = WALLS[0]
+    calls: list[int] = []
+
+    def troubled(*args: Any, **named: Any) -> Replayed:
+        calls.append(1)
+        return replayed(*args, **named)._replace(solves=Solves(2, 1))
+
+    monkeypatch.setattr(wedging, "replayed", troubled)
+    solves = wedged_up(made.build, made.workshop, made.settings, limits_of(made), 3).solves
+    assert len(calls) > 0
+    assert solves == Solves(2 * len(calls), len(calls))

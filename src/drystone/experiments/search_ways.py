@@ -73,7 +73,7 @@ class Looked:
     found : Found
         Its best wall.
     walls : int
-        How many walls it built in time.
+        How many walls it built; the last may have been finished after the end.
     possible : float
         Area bound on F_SF.
     seconds : float

@@ -64,7 +64,7 @@ class SearchSettings:
         the wall is built up again.
     polish : float
         Share of the walls of a chain of planned walls that are made by taking down a part of its
-        best wall.
+        best wall, before anything is known of what helps.
     wedges : int
         How many wedges may be put into the gaps of a wall of outlines,
     wedge_below : float

@@ -1,7 +1,8 @@
-"""One chain of walls: ruin and recreate, annealed.
+"""One chain of walls, annealed.
 
 A part of the wall is taken down with all that rests on it, and built up again with other craft
-weights.  Better walls are kept, worse ones with a probability that falls with the temperature.
+weights; or, where it was planned, upper courses are planned again or laid again.  Better walls are
+kept, worse ones with a probability that falls with the temperature.
 """
 
 import math
@@ -145,7 +146,8 @@ def wedged(found: Found, workshop: Workshop, settings: PlannerSettings) -> Found
     if found.build.wall.outlines is None or not (wedges and may and found.build.actions):
         return found
     limits = wedge_limits(settings, workshop.stock, workshop.site.scale)
-    build = wedged_up(found.build, workshop, settings, limits, wedges)
+    build, solves = wedged_up(found.build, workshop, settings, limits, wedges)
+    found = replace(found, solves=found.solves + solves)
     if build is found.build:
         return found
     again = Found.measured(build, workshop, settings, found.solves, found.courses)

@@ -158,7 +158,10 @@ def planned_again(
 
 
 def scattered(task: Task, dice: Dice) -> Arrangement:
-    """Return stones in random order, lying flat, in courses that are full, up to the top."""
+    """Return stones in random order, lying flat, in courses that are full, up to the top.
+
+    In no more courses than a plan may have: slabs between higher stones could need more.
+    """
     poses = task.quarters.poses
     count = poses.area.size
     order = list(range(count))
@@ -171,7 +174,7 @@ def scattered(task: Task, dice: Dice) -> Arrangement:
         pose = 4 * stone + turns[stone]
         if sizes[-1] and width + int(poses.width[pose]) > task.ground.width:
             height += tallest // sizes[-1]
-            if height >= task.ground.height:
+            if height >= task.ground.height or len(sizes) == task.rules.courses:
                 break
             sizes.append(0)
             width = tallest = 0
@@ -197,12 +200,16 @@ def arrangement(
 
 
 def resumed(task: Task, courses: Sequence[Sequence[PlannedStone]]) -> Arrangement | None:
-    """Return the arrangement of planned courses, without stones that are gone or banned."""
+    """Return the arrangement of planned courses, without stones that are gone or banned.
+
+    Courses above those that a plan of the other stones may have are left out.
+    """
     quarters = task.quarters
     number = {stone.id: i for i, stone in enumerate(quarters.stones)}
     order: list[int] = []
     turns = [0] * len(number)
-    sizes, gaps = [], []
+    sizes: list[int] = []
+    gaps: list[int] = []
     for course in courses:
         there = [
             stone
@@ -210,6 +217,8 @@ def resumed(task: Task, courses: Sequence[Sequence[PlannedStone]]) -> Arrangemen
             if stone.stone_id in number
             and stone.angle_deg in quarters.angles_deg[number[stone.stone_id]]
         ]
+        if len(sizes) == task.rules.courses:
+            break
         for stone in there:
             i = number[stone.stone_id]
             order.append(i)

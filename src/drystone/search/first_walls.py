@@ -7,7 +7,7 @@ from drystone.search.packed import Packed
 BATCH = 4
 """Walls after which it is looked how the planned ones do: however many processes there are."""
 
-SHARE = {"exact": 0.75, "raster": 0.9}
+SHARE = {"exact": 0.5, "raster": 0.9}
 """The share of the first walls that are planned before anything is known, on each geometry: a pass
 on pixels takes as long as eight plans."""
 
@@ -33,7 +33,7 @@ def batches(count: int) -> Iterator[range]:
 def stale(found: Sequence[Packed]) -> bool:
     """Say whether it is time to improve the best wall, as the last were none better.
 
-    A planned wall is improved less than other plans may win: further first walls are looked at.
+    Asked after each batch.  Never of a planned wall: improving it wins less than another plan may.
     """
     best = max(range(len(found)), key=lambda k: (found[k].merit, -k))
     return found[best].courses is None and len(found) - 1 - best >= STALE

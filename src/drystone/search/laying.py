@@ -87,39 +87,6 @@ def lay(
     return _go_on(Laid((build,), ()), plan.courses, layer)
 
 
-def relaid(
-    laid: Laid,
-    kept: int,
-    plan: CoursePlan,
-    workshop: Workshop,
-    settings: PlannerSettings,
-    laying: LayingSettings | None = None,
-) -> Laid:
-    """Keep the lowest courses of a wall as they are laid, and lay the others of another plan.
-
-    Parameters
-    ----------
-    laid : Laid
-        The wall.
-    kept : int
-        How many of its courses stay.
-    plan : CoursePlan
-        Its courses are laid from there on; as many of them as stay are left out.
-    workshop, settings, laying
-        As for :func:`lay`.
-
-    Raises
-    ------
-    ValueError
-        When the wall has fewer courses.
-    """
-    if not 0 <= kept <= len(laid.courses):
-        raise ValueError(f"{kept} of {len(laid.courses)} courses cannot stay")
-    prefix = Laid(laid.states[: kept + 1], laid.courses[:kept])
-    layer = _layer(workshop, settings, laying or LayingSettings())
-    return _go_on(prefix, plan.courses[kept:], layer)
-
-
 def _layer(workshop: Workshop, settings: PlannerSettings, laying: LayingSettings) -> Layer:
     """Return who lays courses in the geometry of a wall."""
     if settings.geometry == "raster":

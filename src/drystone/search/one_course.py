@@ -14,7 +14,7 @@ Status = Literal["as planned", "half turn", "elsewhere", "used", "no place", "no
 
 Laid as planned, turned by half, or elsewhere in its course after it could not be laid in its turn.
 Not laid: it is in the wall already; there is nowhere to let it go near its planned top; it rests
-nowhere there; or the wall would not stand.
+nowhere there (of stones on outlines); or the wall would not stand.
 """
 
 LAID: tuple[Status, ...] = ("as planned", "half turn", "elsewhere")

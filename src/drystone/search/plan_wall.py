@@ -184,7 +184,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     """
     method = method or ("custom" if settings else "best")
     settings = settings or method_settings(method)
-    scale = working_scale(stones) if scale is None else scale
+    scale = working_scale(stones) if scale is None else float(scale)
     if not 0 < scale <= 1:
         raise UsageError("E125", f"a scale of {scale} is not in (0, 1].", where="--scale")
     frame = Frame(width, height, Site.from_source(width, height, scale, px_per_m))

@@ -174,8 +174,11 @@ class Draft:
         moving = dict(zip(ids, (velocity / fastest).tolist(), strict=True))
         return Motion.of(moving, centroids, analysis.model.mu)
 
-    def alpha_with(self, model: RigidBlockModel, direction: Direction) -> float:
-        """Return what a grown wall carries in one direction, not certified; 0 when it falls."""
+    def alpha_with(self, model: RigidBlockModel, direction: Direction) -> float | None:
+        """Return what a grown wall carries in one direction, not certified.
+
+        None when it falls or the solver gives up.
+        """
         analysis, addition = self.analysis, model.added
         assert addition is not None  # noqa: S101 - it was made by adding
         if isinstance(analysis, SimplexGrowth):
@@ -185,7 +188,7 @@ class Draft:
             if answer is not None and answer.status == OPTIMAL:
                 return max(0.0, sign * answer.alpha)
         found = analysis.resistance_with(model).resistance
-        return (found.left if direction == "left" else found.right).alpha or 0.0
+        return (found.left if direction == "left" else found.right).alpha
 
 
 def analysis_of(build: Build) -> GrowingAnalysis:

@@ -6,7 +6,8 @@ added one after the other, and the one that cannot be is barred from the next dr
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from drystone.model.wall import Group
 from drystone.planner.build import Build
 from drystone.planner.replay import replayed
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.wedge_draft import Draft
 from drystone.search.wedge_places import Motion, WedgePlace
@@ -70,18 +72,20 @@ class _Change:
 
 @dataclass(frozen=True, eq=False)
 class _Yard:
-    """What wedging needs beside the wall: see :func:`wedged_up`."""
+    """What wedging needs beside the wall: see :func:`wedged_up`; and what trouble there was."""
 
     workshop: Workshop
     settings: PlannerSettings
     limits: WedgeLimits
     course_heights_px: dict[int, float]
+    trouble: list[Solves] = field(default_factory=list)
 
     def again(self, start: Build, groups: Sequence[Group]) -> Build | None:
         """Take steps again on what is built; None when one of them cannot be taken."""
-        build, left_out, _ = replayed(
+        build, left_out, solves = replayed(
             start, groups, self.course_heights_px, self.workshop, self.settings
         )
+        self.trouble.append(solves)
         return None if left_out else build
 
     def changed(self, build: Build, changes: Sequence[_Change]) -> Build | None:
@@ -102,9 +106,24 @@ class _Yard:
             build = build if wall is None else wall
 
 
+class WedgedUp(NamedTuple):
+    """A wall with other wedges.
+
+    Parameters
+    ----------
+    build : Build
+        The wall.
+    solves : Solves
+        What trouble the solver had with steps that were taken again.
+    """
+
+    build: Build
+    solves: Solves
+
+
 def wedged_up(
     build: Build, workshop: Workshop, settings: PlannerSettings, limits: WedgeLimits, most: int
-) -> Build:
+) -> WedgedUp:
     """Add wedges to a finished wall that raise F_LR, and drop those that do not matter.
 
     No stone moves.  A wedge is placed with the stone that lies on it, and the wall stands after
@@ -125,9 +144,9 @@ def wedged_up(
 
     Returns
     -------
-    build : Build
-        With all its states; the same when nothing changes, or when its own steps cannot be taken
-        again.
+    wedged : WedgedUp
+        Its build has all its states; it is the same one when nothing changes, or when its own steps
+        cannot be taken again.
     """
     if build.wall.outlines is None:
         raise ValueError("only walls of outlines are wedged up")
@@ -138,8 +157,13 @@ def wedged_up(
     }
     yard = _Yard(workshop, settings, limits, heights)
     begun = _with_states(build, yard)
-    if begun is None or not begun.actions:
-        return build
+    wall = begun if begun is None or not begun.actions else _wedged(begun, yard, most)
+    solves = sum(yard.trouble, Solves())
+    return WedgedUp(build if wall is None or wall is begun else wall, solves)
+
+
+def _wedged(begun: Build, yard: _Yard, most: int) -> Build:
+    """Return a wall that knows its states with other wedges; the same when nothing changes."""
     wall, barred = begun, Barred()
     for _ in range(DRAFTS):
         added, dropped = _drafted(wall, yard, most, barred)
@@ -152,7 +176,7 @@ def wedged_up(
                 barred |= {(change.step, change.corners.tobytes())}
                 break
             wall, most = one, most - 1
-    return build if wall is begun else wall
+    return wall
 
 
 def _with_states(build: Build, yard: _Yard) -> Build | None:
@@ -207,11 +231,11 @@ def _with_one_more(draft: Draft, number: int, barred: Barred) -> Draft | None:
     worth: list[tuple[float, float, WedgePlace, RigidBlockModel]] = []
     for place in _resisting(draft, motion, barred):
         model = draft.model_with(number, place)
-        gained = draft.alpha_with(model, weaker) / mu
-        if gained < value + LEAST:
+        gained = _share(draft.alpha_with(model, weaker), mu)
+        if gained is None or gained < value + LEAST:
             continue
-        after = min(gained, draft.alpha_with(model, "right" if weaker == "left" else "left") / mu)
-        if after >= value - SAME:
+        other = _share(draft.alpha_with(model, "right" if weaker == "left" else "left"), mu)
+        if other is not None and (after := min(gained, other)) >= value - SAME:
             worth.append((after, gained, place, model))
     if not worth:
         return None
@@ -221,6 +245,11 @@ def _with_one_more(draft: Draft, number: int, barred: Barred) -> Draft | None:
         worth, key=lambda one: (-round(one[0], 2), -round(one[1], 2), one[2].area_px)
     )
     return draft.wedged(number, best, model)
+
+
+def _share(alpha: float | None, mu: float) -> float | None:
+    """Return what a direction makes of F_LR; None when it is not known."""
+    return None if alpha is None else alpha / mu
 
 
 def _resisting(draft: Draft, motion: Motion, barred: Barred) -> list[WedgePlace]:
@@ -251,7 +280,7 @@ def _needed(build: Build, draft: Draft, yard: _Yard) -> tuple[list[_Change], lis
     for number in sorted([*there, *added], key=draft.placed.ids.index):
         model = draft.idle(number)
         value, carried = draft.resistance.value, draft.analysis.resistance_with(model).resistance
-        if value is None or (carried.value or 0.0) < value - SAME:
+        if value is None or carried.value is None or carried.value < value - SAME:
             continue
         if number in added:
             del added[number]

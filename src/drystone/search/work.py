@@ -1,6 +1,5 @@
 """What the processes of a search do: whole walls, from what fits into a message."""
 
-import math
 import pickle
 import time
 from collections.abc import Callable
@@ -13,7 +12,6 @@ from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
-from drystone.poses import orientation_step_deg
 from drystone.search.by_courses import newly_planned
 from drystone.search.chain import Link, lengthened, wedged
 from drystone.search.found import Found
@@ -91,12 +89,16 @@ def one_pass(job: Job, number: int, planned_share: float) -> Packed | None:
 
 
 def planned_first(settings: PlannerSettings) -> bool:
-    """Say whether courses may be planned, in quarter turns, and laid from both ends."""
-    step_deg = 90.0
-    if settings.orientations != "quarter":
-        step_deg = orientation_step_deg(settings.orientations) or math.inf
-    turns = math.isfinite(step_deg) and 90.0 % step_deg == 0.0
-    return turns and settings.order == "free" and settings.two_sided
+    """Say whether courses may be planned: in quarter turns, laid from both ends, without clearance.
+
+    Plans know quarter turns of the initial pose, which other sets of orientations need not have.
+    """
+    return (
+        settings.orientations == "quarter"
+        and settings.order == "free"
+        and settings.two_sided
+        and (settings.geometry == "exact" or settings.placement.clearance_px == 0)
+    )
 
 
 def more_links(job: Job, link: PackedLink, count: int) -> PackedLink | None:
