@@ -52,7 +52,7 @@ def exact(name: str, folder: Path, n_jobs: int = 1) -> tuple[bytes, bytes]:
         stones, 84, 34, scale=0.5, seed=3, settings=settings, n_jobs=n_jobs, px_per_m=437.3
     )
     assert len(result.wall.groups) >= 3
-    assert bool(result.wall.wedges) == (name == "wedges")
+    assert result.wall.wedges or name != "wedges"
     folder.mkdir()
     write_plan(result.plan, folder / PLAN)
     image = write_wall_image(result.wall.labels, folder)

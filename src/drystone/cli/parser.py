@@ -95,6 +95,11 @@ def _planning(command: argparse.ArgumentParser) -> None:
         "--scale", type=share, metavar="S", help="plan on images reduced by S, 0 to 1"
     )
     group.add_argument("--px-per-m", type=positive, metavar="N", help="source px in a metre")
+    group.add_argument(
+        "--policy", metavar="NAME",
+        help="who chooses the stones of a single pass: paper, random, lowest, scalarised, filter, "
+        "towers, or one that is installed (docs/policies.md)",
+    )  # fmt: skip
     group.add_argument("--sampling", choices=["variant", "uniform", "twofold", "full"])
     group.add_argument("--placement", choices=["snug", "eq12", "lowest"])
     group.add_argument("--reach", choices=["any", "above"], help="where a stone may be inserted")

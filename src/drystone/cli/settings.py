@@ -7,6 +7,7 @@ from typing import Any
 
 from drystone.errors import InputError, UsageError
 from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.selection.policies.registry import rule_of
 
 UNLIMITED = 1_000_000
 """Budget of a search that the clock ends."""
@@ -30,6 +31,8 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
     _check_geometry(
         settings.updated({k: v for k, v in changes.items() if k == "geometry"}), arguments
     )
+    if arguments.policy is not None:
+        changes["selection_rule"] = rule_of(arguments.policy)
     if arguments.settle is not None:
         changes["settle"] = {"method": arguments.settle}
     changes |= _chosen(arguments)
@@ -44,7 +47,10 @@ def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
         changes["goal"] = dict(arguments.aim)
     if arguments.stabilise is not None:
         changes["stabilise"] = {"method": arguments.stabilise}
-    return settings.updated(changes)
+    asked = settings.updated(changes)
+    if asked.by_policy:
+        rule_of(asked.selection_rule)  # a settings file may name one that is not there
+    return asked
 
 
 def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -62,6 +68,14 @@ def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
 def _search(settings: PlannerSettings, arguments: argparse.Namespace) -> dict[str, Any]:
     """Return the changes of the search's settings."""
     search: dict[str, Any] = {}
+    if arguments.policy is not None:
+        if arguments.time is not None or arguments.budget not in (None, 1):
+            raise UsageError(
+                "E138",
+                "--policy chooses the stones of a single pass, which is not searched.",
+                cure="Leave out --time and --budget, or --policy.",
+            )
+        return {"budget": 1}
     if arguments.budget is not None:
         search["budget"] = arguments.budget
     elif search_seconds(settings, 0, arguments) is not None:
@@ -72,7 +86,7 @@ def _search(settings: PlannerSettings, arguments: argparse.Namespace) -> dict[st
 def search_seconds(
     settings: PlannerSettings, stones: int, arguments: argparse.Namespace
 ) -> float | None:
-    """Return how long better walls are looked for; None when a budget says how many.
+    """Return how long better walls are looked for; None when a budget or a policy says how many.
 
     Parameters
     ----------
@@ -83,6 +97,8 @@ def search_seconds(
     arguments : argparse.Namespace
         The options.
     """
+    if arguments.policy is not None:
+        return None
     if arguments.time is not None:
         return float(arguments.time)
     timed = arguments.budget is None and not _file_has_budget(arguments)

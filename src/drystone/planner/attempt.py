@@ -13,13 +13,20 @@ from drystone.model.landscape import Landscape
 from drystone.model.placement import Side
 from drystone.model.pose import PosedStone
 from drystone.planner.build import Build, Candidate, Proposal
-from drystone.planner.choose import better_side, choose_by_algorithm2, choose_by_score
+from drystone.planner.choose import (
+    better_side,
+    choose_by_algorithm2,
+    choose_by_policy,
+    choose_by_score,
+)
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import Proposer, RasterProposer, Trial
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
 from drystone.planner.workshop import Workshop
+from drystone.selection.policies.registry import policy_named
+from drystone.selection.policy import Policy
 from drystone.selection.sampling import sample_stones, second_fold
 
 Item = TypeVar("Item")
@@ -65,6 +72,12 @@ class Attempt:
         self._settings = settings
         self._executor = executor
         self._profile = profile or Profile()
+        self._policy: Policy | None = None
+        if settings.by_policy:
+            # A new one for each step: what one remembers would be lost when a plan is resumed.
+            self._policy = policy_named(
+                settings.selection_rule, settings.policy, settings.selection
+            )
         kind = RasterProposer if settings.geometry == "raster" else ExactProposer
         self._proposer: Proposer = kind(workshop, settings, build, self._profile)
         self._evaluator = Evaluator(settings, workshop.stock, self._profile)
@@ -89,33 +102,54 @@ class Attempt:
             Draws the sample.
         among : sequence of int, optional
             Ids of stones to sample from; all that are left when missing.
+
+        Raises
+        ------
+        UsageError
+            E147: the policy of another package failed.
         """
-        remaining = self._workshop.remaining(self.build) if among is None else tuple(among)
+        if among is not None:
+            return self._choose(rng, tuple(among))
+        remaining = self._workshop.remaining(self.build)
+        pinned = tuple(i for i in remaining if i in self._settings.pin)
+        if self._policy is not None and pinned:
+            # A policy knows nothing of pins, as Algorithm 2 does not.
+            return self._choose(rng, pinned) or self._choose(rng, remaining)
+        return self._choose(rng, remaining)
+
+    def _choose(self, rng: np.random.Generator, remaining: tuple[int, ...]) -> Candidate | None:
         clusters = self._workshop.clusters
         sample = sample_stones(self._settings.sampling, remaining, clusters, rng)
 
         def best(landscapes: Sequence[Landscape]) -> Candidate | None:
             """Choose on some sides; with two-fold sampling in two rounds (§5.1)."""
-            chosen = self._select(landscapes, sample)
+            chosen = self._select(landscapes, sample, rng)
             if chosen is not None and self._settings.sampling == "twofold":
                 fold = second_fold(chosen.stone_id, remaining, clusters)
-                chosen = self._select(landscapes, fold)
+                chosen = self._select(landscapes, fold, rng)
             return chosen
 
-        if self._settings.selection_rule == "score":
+        if self._settings.selection_rule != "algorithm2":
             return best(tuple(self._landscapes.values()))
         winners = [best([landscape]) for landscape in self._landscapes.values()]
         found = [winner for winner in winners if winner is not None]
         return better_side(found, self.build, self._settings.selection)
 
-    def _select(self, landscapes: Sequence[Landscape], stones: Sequence[int]) -> Candidate | None:
+    def _select(
+        self, landscapes: Sequence[Landscape], stones: Sequence[int], rng: np.random.Generator
+    ) -> Candidate | None:
         for proposals in self._proposals(landscapes, stones):
-            chosen = self._best(proposals)
+            chosen = self._best(proposals, rng)
             if chosen is not None:
                 return chosen
         return None
 
-    def _best(self, proposals: Sequence[Proposal]) -> Candidate | None:
+    def _best(self, proposals: Sequence[Proposal], rng: np.random.Generator) -> Candidate | None:
+        if self._policy is not None:
+            name, site = self._settings.selection_rule, self._workshop.site
+            return choose_by_policy(
+                proposals, self._judge, self._policy, name=name, site=site, rng=rng
+            )
         if self._settings.selection_rule == "score":
             return choose_by_score(proposals, self._judge, self._settings.score)
         return choose_by_algorithm2(proposals, self._judge, self._settings.selection)

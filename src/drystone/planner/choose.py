@@ -2,7 +2,11 @@
 
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
+from drystone.model.site import Site
 from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.offers import offer
 from drystone.selection.algorithm2 import (
     TIE_DIGITS,
     Action,
@@ -10,6 +14,7 @@ from drystone.selection.algorithm2 import (
     select_action,
     weighted_sum,
 )
+from drystone.selection.policy import Policy, choice_of
 from drystone.selection.scored import ScoreSettings, cheapest_first
 
 EQUAL_GDS = 1e-9
@@ -71,3 +76,41 @@ def choose_by_score(
         return round(candidate.proposal.cost - bonus, TIE_DIGITS)
 
     return min(standing[: settings.analysed], key=cost, default=None)
+
+
+def choose_by_policy(
+    proposals: Sequence[Proposal],
+    judge: Judge,
+    policy: Policy,
+    *,
+    name: str,
+    site: Site,
+    rng: np.random.Generator,
+) -> Candidate | None:
+    """Return the action that a policy chooses among those after which the wall stands.
+
+    All proposals are analysed; as with the other rules LLC must be positive.
+
+    Parameters
+    ----------
+    proposals : sequence of Proposal
+        Of all sides.
+    judge : callable
+        Turns proposals into candidates.
+    policy : Policy
+        What chooses.
+    name : str
+        Its name, for messages.
+    site : Site
+        Where.
+    rng : numpy.random.Generator
+        For the policy.
+
+    Raises
+    ------
+    UsageError
+        E147: the policy failed.
+    """
+    standing = [c for c in judge(proposals) if c.sturdy and (c.indices.LLC or 0.0) > 0]
+    position = choice_of(name, policy, [offer(one, site) for one in standing], rng)
+    return None if position is None else standing[position]

@@ -13,6 +13,8 @@ from drystone.placement.settings import PlacementSettings
 from drystone.planner.search_settings import GoalSettings, SearchSettings
 from drystone.poses import orientation_step_deg
 from drystone.selection.algorithm2 import SelectionSettings
+from drystone.selection.policies.registry import PAPER, RULES
+from drystone.selection.policies.settings import PolicySettings
 from drystone.selection.sampling import Sampling
 from drystone.selection.scored import ScoreSettings
 from drystone.settle.settings import SettleSettings
@@ -55,9 +57,10 @@ class PlannerSettings:
         per stone.
     sampling : {"variant", "uniform", "twofold", "full"}
         Candidate sets (§5.1).
-    selection_rule : {"algorithm2", "score"}
-        The paper's filters and sums, or the least craft cost
-        (:mod:`drystone.selection.scored`).
+    selection_rule : str
+        ``"algorithm2"``: the paper's filters and sums; ``"score"``: the least craft cost
+        (:mod:`drystone.selection.scored`); or the name of a policy, with which a search's budget
+        must be 1.
     two_sided : bool
         Build from both ends (Eq. 29).
     mu : float
@@ -75,7 +78,7 @@ class PlannerSettings:
     pin : tuple of int
         Ids of stones that must be in the wall: they are preferred, and each that is missing counts
         10 units of merit against a wall.
-    clusters, placement, stabilise, settle, selection, score, search, goal, stop
+    clusters, placement, stabilise, settle, selection, policy, score, search, goal, stop
         Settings of the stages.
     """
 
@@ -83,7 +86,7 @@ class PlannerSettings:
     orientations: str = "sf"
     orientation_choice: Literal["candidates", "placement"] = "candidates"
     sampling: Sampling = "variant"
-    selection_rule: Literal["algorithm2", "score"] = "algorithm2"
+    selection_rule: str = "algorithm2"
     two_sided: bool = False
     mu: float = 0.58
     vary: float = 0.0
@@ -96,6 +99,7 @@ class PlannerSettings:
     stabilise: StabiliseSettings = field(default_factory=StabiliseSettings)
     settle: SettleSettings = field(default_factory=SettleSettings)
     selection: SelectionSettings = field(default_factory=SelectionSettings)
+    policy: PolicySettings = field(default_factory=PolicySettings)
     score: ScoreSettings = field(default_factory=ScoreSettings)
     search: SearchSettings = field(default_factory=SearchSettings)
     goal: GoalSettings = field(default_factory=GoalSettings)
@@ -110,8 +114,7 @@ class PlannerSettings:
             raise ValueError(f"unknown sampling {self.sampling!r}")
         if self.orientation_choice not in ("candidates", "placement"):
             raise ValueError(f"unknown orientation choice {self.orientation_choice!r}")
-        if self.selection_rule not in ("algorithm2", "score"):
-            raise ValueError(f"unknown selection rule {self.selection_rule!r}")
+        self._check_rule()
         if self.vary < 0:
             raise ValueError("vary must not be negative")
         if self.order not in ("free", "given"):
@@ -122,14 +125,36 @@ class PlannerSettings:
         if not self.mu > 0:
             raise ValueError("mu must be positive")
 
+    def _check_rule(self) -> None:
+        # Whether there is such a policy is asked where it chooses: a plan can be checked without
+        # the package that its policy is of.
+        if self.selection_rule in ("", PAPER):
+            raise ValueError(
+                f"unknown selection rule {self.selection_rule!r}; the paper's is 'algorithm2'"
+            )
+        if self.by_policy and self.search.budget > 1:
+            raise ValueError(
+                f"the policy {self.selection_rule!r} builds a single wall: search.budget must be 1"
+            )
+
+    @property
+    def by_policy(self) -> bool:
+        """True when a policy chooses (:mod:`drystone.selection.policies`), not a rule of ours."""
+        return self.selection_rule not in RULES
+
     @property
     def weighs_craft(self) -> bool:
         """True when a choice depends on craft costs (:mod:`drystone.selection.scored`)."""
         return self.selection_rule == "score" or self.placement.compare
 
     def as_dict(self) -> dict[str, Any]:
-        """Return nested dictionaries, as TOML and JSON write them."""
+        """Return nested dictionaries, as TOML and JSON write them.
+
+        Without the settings of policies when none chooses.
+        """
         values = dataclasses.asdict(self)
+        if not self.by_policy:
+            del values["policy"]
         return values | {"ban": list(self.ban), "pin": list(self.pin)}
 
     def updated(self, changes: Mapping[str, Any]) -> "PlannerSettings":

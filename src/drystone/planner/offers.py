@@ -1,0 +1,98 @@
+"""What a policy sees of the candidates of a step."""
+
+from drystone.kernels.polygons import Points
+from drystone.model.site import Site
+from drystone.planner.build import Candidate
+from drystone.selection.policy import Offer, Point
+from drystone.statics.model import RigidBlockModel
+
+UPWARD = 0.1
+"""A contact bears a stone when its unit normal, into the stone, goes up by more than this: an
+upright face does not."""
+
+
+def offer(candidate: Candidate, site: Site) -> Offer:
+    """Return what a policy sees of a candidate.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        After which the wall stands.
+    site : Site
+        Where.
+    """
+    placement = candidate.stabilised.placement
+    settled, posed = placement.settled, placement.posed
+    left, bottom, right, top = (
+        float(placement.col),
+        float(site.height_px - placement.row - posed.height_px),
+        float(placement.col + posed.width_px),
+        float(site.height_px - placement.row),
+    )
+    if settled is not None:
+        low, high = settled.corners.min(axis=0), settled.corners.max(axis=0)
+        left, bottom, right, top = (site.scale * float(v) for v in (*low, *high))
+    # The model of outlines is in source px.
+    scale = 1.0 if settled is None else site.scale
+    block = next(b for b in reversed(candidate.model.blocks) if b.id == candidate.stone_id)
+    return Offer(
+        stone_id=candidate.stone_id,
+        angle_deg=candidate.proposal.trial_angle_deg,
+        turned_deg=turned_deg(candidate.proposal.trial_angle_deg, posed.angle_deg),
+        side=candidate.side,
+        indices=candidate.indices,
+        area_px=scale**2 * block.area,
+        left_px=left,
+        bottom_px=bottom,
+        right_px=right,
+        top_px=top,
+        centroid_px=placement.centroid(site.height_px),
+        support_px=support_px(candidate.model, candidate.stone_id, scale),
+        wedges=len(candidate.stabilised.wedges),
+        wall_width_px=site.width_px,
+        wall_height_px=site.height_px,
+    )
+
+
+def turned_deg(before_deg: float, after_deg: float) -> float:
+    """Return the angle between two poses, in [0, 180].
+
+    Examples
+    --------
+    >>> turned_deg(-179.0, 178.0)
+    3.0
+    """
+    return abs((after_deg - before_deg + 180.0) % 360.0 - 180.0)
+
+
+def support_px(
+    model: RigidBlockModel, stone_id: int, scale: float = 1.0
+) -> tuple[Point, Point] | None:
+    """Return the ends of the line on which a stone is borne; None when nothing bears it.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Of the wall in which the stone is the last one.
+    stone_id : int
+        Id of the stone.
+    scale : float
+        Working px in a unit of the model.
+
+    Returns
+    -------
+    ends : ((float, float), (float, float)) or None
+        The leftmost and the rightmost of the bearing points (x, y) of all its supports, wedges
+        among them; of points above each other the lower one; working px.
+    """
+    interfaces = model.interfaces if model.added is None else model.added.interfaces
+    bearing: list[Points] = []
+    for interface in interfaces:
+        up = interface.normal[1]
+        into = (interface.block == stone_id) - (interface.other == stone_id)
+        if into * up > UPWARD:
+            bearing.append(interface.points)
+    points = [(scale * x, scale * y) for array in bearing for x, y in array.tolist()]
+    if not points:
+        return None
+    return min(points), min(points, key=lambda point: (-point[0], point[1]))

@@ -1,0 +1,1 @@
+"""Ways of choosing stones in the literature, as policies (docs/policies.md)."""

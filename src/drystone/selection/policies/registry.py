@@ -1,0 +1,106 @@
+"""Policies by their names: those built in, and those of other packages."""
+
+from importlib.metadata import entry_points
+
+from drystone.errors import UsageError
+from drystone.selection.algorithm2 import SelectionSettings
+from drystone.selection.policies.filters import Filters
+from drystone.selection.policies.scalarised import Scalarised
+from drystone.selection.policies.settings import PolicySettings
+from drystone.selection.policies.simple import Lowest, Random
+from drystone.selection.policies.towers import Towers
+from drystone.selection.policy import Policy, broken
+
+GROUP = "drystone.policies"
+"""Entry points of other packages: each names a class, or a function, that is called without
+arguments and returns a :class:`drystone.selection.policy.Policy`."""
+
+PAPER = "paper"
+"""Name of the policy that is the planner's own Algorithm 2, with Eq. 29 between the sides."""
+
+RULES = ("algorithm2", "score")
+"""Values of `selection_rule` that are no policies."""
+
+BUILT_IN = ("random", "lowest", "scalarised", "filter", "towers")
+"""Policies of this package beside the paper's."""
+
+
+def rule_of(name: str) -> str:
+    """Return the `selection_rule` that chooses by a policy.
+
+    Parameters
+    ----------
+    name : str
+        Of the policy.
+
+    Raises
+    ------
+    UsageError
+        E146: there is none of this name.
+
+    Examples
+    --------
+    >>> rule_of("paper"), rule_of("towers")
+    ('algorithm2', 'towers')
+    """
+    if name == PAPER:
+        return "algorithm2"
+    if name not in BUILT_IN and (name in RULES or not entry_points(group=GROUP, name=name)):
+        raise _unknown(name)
+    return name
+
+
+def policy_named(name: str, settings: PolicySettings, weights: SelectionSettings) -> Policy:
+    """Return a new policy.
+
+    Parameters
+    ----------
+    name : str
+        One of :data:`BUILT_IN`, or of an entry point.
+    settings : PolicySettings
+        Of those built in.
+    weights : SelectionSettings
+        Of the weighted sum.
+
+    Raises
+    ------
+    UsageError
+        E146: there is none of this name; E147: that of another package cannot be loaded.
+    """
+    match name:
+        case "random":
+            return Random()
+        case "lowest":
+            return Lowest()
+        case "scalarised":
+            return Scalarised(weights, settings.w_sf)
+        case "filter":
+            return Filters(settings)
+        case "towers":
+            return Towers(settings)
+    return _of_another_package(name)
+
+
+def _of_another_package(name: str) -> Policy:
+    found = () if name in (PAPER, *RULES) else tuple(entry_points(group=GROUP, name=name))
+    if not found:
+        raise _unknown(name)
+    if len({entry.value for entry in found}) > 1:
+        raise broken(name, f"is in several packages: {', '.join(sorted(e.value for e in found))}")
+    try:
+        policy = found[0].load()()
+    except Exception as error:
+        raise broken(name, f"cannot be loaded: {type(error).__name__}: {error}") from error
+    if not callable(getattr(policy, "choose", None)):
+        raise broken(name, f"is {policy!r}, which has no method `choose`")
+    return policy  # type: ignore[no-any-return]
+
+
+def _unknown(name: str) -> UsageError:
+    others = {entry.name for entry in entry_points(group=GROUP)} - {PAPER, *RULES, *BUILT_IN}
+    return UsageError(
+        "E146",
+        f"there is no policy {name!r}.",
+        where="--policy",
+        cure=f"Choose one of {', '.join((PAPER, *BUILT_IN, *sorted(others)))}.",
+    )

@@ -1,0 +1,42 @@
+"""Settings of the policies."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class PolicySettings:
+    """Weights and thresholds of policies; those shared with the paper's are in `[selection]`.
+
+    Parameters
+    ----------
+    w_sf : float
+        ``"scalarised"``: weight of SF, beside the five of `[selection]`.
+    min_support : float
+        ``"filter"``: least width of the support, as a share of the stone's width.
+    min_interlocking : float
+        ``"filter"``: least IWR of an inner stone.
+    min_slope : float
+        ``"filter"``: least IS of a stone at an end of the wall.
+    max_step : float
+        ``"filter"``: largest NHR.
+    min_filling : float
+        ``"filter"``: least LFR.
+    w_area, w_energy, w_distance, w_normal : float
+        ``"towers"``: weights of the support's area, the kinetic energy, the distance of the
+        centres and the deviation of the normal.
+    """
+
+    w_sf: float = 1.0
+    min_support: float = 0.3
+    min_interlocking: float = 0.2
+    min_slope: float = 0.0
+    max_step: float = 0.25
+    min_filling: float = 0.7
+    w_area: float = 0.179
+    w_energy: float = 0.472
+    w_distance: float = 0.094
+    w_normal: float = 0.254
+
+    def __post_init__(self) -> None:
+        if min(self.w_area, self.w_energy, self.w_distance, self.w_normal) < 0:
+            raise ValueError("the weights of towers must not be negative")

@@ -1,0 +1,87 @@
+"""`drystone plan --policy`."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from drystone.cli.parser import build_parser
+from drystone.cli.settings import search_seconds, settings_from
+from drystone.planner.settings import PlannerSettings, method_settings
+from tests.cli.conftest import Run
+
+SIZE = ("--wall", "100x36", "--scale", "1", "--geometry", "raster", "--quiet")
+
+
+def asked(*options: object) -> tuple[float | None, PlannerSettings]:
+    """Seconds and settings of a plan of 30 stones."""
+    words = ["plan", "stones.png", "--wall", "100x36", "-o", "out", *map(str, options)]
+    arguments = build_parser().parse_args(words)
+    settings = settings_from(arguments)
+    return search_seconds(method_settings(arguments.method), 30, arguments), settings
+
+
+@pytest.mark.parametrize("method", ["best", "paper"])
+@pytest.mark.parametrize(
+    ("name", "rule"), [("paper", "algorithm2"), ("random", "random"), ("towers", "towers")]
+)
+def test_a_policy_is_a_single_pass(name: str, rule: str, method: str) -> None:
+    for more in ((), ("--budget", 1)):
+        seconds, settings = asked("--policy", name, "--method", method, *more)
+        assert seconds is None
+        assert (settings.selection_rule, settings.search.budget) == (rule, 1)
+        assert settings.geometry == method_settings(method).geometry
+
+
+@pytest.mark.parametrize(
+    "more", [("--time", "2"), ("--budget", "2"), ("--aim", "F_LR=.8"), ("--time", "2", "--resume")]
+)
+@pytest.mark.parametrize("name", ["paper", "random"])
+def test_it_is_not_searched_with(
+    name: str, more: tuple[str, ...], run: Run, rubble: Path, tmp_path: Path
+) -> None:
+    ran = run("plan", rubble, *SIZE, "--policy", name, "-o", tmp_path / "out", *more)
+    assert (ran.code, "E138" in ran.err) == (2, True)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", ["nobody", "score", "algorithm2", ""])
+def test_unknown_ones_are_refused_before_anything_is_written(
+    name: str, run: Run, rubble: Path, tmp_path: Path
+) -> None:
+    ran = run("plan", rubble, *SIZE, "--policy", name, "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert f"E146 --policy: there is no policy {name!r}. Choose one of paper, random," in ran.err
+    assert not (tmp_path / "out").exists()
+
+
+def test_those_of_a_settings_file_too(run: Run, rubble: Path, tmp_path: Path) -> None:
+    toml, out = tmp_path / "settings.toml", tmp_path / "out"
+
+    def said(text: str) -> str:
+        toml.write_text(text, encoding="utf-8")
+        ran = run("plan", rubble, *SIZE, "--settings", toml, "-o", out)
+        assert ran.code == 2
+        assert not out.exists()
+        return ran.err
+
+    assert "E146" in said("selection_rule = 'nobody'\n[search]\nbudget = 1\n")
+    assert "E123 settings: the policy 'lowest' builds" in said("selection_rule = 'lowest'\n")
+    toml.write_text("selection_rule = 'lowest'\n[search]\nbudget = 1\n", encoding="utf-8")
+    assert asked("--settings", toml)[1].selection_rule == "lowest"
+    assert asked("--settings", toml, "--policy", "filter")[1].selection_rule == "filter"
+
+
+def test_a_plan_repeats_from_its_settings(run: Run, rubble: Path, tmp_path: Path) -> None:
+    one, two = tmp_path / "one", tmp_path / "two"
+    toml = tmp_path / "given.toml"
+    toml.write_text("[policy]\nmin_filling = 0.6\n", encoding="utf-8")
+    given = ("--policy", "filter", "--settings", toml, "--seed", "4")
+    assert run("plan", rubble, *SIZE, *given, "-o", one).code in (0, 4)
+    assert run("check", one, "--stones", rubble).code == 0
+    again = ("--settings", one / "settings.toml", "--seed", "4", "--jobs", "2")
+    assert run("plan", rubble, *SIZE, *again, "-o", two).code in (0, 4)
+    plans = [(folder / "plan.json").read_bytes() for folder in (one, two)]
+    assert plans[0] == plans[1]
+    settings = json.loads(plans[0])["settings"]
+    assert (settings["selection_rule"], settings["policy"]["min_filling"]) == ("filter", 0.6)

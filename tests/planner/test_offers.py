@@ -1,0 +1,144 @@
+"""What a policy sees of a candidate, on pixels and on outlines."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from drystone.model.site import Site
+from drystone.planner.build import Candidate
+from drystone.planner.choose import choose_by_policy
+from drystone.planner.offers import offer, support_px, turned_deg
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings
+from drystone.selection.policy import Offer
+from drystone.statics.model import Block, Interface, RigidBlockModel
+from tests.planner.scenes import RUBBLE_SITE, blocks, finish, greedy, rubble
+
+
+def _candidates(settings: PlannerSettings, site: Site = RUBBLE_SITE) -> list[Candidate]:
+    planner = finish(Planner(rubble(1), site, seed=2, settings=settings))
+    return list(planner.build.actions)
+
+
+EXACT = greedy()
+RASTER = greedy({"geometry": "raster"})
+
+
+@pytest.mark.parametrize("settings", [EXACT, RASTER])
+def test_an_offer_is_where_the_stone_is(settings: PlannerSettings) -> None:
+    for candidate in _candidates(settings):
+        seen, placement = offer(candidate, RUBBLE_SITE), candidate.stabilised.placement
+        assert (seen.stone_id, seen.side) == (candidate.stone_id, candidate.side)
+        assert seen.indices is candidate.indices
+        assert seen.wedges == len(candidate.stabilised.wedges)
+        assert seen.centroid_px == placement.centroid(RUBBLE_SITE.height_px)
+        assert seen.left_px < seen.centroid_px[0] < seen.right_px
+        assert seen.bottom_px < seen.centroid_px[1] < seen.top_px
+        # A pixel that an outline covers by less than half is not filled.
+        rows, cols = placement.window
+        assert seen.left_px == pytest.approx(cols.start, abs=1)
+        assert seen.right_px == pytest.approx(cols.stop, abs=1)
+        assert seen.top_px == pytest.approx(RUBBLE_SITE.height_px - rows.start, abs=1)
+        assert seen.bottom_px == pytest.approx(RUBBLE_SITE.height_px - rows.stop, abs=1)
+        assert seen.area_px == pytest.approx(placement.posed.stone.area_px, rel=0.05)
+        assert 0 <= seen.turned_deg <= 15
+        assert seen.support_px is not None  # all of these rest on something
+        (left, low), (right, high) = seen.support_px
+        assert seen.left_px - 1e-9 <= left <= right <= seen.right_px + 1e-9
+        assert min(low, high) >= seen.bottom_px - 0.2
+
+
+def test_offers_are_working_px_at_any_resolution() -> None:
+    sites = Site(100, 36), Site.from_source(100, 36, 0.5)
+    full, half = (offer(_candidates(EXACT, site)[0], site) for site in sites)
+    for seen, site in ((full, sites[0]), (half, sites[1])):
+        assert 0 <= seen.bottom_px < seen.top_px <= site.height_px + 1
+        assert (seen.wall_width_px, seen.wall_height_px) == (site.width_px, site.height_px)
+        assert seen.support_px is not None
+        assert seen.left_px - 0.1 <= seen.support_px[0][0]
+        assert seen.support_px[1][0] <= seen.right_px + 0.1
+        area = (seen.right_px - seen.left_px) * (seen.top_px - seen.bottom_px)
+        assert 0.5 * area < seen.area_px <= area
+
+
+@pytest.mark.parametrize("geometry", ["raster", "exact"])
+def test_the_support_of_blocks(geometry: str) -> None:
+    """Two blocks and a third that bridges them: it bears on both, neighbours hold no one."""
+    stones = blocks({1: (10, 6), 2: (10, 6), 3: (20, 6)})
+    settings = greedy({"geometry": geometry, "order": "given", "two_sided": False, "vary": 0.0})
+    settings = settings.updated({"orientations": "sf"})
+    actions = finish(Planner(stones, Site(20, 12), settings=settings)).build.actions
+    seen = [offer(action, Site(20, 12)) for action in actions]
+    assert [one.stone_id for one in seen] == [1, 2, 3]
+    supports = [np.array(one.support_px) for one in seen]
+    assert supports[0] == pytest.approx(np.array([[0, 0], [10, 0]]), abs=0.3)
+    assert supports[1] == pytest.approx(np.array([[10, 0], [20, 0]]), abs=0.3)
+    assert supports[2] == pytest.approx(np.array([[0, 6], [20, 6]]), abs=0.3)
+
+
+def _interface(
+    block: int, other: int, points: list[list[float]], normal: tuple[float, float]
+) -> Interface:
+    return Interface(block, other, np.array(points), normal)
+
+
+def test_only_what_bears_from_below_supports() -> None:
+    square = [Block(i, 4.0, (0.0, 0.0)) for i in (1, 2, 3)]
+    beside = _interface(3, 1, [[0.0, 2.0], [0.0, 9.0]], (1.0, 0.05))
+    above = _interface(3, 2, [[-9.0, 9.0], [9.0, 9.0]], (0.0, -1.0))
+    others = _interface(2, 1, [[-8.0, 1.0], [8.0, 1.0]], (0.0, 1.0))
+    below = _interface(3, 1, [[3.0, 1.0], [1.0, 2.0]], (0.0, 1.0))
+    turned_round = _interface(1, 3, [[4.0, 3.0], [4.0, 1.0]], (0.6, -0.8))
+
+    def found(*interfaces: Interface) -> object:
+        return support_px(RigidBlockModel(tuple(square), interfaces), 3, 0.5)
+
+    assert found(beside, above, others) is None
+    assert found(beside, below, above, others) == ((0.5, 1.0), (1.5, 0.5))
+    assert found(below, turned_round) == ((0.5, 1.0), (2.0, 0.5))
+    assert found(_interface(3, 0, [[2.0, 0.0]], (0.0, 1.0))) == ((1.0, 0.0), (1.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "turn"),
+    [(0, 0, 0), (-180, 179, 1), (179.5, -179.5, 1), (90, 85, 5), (-5, 5, 10), (0, -180, 180)],
+)
+def test_turns_are_the_short_way(before: float, after: float, turn: float) -> None:
+    assert turned_deg(before, after) == turn
+
+
+class _Last:
+    def __init__(self) -> None:
+        self.seen: list[list[int]] = []
+
+    def choose(self, candidates: tuple[Offer, ...], rng: np.random.Generator) -> int:  # noqa: ARG002
+        self.seen.append([one.stone_id for one in candidates])
+        return len(candidates) - 1
+
+
+def test_only_walls_that_stand_are_offered() -> None:
+    made = _candidates(RASTER)[:5]
+    kept = [
+        made[0],
+        replace(made[1], sturdy=False),
+        replace(made[2], indices=replace(made[2].indices, LLC=None)),
+        replace(made[3], indices=replace(made[3].indices, LLC=0.0)),
+        made[4],
+    ]
+    policy, rng = _Last(), np.random.default_rng(0)
+
+    def choose(candidates: list[Candidate]) -> Candidate | None:
+        return choose_by_policy(
+            [one.proposal for one in candidates],
+            lambda _: candidates,
+            policy,
+            name="last",
+            site=RUBBLE_SITE,
+            rng=rng,
+        )
+
+    assert choose(kept) is made[4]
+    assert policy.seen == [[made[0].stone_id, made[4].stone_id]]
+    assert choose(kept[1:4]) is None
+    assert len(policy.seen) == 1

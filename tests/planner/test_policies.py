@@ -1,0 +1,237 @@
+"""Walls of policies: true, repeatable, and chosen by the policy."""
+
+import json
+import re
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from importlib.metadata import EntryPoint, EntryPoints
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drystone.errors import UsageError
+from drystone.io.plan_json import plan_from_json, plan_to_json
+from drystone.model.stone import StoneSet
+from drystone.planner.attempt import Attempt
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.search.plan_wall import PlanResult, plan_wall
+from drystone.selection.policies import registry
+from drystone.selection.policies.registry import BUILT_IN, GROUP
+from drystone.selection.policy import Offer
+from drystone.verify import check_plan
+from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "policies.md"
+GEOMETRIES = ("raster", "exact")
+RASTER = {"geometry": "raster"}
+
+Plan = Callable[..., PlanResult]
+
+
+def by(name: str, changes: Mapping[str, Any] | None = None) -> PlannerSettings:
+    """A single pass with a policy, with few poses."""
+    return greedy({"selection_rule": name, "orientations": "sf", **(changes or {})})
+
+
+def true(result: PlanResult, stones: StoneSet) -> None:
+    """See that a plan, written and read again, is true."""
+    plan = plan_from_json(json.loads(json.dumps(plan_to_json(result.plan))))
+    report = check_plan(plan, stones, wall_labels=result.wall.labels)
+    assert report.problems == ()
+    assert len(plan.stone_steps) >= 4
+
+
+def planned(settings: PlannerSettings, **options: Any) -> PlanResult:
+    return plan_wall(rubble(1), 100, 36, scale=1.0, settings=settings, **options)
+
+
+@pytest.fixture
+def installed(monkeypatch: pytest.MonkeyPatch) -> Callable[[type], None]:
+    """Pretend that a package has a policy, `mine`."""
+
+    def install(made: type) -> None:
+        module = ModuleType("mine_module")
+        module.Mine = made  # type: ignore[attr-defined]
+        monkeypatch.setitem(sys.modules, "mine_module", module)
+        points = EntryPoints([EntryPoint("mine", "mine_module:Mine", GROUP)])
+        monkeypatch.setattr(registry, "entry_points", points.select)
+
+    return install
+
+
+@pytest.mark.parametrize("geometry", GEOMETRIES)
+@pytest.mark.parametrize("name", ["algorithm2", *BUILT_IN])
+def test_walls_are_true_and_the_same_with_any_threads(name: str, geometry: str) -> None:
+    settings = by(name, {"geometry": geometry})
+    one, two = (planned(settings, seed=3, n_jobs=jobs) for jobs in (1, 2))
+    true(one, rubble(1))
+    assert plan_to_json(one.plan) == plan_to_json(two.plan)
+    assert one.wall.labels.tobytes() == two.wall.labels.tobytes()
+    assert one.plan.settings["selection_rule"] == name
+    assert ("policy" in one.plan.settings) == (name in BUILT_IN)
+    again = PlannerSettings().updated(one.plan.settings)
+    assert again == settings
+
+
+@pytest.mark.parametrize("geometry", GEOMETRIES)
+@pytest.mark.parametrize("sampling", ["variant", "uniform", "twofold"])
+def test_with_every_sampling_from_one_end(sampling: str, geometry: str) -> None:
+    changes = {"sampling": sampling, "geometry": geometry, "two_sided": False}
+    for name in ("random", "filter"):
+        true(planned(by(name, changes), seed=1), rubble(1))
+
+
+def test_random_depends_on_the_seed() -> None:
+    walls = [
+        order(finish(Planner(rubble(1), RUBBLE_SITE, seed=seed, settings=by("random", RASTER))))
+        for seed in (1, 2, 1)
+    ]
+    assert walls[0] == walls[2] != walls[1]
+
+
+class Seen:
+    """Keeps what it is offered and takes the first."""
+
+    offers: list[tuple[Offer, ...]]
+
+    def choose(self, candidates: tuple[Offer, ...], rng: np.random.Generator) -> int | None:  # noqa: ARG002
+        type(self).offers.append(candidates)
+        return 0
+
+
+@pytest.fixture
+def seen(installed: Callable[[type], None]) -> list[tuple[Offer, ...]]:
+    """What a policy is offered that takes the first."""
+    kept = type("Kept", (Seen,), {"offers": []})
+    installed(kept)
+    return kept.offers  # type: ignore[attr-defined, no-any-return]
+
+
+@pytest.mark.parametrize("geometry", GEOMETRIES)
+def test_both_sides_are_offered_at_once(geometry: str, seen: list[tuple[Offer, ...]]) -> None:
+    finish(Planner(rubble(1), RUBBLE_SITE, settings=by("mine", {"geometry": geometry})))
+    assert {one.side for one in seen[0]} == {"left", "right"}
+    assert {one.stone_id for one in seen[0]} == {stone.id for stone in rubble(1)}
+    assert all(one.indices.LLC and one.indices.LLC > 0 for offers in seen for one in offers)
+
+
+def test_two_folds_are_two_choices(seen: list[tuple[Offer, ...]]) -> None:
+    settings = by("mine", {**RASTER, "sampling": "twofold"})
+    planner = Planner(rubble(1), RUBBLE_SITE, settings=settings)
+    next(iter(planner.steps()))
+    clusters = planner.workshop.clusters
+    assert len(seen) == 2
+    first, second = ([one.stone_id for one in offers] for offers in seen)
+    assert {clusters[i] for i in second} == {clusters[first[0]]}
+
+
+def test_pinned_stones_come_first(seen: list[tuple[Offer, ...]]) -> None:
+    settings = by("mine", {**RASTER, "pin": [6, 4]})
+    planner = finish(Planner(rubble(1), RUBBLE_SITE, settings=settings))
+    assert {action.stone_id for action in planner.build.actions[:2]} == {4, 6}
+    assert [{one.stone_id for one in offers} for offers in seen[:3]] == [
+        {4, 6},
+        {4, 6} - {planner.build.actions[0].stone_id},
+        {1, 2, 3, 5, 7, 8},
+    ]
+
+
+class NoneOfFew(Seen):
+    """Takes nothing where there is little to choose from."""
+
+    def choose(self, candidates: tuple[Offer, ...], rng: np.random.Generator) -> int | None:
+        few = len({one.stone_id for one in candidates}) <= 2
+        return None if few else super().choose(candidates, rng)
+
+
+def test_others_come_where_no_pinned_stone_can(installed: Callable[[type], None]) -> None:
+    kept = type("Kept", (NoneOfFew,), {"offers": []})
+    installed(kept)
+    settings = by("mine", {**RASTER, "pin": [6, 4]})
+    planner = finish(Planner(rubble(1), RUBBLE_SITE, settings=settings))
+    assert len(planner.build.actions) >= 4
+    offers: list[tuple[Offer, ...]] = kept.offers  # type: ignore[attr-defined]
+    assert {one.stone_id for one in offers[0]} == set(range(1, 9))
+
+
+def test_the_rule_of_an_order_is_kept(seen: list[tuple[Offer, ...]]) -> None:
+    finish(Planner(rubble(1), RUBBLE_SITE, settings=by("mine", {**RASTER, "order": "given"})))
+    assert all(len({one.stone_id for one in offers}) == 1 for offers in seen)
+
+
+class Nobody:
+    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> None:  # noqa: ARG002
+        return None
+
+
+def test_a_policy_that_takes_nothing_ends_the_wall(installed: Callable[[type], None]) -> None:
+    installed(Nobody)
+    full = finish(Planner(rubble(1), RUBBLE_SITE, settings=by("mine", RASTER)))
+    assert full.build.actions == ()
+    assert full.stopped is not None
+    assert full.stopped.reason == "failures"
+
+
+class Breaks:
+    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int:  # noqa: ARG002
+        return len(candidates)
+
+
+def test_a_broken_policy_ends_the_plan(installed: Callable[[type], None]) -> None:
+    installed(Breaks)
+    with pytest.raises(UsageError, match=r"E147 .*'mine' returned"):
+        planned(by("mine", RASTER))
+
+
+def test_an_unknown_policy_is_refused_when_it_is_to_choose() -> None:
+    settings = by("unheard of", RASTER)
+    planner = Planner(rubble(1), RUBBLE_SITE, settings=settings)
+    with pytest.raises(UsageError, match="E146"):
+        next(iter(planner.steps()))
+    with pytest.raises(UsageError, match="E146"):
+        Attempt(planner.workshop, settings, planner.build)
+
+
+def test_a_wall_is_checked_without_its_policy(
+    installed: Callable[[type], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = type("Kept", (Seen,), {"offers": []})
+    installed(kept)
+    result = planned(by("mine", RASTER))
+    monkeypatch.setattr(registry, "entry_points", lambda **_: EntryPoints())
+    true(result, rubble(1))
+
+
+@pytest.mark.parametrize("rule", ["random", "paper", ""])
+def test_a_policy_is_not_searched_with(rule: str) -> None:
+    with pytest.raises(UsageError, match=f"E123 settings: .*'{rule}'"):
+        method_settings("best").updated({"selection_rule": rule})
+    assert by("random").by_policy
+    assert not greedy().by_policy
+    assert not PlannerSettings().by_policy
+
+
+def test_settings_of_policies_are_checked() -> None:
+    with pytest.raises(UsageError, match=r"E123 settings policy: the weights of towers"):
+        PlannerSettings().updated({"policy": {"w_energy": -0.1}})
+
+
+def test_plans_without_a_policy_say_nothing_of_policies() -> None:
+    for method in ("paper", "best"):
+        assert "policy" not in method_settings(method).as_dict()
+
+
+def test_the_policy_of_the_document_builds_a_wall(installed: Callable[[type], None]) -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    (program,) = re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+    names: dict[str, Any] = {}
+    exec(compile(program, PAGE.name, "exec"), names)  # noqa: S102 - our own document
+    installed(names["Largest"])
+    result = planned(by("mine", RASTER), seed=2)
+    true(result, rubble(1))
+    first = result.plan.stone_steps[0].stone
+    assert first in [stone.id for stone in sorted(rubble(1), key=lambda s: -s.area_px)[:3]]

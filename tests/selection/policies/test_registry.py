@@ -1,0 +1,106 @@
+"""Policies by name, also those of other packages."""
+
+from collections.abc import Callable
+from importlib.metadata import EntryPoint, EntryPoints
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drystone.errors import UsageError
+from drystone.selection.algorithm2 import SelectionSettings
+from drystone.selection.policies import registry
+from drystone.selection.policies.registry import BUILT_IN, GROUP, policy_named, rule_of
+from drystone.selection.policies.settings import PolicySettings
+from drystone.selection.policy import Policy
+from tests.selection.offers import offered
+
+Installed = Callable[..., None]
+
+
+class First:
+    """A policy of another package."""
+
+    def choose(self, candidates: Any, rng: Any) -> int:  # noqa: ARG002
+        return 0
+
+
+class NeedsMore(First):
+    def __init__(self, more: int) -> None: ...
+
+
+@pytest.fixture
+def installed(monkeypatch: pytest.MonkeyPatch) -> Installed:
+    """Pretend that packages with some entry points are installed."""
+
+    def install(*given: tuple[str, str]) -> None:
+        points = EntryPoints(EntryPoint(name, value, GROUP) for name, value in given)
+        monkeypatch.setattr(registry, "entry_points", points.select)
+
+    return install
+
+
+def named(name: str) -> Policy:
+    return policy_named(name, PolicySettings(), SelectionSettings())
+
+
+HERE = __name__
+
+
+def test_those_built_in_are_there(installed: Installed) -> None:
+    installed()
+    assert [rule_of(name) for name in BUILT_IN] == list(BUILT_IN)
+    assert len({type(named(name)) for name in BUILT_IN}) == len(BUILT_IN)
+    assert rule_of("paper") == "algorithm2"
+
+
+def test_one_of_another_package_is_made_anew(installed: Installed) -> None:
+    installed(("first", f"{HERE}:First"), ("other", "nowhere:Other"))
+    assert rule_of("first") == "first"
+    policy = named("first")
+    assert type(policy).__name__ == "First"
+    assert policy.choose([offered()], np.random.default_rng(0)) == 0
+    assert named("first") is not policy
+
+
+@pytest.mark.parametrize("name", ["fist", "algorithm2", "score", "First", " "])
+def test_unknown_ones_are_refused_with_the_known_ones(name: str, installed: Installed) -> None:
+    installed(("first", f"{HERE}:First"), ("score", f"{HERE}:First"), ("paper", f"{HERE}:First"))
+    for find in (rule_of, named):
+        with pytest.raises(UsageError, match="E146") as caught:
+            find(name)
+        assert repr(name) in caught.value.what
+        known = "paper, random, lowest, scalarised, filter, towers, first."
+        assert caught.value.cure == f"Choose one of {known}"
+
+
+def test_names_of_ours_cannot_be_taken(installed: Installed) -> None:
+    installed(("random", f"{HERE}:First"))
+    assert type(named("random")).__module__.startswith("drystone.")
+    with pytest.raises(UsageError, match="E146"):
+        named("paper")  # it is the planner's own rule
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ("no_such_module:First", "cannot be loaded: ModuleNotFoundError"),
+        (f"{HERE}:Second", "cannot be loaded: AttributeError"),
+        (f"{HERE}:NeedsMore", "cannot be loaded: TypeError"),
+        (f"{HERE}:HERE", "cannot be loaded: TypeError"),
+        ("builtins:dict", "has no method `choose`"),
+    ],
+)
+def test_broken_ones_are_named(value: str, said: str, installed: Installed) -> None:
+    installed(("mine", value))
+    with pytest.raises(UsageError, match="E147 --policy: the policy 'mine' ") as caught:
+        named("mine")
+    assert said in caught.value.what
+
+
+def test_a_name_in_two_packages_is_refused(installed: Installed) -> None:
+    installed(("mine", f"{HERE}:First"), ("mine", "other:First"))
+    with pytest.raises(UsageError, match=r"E147 .*several packages.*other:First"):
+        named("mine")
+    installed(("mine", f"{HERE}:First"), ("mine", f"{HERE}:First"))
+    assert named("mine")

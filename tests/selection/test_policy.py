@@ -1,0 +1,93 @@
+"""What a policy sees, and what it may return."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drystone.errors import UsageError
+from drystone.selection.policy import Offer, choice_of
+from tests.selection.offers import offered
+
+RNG = np.random.default_rng(0)
+OFFERS = [offered(1), offered(2), offered(3)]
+
+
+class _Says:
+    """Returns something, or raises it."""
+
+    def __init__(self, what: Any) -> None:
+        self.what = what
+        self.asked = 0
+
+    def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> Any:
+        self.asked += 1
+        assert isinstance(candidates, tuple)
+        assert rng is RNG
+        if isinstance(self.what, BaseException):
+            raise self.what
+        return self.what
+
+
+@pytest.mark.parametrize("said", [0, 2, np.int64(1), np.uint8(2)])
+def test_a_position_is_taken(said: Any) -> None:
+    found = choice_of("x", _Says(said), OFFERS, RNG)
+    assert type(found) is int
+    assert found == said
+
+
+def test_none_is_none() -> None:
+    assert choice_of("x", _Says(None), OFFERS, RNG) is None
+
+
+def test_nobody_is_asked_when_there_is_nothing() -> None:
+    policy = _Says(0)
+    assert choice_of("x", policy, [], RNG) is None
+    assert policy.asked == 0
+
+
+@pytest.mark.parametrize(
+    "said", [3, -1, True, False, np.True_, 1.0, "1", [0], OFFERS[0], np.array([0, 1])]
+)
+def test_nonsense_is_named(said: Any) -> None:
+    with pytest.raises(UsageError, match=r"E147 --policy: the policy 'x' returned .* 0 to 2\."):
+        choice_of("x", _Says(said), OFFERS, RNG)
+
+
+@pytest.mark.parametrize("error", [KeyError("area"), RuntimeError("no"), AssertionError()])
+def test_errors_are_named(error: Exception) -> None:
+    with pytest.raises(UsageError, match="E147 .*'x' raised " + type(error).__name__) as caught:
+        choice_of("x", _Says(error), OFFERS, RNG)
+    assert caught.value.__cause__ is error
+
+
+def test_an_interrupt_is_none_of_its_errors() -> None:
+    with pytest.raises(KeyboardInterrupt):
+        choice_of("x", _Says(KeyboardInterrupt()), OFFERS, RNG)
+
+
+def test_a_choice_after_drawing_repeats() -> None:
+    class Drawn:
+        def choose(self, candidates: Sequence[Offer], rng: np.random.Generator) -> int | None:
+            return int(rng.integers(len(candidates)))
+
+    draws = [choice_of("x", Drawn(), OFFERS, np.random.default_rng(5)) for _ in range(3)]
+    assert len(set(draws)) == 1
+
+
+@pytest.mark.parametrize(
+    ("read", "changes", "value"),
+    [
+        (lambda o: o.width_px, {}, 10.0),
+        (lambda o: o.support_width_px, {}, 10.0),
+        (lambda o: o.support_width_px, {"support_px": ((12.0, 1.0), (15.0, 0.0))}, 3.0),
+        (lambda o: o.support_width_px, {"support_px": None}, 0.0),
+        (lambda o: o.from_end_px, {}, 10.0),
+        (lambda o: o.from_end_px, {"side": "right"}, 80.0),
+    ],
+)
+def test_what_follows_from_an_offer(
+    read: Callable[[Offer], float], changes: dict[str, Any], value: float
+) -> None:
+    assert read(offered(**changes)) == value
