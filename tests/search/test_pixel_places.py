@@ -12,7 +12,8 @@ from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.search.laying_settings import PutDownSettings
 from drystone.search.pixel_places import PixelAim, PixelHand
-from tests.planner.scenes import rubble
+from drystone.stabilise.stabilise import Stabilised
+from tests.planner.scenes import blocks, rubble
 from tests.search.pixel_yards import PixelYard
 
 SITE = Site(100, 60)
@@ -130,3 +131,20 @@ def test_settings_are_checked() -> None:
     ):  # fmt: skip
         with pytest.raises(ValueError, match="must"):
             PutDownSettings(**change)
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_where_a_stone_cannot_be_lowered_to_it_does_not_lie(side: Side) -> None:
+    yard = PixelYard(blocks({1: (10, 10), 2: (60, 6)}), SITE)
+    low, roof = (yard.workshop.book.pose(stone, 0.0) for stone in yard.stones)
+    col = 0 if side == "left" else SITE.width_px - roof.width_px
+    landscape = Landscape.of(yard.empty().wall.add(Placement(roof, 20, col)), side)
+    hand = PixelHand(PutDownSettings(), yard.workshop.memory)
+    row = SITE.height_px - low.height_px
+    costs = []
+    for left in (10, 80):  # under the roof, and beside it
+        at = landscape.view_col(low, left)
+        found = Stabilised(Placement(low, row, at, side), ())
+        costs.append(hand._cost(landscape, found, PixelAim(float(left), 10.0, 0.0, 10.0)))
+    assert costs[0] == math.inf
+    assert costs[1] < math.inf

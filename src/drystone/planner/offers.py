@@ -3,6 +3,7 @@
 from drystone.kernels.polygons import Points
 from drystone.model.site import Site
 from drystone.planner.build import Candidate
+from drystone.poses import wrap_deg
 from drystone.selection.policy import Offer, Point
 from drystone.statics.model import RigidBlockModel
 
@@ -62,7 +63,7 @@ def turned_deg(before_deg: float, after_deg: float) -> float:
     >>> turned_deg(-179.0, 178.0)
     3.0
     """
-    return abs((after_deg - before_deg + 180.0) % 360.0 - 180.0)
+    return abs(wrap_deg(after_deg - before_deg))
 
 
 def support_px(

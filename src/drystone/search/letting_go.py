@@ -9,6 +9,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import Floats, StoneProfile, hanging
+from drystone.poses import wrap_deg
 from drystone.search.laying_settings import LetGoSettings
 from drystone.search.views import View
 from drystone.settle.rest import Repose, Turned, repose, rests, touch_down
@@ -211,7 +212,7 @@ class Hand:
         else:
             left = view.scene.width_px - float(corners[:, 0].max())
         place = self._place_cost(np.array([left]), np.array([top]), aim)
-        turn = abs((found.angle_deg - aim.angle_deg + 180.0) % 360.0 - 180.0) / 10.0
+        turn = abs(wrap_deg(found.angle_deg - aim.angle_deg)) / 10.0
         unsure = max(0.0, 1.0 - found.margin)
         return math.fsum([float(place[0]), settings.turn * turn, settings.rest * unsure])
 
