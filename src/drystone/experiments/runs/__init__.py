@@ -1,0 +1,1 @@
+"""What experiments are made of: plans, one each, that can be run anywhere, kept and found again."""
