@@ -4,7 +4,7 @@ BIN := .venv/bin
 # What an installation is made from; the kernels are compiled when there is a compiler.
 SOURCES := pyproject.toml requirements.lock setup.py $(wildcard src/drystone/kernels/compiled/*.p[yx][xd])
 
-.PHONY: demo test lint bench lock clean
+.PHONY: demo test lint bench docs lock clean
 
 demo: .venv/demo.stamp          ## plan a generated stone set and say where the picture is
 	$(BIN)/drystone demo -o demo --overwrite
@@ -21,6 +21,10 @@ lint: .venv/dev.stamp
 bench: .venv/dev.stamp          ## times beside slow twins; QUICK=1 takes a minute instead of ten
 	$(BIN)/python -m benchmarks $(if $(QUICK),--quick)
 
+docs: .venv/docs.stamp          ## pages with an executed gallery in docs/_build/html
+	$(BIN)/sphinx-build -b html -n -W --keep-going -q docs docs/_build/html
+	@echo "docs/_build/html/index.html"
+
 .venv/demo.stamp: $(SOURCES)
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock -e .
@@ -31,9 +35,14 @@ bench: .venv/dev.stamp          ## times beside slow twins; QUICK=1 takes a minu
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock -e '.[dev]'
 	@touch $@ .venv/demo.stamp
 
+# The package is there already, so this adds what the extra names and compiles nothing again.
+.venv/docs.stamp: .venv/demo.stamp
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock 'drystone[docs]'
+	@touch $@
+
 lock:                           ## renew requirements.lock (needs uv)
 	uv pip compile --quiet --universal --python-version 3.11 --all-extras --no-emit-index-url \
 		--no-header --output-file requirements.lock pyproject.toml
 
 clean:
-	rm -rf .venv demo build dist src/*.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv demo build dist docs/_build docs/auto_gallery src/*.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import drystone
 from drystone.cli.parser import build_parser
 from drystone.generate import (
     BrickSettings,
@@ -43,6 +44,7 @@ NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
 
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
+TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 TABLE = re.compile(r"<!-- table (\w+) -->\n(.*?)<!-- end -->", re.DOTALL)
 
 SOURCES: dict[str, type[Any]] = {
@@ -207,6 +209,17 @@ def test_the_python_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.Monke
         exec(compile(program, "README.md", "exec"), {})  # noqa: S102 - our own document
 
 
+@pytest.mark.parametrize("name", [name for name in NAMES if name.startswith("docs/for-")])
+def test_the_python_of_the_pages_for_users_runs(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = brick_stones(BrickSettings(count=6, height_px=10, aspect=2), np.random.default_rng(1))
+    write_labels(lay_out(made), tmp_path / "stones.png")
+    monkeypatch.chdir(tmp_path)
+    for program in blocks(ROOT / name, "python"):
+        exec(compile(program, name, "exec"), {})  # noqa: S102 - our own document
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_link_leads_to_a_file(name: str) -> None:
     page = ROOT / name
@@ -226,6 +239,52 @@ def test_every_link_to_a_heading_finds_it(name: str) -> None:
             titles = re.findall(r"^#+ (.+)$", there.read_text(encoding="utf-8"), re.MULTILINE)
             slugs = {re.sub(r"[^\w\- ]", "", t.lower()).replace(" ", "-") for t in titles}
             assert heading in slugs
+
+
+def test_every_page_is_reached_from_the_index() -> None:
+    text = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    entries = [
+        line
+        for tree in TOCTREE.findall(text)
+        for line in tree.splitlines()
+        if line and not line.startswith(":")
+    ]
+    assert len(set(entries)) == len(entries)
+    pages = {page.stem for page in (ROOT / "docs").glob("*.md")} - {"index"}
+    assert set(entries) == pages | {"auto_gallery/index"}
+    linked = {target for target, _ in LINK.findall(text)}
+    assert {f"{page}.md" for page in pages} <= linked, "for those who read it on the code host"
+
+
+def test_no_page_has_a_name_that_sphinx_keeps() -> None:
+    pages = {page.stem for page in (ROOT / "docs").glob("*.md")}
+    assert not pages & {"search", "genindex", "modindex"}, "its page would replace ours"
+
+
+def test_the_reference_names_everything_that_is_public() -> None:
+    text = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
+    described = re.findall(r"^\.\. auto\w+:: drystone\.(\w+)$", text, re.MULTILINE)
+    assert sorted(described) == sorted(drystone.__all__)
+
+
+def test_the_theory_has_every_equation_and_files_that_exist() -> None:
+    text = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+    numbers = re.findall(r"\((\d+)[a-d]?(?:-[a-d])?(?:, (\d+))?\)", text)
+    assert {int(n) for pair in numbers for n in pair if n} >= set(range(1, 31))
+    source = ROOT / "src" / "drystone"
+    files = re.findall(r"`([\w/]+\.py)`", text)
+    assert len(files) > 20
+    for file in files:
+        assert (source / file).exists() or (source / "indices" / file).exists(), file
+
+
+def test_the_gallery_has_titles_and_is_short() -> None:
+    scripts = sorted((ROOT / "docs" / "gallery").glob("plot_*.py"))
+    assert len(scripts) >= 4
+    for script in scripts:
+        text = script.read_text(encoding="utf-8")
+        assert re.match(r'"""\n(.+)\n=+\n\n', text), script.name
+        assert len(text.splitlines()) < 80, script.name
 
 
 def test_pictures_are_light_and_shown() -> None:

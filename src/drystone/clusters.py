@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.cluster.hierarchy import fcluster, ward
 
 from drystone.kernels.raster import turn
@@ -31,13 +32,23 @@ class ClusterSettings:
             raise ValueError("distance must be positive")
 
 
+def stone_features(stones: StoneSet, book: PoseBook) -> NDArray[np.float64]:
+    """Return what stones are grouped by (§3.4, Fig. 5).
+
+    Returns
+    -------
+    features : (n, 2) float array
+        Of each stone, in the order of the set: the eccentricity of the ellipse of equal second
+        moments, in [0, 1), and the area of the bounding box of its initial pose over the largest
+        in the set, in (0, 1].
+    """
+    return _features(stones, _box_areas(stones, book))
+
+
 def cluster_stones(
     stones: StoneSet, book: PoseBook, settings: ClusterSettings | None = None
 ) -> dict[int, int]:
-    """Group stones of similar eccentricity and size by Ward linkage (§3.4).
-
-    The features are the eccentricity of the ellipse of equal second moments, and the area of the
-    bounding box of the initial pose over the largest in the set.
+    """Group stones of similar eccentricity and size (:func:`stone_features`) by Ward linkage.
 
     Returns
     -------
@@ -48,9 +59,8 @@ def cluster_stones(
     ids = [stone.id for stone in stones]
     if len(ids) < 2:
         return dict.fromkeys(ids, 1)
-    extents = [np.ptp(turn(s.hull, book.initial_angle(s)), axis=0) for s in stones]
-    box = np.array([extent[0] * extent[1] for extent in extents])
-    features = np.column_stack([[s.eccentricity for s in stones], box / box.max()])
+    box = _box_areas(stones, book)
+    features = _features(stones, box)
     if len(ids) <= MOST_IN_PAIRS:
         flat = fcluster(ward(features), settings.distance, criterion="distance")
     else:
@@ -58,3 +68,13 @@ def cluster_stones(
     size = {label: -float(box[flat == label].mean()) for label in np.unique(flat)}
     order = {label: rank for rank, label in enumerate(sorted(size, key=lambda k: size[k]), 1)}
     return {stone_id: order[label] for stone_id, label in zip(ids, flat, strict=True)}
+
+
+def _box_areas(stones: StoneSet, book: PoseBook) -> NDArray[np.float64]:
+    """Return the area of the bounding box of each stone's initial pose, source px."""
+    extents = [np.ptp(turn(s.hull, book.initial_angle(s)), axis=0) for s in stones]
+    return np.array([extent[0] * extent[1] for extent in extents])
+
+
+def _features(stones: StoneSet, box: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.column_stack([[stone.eccentricity for stone in stones], box / box.max()])

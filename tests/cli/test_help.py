@@ -10,7 +10,10 @@ from drystone.cli.parser import build_parser
 from drystone.kernels.backend import describe
 from tests.cli.conftest import Run
 
-COMMANDS = ("plan", "demo", "stones", "analyse", "measure", "check", "generate")
+COMMANDS = (
+    "plan", "demo", "stones", "analyse", "measure", "check", "bench", "generate", "reproduce",
+    "fetch",
+)  # fmt: skip
 
 
 def test_help_loads_nothing_heavy() -> None:

@@ -5,11 +5,13 @@ from types import SimpleNamespace
 
 import pytest
 
-from drystone.experiments import growth
-from drystone.experiments.growth import Planned
+from drystone.experiments import growth, timed_walls
 from drystone.experiments.table import BenchSettings
+from drystone.experiments.time_tables import pixels_table, steps_table
+from drystone.experiments.timed_walls import Planned, fitted, planned, rubble_task
 from drystone.model.site import Site
 from drystone.planner.profile import StepTime
+from drystone.planner.settings import method_settings
 from drystone.plotting.growth import PowerLaw
 
 
@@ -27,7 +29,7 @@ def step(stones, candidates=2, seconds=0.01, **parts):
     return StepTime(stones, candidates, seconds, {"placement": 0.004, **parts})
 
 
-def planned(width, height, *steps):
+def wall(width, height, *steps):
     return Planned(Site(width, height), 0.5, steps)
 
 
@@ -60,10 +62,10 @@ def test_a_full_batch_has_more_candidates_than_one_of_each_cluster(tables):
 
 def test_times_against_pixels_and_the_numbers_of_the_paper():
     walls = {
-        0.5: planned(140, 40, step(0, seconds=0.01), step(1, seconds=0.03)),
-        2.0: planned(560, 160, step(0, seconds=0.32), step(1, seconds=0.32)),
+        0.5: wall(140, 40, step(0, seconds=0.01), step(1, seconds=0.03)),
+        2.0: wall(560, 160, step(0, seconds=0.32), step(1, seconds=0.32)),
     }
-    small, large, exponents = growth._pixels_table("PR", walls).records()
+    small, large, exponents = pixels_table("PR", walls).records()
     assert (small["wall, s"], small["longest step, s"], small["all"]) == (0.54, 0.03, 20.0)
     assert small["placement"] == 4.0
     assert small["rest"] == 16.0
@@ -78,7 +80,7 @@ def test_times_against_pixels_and_the_numbers_of_the_paper():
 
 def test_times_against_stones_are_those_of_eight_steps_and_grow_by_the_candidate():
     steps = [step(n, candidates=n or 1, seconds=0.001 * (n or 1) ** 3) for n in range(12)]
-    rows = growth._steps_table("PR", {"variant": planned(280, 80, *steps)}).records()
+    rows = steps_table("PR", {"variant": wall(280, 80, *steps)}).records()
     assert [row["stones placed"] for row in rows] == [
         "0 to 7",
         "8 to 11",
@@ -91,17 +93,17 @@ def test_times_against_stones_are_those_of_eight_steps_and_grow_by_the_candidate
 
 
 def test_larger_walls_have_exponents_over_their_stones():
-    walls = {32: planned(280, 80, step(0)), 128: planned(560, 160, step(0), step(1))}
+    walls = {32: wall(280, 80, step(0)), 128: wall(560, 160, step(0), step(1))}
     *rows, exponents = growth._walls_table(walls).records()
     assert [row["preparation, ms a stone"] for row in rows] == [15.6, 3.91]
     assert exponents["preparation, ms a stone"] == pytest.approx(-1.0)
 
 
 def test_a_power_law_needs_two_sizes_and_times_above_0():
-    assert growth.fitted([(1.0, 2.0)]) is None
-    assert growth.fitted([(2.0, 2.0), (2.0, 3.0)]) is None
-    assert growth.fitted([(1.0, 0.0), (2.0, 3.0)]) is None
-    law = growth.fitted([(1.0, 2.0), (10.0, 200.0)])
+    assert fitted([(1.0, 2.0)]) is None
+    assert fitted([(2.0, 2.0), (2.0, 3.0)]) is None
+    assert fitted([(1.0, 0.0), (2.0, 3.0)]) is None
+    law = fitted([(1.0, 2.0), (10.0, 200.0)])
     assert law is not None
     assert (law.factor, law.exponent) == (pytest.approx(2.0), pytest.approx(2.0))
     assert PowerLaw(2.0, 2.0)(3.0) == 18.0
@@ -118,8 +120,8 @@ def test_the_quickest_repetition_of_every_step_counts(monkeypatch: pytest.Monkey
         )
         return SimpleNamespace(profile=profile, steps=lambda: iter(()))
 
-    monkeypatch.setattr(growth, "Planner", planner)
-    found = growth._planned(growth._rubble(8, 0), 1.0, "variant", seed=0, repeats=2)
+    monkeypatch.setattr(timed_walls, "Planner", planner)
+    found = planned(rubble_task(8, 0), 1.0, method_settings("paper"), seed=0, repeats=2)
     assert [s.seconds for s in found.steps] == [4.0, 3.0]
     assert found.seconds == 8.0
     assert found.longest == 4.0

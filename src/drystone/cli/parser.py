@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from drystone.cli.analyse_options import add_loads, add_model, add_scatter
+from drystone.cli.bench_options import add_bench
 from drystone.cli.numbers import positive, share, whole_from
 from drystone.cli.reading import add_reading
 from drystone.errors import UsageError
@@ -17,6 +18,7 @@ def build_parser() -> argparse.ArgumentParser:
         prog="drystone",
         description="Plans dry-stone walls from images of found stones.",
         epilog="drystone COMMAND --help explains a command. Start with: drystone demo",
+        formatter_class=_Listed,
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
@@ -25,6 +27,15 @@ def build_parser() -> argparse.ArgumentParser:
         command.add_argument("--debug", action="store_true", help="show the traceback of an error")
         add(command)
     return parser
+
+
+class _Listed(argparse.HelpFormatter):
+    """Has room for names of commands, whose indentation argparse forgets, beside their texts."""
+
+    def add_argument(self, action: argparse.Action) -> None:
+        """Add an option, or all commands."""
+        super().add_argument(action)
+        self._action_max_length = max(self._action_max_length, 13)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -214,27 +225,6 @@ def _analyse(command: argparse.ArgumentParser) -> None:
     add_scatter(command)
 
 
-def _bench(command: argparse.ArgumentParser) -> None:
-    command.add_argument("suite", metavar="SUITE", nargs="?", help="see --list")
-    command.add_argument("--list", action="store_true", help="name the suites, one a line")
-    command.add_argument("--data", metavar="DIR", help="published data (default: $DRYSTONE_DATA)")
-    command.add_argument("-o", "--output", metavar="DIR", help="draw pictures into a folder")
-    command.add_argument("--seed", type=_seed, default=0)
-    command.add_argument("--quick", action="store_true", help="a smaller version")
-    command.add_argument(
-        "--seconds", type=positive, metavar="S", help="of each search (search, packing)"
-    )
-    command.add_argument(
-        "--seeds", type=_count, metavar="N", help="how many, from --seed on (search)"
-    )
-    command.add_argument(
-        "--only", action="append", default=[], metavar="NAME",
-        help="walls whose names begin so; may be repeated (search, packing)",
-    )  # fmt: skip
-    command.add_argument("--json", action="store_true", help="print as JSON")
-    command.add_argument("--markdown", action="store_true", help="print as Markdown")
-
-
 def _measure(command: argparse.ArgumentParser) -> None:
     _wall_input(command)
     command.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
@@ -271,6 +261,38 @@ def _generate(command: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def _fetch(command: argparse.ArgumentParser) -> None:
+    command.add_argument("sets", metavar="NAME", nargs="*", help="see --list")
+    command.add_argument("--list", action="store_true", help="name the sets, one a line")
+    command.add_argument(
+        "--to", metavar="DIR",
+        help="folder to write to (default: $DRYSTONE_DATA, else a cache of your account)",
+    )  # fmt: skip
+    command.add_argument("--json", action="store_true", help="print as JSON")
+
+
+def _reproduce(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "names", metavar="NAME", nargs="*", help="table or figure, see --list; or all"
+    )
+    command.add_argument("--list", action="store_true", help="name them, one a line")
+    command.add_argument(
+        "-o", "--output", metavar="DIR", help="folder to write to; what is in it is kept and added"
+    )
+    command.add_argument("--quick", action="store_true", help="a smaller version, in a minute each")
+    command.add_argument("--data", metavar="DIR", help="published data (default: $DRYSTONE_DATA)")
+    command.add_argument("--image", metavar="PATH", help="your own stones, where they can be taken")
+    command.add_argument("--seed", type=_seed, default=1, help="the first one (default 1)")
+    command.add_argument("--jobs", type=_count, metavar="N", help="processes; never the result")
+    command.add_argument("--dask", metavar="ADDRESS", help="plan the walls on a Dask cluster")
+    command.add_argument(
+        "--again", action="store_true",
+        help="make again what is finished; finished walls are taken from DIR/runs",
+    )  # fmt: skip
+    command.add_argument("--json", action="store_true", help="print as JSON")
+    command.add_argument("--quiet", action="store_true", help="no progress")
+
+
 _COMMANDS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "plan": ("Plan a wall from an image of stones.", _plan),
     "demo": ("Plan a generated stone set; no arguments needed, works offline.", _demo),
@@ -278,6 +300,8 @@ _COMMANDS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "analyse": ("Limit analysis of a wall: load multipliers and mechanism.", _analyse),
     "measure": ("Measure filling, arrangement and lateral resistance of a wall.", _measure),
     "check": ("Re-derive a wall from stones and plan and verify every claim.", _check),
-    "bench": ("Show how good the numbers are: published cases, solvers, tests.", _bench),
+    "bench": ("Show how good the numbers are, and compare methods of choosing stones.", add_bench),
     "generate": ("Make a synthetic stone set.", _generate),
+    "reproduce": ("Make tables and figures of the paper again, with a report.", _reproduce),
+    "fetch": ("Download published stone sets, with licence and what to cite.", _fetch),
 }

@@ -7,14 +7,29 @@ NO_JOINT = 0.5
 """IWR of a stone on the ground, or with nothing below."""
 
 
-def interlocking_width_ratio(landscape: Landscape, box: Box, end_px: float) -> float:
-    """Return IWR in [0, 1]; high where head joints are far from those of the course below (Eq. 9).
+def joints_below(landscape: Landscape, box: Box, end_px: float) -> tuple[Box | None, Box | None]:
+    """Return the stones below1 and below2 of Eq. 9 (Fig. 7); None where there is none.
 
     below1 is the stone whose top right corner is closest to the box's bottom left corner, below2
     the one whose top left corner is closest to its bottom right corner, both among the stones
-    whose top is not above the stone's vertical centre.  Each term is the horizontal distance
-    from the stone's end to that corner, over that stone's width; IWR is the mean of the terms that
-    exist, each clipped to [0, 1].
+    whose top is not above the stone's vertical centre.
+
+    Parameters
+    ----------
+    landscape, box, end_px
+        As for :func:`interlocking_width_ratio`.
+    """
+    boxes, last = landscape.boxes, landscape.width_px - end_px
+    below1, below2 = nearest_joints(landscape.box_table, box, end_px, last)
+    return boxes[below1] if below1 >= 0 else None, boxes[below2] if below2 >= 0 else None
+
+
+def interlocking_width_ratio(landscape: Landscape, box: Box, end_px: float) -> float:
+    """Return IWR in [0, 1]; high where head joints are far from those of the course below (Eq. 9).
+
+    Each term is the horizontal distance from the stone's end to the joint below
+    (:func:`joints_below`), over the width of the stone that ends there; IWR is the mean of the
+    terms that exist, each clipped to [0, 1].
 
     Parameters
     ----------
@@ -27,12 +42,10 @@ def interlocking_width_ratio(landscape: Landscape, box: Box, end_px: float) -> f
     """
     if box.bottom == 0:
         return NO_JOINT
-    below1, below2 = nearest_joints(landscape.box_table, box, end_px, landscape.width_px - end_px)
+    below1, below2 = joints_below(landscape, box, end_px)
     terms = []
-    if below1 >= 0:
-        one = landscape.boxes[below1]
-        terms.append(min(1.0, abs(box.left - one.right) / one.width))
-    if below2 >= 0:
-        two = landscape.boxes[below2]
-        terms.append(min(1.0, abs(box.right - two.left) / two.width))
+    if below1 is not None:
+        terms.append(min(1.0, abs(box.left - below1.right) / below1.width))
+    if below2 is not None:
+        terms.append(min(1.0, abs(box.right - below2.left) / below2.width))
     return sum(terms) / len(terms) if terms else NO_JOINT

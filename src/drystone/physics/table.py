@@ -129,6 +129,15 @@ class TiltingTable:
         for _ in range(round(duration / self._settings.time_step)):
             self._space.step(self._settings.time_step)
 
+    def ride(self, ground: Iterable[float]) -> None:
+        """Let a time step pass for each horizontal acceleration of the table, +x, in g.
+
+        Seen from the table, every block is pulled the other way.
+        """
+        for acceleration in ground:
+            self._space.gravity = (-acceleration, -1.0)
+            self._space.step(self._settings.time_step)
+
     def copy(self) -> Self:
         """Return the same state, which goes its own way."""
         twin = object.__new__(type(self))

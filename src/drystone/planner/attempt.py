@@ -117,6 +117,24 @@ class Attempt:
             return self._choose(rng, pinned) or self._choose(rng, remaining)
         return self._choose(rng, remaining)
 
+    def standing(self, among: Sequence[int]) -> list[Candidate]:
+        """Return the actions of some stones, from all sides, after which the wall stands.
+
+        They are what a policy is offered; of proposals that come in batches the first of which
+        any stands.
+
+        Parameters
+        ----------
+        among : sequence of int
+            Ids of stones that are left.
+        """
+        for proposals in self._proposals(tuple(self._landscapes.values()), among):
+            judged = self._judge(proposals)
+            found = [c for c in judged if c.sturdy and (c.indices.LLC or 0.0) > 0]
+            if found:
+                return found
+        return []
+
     def _choose(self, rng: np.random.Generator, remaining: tuple[int, ...]) -> Candidate | None:
         clusters = self._workshop.clusters
         sample = sample_stones(self._settings.sampling, remaining, clusters, rng)

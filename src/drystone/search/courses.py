@@ -1,4 +1,4 @@
-"""Plan a wall course by course, before any stone is laid (docs/search.md).
+"""Plan a wall course by course, before any stone is laid (docs/searching.md).
 
 Stones are annealed on height profiles: their order, their courses, their quarter turns, and where
 each course has its gap.

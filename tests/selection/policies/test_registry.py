@@ -70,7 +70,7 @@ def test_unknown_ones_are_refused_with_the_known_ones(name: str, installed: Inst
         with pytest.raises(UsageError, match="E146") as caught:
             find(name)
         assert repr(name) in caught.value.what
-        known = "paper, random, lowest, scalarised, filter, towers, first."
+        known = "paper, random, lowest, scalarised, filter, towers, learned, first."
         assert caught.value.cure == f"Choose one of {known}"
 
 

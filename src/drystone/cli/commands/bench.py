@@ -1,33 +1,27 @@
-"""`drystone bench`: how good the numbers are."""
+"""`drystone bench`: how good the numbers are, and how good methods are."""
 
 import argparse
-import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
+from drystone.cli.bench_public import OPTIONS, history_tables, public_tables, say
 from drystone.cli.output import make_folder, print_json
 from drystone.errors import ExitCode, UsageError
+from drystone.experiments.public.methods import known_methods
+from drystone.experiments.public.suites import PUBLIC_SUITES
 from drystone.experiments.suites import SEARCHES, SUITES, run_suite
-from drystone.experiments.table import BenchSettings
+from drystone.experiments.table import BenchSettings, Table
+from drystone.io.published import published_folder
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Run a suite and print its tables."""
     if arguments.list:
-        for name, (text, _) in SUITES.items():
-            print(f"{name}: {text}")
+        _print_list()
         return ExitCode.DONE
-    if arguments.suite not in SUITES:
-        raise UsageError(
-            "E138",
-            f"there is no suite {arguments.suite!r}." if arguments.suite else "no suite is named.",
-            where="bench",
-            cure=f"Name one of {', '.join(SUITES)}; `drystone bench --list` explains them.",
-        )
-    settings = _settings(arguments)
-    if settings.output is not None:
-        make_folder(settings.output)
-    tables = run_suite(arguments.suite, settings)
+    suite = _suite(arguments)
+    tables = _tables(arguments, suite)
     if arguments.json:
         print_json({table.title: table.records() for table in tables})
     else:
@@ -37,43 +31,82 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     return ExitCode.CHECK_FAILED if missed else ExitCode.DONE
 
 
-def _settings(arguments: argparse.Namespace) -> BenchSettings:
+def _print_list() -> None:
+    """Print suites and policies, one a line."""
+    for name, (text, _) in SUITES.items():
+        print(f"{name}: {text}")
+    for name, text in PUBLIC_SUITES.items():
+        print(f"{name}: public suite: {text}")
+    for name, text in known_methods().items():
+        print(f"{name}: policy of public suites: {text}")
+
+
+def _suite(arguments: argparse.Namespace) -> str | None:
+    """Return the suite that is named; None for the history of all (E138 for any other)."""
+    if arguments.suite and arguments.named and arguments.suite != arguments.named:
+        raise UsageError(
+            "E138",
+            f"two suites are named: {arguments.suite!r} and {arguments.named!r}.",
+            where="--suite",
+            cure="Name one; `all` has the walls of every public suite.",
+        )
+    suite: str | None = arguments.named or arguments.suite
+    known = (*PUBLIC_SUITES,) if arguments.history else (*SUITES, *PUBLIC_SUITES)
+    if suite in known or (suite is None and arguments.history):
+        return suite
+    raise UsageError(
+        "E138",
+        f"there is no suite {suite!r}." if suite else "no suite is named.",
+        where="bench",
+        cure=f"Name one of {', '.join(known)}; `drystone bench --list` explains them.",
+    )
+
+
+def _tables(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table]:
+    if arguments.history:
+        return history_tables(arguments, suite)
+    if suite is not None and suite in PUBLIC_SUITES:
+        return public_tables(arguments, suite, _data(arguments.data))
+    return run_suite(str(suite), _settings(arguments, str(suite)))
+
+
+def _settings(arguments: argparse.Namespace, suite: str) -> BenchSettings:
     """Return what a suite is run with; E138 for options that it does not go by."""
-    for name in ("seconds", "seeds", "only"):
-        if getattr(arguments, name) and name not in SEARCHES.get(arguments.suite, ()):
-            known = [suite for suite, names in SEARCHES.items() if name in names]
+    for name in ("seconds", "seeds", "only", *OPTIONS):
+        if getattr(arguments, name) and name not in SEARCHES.get(suite, ()):
+            known = [other for other, names in SEARCHES.items() if name in names]
+            if name != "seconds":
+                known.append("the public suites")
             raise UsageError(
                 "E138",
-                f"the suite {arguments.suite!r} does not go by it.",
+                f"the suite {suite!r} does not go by it.",
                 where=f"--{name}",
                 cure=f"Leave it out; it is for {' and '.join(known)}.",
             )
+    output = None if arguments.output is None else Path(arguments.output)
+    if output is not None:
+        make_folder(output)
     return BenchSettings(
         data=_data(arguments.data),
-        output=None if arguments.output is None else Path(arguments.output),
+        output=output,
         seed=arguments.seed,
         quick=arguments.quick,
         seconds=arguments.seconds,
         seeds=arguments.seeds,
         only=tuple(arguments.only),
-        say=_say,
+        say=say,
     )
 
 
-def _say(text: str) -> None:
-    """Print a result as it comes, where it does not get in the way of the tables."""
-    print(text, file=sys.stderr, flush=True)
-
-
 def _data(given: str | None) -> Path | None:
-    """Return the folder of published data: the option, DRYSTONE_DATA, or none."""
-    named = given or os.environ.get("DRYSTONE_DATA")
-    if named is None:
+    """Return the folder of published data: the option, DRYSTONE_DATA, the cache, or none."""
+    folder = published_folder(given)
+    if folder is None:
         return None
-    folder = Path(named)
     if not folder.is_dir():
         print(
-            f"drystone: there is no folder {named}; rows that need it are left out", file=sys.stderr
+            f"drystone: there is no folder {folder}; rows that need it are left out",
+            file=sys.stderr,
         )
         return None
     return folder

@@ -3,10 +3,12 @@
 from collections.abc import Mapping
 from importlib import import_module
 from types import MappingProxyType
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from drystone.errors import UsageError
-from drystone.experiments.reproduce.item import Item
+
+if TYPE_CHECKING:  # names are listed without waiting for matplotlib
+    from drystone.experiments.reproduce.item import Item
 
 ITEMS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
@@ -76,7 +78,7 @@ def item_names(asked: str) -> tuple[str, ...]:
     return (name,)
 
 
-def item_named(name: str) -> Item:
+def item_named(name: str) -> "Item":
     """Return one of :data:`ITEMS`."""
     module = import_module(f"drystone.experiments.reproduce.{ITEMS[name][1]}")
     return cast("Item", module.ITEM)

@@ -8,15 +8,16 @@ from typing import Any
 from drystone.experiments.runs.spec import RunSpec
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.plan import Plan, StoneStep, WedgeStep
+from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.search.plan_wall import plan_wall
 from drystone.verify.replay import replay_plan
 
 FIGURES = (
     "placed", "stones", "F_SF", "F_AV", "F_AH", "F_LR", "alpha_left", "alpha_right", "T_LEVEL",
-    "E_FLUSH", "wedges", "wedge_area",
+    "E_FLUSH", "wedges", "wedge_area", "candidates",
 )  # fmt: skip
-"""Of a finished wall; they depend on the run alone."""
+"""Of a finished wall; they depend on the run alone.  Candidates are those that were evaluated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +71,7 @@ class Outcome:
         return replay.stages[-1].after
 
 
-def execute(spec: RunSpec, data: Path | None) -> Outcome:
+def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) -> Outcome:
     """Plan the wall of a run, in this process.
 
     Parameters
@@ -79,6 +80,13 @@ def execute(spec: RunSpec, data: Path | None) -> Outcome:
         The run.
     data : Path or None
         Folder of the published data.
+    stones : StoneSet, optional
+        Those of the source, where they have been read already.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Ctrl-C: the part of the wall that is built is no outcome.
 
     Examples
     --------
@@ -88,23 +96,28 @@ def execute(spec: RunSpec, data: Path | None) -> Outcome:
     >>> execute(spec, None).figures["placed"]
     6
     """
-    stones = spec.source.stones(data)
+    stones = spec.source.stones(data) if stones is None else stones
+    settings = spec.settings()
     result = plan_wall(
         stones,
         spec.width or float(stones.source.width_px),
         spec.height or float(stones.source.height_px),
         seed=spec.seed,
         method=spec.method,
-        settings=spec.settings(),
+        settings=settings,
         scale=spec.scale,
     )
     plan, metrics = result.plan, result.metrics
+    # Planning takes an interrupt for the end of its time, and says what it has.
+    if result.status == "interrupted" or plan.settings["search"]["budget"] < settings.search.budget:
+        raise KeyboardInterrupt
     figures: dict[str, float | int | None] = {
         "placed": sum(isinstance(step, StoneStep) for step in plan.steps),
         "stones": len(stones),
         **{name: getattr(metrics, name) for name in FIGURES[2:10]},
         "wedges": sum(isinstance(step, WedgeStep) for step in plan.steps),
         "wedge_area": metrics.wedge_area,
+        "candidates": result.profile.candidates,
     }
     times = {"wall": result.seconds} | {
         name: sum(step.parts.get(name, 0.0) for step in result.profile.steps)

@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.random import Generator
 
+from drystone.errors import InputError
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.generate.fourier import FourierSettings, fourier_stones
 from drystone.generate.polygon import PolygonSettings, polygon_stones
@@ -44,12 +45,19 @@ class StoneSource:
         Of the generator.
     settings : tuple of (str, value)
         Of the generator; see :func:`generated`.
+    sha256 : str
+        Of the file, see :func:`from_file`; empty if it may be any.
     """
 
     kind: Kind
     name: str = ""
     seed: int = 0
     settings: tuple[tuple[str, Scalar], ...] = ()
+    sha256: str = ""
+
+    def __str__(self) -> str:
+        """Return a few words for messages."""
+        return self.name or f"{self.kind} {self.seed}"
 
     def is_there(self, data: Path | None) -> bool:
         """Return False when published stones are asked for and the folder has none of this name."""
@@ -67,13 +75,16 @@ class StoneSource:
         ------
         FileNotFoundError
             Published data that are not there (:meth:`is_there`).
+        InputError
+            E100 ... E111, see :func:`drystone.read_stones`; E100 also for a file that is no longer
+            the one that was meant.
         """
         if self.kind == "published":
             if data is None:
                 raise FileNotFoundError(self.name)
             return read_stones(data / self.name)
         if self.kind == "file":
-            return read_stones(Path(self.name))
+            return _same(read_stones(Path(self.name)), self)
         settings, make = GENERATORS[self.kind]
         return make(settings(**dict(self.settings)), np.random.default_rng(self.seed))
 
@@ -81,8 +92,20 @@ class StoneSource:
         """Return what JSON writes."""
         return {
             "kind": self.kind, "name": self.name, "seed": self.seed,
-            "settings": dict(self.settings),
+            "settings": dict(self.settings), "sha256": self.sha256,
         }  # fmt: skip
+
+
+def _same(stones: StoneSet, source: StoneSource) -> StoneSet:
+    """Refuse a file of other contents than the source's."""
+    if source.sha256 and stones.source.sha256 != source.sha256:
+        raise InputError(
+            "E100",
+            "the file was changed since its runs were asked for.",
+            where=source.name,
+            cure="Give the command again.",
+        )
+    return stones
 
 
 def published(name: str) -> StoneSource:
@@ -94,6 +117,19 @@ def published(name: str) -> StoneSource:
     False
     """
     return StoneSource(kind="published", name=name)
+
+
+def from_file(path: Path) -> StoneSource:
+    """Return the source of stones in a file or a folder of masks, as it is now.
+
+    Runs of it are found again as long as its contents are the same.
+
+    Raises
+    ------
+    InputError
+        E100 ... E111, see :func:`drystone.read_stones`.
+    """
+    return StoneSource(kind="file", name=str(path), sha256=read_stones(path).source.sha256)
 
 
 def generated(kind: Kind, seed: int, **settings: Scalar) -> StoneSource:

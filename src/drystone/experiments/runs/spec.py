@@ -61,10 +61,16 @@ class RunSpec:
     def as_dict(self) -> dict[str, Any]:
         """Return what JSON writes."""
         return {
-            "source": self.source.as_dict(), "width": self.width, "height": self.height,
-            "scale": self.scale, "method": self.method, "changes": dict(self.changes),
-            "seed": self.seed,
+            "source": self.source.as_dict(), "width": float(self.width),
+            "height": float(self.height), "scale": float(self.scale), "method": self.method,
+            "changes": dict(self.changes), "seed": self.seed,
         }  # fmt: skip
+
+    def __str__(self) -> str:
+        """Return a line for messages."""
+        size = f"{self.width:g} x {self.height:g} px" if self.width and self.height else "own size"
+        changes = "".join(f", {name} = {value}" for name, value in self.changes)
+        return f"{self.source}, {size} at {self.scale:g}, {self.method}{changes}, seed {self.seed}"
 
     @property
     def key(self) -> str:

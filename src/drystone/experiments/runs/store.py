@@ -2,8 +2,10 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
-from drystone.experiments.runs.outcome import Outcome
+from drystone.errors import InputError
+from drystone.experiments.runs.outcome import FIGURES, Outcome
 from drystone.io.atomic import write_atomically
 
 
@@ -20,12 +22,25 @@ class RunStore:
         self.folder = folder
 
     def get(self, key: str) -> Outcome | None:
-        """Return the outcome of a run; None when it is not there."""
+        """Return the outcome of a run; None when it is not there.
+
+        Raises
+        ------
+        InputError
+            E401: its file is no outcome; it was cut short or changed.
+        """
         path = self._path(key)
-        if not path.is_file():
+        try:
+            return _outcome(key, json.loads(path.read_text(encoding="utf-8")))
+        except FileNotFoundError:
             return None
-        data = json.loads(path.read_text(encoding="utf-8"))
-        return Outcome(key, data["figures"], data["plan"], data["times"])
+        except (ValueError, TypeError, KeyError) as error:
+            raise InputError(
+                "E401",
+                "the outcome of a run that is kept here is damaged.",
+                where=str(path),
+                cure="Delete the file: its run is then done again.",
+            ) from error
 
     def put(self, outcome: Outcome) -> None:
         """Keep an outcome; the file is whole or not there."""
@@ -36,3 +51,11 @@ class RunStore:
 
     def _path(self, key: str) -> Path:
         return self.folder / f"{key}.json"
+
+
+def _outcome(key: str, data: Any) -> Outcome:
+    """Return what a file holds; anything else is one of the errors of plain Python."""
+    figures, plan, times = (dict(data[name]) for name in ("figures", "plan", "times"))
+    if not {"wall"} <= times.keys() or not set(FIGURES) <= figures.keys() or "steps" not in plan:
+        raise KeyError(key)
+    return Outcome(key, figures, plan, times)

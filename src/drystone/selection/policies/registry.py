@@ -1,10 +1,12 @@
 """Policies by their names: those built in, and those of other packages."""
 
+from collections.abc import Callable
 from importlib.metadata import entry_points
 
 from drystone.errors import UsageError
 from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.policies.filters import Filters
+from drystone.selection.policies.learned import Learned
 from drystone.selection.policies.scalarised import Scalarised
 from drystone.selection.policies.settings import PolicySettings
 from drystone.selection.policies.simple import Lowest, Random
@@ -21,7 +23,7 @@ PAPER = "paper"
 RULES = ("algorithm2", "score")
 """Values of `selection_rule` that are no policies."""
 
-BUILT_IN = ("random", "lowest", "scalarised", "filter", "towers")
+BUILT_IN = ("random", "lowest", "scalarised", "filter", "towers", "learned")
 """Policies of this package beside the paper's."""
 
 
@@ -67,18 +69,16 @@ def policy_named(name: str, settings: PolicySettings, weights: SelectionSettings
     UsageError
         E146: there is none of this name; E147: that of another package cannot be loaded.
     """
-    match name:
-        case "random":
-            return Random()
-        case "lowest":
-            return Lowest()
-        case "scalarised":
-            return Scalarised(weights, settings.w_sf)
-        case "filter":
-            return Filters(settings)
-        case "towers":
-            return Towers(settings)
-    return _of_another_package(name)
+    built_in: dict[str, Callable[[], Policy]] = {
+        "random": Random,
+        "lowest": Lowest,
+        "scalarised": lambda: Scalarised(weights, settings.w_sf),
+        "filter": lambda: Filters(settings),
+        "towers": lambda: Towers(settings),
+        "learned": Learned,
+    }
+    make = built_in.get(name)
+    return make() if make is not None else _of_another_package(name)
 
 
 def _of_another_package(name: str) -> Policy:

@@ -1,0 +1,141 @@
+"""`drystone bench` for public suites: options, runs, the history of a store."""
+
+import argparse
+import platform
+import sys
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+from drystone.cli.output import make_folder
+from drystone.cli.settings import read_toml
+from drystone.errors import UsageError
+from drystone.experiments.public.bench import PublicSettings, run_public
+from drystone.experiments.public.history import Medians, drawn_history, history_table, medians_of
+from drystone.experiments.public.methods import Changes, flat_changes
+from drystone.experiments.public.store import BenchStore, Stamp
+from drystone.experiments.table import Table
+from drystone.plotting.files import save
+
+DEFAULT_METHODS = ("paper", "random")
+
+OPTIONS = ("policy", "settings", "jobs", "dask", "store", "again", "history", "shake")
+"""For public suites alone."""
+
+DPI = 150
+
+
+def public_tables(arguments: argparse.Namespace, suite: str, data: Path | None) -> Sequence[Table]:
+    """Run a public suite and return its tables.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        The options.
+    suite : str
+        Name of the suite.
+    data : Path or None
+        Folder of the published data.
+
+    Raises
+    ------
+    UsageError
+        E138: options that make no sense together.
+    """
+    _refuse_useless(arguments)
+    changes: Changes = ()
+    if arguments.settings is not None:
+        path = Path(arguments.settings)
+        changes = flat_changes(read_toml(path), str(path))
+    if arguments.store is not None:
+        make_folder(Path(arguments.store))
+    return run_public(
+        PublicSettings(
+            suite=suite,
+            methods=tuple(dict.fromkeys(arguments.policy or DEFAULT_METHODS)),
+            stamp=_stamp(changes),
+            first_seed=arguments.seed,
+            seeds=arguments.seeds,
+            data=data,
+            store=None if arguments.store is None else Path(arguments.store),
+            again=arguments.again,
+            only=tuple(arguments.only),
+            quick=arguments.quick,
+            jobs=arguments.jobs,
+            dask=arguments.dask,
+            shake=arguments.shake,
+            say=say,
+        )
+    )
+
+
+def history_tables(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table]:
+    """Return what a store holds by version, and draw it with -o.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        The options.
+    suite : str or None
+        That is shown; None for all.
+
+    Raises
+    ------
+    UsageError
+        E138: no store is named, or it holds no such runs.
+    """
+    if arguments.store is None:
+        raise UsageError(
+            "E138", "there is no store to show.", where="--history", cure="Add --store DIR."
+        )
+    runs = [
+        run for run in BenchStore(Path(arguments.store)).runs() if suite in (None, "all", run.suite)
+    ]
+    if not runs:
+        raise UsageError(
+            "E138",
+            "the store holds no runs" + (f" of {suite!r}." if suite else "."),
+            where=arguments.store,
+            cure="`drystone bench --suite NAME --store DIR` adds some.",
+        )
+    medians = medians_of(runs)
+    if arguments.output is not None:
+        _draw(medians, Path(arguments.output))
+    return (history_table(medians),)
+
+
+def say(text: str) -> None:
+    """Print a result as it comes, where it does not get in the way of the tables."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def _draw(medians: Sequence[Medians], folder: Path) -> None:
+    make_folder(folder)
+    for suite in dict.fromkeys(one.suite for one in medians):
+        path = folder / f"history-{suite.replace('/', '-')}.png"
+        save(drawn_history([one for one in medians if one.suite == suite]), path, DPI)
+        say(f"wrote {path}")
+
+
+def _refuse_useless(arguments: argparse.Namespace) -> None:
+    useless = {
+        "--seconds": (arguments.seconds, "Public suites build one wall a seed: use --seeds."),
+        "-o": (arguments.output, "Public suites draw nothing but a --history."),
+        "--again": (
+            arguments.again and arguments.store is None,
+            "Nothing is kept without --store, so all runs are done.",
+        ),
+    }
+    for name, (given, cure) in useless.items():
+        if given:
+            raise UsageError("E138", "it would do nothing here.", where=name, cure=cure)
+
+
+def _stamp(changes: Changes) -> Stamp:
+    return Stamp(
+        settings=changes,
+        version=version("drystone"),
+        made_at=datetime.now(UTC).isoformat(timespec="seconds"),
+        platform=f"{platform.system()} {platform.machine()}",
+    )

@@ -1,0 +1,131 @@
+"""The methods of the public benchmark by name."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib.metadata import entry_points
+from typing import Any
+
+from drystone.errors import UsageError
+from drystone.experiments.public.suites import PublicWall
+from drystone.experiments.runs.source import Scalar, generated
+from drystone.experiments.runs.spec import RunSpec
+from drystone.selection.policies.registry import BUILT_IN, GROUP, PAPER, RULES, rule_of
+
+BEST = "best"
+
+ABOUT = {
+    PAPER: "the paper's method as it is (Algorithm 2)",
+    **dict.fromkeys(BUILT_IN, "the paper's method, with this policy choosing the stones"),
+    BEST: "one pass of the default method, on pixels: no search",
+}
+"""What each does; docs/policies.md explains the policies."""
+
+Changes = tuple[tuple[str, Scalar], ...]
+
+
+@dataclass(frozen=True)
+class BenchMethod:
+    """Somebody who builds walls.
+
+    Parameters
+    ----------
+    name : str
+        In tables.
+    method : str
+        Of the planner.
+    changes : tuple of (str, value)
+        Settings that replace the method's.
+    """
+
+    name: str
+    method: str
+    changes: Changes = ()
+
+    def run(self, wall: PublicWall, seed: int) -> RunSpec:
+        """Return the run that builds a wall."""
+        return RunSpec(
+            source=wall.source, width=wall.width, height=wall.height, scale=wall.scale,
+            method=self.method, changes=self.changes, seed=seed,
+        )  # fmt: skip
+
+
+def known_methods() -> dict[str, str]:
+    """Return what each method does by name, those of other packages last."""
+    others = {entry.name for entry in entry_points(group=GROUP)} - {*ABOUT, *RULES}
+    return ABOUT | dict.fromkeys(sorted(others), "a policy of another package that is installed")
+
+
+def method_named(name: str, changes: Changes = ()) -> BenchMethod:
+    """Return a method.
+
+    Parameters
+    ----------
+    name : str
+        One of :func:`known_methods`.
+    changes : tuple of (str, value)
+        Settings that replace those of every method alike.
+
+    Raises
+    ------
+    UsageError
+        E146: there is none of this name; E123: `changes` name no setting, or one is out of range.
+
+    Examples
+    --------
+    >>> method_named("lowest", (("sampling", "full"),)).changes
+    (('selection_rule', 'lowest'), ('sampling', 'full'))
+    """
+    if name == BEST:
+        own: Changes = (("geometry", "raster"), ("search.budget", 1))
+        found = BenchMethod(name, "best", _merged(own, changes))
+    else:
+        rule = rule_of(name)
+        own = () if name == PAPER else (("selection_rule", rule),)
+        found = BenchMethod(name, "paper", _merged(own, changes))
+    RunSpec(source=generated("brick", 0), method=found.method, changes=found.changes).settings()
+    return found
+
+
+def flat_changes(nested: Mapping[str, Any], where: str) -> Changes:
+    """Return settings from a TOML file as changes of every method.
+
+    Parameters
+    ----------
+    nested : mapping
+        Tables and values.
+    where : str
+        Name of the file, for messages.
+
+    Raises
+    ------
+    UsageError
+        E138: it says who chooses the stones, or names stones: methods and walls differ in these.
+
+    Examples
+    --------
+    >>> flat_changes({"sampling": "full", "placement": {"beta": 0.5}}, "full.toml")
+    (('placement.beta', 0.5), ('sampling', 'full'))
+    """
+    for name in ("selection_rule", "ban", "pin"):
+        if name in nested:
+            raise UsageError(
+                "E138",
+                f"{name} cannot be the same for all methods and walls.",
+                where=where,
+                cure="Leave it out; --policy names who chooses the stones.",
+            )
+    return tuple(sorted(_flat(nested, "")))
+
+
+def _flat(nested: Mapping[str, Any], prefix: str) -> Sequence[tuple[str, Scalar]]:
+    found: list[tuple[str, Scalar]] = []
+    for name, value in nested.items():
+        if isinstance(value, Mapping):
+            found.extend(_flat(value, f"{prefix}{name}."))
+        else:
+            found.append((prefix + name, value))
+    return found
+
+
+def _merged(own: Changes, changes: Changes) -> Changes:
+    return tuple((dict(own) | dict(changes)).items())

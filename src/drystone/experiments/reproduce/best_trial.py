@@ -1,0 +1,49 @@
+"""The paper's choice of one wall from several trials (§5.2)."""
+
+from collections.abc import Sequence
+from math import floor
+
+from drystone.experiments.runs.outcome import Outcome
+
+EXACT = 6
+"""Decimals of a load multiplier that every solver agrees on; halves are rounded up after that."""
+
+
+def best_trial(outcomes: Sequence[Outcome]) -> int:
+    """Return the place of the wall with the highest multiplier, to one decimal, and filling.
+
+    The paper chooses "the wall with the highest filling ratio and kinematics multiplier (rounded
+    to one decimal place)".  Two walls hardly ever have the same filling, so the multiplier must
+    come first or it would never count; filling decides between those that are equal to one
+    decimal, then the full multiplier, then the earlier trial.
+
+    Parameters
+    ----------
+    outcomes : sequence of Outcome
+        At least one.
+    """
+    return max(range(len(outcomes)), key=lambda place: (*_merit(outcomes[place]), -place))
+
+
+def multiplier(outcome: Outcome) -> float | None:
+    """Return the lesser load multiplier alpha of both sides; None when there is none."""
+    ends = (outcome.figures["alpha_left"], outcome.figures["alpha_right"])
+    found = [float(alpha) for alpha in ends if alpha is not None]
+    return min(found) if len(found) == len(ends) else None
+
+
+def tenths(alpha: float) -> int:
+    """Round to one decimal, halves up; in tenths.
+
+    Examples
+    --------
+    >>> tenths(0.45), tenths(0.4499999999), tenths(0.44)
+    (5, 5, 4)
+    """
+    return floor(10 * round(alpha, EXACT) + 0.5)
+
+
+def _merit(outcome: Outcome) -> tuple[float, float, float]:
+    alpha = multiplier(outcome)
+    filled = float(outcome.figures["F_SF"] or 0.0)
+    return (-1.0, filled, 0.0) if alpha is None else (tenths(alpha), filled, round(alpha, EXACT))

@@ -1,0 +1,179 @@
+"""A wall of stones that arrive one after the other: what is offered, and what it is worth."""
+
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import replace
+
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.placement.settings import PlacementSettings
+from drystone.planner.attempt import Attempt
+from drystone.planner.build import Build, Candidate
+from drystone.planner.offers import offer
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.workshop import Workshop
+from drystone.search.goal import Figures, figures_of, merit_of, possible_filling
+from drystone.selection.policy import Offer
+
+ARRIVING = PlannerSettings(
+    orientations="quarter",
+    sampling="full",
+    two_sided=True,
+    skip_too_large=True,
+    order="given",
+    placement=PlacementSettings(rule="snug", reach="above", tries=4),
+)
+"""How stones that arrive are offered unless said otherwise: pixels, the pose of largest SF and its
+quarter turns, from both ends, the first of four places at which the stone can be made stable."""
+
+
+def prepared(stones: StoneSet, site: Site, settings: PlannerSettings = ARRIVING) -> Workshop:
+    """Return the workshop of some episodes.
+
+    Raises
+    ------
+    UsageError
+        E126: there are no stones; E120, E145: see :class:`drystone.planner.workshop.Workshop`.
+    """
+    return Workshop.prepare(stones, site, settings)
+
+
+class Episode:
+    """One wall: stones arrive, each is built in one of the places offered, or put aside.
+
+    Parameters
+    ----------
+    workshop : Workshop
+        Stones and site, as :func:`prepared`; may be used for several episodes.
+    order : sequence of int, optional
+        Ids in the order of arrival; ascending when missing.  Stones that fit in no pose, or are
+        not in it, never arrive.
+    settings : PlannerSettings
+        How stones are placed, the same as of the workshop; its `goal` says what a wall is worth.
+    most : int or None
+        How many places are offered at most: the lowest, by centroid.
+
+    Attributes
+    ----------
+    build : Build
+        What is built.
+    offers : tuple of Offer
+        Places of the stone that has arrived, after each of which the wall stands; empty when the
+        episode is over.
+    stone_id : int or None
+        The stone that has arrived; None when the episode is over.
+    aside : int
+        How many stones were put aside.
+    """
+
+    def __init__(
+        self,
+        workshop: Workshop,
+        order: Sequence[int] | None = None,
+        settings: PlannerSettings = ARRIVING,
+        most: int | None = None,
+    ) -> None:
+        self.workshop = workshop
+        exact = settings.geometry == "exact"
+        self.build = Build.empty(
+            workshop.site, settings.mu, workshop.stock.mean_area_px, exact=exact
+        )
+        fitting = set(workshop.fitting)
+        arriving = workshop.fitting if order is None else order
+        self._waiting = [i for i in arriving if i in fitting]
+        self._settings = settings
+        self._most = most
+        self._possible = possible_filling(self.workshop)
+        self._attempt = Attempt(self.workshop, settings, self.build)
+        self._candidates: list[Candidate] = []
+        self.offers: tuple[Offer, ...] = ()
+        self.stone_id: int | None = None
+        self.aside = 0
+        self._next()
+
+    @property
+    def over(self) -> bool:
+        """True when nothing is offered any more."""
+        return not self.offers
+
+    @property
+    def waiting(self) -> int:
+        """How many stones have not arrived yet."""
+        return len(self._waiting)
+
+    def take(self, position: int | None) -> None:
+        """Build the stone that has arrived, and let the next come that can be built.
+
+        Parameters
+        ----------
+        position : int or None
+            Which of :attr:`offers`; None puts the stone aside for good.
+
+        Raises
+        ------
+        IndexError
+            When nothing is offered under this number.
+        """
+        if position is None:
+            self.aside += 1
+        else:
+            if not 0 <= position < len(self._candidates):
+                raise IndexError(position)
+            self.build = self.build.add(self._candidates[position])
+            self._attempt = Attempt(self.workshop, self._settings, self.build)
+        self._next()
+
+    def copy(self) -> "Episode":
+        """Return an episode in the same state, which goes on by itself."""
+        other = copy(self)
+        other._waiting = list(self._waiting)  # noqa: SLF001 - of its own kind
+        return other
+
+    def _next(self) -> None:
+        self._candidates, self.offers, self.stone_id = [], (), None
+        while self._waiting and self.build.wall.filling <= self._settings.stop.filling:
+            stone_id = self._waiting.pop(0)
+            found = self._attempt.standing((stone_id,))
+            if found:
+                site = self.workshop.site
+                pairs = [(candidate, offer(candidate, site)) for candidate in found]
+                kept = _lowest([o.centroid_px[1] for _, o in pairs], self._most)
+                self._candidates = [pairs[k][0] for k in kept]
+                self.offers = tuple(pairs[k][1] for k in kept)
+                self.stone_id = stone_id
+                return
+            self.aside += 1
+
+    @property
+    def figures(self) -> Figures | None:
+        """All figures of merit of the wall as it is; None when it is empty."""
+        return figures_of(self.build, self._settings.pin)
+
+    @property
+    def merit(self) -> float:
+        """Merit of the wall as it is (:mod:`drystone.search.goal`); 0 when it is empty."""
+        figures = self.figures
+        return 0.0 if figures is None else merit_of(figures, self._possible, self._settings.goal)
+
+    @property
+    def potential(self) -> float:
+        """What the wall is worth so far: filling and resistance alone, until it is finished.
+
+        Joints and edges mean little while the wall grows, and take the most time to measure.
+        """
+        if self.over or not self.build.actions:
+            return self.merit
+        so_far = Figures(
+            stones=len(self.build.actions),
+            F_SF=self.build.wall.filling,
+            F_LR=self.build.actions[-1].resistance.value or 0.0,
+            F_AV=0.0, F_AH=0.0, T_LEVEL=0.0, E_FLUSH=0.0,
+        )  # fmt: skip
+        return merit_of(so_far, self._possible, replace(self._settings.goal, F_AV=0.0, F_AH=0.0))
+
+
+def _lowest(heights: Sequence[float], most: int | None) -> list[int]:
+    """Return the positions of the lowest, in their order."""
+    if most is None or len(heights) <= most:
+        return list(range(len(heights)))
+    return sorted(sorted(range(len(heights)), key=lambda k: (heights[k], k))[:most])

@@ -1,0 +1,111 @@
+"""Methods beside each other."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from drystone.experiments.public.pairs import compared, holm, pair_tables
+from drystone.experiments.public.results import FIGURES, Result, Results
+from drystone.experiments.public.suites import walls_of
+
+WALLS = walls_of("bricks")[:2]
+
+
+def result(wall, method, seed, **figures):
+    values = dict.fromkeys(FIGURES, 0.5) | figures
+    return Result(wall, method, seed, values, 1.0)
+
+
+def results(values):
+    """Results of F_SF by method: seed after seed on the first wall, then on the second."""
+    return Results(
+        tuple(
+            result(wall, method, seed, F_SF=column[half * len(column) // 2 + seed])
+            for method, column in values.items()
+            for half, wall in enumerate(WALLS)
+            for seed in range(len(column) // 2)
+        )
+    )
+
+
+def test_the_interval_is_that_of_a_mean():
+    """For many pairs it is that of the normal distribution, within what 10 000 draws give."""
+    noise = np.random.default_rng(1).normal(0.3, 2.0, 400)
+    found = compared(noise.tolist(), [0.0] * 400)
+    half = norm.ppf(0.975) * noise.std() / math.sqrt(400)
+    assert found.mean == pytest.approx(noise.mean())
+    assert found.low == pytest.approx(noise.mean() - half, abs=0.03 * half)
+    assert found.high == pytest.approx(noise.mean() + half, abs=0.03 * half)
+    assert found == compared(noise.tolist(), [0.0] * 400)
+
+
+def test_signed_ranks_by_hand():
+    """All of n differences of one sign: p is 2 / 2^n."""
+    assert compared([1.0, 2.0, 3.5, 4.5, 5.25, 7.0], [0.0] * 6).p == pytest.approx(2 / 64)
+    assert compared([0.0, 0.0], [0.0, 0.0]).p == 1.0
+
+
+def test_rounding_errors_are_no_differences():
+    tiny = compared([0.1 + 0.2, 0.5], [0.3, 0.5])
+    assert (tiny.won, tiny.p, tiny.mean) == (0.5, 1.0, 0.0)
+    ranking = pair_tables(results({"a": [0.1 + 0.2, 0.5], "b": [0.3, 0.5]}))[-1].records()
+    assert [row["F_SF"] for row in ranking] == [1.5, 1.5]
+
+
+def test_lower_may_be_better():
+    lower = compared([1.0, 2.0, 2.0, 5.0], [2.0, 3.0, 2.0, 4.0], higher=False)
+    higher = compared([1.0, 2.0, 2.0, 5.0], [2.0, 3.0, 2.0, 4.0])
+    assert (lower.won, higher.won) == (0.625, 0.375)
+    assert lower.mean == higher.mean == -0.25
+
+
+def test_pairs_without_a_value_are_counted_not_zero():
+    found = compared([0.9, None, 0.7, None], [0.5, 0.5, None, None])
+    assert (found.pairs, found.left_out) == (1, 3)
+    assert found.mean == pytest.approx(0.4)
+    assert compared([None], [1.0]) is None
+
+
+def test_holm_by_hand():
+    """Sorted .005 .01 .03 .04 times 4 3 2 1, never falling."""
+    assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert holm([0.9, 0.8]) == [1.0, 1.0]
+    assert holm([]) == []
+
+
+def test_a_clear_winner_is_shown_and_ranked_first():
+    rng = np.random.default_rng(3)
+    low = rng.uniform(0.5, 0.6, 24).tolist()
+    high = [value + gain for value, gain in zip(low, rng.uniform(0.1, 0.2, 24), strict=True)]
+    *tables, ranking = pair_tables(results({"weak": low, "strong": high}))
+    row = next(table for table in tables if table.title.startswith("F_SF")).records()[0]
+    assert row["shows"] == "strong"
+    assert row["won"] == 0.0
+    assert row["pairs"] == 24
+    first, second = ranking.records()
+    assert (first["method"], first["F_SF"], second["F_SF"]) == ("strong", 1.0, 2.0)
+    assert first["mean rank"] == pytest.approx((1.0 + 4 * 1.5) / 5)
+    assert first["not told apart from the next in"] == "placed, F_AV, F_AH, F_LR"
+    assert second["not told apart from the next in"] is None
+
+
+def test_few_pairs_show_nothing_and_it_is_said():
+    *tables, _ = pair_tables(results({"weak": [0.1, 0.2, 0.1, 0.2], "strong": [0.5] * 4}))
+    table = next(table for table in tables if table.title.startswith("F_SF"))
+    assert table.records()[0]["shows"] == "strong?"
+    assert any("no p can be below 0.62" in note for note in table.notes)
+
+
+def test_undefined_values_rank_last():
+    found = results({"a": [None, 0.2], "b": [0.1, 0.1]})
+    ranking = {row["method"]: row["F_SF"] for row in pair_tables(found)[-1].records()}
+    assert ranking == {"a": 1.5, "b": 1.5}
+    alone = results({"a": [None, None], "b": [0.1, 0.1], "c": [0.0, 0.0]})
+    ranking = {row["method"]: row["F_SF"] for row in pair_tables(alone)[-1].records()}
+    assert ranking == {"b": 1.0, "c": 2.0, "a": 3.0}
+
+
+def test_one_method_has_nothing_beside_it():
+    assert pair_tables(results({"a": [0.1, 0.2]})) == ()

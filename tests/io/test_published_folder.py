@@ -1,0 +1,145 @@
+"""Published sets arrive whole or not at all, and what is there is never replaced."""
+
+import sys
+from hashlib import sha256
+from pathlib import Path
+
+import pooch
+import pytest
+
+from drystone.errors import InputError
+from drystone.io.published import destination, fetch_set, published_folder
+from drystone.io.published_sets import LICENCE, NOTICE, SETS
+from tests.io.served import CONTENTS, lay_open, nobody, serving, toy_set
+
+
+@pytest.fixture(autouse=True)
+def _no_data_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.delenv("DRYSTONE_DATA", raising=False)
+    monkeypatch.setattr(pooch, "os_cache", lambda project: tmp_path / "cache" / project)
+
+
+def test_the_published_files_hash_as_they_should(data_dir: Path) -> None:
+    for published in SETS.values():
+        for file in published.files:
+            assert sha256((data_dir / file.name).read_bytes()).hexdigest() == file.sha256
+    assert (data_dir / NOTICE).read_text(encoding="utf-8") == LICENCE
+    assert not any(f.downloaded for s in SETS.values() for f in fetch_set(s, data_dir))
+
+
+def test_no_two_files_are_the_same() -> None:
+    files = [file for published in SETS.values() for file in published.files]
+    assert len(files) == 8
+    for field in ("name", "address", "sha256"):
+        assert len({getattr(file, field) for file in files}) == len(files)
+    assert all(len(file.commit) == 40 and len(file.sha256) == 64 for file in files)
+
+
+def test_files_are_downloaded_once_and_with_their_licence(tmp_path: Path) -> None:
+    lay_open(tmp_path / "served")
+    folder = tmp_path / "here"
+    with serving(tmp_path / "served") as address:
+        first = fetch_set(toy_set(), folder, address=address)
+    assert [file.path for file in first] == [folder / name for name in CONTENTS]
+    assert all(file.downloaded for file in first)
+    assert {name: (folder / name).read_bytes() for name in CONTENTS} == CONTENTS
+    assert (folder / NOTICE).read_text(encoding="utf-8") == LICENCE
+    again = fetch_set(toy_set(), folder, address=nobody())
+    assert not any(file.downloaded for file in again)
+
+
+def test_only_what_is_missing_is_downloaded(tmp_path: Path) -> None:
+    lay_open(tmp_path / "served")
+    have = tmp_path / "here" / "toy" / "R.png"
+    have.parent.mkdir(parents=True)
+    have.write_bytes(CONTENTS["toy/R.png"])
+    with serving(tmp_path / "served") as address:
+        fetched = fetch_set(toy_set(), tmp_path / "here", address=address)
+    assert [file.downloaded for file in fetched] == [False, True]
+
+
+def test_another_file_of_the_name_is_not_replaced(tmp_path: Path) -> None:
+    mine = tmp_path / "toy" / "R.png"
+    mine.parent.mkdir()
+    mine.write_bytes(b"my own")
+    with pytest.raises(InputError, match=r"E160 .*R\.png.*Move it away") as caught:
+        fetch_set(toy_set(), tmp_path, address=nobody())
+    assert caught.value.code == "E160"
+    assert mine.read_bytes() == b"my own"
+
+
+def test_a_download_of_other_contents_is_not_kept(tmp_path: Path) -> None:
+    lay_open(tmp_path / "served")
+    (tmp_path / "served" / toy_set().files[0].address).write_bytes(b"something else")
+    with (
+        serving(tmp_path / "served") as address,
+        pytest.raises(InputError, match=r"E160 .*another network, or save http"),
+    ):
+        fetch_set(toy_set(), tmp_path / "here", address=address)
+    assert list((tmp_path / "here").rglob("*.*")) == []
+
+
+def test_no_network_says_what_to_do_by_hand(tmp_path: Path) -> None:
+    address = nobody()
+    with pytest.raises(InputError) as caught:
+        fetch_set(toy_set(), tmp_path, address=address)
+    file = toy_set().files[0]
+    assert caught.value.code == "E161"
+    assert f"save {address}/{file.address} as {tmp_path / file.name}" in caught.value.cure
+    assert "DRYSTONE_DATA" in caught.value.cure
+    assert "refused" in caught.value.what
+
+
+def test_an_address_that_is_not_there_is_no_network_error_of_the_disk(tmp_path: Path) -> None:
+    with serving(tmp_path) as address, pytest.raises(InputError, match=r"E161 .*404") as caught:
+        fetch_set(toy_set(), tmp_path / "here", address=address)
+    assert caught.value.code == "E161"
+
+
+def test_what_the_disk_refuses_is_said_by_the_system(tmp_path: Path) -> None:
+    (tmp_path / "toy").write_text("a file where a folder should be", encoding="utf-8")
+    with pytest.raises(OSError, match="toy"):
+        fetch_set(toy_set(), tmp_path, address=nobody())
+
+
+def test_a_full_disk_is_no_fault_of_the_network(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device", str(tmp_path))
+
+    monkeypatch.setattr(pooch, "retrieve", full)
+    with pytest.raises(OSError, match="No space left") as caught:
+        fetch_set(toy_set(), tmp_path, address=nobody())
+    assert caught.value.errno == 28
+
+
+def test_without_pooch_files_that_are_there_are_still_checked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "pooch", None)
+    for name, contents in CONTENTS.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_bytes(contents)
+    assert len(fetch_set(toy_set(), tmp_path)) == 2
+    (tmp_path / "toy" / "IR.png").unlink()
+    with pytest.raises(InputError, match=r"E162 .*drystone\[fetch\].*By hand: save"):
+        fetch_set(toy_set(), tmp_path)
+    with pytest.raises(InputError, match=r"E162 .*--to DIR"):
+        destination(None)
+    assert published_folder(None) is None
+
+
+def test_the_option_wins_over_the_variable_and_that_over_the_cache(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cache = tmp_path / "cache" / "drystone"
+    assert published_folder(None) is None
+    assert destination(None) == cache
+    cache.mkdir(parents=True)
+    assert published_folder(None) is None
+    (cache / "almeida").mkdir()
+    assert published_folder(None) == cache
+    monkeypatch.setenv("DRYSTONE_DATA", str(tmp_path / "named"))
+    assert published_folder(None) == destination(None) == tmp_path / "named"
+    assert published_folder("given") == destination("given") == Path("given")

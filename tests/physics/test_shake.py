@@ -1,0 +1,97 @@
+"""The shaking table against closed forms.
+
+A rigid block slides when the ground accelerates by more than mu g, and rocks from b/h g on
+(Housner 1963).  The longer the period, the closer to these values it moves by a given limit.
+"""
+
+import sys
+
+import numpy as np
+import pytest
+
+from drystone.errors import UsageError
+from drystone.physics.scene import Scene
+from drystone.physics.shake import ShakeSettings, shake_once, sinusoid
+from tests.physics.test_tilt import NO_ENGINE, scene_of
+
+SLOW = ShakeSettings(period=40.0, cycles=1, limit=0.02, coarse=0.064, fine=0.008)
+"""Nearly as if the ground was tilted; a limit that is hardly a movement."""
+
+
+@pytest.mark.parametrize(
+    ("scene", "expected"),
+    [
+        pytest.param(scene_of((0, 0, 2, 1), mu=0.4), 0.4, id="flat block slides"),
+        pytest.param(scene_of((0, 0, 1, 4), mu=0.7), 0.25, id="tall block rocks"),
+        pytest.param(scene_of((0, 0, 10, 20), mu=0.7), 0.5, id="any unit of length"),
+    ],
+)
+def test_closed_forms(scene: Scene, expected: float) -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    trial = shake_once(scene, None, SLOW)
+    assert trial.pga_g is not None
+    # Never earlier, but for a step; later by what it takes to get as far as the limit.
+    assert expected - SLOW.fine <= trial.pga_g <= 1.03 * expected + SLOW.fine
+    assert trial.moved == (1,)
+    assert trial.resolution_g <= SLOW.fine
+
+
+def test_short_periods_take_more() -> None:
+    """A slide of the limit takes time: with quick motion the amplitude must be larger."""
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    scene = scene_of((0, 0, 2, 1), mu=0.3)
+    quick = ShakeSettings(period=3.0, cycles=1)
+    slow = ShakeSettings(period=12.0, cycles=1)
+    amplitudes = [shake_once(scene, None, settings).pga_g for settings in (slow, quick)]
+    assert amplitudes[0] >= 0.3 - slow.fine
+    assert amplitudes[1] > 1.2 * amplitudes[0]
+
+
+def test_same_input_same_result() -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    scene = scene_of((0, 0, 1, 1), (0.2, 1, 1, 1), mu=0.5)
+    settings = ShakeSettings(period=5.0, cycles=1)
+    assert shake_once(scene, None, settings) == shake_once(scene, None, settings)
+
+
+def test_what_does_not_stand_has_no_amplitude() -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    trial = shake_once(scene_of((0, 0, 1, 1), (0.6, 1, 1, 1), mu=0.6))
+    assert trial.pga_g is None
+    assert trial.moved[0] == 2
+
+
+def test_what_never_moves_stands_all_amplitudes() -> None:
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    settings = ShakeSettings(period=4.0, cycles=1, greatest=0.2)
+    trial = shake_once(scene_of((0, 0, 4, 1), mu=0.9), None, settings)
+    assert trial.pga_g == pytest.approx(0.2)
+    assert (trial.moved, trial.resolution_g) == ((), 0.0)
+
+
+def test_only_what_is_watched_counts() -> None:
+    """A tall block rocks before the flat one beside it slides."""
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+    scene = scene_of((0, 0, 2, 1), (20, 0, 0.5, 3), mu=0.5)
+    settings = ShakeSettings(period=8.0, cycles=1)
+    all_of_them = shake_once(scene, None, settings)
+    flat = shake_once(scene, None, settings, watched={1})
+    assert all_of_them.moved == (2,)
+    assert flat.moved == (1,)
+    assert flat.pga_g >= 0.5 - settings.fine > all_of_them.pga_g
+
+
+def test_the_ground_comes_back_to_rest() -> None:
+    """Whole cycles: speed sums up to nothing, the peak is the amplitude."""
+    signal = sinusoid(0.4, ShakeSettings(period=7.0, cycles=2), 0.01)
+    assert len(signal) == 1400
+    assert signal.max() == pytest.approx(0.4, rel=1e-4)
+    assert signal.sum() == pytest.approx(0.0, abs=1e-9)
+    assert np.all(signal[:350] > 0)
+
+
+def test_without_the_engine(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pymunk", None)
+    with pytest.raises(UsageError) as caught:
+        shake_once(scene_of((0, 0, 1, 1), mu=0.6))
+    assert caught.value.code == "E305"

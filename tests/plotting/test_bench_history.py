@@ -1,0 +1,35 @@
+"""Figures of a benchmark by version."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from drystone.plotting.bench_history import LINES, history_panels, plot_history
+from drystone.plotting.palette import rgb
+
+
+def test_versions_without_a_value_have_no_point():
+    ax = plot_history(["1", "2", "3"], {"paper": [0.5, None, 0.7]}, figure="F_SF")
+    (line,) = ax.lines
+    assert line.get_xdata().tolist() == [0, 2]
+    assert line.get_ydata().tolist() == [0.5, 0.7]
+    assert [tick.get_text() for tick in ax.get_xticklabels()] == ["1", "2", "3"]
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("version", "F_SF")
+
+
+def test_a_panel_a_figure_and_one_legend():
+    lines = {"paper": [0.5, 0.6], "random": [0.4, None]}
+    figure = history_panels(["1", "2"], dict.fromkeys("abcd", lines), "suite")
+    assert isinstance(figure, Figure)
+    assert [ax.get_ylabel() for ax in figure.axes] == list("abcd")
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["paper", "random"]
+
+
+def test_methods_look_different():
+    lines = {str(number): [float(number)] for number in range(len(LINES) + 2)}
+    drawn = plot_history(["1"], lines).lines
+    looks = {(line.get_color(), line.get_marker(), line.get_linestyle()) for line in drawn}
+    assert len(looks) == len(lines)
+    colours = [np.array(rgb(colour)) for colour, _ in LINES]
+    gaps = [np.abs(a - b).max() for i, a in enumerate(colours) for b in colours[:i]]
+    assert min(gaps) > 0.1

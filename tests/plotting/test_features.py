@@ -1,0 +1,36 @@
+import numpy as np
+from matplotlib.colors import to_hex
+
+from drystone.plotting.features import plot_counts, plot_features
+from drystone.plotting.palette import cluster_colour
+
+FEATURES = np.array([[0.2, 1.0], [0.8, 0.5], [0.81, 0.5]])
+
+
+def test_stones_are_at_their_features_in_the_colour_of_their_cluster():
+    ax = plot_features(FEATURES, [3, 5, 8], {3: 1, 5: 2, 8: 2})
+    lines = {line.get_gid(): line for line in ax.lines}
+    assert list(lines) == ["stone-3", "stone-5", "stone-8"]
+    for line, at, cluster in zip(lines.values(), FEATURES, (1, 2, 2), strict=True):
+        np.testing.assert_allclose(line.get_xydata(), [at])
+        assert to_hex(line.get_markerfacecolor()) == cluster_colour(cluster)
+    assert lines["stone-3"].get_marker() != lines["stone-5"].get_marker()
+
+
+def test_ids_are_apart_though_points_are_close():
+    ax = plot_features(FEATURES, [3, 5, 8], {3: 1, 5: 2, 8: 2})
+    ax.figure.draw_without_rendering()
+    boxes = [text.get_window_extent() for text in ax.texts]
+    assert [text.get_text() for text in ax.texts] == ["3", "5", "8"]
+    assert not any(a.overlaps(b) for k, a in enumerate(boxes) for b in boxes[:k])
+
+
+def test_one_stone_has_its_id():
+    assert [text.get_text() for text in plot_features(FEATURES[:1], [7], {7: 1}).texts] == ["7"]
+
+
+def test_counts_and_what_somebody_else_found():
+    ax = plot_counts({"PR": [(0.1, 12), (0.2, 7)]}, claim=(0.2, 7, "the paper"))
+    lines = {line.get_gid(): line.get_xydata().tolist() for line in ax.lines}
+    assert lines == {"counts-PR": [[0.1, 12], [0.2, 7]], "claim": [[0.2, 7]]}
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["PR", "the paper"]
