@@ -86,6 +86,8 @@ def test_a_store_has_a_history(run: Run, tmp_path: Path) -> None:
         (("bricks", "--suite", "masons"), "two suites"),
         (("bricks", "--only", "R"), "--only"),
         (("statics", "--history", "--store", "x"), "no suite 'statics'"),
+        (("--history", "--store", "x", "--policy", "paper"), "--policy"),
+        (("--history", "--store", "x", "--only", "R"), "--only"),
         (("bricks", "--jobs", "2", "--dask", "tcp://localhost:1"), "--dask"),
     ],
 )
@@ -97,10 +99,13 @@ def test_options_that_make_no_sense(options: tuple[str, ...], named: str, run: R
 
 
 def test_a_policy_that_is_none(run: Run) -> None:
-    assert "E146" in run("bench", "bricks", "--policy", "nobody").err
+    said = run("bench", "bricks", "--policy", "nobody").err
+    assert "E146" in said
+    assert "best" in said
 
 
 def test_masons_need_their_stones(run: Run, tmp_path: Path) -> None:
     ran = run("bench", "masons", "--data", tmp_path)
-    assert ran.code == 0
-    assert "Left out, as they need the published stone sets" in ran.out
+    assert ran.code == 3
+    assert "E100" in ran.err
+    assert "drystone fetch almeida" in ran.err

@@ -58,6 +58,16 @@ def test_only_what_is_missing_is_downloaded(tmp_path: Path) -> None:
     assert [file.downloaded for file in fetched] == [False, True]
 
 
+def test_what_arrived_before_a_failure_has_its_licence(tmp_path: Path) -> None:
+    lay_open(tmp_path / "served")
+    (tmp_path / "served" / toy_set().files[1].address).unlink()
+    folder = tmp_path / "here"
+    with serving(tmp_path / "served") as address, pytest.raises(InputError, match="E161"):
+        fetch_set(toy_set(), folder, address=address)
+    assert (folder / "toy" / "R.png").exists()
+    assert (folder / NOTICE).read_text(encoding="utf-8") == LICENCE
+
+
 def test_another_file_of_the_name_is_not_replaced(tmp_path: Path) -> None:
     mine = tmp_path / "toy" / "R.png"
     mine.parent.mkdir()

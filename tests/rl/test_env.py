@@ -1,5 +1,6 @@
 """The environment."""
 
+from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -225,3 +226,49 @@ def test_vector_of_environments() -> None:
     assert (rewards > 0).all()
     assert info["action_mask"].shape == (2, 8)
     envs.close()
+
+
+@pytest.mark.parametrize("illegal", ["aside", "error"])
+def test_a_wall_in_which_nothing_can_be_built_is_over_with_any_action(illegal: str) -> None:
+    env = made(illegal=illegal)
+    seen, info = env.reset(seed=1, options={"stones": bricks()[0], "site": Site(4, 4)})
+    assert (info["stone"], info["merit"], info["metrics"]) == (0, 0.0, {})
+    action = env.action_space.sample(mask=info["action_mask"])  # as the loop of the documents does
+    seen, reward, over, truncated, info = env.step(action)
+    assert env.observation_space.contains(seen)
+    assert (reward, over, truncated, info["placed"], info["illegal"]) == (0.0, True, False, 0, True)
+    with pytest.raises(UsageError, match="finished"):
+        env.step(action)
+
+
+@pytest.mark.parametrize("order", [[], ["1"], [1.5], 3])
+def test_reset_refuses_what_is_no_order(order: Any) -> None:
+    stones, site = bricks()
+    with pytest.raises(UsageError, match=r"no sequence of ids|no stone arrives") as caught:
+        made().reset(seed=1, options={"stones": stones, "site": site, "order": order})
+    assert caught.value.code == "E123"
+
+
+def test_order_may_be_an_array() -> None:
+    stones, site = bricks()
+    _, info = made().reset(options={"stones": stones, "site": site, "order": np.array([2, 1])})
+    assert info["stone"] == 2
+
+
+def test_a_deep_copy_goes_on_by_itself() -> None:
+    wrapped = gymnasium.make(drystone.rl.ENVIRONMENT, draw=SMALL)
+    wrapped.reset(seed=1)
+    wrapped.action_space.seed(1)
+    wrapped.step(np.int64(0))
+    other, third = deepcopy(wrapped), deepcopy(wrapped)
+    seen, reward, *_ = other.step(np.int64(1))
+    again = third.step(np.int64(1))
+    assert reward == again[1]
+    assert all(np.array_equal(seen[key], again[0][key]) for key in seen)
+    env = wrapped.unwrapped
+    assert isinstance(env, WallEnv)
+    assert len(env.episode.build.actions) == 1
+    # Both draw the same walls, and neither draws for the other.
+    first, second = wrapped.reset()[0], other.reset()[0]
+    assert all(np.array_equal(first[key], second[key]) for key in first)
+    assert wrapped.action_space.sample() == other.action_space.sample()

@@ -6,10 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from drystone.errors import ExitCode, UsageError
 from drystone.rl.draw import DrawSettings, draw_wall
 from drystone.rl.episode import prepared
 from drystone.rl.rollouts import at_random
-from drystone.rl.train import TRAINED_ON, TrainSettings, main, mean_merit, train
+from drystone.rl.train import HELD_OUT, TRAINED_ON, TrainSettings, main, mean_merit, train
 from drystone.selection.policies.learned import FEATURES, model_from_json, shipped_model
 
 TINY = TrainSettings(
@@ -65,6 +66,20 @@ def test_command_writes_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[s
     out, err = capsys.readouterr()
     assert out == f"{path}\n"
     assert "at random" in err
+
+
+def test_walls_without_a_choice_teach_nothing(tmp_path: Path) -> None:
+    full = DrawSettings(kinds=("brick",), stones=3, size_px=12.0, surplus=60.0)
+    with pytest.raises(UsageError, match="no stone of these walls has a choice") as caught:
+        train(replace(TINY, walls=2, draw=full))
+    assert caught.value.code == "E123"
+    few = ["-o", str(tmp_path / "w.json"), "--stones", "2"]
+    assert main(few) == ExitCode.USAGE
+
+
+def test_held_out_walls_are_none_of_training() -> None:
+    with pytest.raises(SystemExit):
+        main(["-o", "w.json", "--seed", str(HELD_OUT)])
 
 
 @pytest.mark.parametrize("wrong", [["--walls", "0"], ["--seed", "-1"], ["--rounds", "0"]])

@@ -4,6 +4,9 @@ import argparse
 
 from drystone.cli.numbers import positive, whole_from
 
+PUBLIC_OPTIONS = ("policy", "settings", "jobs", "dask", "store", "again", "history", "shake")
+"""For public suites alone."""
+
 
 def add_bench(command: argparse.ArgumentParser) -> None:
     """Add the options of the command."""

@@ -2,13 +2,12 @@
 
 import argparse
 import platform
-import sys
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from drystone.cli.output import make_folder
+from drystone.cli.output import make_folder, say
 from drystone.cli.settings import read_toml
 from drystone.errors import UsageError
 from drystone.experiments.public.bench import PublicSettings, run_public
@@ -20,8 +19,11 @@ from drystone.plotting.files import save
 
 DEFAULT_METHODS = ("paper", "random")
 
-OPTIONS = ("policy", "settings", "jobs", "dask", "store", "again", "history", "shake")
-"""For public suites alone."""
+RUNS_ALONE = (
+    "policy", "settings", "jobs", "dask", "again", "shake", "quick", "seed", "seeds", "only",
+    "seconds",
+)  # fmt: skip
+"""Options that a history has no use for."""
 
 DPI = 150
 
@@ -83,8 +85,15 @@ def history_tables(arguments: argparse.Namespace, suite: str | None) -> Sequence
     Raises
     ------
     UsageError
-        E138: no store is named, or it holds no such runs.
+        E138: no store is named, or it holds no such runs; or an option is given that only runs
+        go by.
     """
+    for name in RUNS_ALONE:
+        if getattr(arguments, name):
+            raise UsageError(
+                "E138", "a history shows all that a store holds, and runs nothing.",
+                where=f"--{name}", cure="Leave it out, or --history.",
+            )  # fmt: skip
     if arguments.store is None:
         raise UsageError(
             "E138", "there is no store to show.", where="--history", cure="Add --store DIR."
@@ -103,11 +112,6 @@ def history_tables(arguments: argparse.Namespace, suite: str | None) -> Sequence
     if arguments.output is not None:
         _draw(medians, Path(arguments.output))
     return (history_table(medians),)
-
-
-def say(text: str) -> None:
-    """Print a result as it comes, where it does not get in the way of the tables."""
-    print(text, file=sys.stderr, flush=True)
 
 
 def _draw(medians: Sequence[Medians], folder: Path) -> None:

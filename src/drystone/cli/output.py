@@ -1,6 +1,7 @@
 """Folders, files, tables and JSON on the way out."""
 
 import json
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -74,3 +75,8 @@ def make_folder(path: Path) -> None:
         if place.exists() and not place.is_dir():
             raise UsageError("E129", "is a file, not a folder.", where=str(place))
     path.mkdir(parents=True, exist_ok=True)
+
+
+def say(text: str) -> None:
+    """Print a result as it comes, where it does not get in the way of the tables."""
+    print(text, file=sys.stderr, flush=True)

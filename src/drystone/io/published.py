@@ -100,13 +100,17 @@ def fetch_set(wanted: PublishedSet, folder: Path, *, address: str = RAW) -> list
         missing = not path.exists()
         if missing:
             _download(file, path, url)
+            _write_notice(folder)  # at once: the next file may fail
         elif sha256(path.read_bytes()).hexdigest() != file.sha256:
             raise _other_contents(path, "Move it away and fetch it again, or", url)
         fetched.append(Fetched(file, path, missing))
-    notice = folder / NOTICE
-    if any(file.downloaded for file in fetched) and not notice.exists():
-        write_atomically(notice, LICENCE.encode())
     return fetched
+
+
+def _write_notice(folder: Path) -> None:
+    """Write the licence beside the files, as it asks for."""
+    if not (folder / NOTICE).exists():
+        write_atomically(folder / NOTICE, LICENCE.encode())
 
 
 def _download(file: PublishedFile, path: Path, url: str) -> None:

@@ -1,7 +1,9 @@
 """The environment ``drystone/Wall-v0``: stones arrive, each is built where it is offered."""
 
 from collections.abc import Mapping
+from copy import copy, deepcopy
 from dataclasses import asdict
+from operator import index
 from typing import Any, Literal, get_args
 
 import gymnasium
@@ -30,11 +32,14 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
     An action says which of the places offered for the stone that has arrived it is built in.  A
     stone for which no place is offered is put aside for good, and the next arrives within the
     same step.  The wall is finished when it is full or no stone is left; it is never truncated.
+    Where no place is offered from the start, any action ends the episode for a reward of 0.
 
     The reward is what the merit of the wall grows by (:mod:`drystone.search.goal`, weights in
     ``settings.goal``): while it grows by filling and resistance alone, with the last stone by all
     that makes up its merit.  So the rewards of an episode sum up to the merit of the finished
     wall, 0 for an empty one.
+
+    A deep copy goes on by itself and shares the stones with the first.
 
     Parameters
     ----------
@@ -88,6 +93,7 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
         self._illegal = illegal
         self._episode: Episode | None = None
         self._potential = 0.0
+        self._ended = False
 
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
@@ -105,7 +111,8 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
         Raises
         ------
         UsageError
-            E123: other options; E126: there are no stones; E201: an id of the order is no stone's.
+            E123: other options, or an order that is none; E126: there are no stones; E201: an id
+            of the order is no stone's.
         """
         super().reset(seed=seed)
         stones, site, order = self._given(options or {})
@@ -113,6 +120,7 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
             prepared(stones, site, self.settings), order, self.settings, self._offers
         )
         self._potential = self._episode.potential
+        self._ended = False
         return self._seen(), self._info(illegal=False)
 
     def step(self, action: np.int64) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
@@ -125,10 +133,13 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
             place is not offered.
         """
         episode = self._running()
-        if episode.over:
+        if self._ended:
             raise _no_action("the wall is finished", "Call `reset`.")
         if not self.action_space.contains(action):
             raise _no_action(f"{action!r} is none of {self.action_space}", "Give one of these.")
+        if episode.over:  # `reset` cannot say that an episode is over before it began
+            self._ended = True
+            return self._seen(), 0.0, True, False, self._info(illegal=True)
         legal = int(action) < len(episode.offers)
         if not legal and self._illegal == "error":
             raise _no_action(
@@ -138,7 +149,8 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
         episode.take(int(action) if legal else None)
         before, self._potential = self._potential, episode.potential
         reward = self._potential - before
-        return self._seen(), reward, episode.over, False, self._info(illegal=not legal)
+        self._ended = episode.over
+        return self._seen(), reward, self._ended, False, self._info(illegal=not legal)
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Return which actions are allowed, (offers,): none when the wall is finished.
@@ -155,6 +167,16 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
             )
             return None
         return wall_picture(self._running())
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "WallEnv":
+        """Return an environment in the same state."""
+        other = copy(self)
+        # The workshop of an episode has compiled parts that nothing can copy; it may be shared.
+        other._episode = None if self._episode is None else self._episode.copy()  # noqa: SLF001
+        for name in ("action_space", "observation_space", "_np_random"):  # all draw numbers
+            setattr(other, name, deepcopy(getattr(self, name), memo))
+        memo[id(self)] = other
+        return other
 
     @property
     def episode(self) -> Episode:
@@ -175,10 +197,7 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
         if order is None:
             ids = [stone.id for stone in stones]
             return stones, site, [ids[k] for k in self.np_random.permutation(len(ids)).tolist()]
-        ids = [stones.by_id(int(stone_id)).id for stone_id in order]
-        if len(set(ids)) < len(ids):
-            raise _refused("a stone arrives twice")
-        return stones, site, ids
+        return stones, site, _arriving(stones, order)
 
     def _running(self) -> Episode:
         if self._episode is None:
@@ -206,6 +225,17 @@ class WallEnv(gymnasium.Env[Observation, np.int64]):
             info["merit"] = episode.merit
             info["metrics"] = {} if figures is None else asdict(figures)
         return info
+
+
+def _arriving(stones: StoneSet, order: Any) -> list[int]:
+    """Return ids in the order of arrival as it was given."""
+    try:
+        ids = [stones.by_id(index(stone_id)).id for stone_id in order]
+    except TypeError as error:
+        raise _refused(f"order is {order!r}, which is no sequence of ids") from error
+    if not ids or len(set(ids)) < len(ids):
+        raise _refused("no stone arrives" if not ids else "a stone arrives twice")
+    return ids
 
 
 def _refused(what: str) -> UsageError:

@@ -19,6 +19,7 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.rl.draw import KINDS, DrawSettings, draw_wall
 from drystone.rl.episode import ARRIVING, prepared
+from drystone.rl.train import HELD_OUT
 from drystone.search.goal import figures_of, merit_of, possible_filling
 from drystone.selection.policies.registry import rule_of
 
@@ -27,9 +28,6 @@ FIGURES = ("merit", "F_SF", "F_AV", "F_AH", "F_LR")
 
 POLICIES = ("learned", "random", "lowest", "scalarised", "filter", "towers", "paper")
 """Policies that are compared, by their names; the first with each other."""
-
-HELD_OUT = 10**7
-"""First of the seeds of these walls; training has others."""
 
 FREE = replace(ARRIVING, order="free", sampling="variant")
 """The same places, offered for one stone of each cluster that is left."""
@@ -157,6 +155,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m drystone.rl.evaluate", description=__doc__)
     parser.add_argument("--walls", type=int, default=12, help="of each kind of stones")
+    parser.add_argument("--first", type=int, default=0, help="number of the first of each kind")
     parser.add_argument("--stones", type=int, default=DrawSettings.stones, help="of a wall")
     parser.add_argument("--kinds", nargs="+", choices=list(KINDS), default=list(KINDS))
     parser.add_argument("--policies", nargs="+", default=list(POLICIES))
@@ -164,14 +163,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         "--free", action="store_true", help="any stone may be next, of the paper's samples"
     )
     arguments = parser.parse_args(argv)
-    if arguments.walls < 1 or len(set(arguments.policies)) < 2:
-        parser.error("there must be a wall or more, and two policies or more")
+    if min(arguments.walls, arguments.first + 1) < 1 or len(set(arguments.policies)) < 2:
+        parser.error("there must be a wall or more, from number 0 on, and two policies or more")
     every: dict[str, dict[str, list[float]]] = {}
     try:
         draw = DrawSettings(stones=arguments.stones)
         settings = FREE if arguments.free else ARRIVING
         for kind in arguments.kinds:
-            walls = [held_out_wall(kind, number, draw) for number in range(arguments.walls)]
+            numbers = range(arguments.first, arguments.first + arguments.walls)
+            walls = [held_out_wall(kind, number, draw) for number in numbers]
             found = {name: figures_by(name, walls, settings) for name in arguments.policies}
             _print(report(found, f"{len(walls)} walls of {kind} stones"))
             for name, figures in found.items():

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from numpy.random import Generator
 
-from drystone.errors import DrystoneError, ExitCode
+from drystone.errors import DrystoneError, ExitCode, UsageError
 from drystone.planner.workshop import Workshop
 from drystone.rl.draw import DrawSettings, draw_wall
 from drystone.rl.episode import Episode, prepared
@@ -36,6 +36,9 @@ from drystone.selection.policy import Offer
 
 TRAINED_ON = ("brick", "fourier", "polygon")
 """Kinds of stones; rubble is held out."""
+
+HELD_OUT = 10**7
+"""Seed of the walls that trained policies are compared on: nothing is trained with it."""
 
 VALIDATION = 10**6
 """Added to the seed of walls that compare the result with its start; training has fewer walls."""
@@ -85,6 +88,11 @@ def train(
     seconds : float
         No round is begun after this time.  A run that it cut short is repeated by the number of
         rounds that the model says.
+
+    Raises
+    ------
+    UsageError
+        E123: no stone of the walls of the first round has more than one place.
     """
     start = time.monotonic()
     found: list[Branching] = []
@@ -93,6 +101,13 @@ def train(
     while done < settings.rounds and time.monotonic() - start <= seconds:
         new = _branchings(settings, done, _best(model) if done else lowest)
         found += new
+        if not found:
+            raise UsageError(
+                "E123",
+                "no stone of these walls has a choice of places.",
+                where="TrainSettings",
+                cure="Train on more walls, or of more stones.",
+            )
         scale = spread_of(found)
         weights = fitted(found, scale, settings.strength) / scale
         model = ValueModel(tuple(weights.tolist()), {})
@@ -172,8 +187,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--stones", type=int, default=DrawSettings.stones, help="of a wall")
     parser.add_argument("--minutes", type=float, default=math.inf, help="begin none after these")
     arguments = parser.parse_args(argv)
-    if min(arguments.rounds, arguments.walls, arguments.validation) < 1 or arguments.seed < 0:
-        parser.error("rounds and numbers of walls must be positive, seed not negative")
+    if min(arguments.rounds, arguments.walls, arguments.validation) < 1:
+        parser.error("rounds and numbers of walls must be positive")
+    if not 0 <= arguments.seed < HELD_OUT:
+        parser.error(f"the seed must be 0 to {HELD_OUT - 1}: from there on they are held out")
 
     def say(text: str) -> None:
         sys.stderr.write(f"{text}\n")
@@ -189,7 +206,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         )
         model = train(settings, say, 60.0 * arguments.minutes)
         arguments.output.write_text(model.to_json(), encoding="utf-8")
-    except (DrystoneError, OSError) as error:
+    except DrystoneError as error:
+        sys.stderr.write(f"drystone: {error}\n")
+        return int(error.exit_code)
+    except OSError as error:
         sys.stderr.write(f"drystone: {error}\n")
         return int(ExitCode.BAD_INPUT)
     sys.stdout.write(f"{arguments.output}\n")

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from drystone.errors import InputError
 from drystone.experiments.public import bench, shaken
 from drystone.experiments.public.bench import PublicSettings, run_public
 from drystone.experiments.public.store import BenchStore, Stamp
@@ -76,11 +77,22 @@ def test_settings_are_in_the_store(tmp_path):
 
 
 def test_walls_without_data_are_named():
-    tables = run_public(replace(SETTINGS, suite="masons", quick=False))
-    assert tables[0].rows == ()
-    assert any("PR 560x160, PR 600x160, R, IR" in note for note in tables[0].notes)
-    for table in tables:
-        assert table.text()
+    settings = replace(SETTINGS, suite="all", only=("R", "bricks 2:1"), quick=False, seeds=1)
+    tables = run_public(settings)
+    assert {row["wall"] for row in tables[0].records()} == {"bricks 2:1"}
+    assert any("DIR): R." in note for note in tables[0].notes)
+    with pytest.raises(InputError) as caught:
+        run_public(replace(settings, suite="masons", only=()))
+    assert caught.value.code == "E100"
+    assert caught.value.where == "almeida/PR.png, almeida/R.png, almeida/IR.png"
+
+
+def test_a_damaged_store_is_found_before_the_runs(tmp_path, counted):
+    (tmp_path / "bench.sqlite").write_text("this is no database, and never was one")
+    with pytest.raises(InputError) as caught:
+        run_public(replace(SETTINGS, store=tmp_path))
+    assert caught.value.code == "E401"
+    assert counted == []
 
 
 def test_shaken_walls_are_shaken_once(tmp_path, monkeypatch):

@@ -1,10 +1,11 @@
 """Methods beside each other."""
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
-from scipy.stats import norm
+from scipy.stats import norm, rankdata, wilcoxon
 
 from drystone.experiments.public.pairs import compared, holm, pair_tables
 from drystone.experiments.public.results import FIGURES, Result, Results
@@ -45,6 +46,30 @@ def test_signed_ranks_by_hand():
     """All of n differences of one sign: p is 2 / 2^n."""
     assert compared([1.0, 2.0, 3.5, 4.5, 5.25, 7.0], [0.0] * 6).p == pytest.approx(2 / 64)
     assert compared([0.0, 0.0], [0.0, 0.0]).p == 1.0
+
+
+@pytest.mark.parametrize(
+    "moved", [[1.0, 1.0, 2.0, -1.0, 3.0, 3.0], [1, 1, 1, 1, 1], [-1.0, 2, 2, 2, 3, -4, 5, 5]]
+)
+@pytest.mark.parametrize("equal", [0, 15])
+def test_signed_ranks_are_exact_with_ties_and_equal_pairs(moved, equal):
+    """By all signs that the differences could have; equal pairs say nothing."""
+    ranks = rankdata(np.abs(moved))
+    sums = [
+        sum(rank for rank, up in zip(ranks, signs, strict=True) if up)
+        for signs in product((True, False), repeat=len(moved))
+    ]
+    half, found = ranks.sum() / 2, ranks[np.array(moved) > 0].sum()
+    expected = np.mean([abs(one - half) >= abs(found - half) for one in sums])
+    assert compared([*moved, *[0.0] * equal], [0.0] * (len(moved) + equal)).p == expected
+
+
+def test_many_signed_ranks_go_by_the_normal_distribution():
+    noise = np.random.default_rng(4).normal(0.3, 1.0, 50)
+    exact = compared(noise.tolist(), [0.0] * 50).p
+    assert exact == pytest.approx(wilcoxon(noise, method="exact").pvalue)
+    more = compared([*noise.tolist(), 0.1], [0.0] * 51).p
+    assert more == pytest.approx(wilcoxon([*noise.tolist(), 0.1], method="asymptotic").pvalue)
 
 
 def test_rounding_errors_are_no_differences():
@@ -92,10 +117,17 @@ def test_a_clear_winner_is_shown_and_ranked_first():
 
 
 def test_few_pairs_show_nothing_and_it_is_said():
-    *tables, _ = pair_tables(results({"weak": [0.1, 0.2, 0.1, 0.2], "strong": [0.5] * 4}))
+    *tables, ranking = pair_tables(results({"weak": [0.1, 0.2, 0.1, 0.2], "strong": [0.5] * 4}))
     table = next(table for table in tables if table.title.startswith("F_SF"))
     assert table.records()[0]["shows"] == "strong?"
     assert any("no p can be below 0.62" in note for note in table.notes)
+    apart = ranking.records()[0]["not told apart from the next in"]
+    assert apart == "placed, F_SF, F_AV, F_AH, F_LR"
+
+
+def test_a_figure_that_none_has_tells_nobody_apart():
+    found = pair_tables(results({"a": [None, None], "b": [None, None]}))[-1].records()
+    assert "F_SF" in found[0]["not told apart from the next in"]
 
 
 def test_undefined_values_rank_last():

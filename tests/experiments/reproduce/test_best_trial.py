@@ -2,30 +2,28 @@
 
 import pytest
 
-from drystone.experiments.reproduce.best_trial import best_trial, multiplier, tenths
+from drystone.experiments.reproduce.best_trial import best_trial, tenths
 from drystone.experiments.runs.outcome import Outcome
 from tests.experiments.reproduce.made_outcomes import outcome
 
 
-def _wall(left: float | None, right: float | None, filled: float) -> Outcome:
-    return outcome(alpha_left=left, alpha_right=right, F_SF=filled)
+def _wall(resistance: float | None, filled: float) -> Outcome:
+    return outcome(F_LR=resistance, F_SF=filled)
 
 
 @pytest.mark.parametrize(
     ("walls", "best"),
     [
         # The multiplier first, however full the others are.
-        ([_wall(0.5, 0.38, 0.9), _wall(0.5, 0.46, 0.7)], 1),
+        ([_wall(0.38, 0.9), _wall(0.46, 0.7)], 1),
         # .42 and .38 are both .4: filling decides.
-        ([_wall(0.42, 0.5, 0.7), _wall(0.38, 0.5, 0.8)], 1),
-        # The lesser of both sides counts.
-        ([_wall(0.58, 0.1, 0.9), _wall(0.3, 0.3, 0.5)], 1),
+        ([_wall(0.42, 0.7), _wall(0.38, 0.8)], 1),
         # Equal to one decimal and in filling: the larger multiplier, then the earlier trial.
-        ([_wall(0.38, 0.5, 0.8), _wall(0.42, 0.5, 0.8), _wall(0.42, 0.6, 0.8)], 1),
-        ([_wall(0.4, 0.4, 0.8), _wall(0.4, 0.4, 0.8)], 0),
+        ([_wall(0.38, 0.8), _wall(0.42, 0.8), _wall(0.42, 0.8)], 1),
+        ([_wall(0.4, 0.8), _wall(0.4, 0.8)], 0),
         # Walls without a multiplier are last.
-        ([_wall(None, 0.5, 0.9), _wall(0.01, 0.5, 0.2)], 1),
-        ([_wall(None, 0.5, 0.7), _wall(None, None, 0.8)], 1),
+        ([_wall(None, 0.9), _wall(0.01, 0.2)], 1),
+        ([_wall(None, 0.7), _wall(None, 0.8)], 1),
     ],
 )
 def test_the_rule(walls: list[Outcome], best: int) -> None:
@@ -36,8 +34,3 @@ def test_halves_are_rounded_up_whatever_the_solver_leaves() -> None:
     assert [tenths(value) for value in (0.05, 0.15, 0.25, 0.35, 0.45, 0.55)] == [1, 2, 3, 4, 5, 6]
     assert tenths(0.35 - 1e-12) == tenths(0.35 + 1e-12) == 4
     assert (tenths(0.349999), tenths(0.0)) == (3, 0)
-
-
-def test_multiplier() -> None:
-    assert multiplier(_wall(0.3, 0.2, 1)) == 0.2
-    assert multiplier(_wall(0.3, None, 1)) is None

@@ -97,6 +97,15 @@ def test_filling_that_falls_agrees_and_one_that_rises_does_not():
     assert said(rising, "Interlocking")["holds"] is False
     assert said(rising, "Lateral resistance")["holds"] is False
     assert said(falling, "most difficult")["holds"] is False  # of filling only
+    # A trend of the five published sets that the three generated ones break up.
+    mixed = {10: 1, 20: 2, 30: 9, 40: 3, 50: 4, 60: 0.5, 70: 5, 80: 0.2}
+    broken = [level(n, F_SF=1, F_LR=value) for n, value in mixed.items()]
+    for one, noise in ((2, 30), (5, 60), (7, 80)):
+        wall = generated_set(noise, 6, 0.1)
+        broken[one] = Level(wall, {}, broken[one].outcomes, None)
+    assert said(broken, "Lateral resistance")["holds"] is None
+    flat = [level(n, F_SF=1, F_LR=v) for n, v in zip(mixed, (3, 1, 4, 2, 5, 0, 4, 3), strict=True)]
+    assert said(flat, "Lateral resistance")["holds"] is True
     # F_LR is always the same, so there is nothing to rank.
     assert said(falling, "Lateral resistance")["holds"] is None
 
@@ -124,8 +133,25 @@ def test_the_surprise_is_the_level_above_its_neighbours():
     walls = [level(n, F_SF=f, F_LR=1) for n, f in ((10, 0.8), (20, 0.6), (40, 0.75), (50, 0.6))]
     above = residuals(walls)
     assert above == pytest.approx({10: 0.2, 20: -0.175, 40: 0.15, 50: -0.15})
-    walls[0] = level(10, F_SF=0.7, F_LR=1)
-    assert "of 40 % is 0.150 above" in str(said(walls, "surprisingly")["found"])
+    # 10 % is 0.2 above its one neighbour, as any first level is when filling falls.
+    words = str(said(walls, "surprisingly")["found"])
+    assert "of 40 % less that of the levels beside it is +0.150" in words
+
+
+def test_a_trend_of_the_reference_walls_is_a_claim_of_its_own():
+    def built(value):
+        return Reference(23, 0.7, value, 5.0, (None, 0.1, 0.2, 0.3))
+
+    def claim(values):
+        walls = [
+            level(n, F_SF=0.7, F_LR=1, F_AV=n, reference=built(value))
+            for n, value in zip((10, 20, 40, 50, 70), values, strict=True)
+        ]
+        return said(walls, "F_AV of the reference")["holds"]
+
+    assert claim([1.0, 2.0, 3.0, 4.0, 5.0]) is True
+    assert claim([5.0, 4.0, 3.0, 2.0, 1.0]) is False
+    assert claim([1.0, 3.0, 5.0, 4.0, 2.0]) is None  # rho .3, of five
 
 
 def test_the_random_choice_and_the_reference_are_compared_by_medians():

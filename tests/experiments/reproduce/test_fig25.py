@@ -24,6 +24,9 @@ def test_both_walls_of_a_seed_are_planned(tmp_path):
     assert seconds.records()[0]["10deg, s"] > seconds.records()[0]["sf, s"]
     assert [p.name for p in output.pictures] == ["fig25", "fig25-figures"]
     assert len(output.pictures[0].figure.axes) == 2
+    ticks = [tick.get_text() for tick in output.pictures[1].figure.axes[0].get_xticklabels()]
+    assert ticks == ["30 % gen.\nsf", "30 % gen.\n10deg"]
+    assert "noise 30 % (generated)" in output.ours[0]
 
 
 def test_gains_are_of_equal_seeds():

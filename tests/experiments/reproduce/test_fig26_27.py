@@ -45,6 +45,9 @@ def test_walls_of_every_kind_and_ratio_are_summed_up(tmp_path):
     assert [p.name for p in output.pictures] == ["fig26", "fig27"]
     assert len(output.pictures[0].figure.axes) == 2
     assert any("With 1.1 times" in words for words in output.ours)
+    assert "after we had seen the walls of both 2 and 1.1 times" in output.ours[0]
+    # Two walls of a kind tell nothing with any number of stones.
+    assert "the verdicts are the same" in output.ours[-1]
 
 
 def walls(*values):

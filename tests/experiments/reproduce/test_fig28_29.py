@@ -102,6 +102,8 @@ def test_a_stone_has_one_colour_at_all_resolutions(tmp_path):
     assert len(shared) > 5
     assert all(colours[0][gid] == colours[1][gid] for gid in shared)
     assert len({*colours[0].values()}) == len(colours[0])
+    starts = {tuple(c.clusters)[:4] for c in context(tmp_path).run(output.runs)}
+    assert f"{len(starts)} different beginnings of 2 walls" in output.ours[0]
     sizes = [row["wall, px"] for row in rows(output, "walls")]
     assert sizes == ["85 x 32", "170 x 64"]
     assert [run.scale for run in output.runs] == [0.5, 1.0]

@@ -22,6 +22,8 @@ def test_both_walls_are_built_and_counted(tmp_path):
     ours, twice, left, right = rows(output, "walls")
     assert [row["built from"] for row in (ours, twice)] == ["one side", "two sides"]
     assert [(row["placed"], row["of"]) for row in (left, right)] == [(90, 91), (91, 91)]
+    for ax in output.pictures[0].figure.axes:
+        assert ax.get_title(loc="left").startswith("rubble, from ")
     assert [run.settings().two_sided for run in output.runs] == [False, True]
     for run, row in zip(output.runs, (ours, twice), strict=True):
         wall = context(tmp_path).wall(run)

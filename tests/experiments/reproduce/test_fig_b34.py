@@ -48,6 +48,9 @@ def test_planned_bricks_are_read_off_their_wall(tmp_path):
             pixels = wall.labels[::-1] == placement.stone_id
             assert pixels[box.bottom : box.top, box.left : box.right].all()
             assert pixels.sum() == (box.top - box.bottom) * (box.right - box.left)
+    crossed, joints = (sum(row[name] for row in found) for name in ("crossed", "head joints"))
+    assert f"{crossed} of {joints} head joints are crossed" in output.ours[-1]
+    assert ("inferior interlocking" in output.ours[-1]) is (2 * crossed < joints)
     colours = [
         {patch.get_facecolor() for patch in ax.patches if str(patch.get_gid()).startswith("stone")}
         for ax in output.pictures[0].figure.axes

@@ -59,6 +59,7 @@ def test_claims_that_cannot_be_told_do_not_count():
     told = sentences(found)
     assert told[0] == agreeing(found)
     assert [one.split(":")[0] for one in told[1:]] == ["Agrees", "Differs", "Cannot be told"]
+    assert agreeing(found[2:]) == "None of the paper's claims can be told."
     table = findings_table("Claims", found)
     assert [row["agrees"] for row in table.records()] == [True, False, None]
 

@@ -68,7 +68,8 @@ def test_fig13(masons: MasonsWall) -> None:
     ways = rows(output, "fig13_resistance")
     known = [float(str(row["F_LR"])) for row in ways if row["F_LR"] is not None]
     assert f"{len(ways) - len(known)} of {len(ways)} treatments" in output.ours[0]
-    assert f"F_LR is {min(known):.2f} to {max(known):.2f}," in output.ours[0]
+    assert f"F_LR is {min(known):.2f} to {max(known):.2f}." in output.ours[0]
+    assert f"{ways[-1]['gaps']}, the wall has" in output.ours[0]
     assert len(output.pictures[0].figure.axes) == 2
 
 

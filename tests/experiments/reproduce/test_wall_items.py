@@ -9,11 +9,13 @@ import pytest
 from drystone.experiments.reproduce import beta, fig16, fig19, fig20, fig21, fig_b30_32
 from drystone.experiments.reproduce.base import PaperWall
 from drystone.experiments.reproduce.item import Context, Output
+from drystone.experiments.reproduce.trials import Trials
 from drystone.experiments.runs.outcome import Outcome
 from drystone.experiments.runs.source import generated
 from drystone.model.placement import Wedge
 from drystone.model.site import Site
 from drystone.model.wall import Group, Wall
+from tests.experiments.reproduce.made_outcomes import outcome as made
 from tests.experiments.reproduce.small_walls import context, rows
 
 SEEDS = (1, 2)
@@ -70,6 +72,8 @@ def test_sampling(here: Context) -> None:
     assert f"full {median(counts):.0f} ({ratio:.2f} times variant)" in output.ours[0]
     whole = sum(outcome.figures["placed"] == outcome.figures["stones"] for outcome in full)
     assert f"full {whole} of 2." in output.ours[2]
+    same = full[0].plan["steps"] == full[1].plan["steps"]
+    assert ("the same for every seed" in output.ours[0]) is same
     assert [name for name, _ in output.times] == ["fig16_times"]
     assert _drawn(output) == {"fig16": 4, "fig16_seeds": 6}
 
@@ -111,11 +115,27 @@ def test_stabilisation(here: Context) -> None:
     shares = [100 * float(o.figures["wedge_area"] or 0) / (100 * 40) for o in wedged]
     assert table["wedge"]["wedges % of wall median"] == pytest.approx(median(shares), abs=1e-4)
     (ax,) = output.pictures[0].figure.axes
+    assert ax.get_xlabel().startswith("rubble: ")
     points = {line.get_gid(): line.get_xydata() for line in ax.lines}
     assert np.allclose(points["group-wedge"], np.column_stack([shares, _filled(wedged)]))
     medians = {way: table[way]["F_SF median"] for way in table}
     best = max(medians, key=lambda way: float(str(medians[way])))
     assert f"largest with {best}" in output.ours[0]
+
+
+def test_a_larger_median_alone_is_not_quite_as_in_the_paper() -> None:
+    def said(wedge: tuple[float, ...]) -> str:
+        filled = {"both": (0.5, 0.6, 0.7), "rotation": (0.4, 0.5, 0.6), "wedge": wedge,
+                  "none": (0.1, 0.1, 0.1)}  # fmt: skip
+        return fig20._said([
+            Trials(RUBBLE, way, (), tuple(made(F_SF=value) for value in values))
+            for way, values in filled.items()
+        ])  # fmt: skip
+
+    assert "as in the paper; with both" in said((0.4, 0.5, 0.6))
+    # The median of wedge is less, and yet it wins two pairs of three.
+    assert "not in most pairs" in said((0.55, 0.1, 0.8))
+    assert "unlike in the paper" in said((0.9, 0.9, 0.9))
 
 
 def test_both_ends(here: Context) -> None:
@@ -135,8 +155,12 @@ def test_both_ends(here: Context) -> None:
 
 
 def test_all_methods(here: Context) -> None:
-    wall = replace(RUBBLE, name="PR")
+    wall = replace(RUBBLE, name="PR", width=RUBBLE.width + 0.5)
     output = fig_b30_32.build(here, (wall,))
+    (outcome,) = here.run([wall.run(here.seed)])
+    site = outcome.wall(wall.run(here.seed), here.data).site
+    assert f"PR on {site.width_px} x {site.height_px} px:" in output.ours[0]
+    assert not any("quick version" in words for words in output.ours)
     table = rows(output, "figB30_32")
     assert len(table) == 8
     for row in table:

@@ -5,10 +5,9 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from drystone.cli.bench_public import OPTIONS, history_tables, public_tables, say
-from drystone.cli.output import make_folder, print_json
+from drystone.cli.bench_options import PUBLIC_OPTIONS
+from drystone.cli.output import make_folder, print_json, say
 from drystone.errors import ExitCode, UsageError
-from drystone.experiments.public.methods import known_methods
 from drystone.experiments.public.suites import PUBLIC_SUITES
 from drystone.experiments.suites import SEARCHES, SUITES, run_suite
 from drystone.experiments.table import BenchSettings, Table
@@ -33,6 +32,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
 def _print_list() -> None:
     """Print suites and policies, one a line."""
+    from drystone.experiments.public.methods import known_methods  # noqa: PLC0415 - see _tables
+
     for name, (text, _) in SUITES.items():
         print(f"{name}: {text}")
     for name, text in PUBLIC_SUITES.items():
@@ -63,6 +64,9 @@ def _suite(arguments: argparse.Namespace) -> str | None:
 
 
 def _tables(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table]:
+    # Loaded when it is run: --list and a misspelt suite do not wait for SciPy and Matplotlib.
+    from drystone.cli.bench_public import history_tables, public_tables  # noqa: PLC0415
+
     if arguments.history:
         return history_tables(arguments, suite)
     if suite is not None and suite in PUBLIC_SUITES:
@@ -72,7 +76,7 @@ def _tables(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table]
 
 def _settings(arguments: argparse.Namespace, suite: str) -> BenchSettings:
     """Return what a suite is run with; E138 for options that it does not go by."""
-    for name in ("seconds", "seeds", "only", *OPTIONS):
+    for name in ("seconds", "seeds", "only", *PUBLIC_OPTIONS):
         if getattr(arguments, name) and name not in SEARCHES.get(suite, ()):
             known = [other for other, names in SEARCHES.items() if name in names]
             if name != "seconds":

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from drystone.cli.output import make_folder, print_json
+from drystone.cli.output import make_folder, print_json, say
 from drystone.errors import ExitCode, UsageError
-from drystone.experiments.reproduce.items import ALL, ITEMS, item_names
+from drystone.experiments.reproduce.items import ALL, ITEMS, OWN_STONES, item_names
 
 if TYPE_CHECKING:  # loaded when something is made: --list does not wait for matplotlib
     from drystone.experiments.reproduce.driver import Made, Options
@@ -85,12 +85,12 @@ def _names(arguments: argparse.Namespace) -> tuple[str, ...]:
             cure="Write `drystone reproduce fig5 -o DIR`; `drystone reproduce --list` names all.",
         )
     asked = {name for each in arguments.names for name in item_names(each)}
-    if arguments.image is not None and len(asked) > 1:
+    if arguments.image is not None and not asked <= {*OWN_STONES}:
         raise UsageError(
             "E138",
-            "your own stones belong to one table or figure.",
+            "your own stones would change nothing in what is named.",
             where="--image",
-            cure="Name one.",
+            cure=f"It is for {', '.join(OWN_STONES)}.",
         )
     return tuple(name for name in ITEMS if name in asked)
 
@@ -110,13 +110,8 @@ def _options(arguments: argparse.Namespace, work: "Work") -> "Options":
         image=None if arguments.image is None else Path(arguments.image),
         again=arguments.again,
         work=work,
-        say=(lambda _: None) if arguments.quiet else _say,
+        say=(lambda _: None) if arguments.quiet else say,
     )
-
-
-def _say(text: str) -> None:
-    """Print progress where it does not get in the way of the tables."""
-    print(text, file=sys.stderr, flush=True)
 
 
 def _print(made: "Made") -> None:

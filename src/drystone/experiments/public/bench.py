@@ -13,6 +13,7 @@ from drystone.experiments.public.results import SHAKE, Result, Results
 from drystone.experiments.public.shaken import pga_of
 from drystone.experiments.public.store import NOT_SHAKEN, BenchStore, KeptRun, Stamp, kept_run
 from drystone.experiments.public.suites import PublicWall, walls_of
+from drystone.experiments.runs.failures import absent_data
 from drystone.experiments.runs.outcome import Outcome
 from drystone.experiments.runs.runner import Runner, Work, one_by_one
 from drystone.experiments.runs.spec import RunSpec
@@ -113,10 +114,15 @@ def run_public(settings: PublicSettings) -> tuple[Table, ...]:
     UsageError
         E138: no wall has the name that is asked for; E146, E123: there is no such method or
         setting.
+    InputError
+        E100: all walls need published stones, which are not there; E401: the store is damaged.
     """
     methods = [method_named(name, settings.stamp.settings) for name in settings.methods]
     asked = walls_of(settings.suite, settings.only, quick=settings.quick)
     walls = [wall for wall in asked if wall.source.is_there(settings.data)]
+    if not walls:
+        absent = dict.fromkeys(wall.source.name for wall in asked)
+        raise absent_data(tuple(absent), known=settings.data is not None)
     # Methods take turns, so that all have the same day.
     tasks = [
         (wall, method, method.run(wall, seed))
@@ -133,6 +139,8 @@ def _done(tasks: Sequence[Task], settings: PublicSettings) -> Results:
     """Do the runs, keep them, and shake the walls if that is asked for."""
     if settings.shake:
         load_engine()  # what is missing is said before an hour of planning
+    store = None if settings.store is None else BenchStore(settings.store)
+    kept = {} if store is None else {run.run_key: run for run in store.runs()}
     specs = [spec for _, _, spec in tasks]
     with _folder(settings) as folder, _workers(settings) as work:
         kind = _NothingKept if settings.again else RunStore
@@ -142,8 +150,6 @@ def _done(tasks: Sequence[Task], settings: PublicSettings) -> Results:
         (spec, outcome, Result.of(wall, method.name, spec.seed, outcome))
         for (wall, method, spec), outcome in zip(tasks, outcomes, strict=True)
     ]
-    store = None if settings.store is None else BenchStore(settings.store)
-    kept = {} if store is None else {run.run_key: run for run in store.runs()}
     if store is not None:
         new = [run for run in runs if settings.again or run[1].key not in kept]
         store.put([kept_run(result, outcome, settings.stamp) for _, outcome, result in new])
@@ -198,4 +204,7 @@ def _left_out(asked: Sequence[PublicWall], there: Sequence[PublicWall]) -> tuple
     names = [wall.name for wall in asked if wall not in there]
     if not names:
         return ()
-    return (f"Left out, as they need the published stone sets (--data DIR): {', '.join(names)}.",)
+    return (
+        f"Left out, as they need the published stone sets (`drystone fetch`, or --data DIR): "
+        f"{', '.join(names)}.",
+    )

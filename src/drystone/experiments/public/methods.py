@@ -79,6 +79,13 @@ def method_named(name: str, changes: Changes = ()) -> BenchMethod:
         own: Changes = (("geometry", "raster"), ("search.budget", 1))
         found = BenchMethod(name, "best", _merged(own, changes))
     else:
+        if name not in (known := known_methods()):
+            raise UsageError(
+                "E146",
+                f"there is no policy {name!r}.",
+                where="--policy",
+                cure=f"Choose one of {', '.join(known)}.",
+            )
         rule = rule_of(name)
         own = () if name == PAPER else (("selection_rule", rule),)
         found = BenchMethod(name, "paper", _merged(own, changes))

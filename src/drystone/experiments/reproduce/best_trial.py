@@ -15,7 +15,8 @@ def best_trial(outcomes: Sequence[Outcome]) -> int:
     The paper chooses "the wall with the highest filling ratio and kinematics multiplier (rounded
     to one decimal place)".  Two walls hardly ever have the same filling, so the multiplier must
     come first or it would never count; filling decides between those that are equal to one
-    decimal, then the full multiplier, then the earlier trial.
+    decimal, then the full multiplier, then the earlier trial.  Multipliers are over mu, as those
+    that the paper prints seem to be (Fig. 14: .79, above any mu that it names): F_LR.
 
     Parameters
     ----------
@@ -25,14 +26,7 @@ def best_trial(outcomes: Sequence[Outcome]) -> int:
     return max(range(len(outcomes)), key=lambda place: (*_merit(outcomes[place]), -place))
 
 
-def multiplier(outcome: Outcome) -> float | None:
-    """Return the lesser load multiplier alpha of both sides; None when there is none."""
-    ends = (outcome.figures["alpha_left"], outcome.figures["alpha_right"])
-    found = [float(alpha) for alpha in ends if alpha is not None]
-    return min(found) if len(found) == len(ends) else None
-
-
-def tenths(alpha: float) -> int:
+def tenths(value: float) -> int:
     """Round to one decimal, halves up; in tenths.
 
     Examples
@@ -40,10 +34,12 @@ def tenths(alpha: float) -> int:
     >>> tenths(0.45), tenths(0.4499999999), tenths(0.44)
     (5, 5, 4)
     """
-    return floor(10 * round(alpha, EXACT) + 0.5)
+    return floor(10 * round(value, EXACT) + 0.5)
 
 
 def _merit(outcome: Outcome) -> tuple[float, float, float]:
-    alpha = multiplier(outcome)
+    resistance = outcome.figures["F_LR"]
     filled = float(outcome.figures["F_SF"] or 0.0)
-    return (-1.0, filled, 0.0) if alpha is None else (tenths(alpha), filled, round(alpha, EXACT))
+    if resistance is None:
+        return -1.0, filled, 0.0
+    return tenths(resistance), filled, round(resistance, EXACT)

@@ -12,6 +12,7 @@ from drystone.experiments.reproduce.folder import ReportFolder
 from drystone.experiments.reproduce.item import Context, Item, Output
 from drystone.experiments.reproduce.items import ITEMS, item_named
 from drystone.experiments.reproduce.request import Clock, Request, made_with, request_of, utc_now
+from drystone.experiments.runs.failures import absent_data
 from drystone.experiments.runs.runner import Runner, Work, one_by_one
 from drystone.experiments.runs.source import published
 from drystone.experiments.runs.store import RunStore
@@ -226,32 +227,6 @@ class _Maker:
         if not absent:
             return None
         return absent_data(absent, known=data is not None)
-
-
-def absent_data(absent: Sequence[str], *, known: bool) -> InputError:
-    """Return the error about published stones that are not there (E100).
-
-    Parameters
-    ----------
-    absent : sequence of str
-        Their paths in a folder of published data.
-    known : bool
-        Whether there is such a folder.
-
-    Examples
-    --------
-    >>> absent_data(["almeida/R.png", "almeida/PR.png"], known=True).where
-    'almeida/R.png, almeida/PR.png'
-    """
-    sets = " ".join(dict.fromkeys(name.split("/")[0] for name in absent))
-    why = "are not in the folder of published data" if known else "are not there"
-    return InputError(
-        "E100",
-        f"published stones that this needs {why}.",
-        where=", ".join(absent),
-        cure=f"`drystone fetch {sets}` gets them; or name a folder that has them with --data or "
-        "DRYSTONE_DATA.",
-    )
 
 
 def taken(output: Output, store: RunStore, seconds: float) -> dict[str, float | int]:

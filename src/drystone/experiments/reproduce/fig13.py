@@ -38,10 +38,10 @@ def closed(walls: Sequence[MasonsWall]) -> Output:
     return Output(
         paper=(
             "§5.1: the walls are annotated from photographs and have gaps. For the load multiplier "
-            "only, stones are moved towards the bottom left corner one after the other, those "
-            "nearest to it first, and dilated by one pixel. Fig. 13 shows PR before and after; "
-            f"Table 2 has F_LR {_published()} of the walls so treated, and says that they "
-            "depend on the annotation.",
+            "stones are moved towards the bottom left corner one after the other, those nearest to "
+            "it first, and dilated by one pixel. Fig. 13 shows PR before and after; Table 2 has "
+            f"F_LR {_published()} of the walls so treated, and says that they depend on the "
+            "annotation.",
         ),
         ours=(
             *(_said(each, ways) for each, ways in zip(walls, treated, strict=True)),
@@ -70,11 +70,11 @@ def _said(wall: MasonsWall, ways: Sequence[Treatment]) -> str:
     found = {way.name: way.F_LR for way in ways if way.F_LR is not None}
     papers = next(way for way in ways if way.name == PAPERS_WAY)
     spread = f"{min(found.values()):.2f} to {max(found.values()):.2f}" if found else "-"
-    theirs = "no multiplier" if papers.F_LR is None else f"F_LR {papers.F_LR:.2f}"
+    theirs = f"no F_LR ({papers.status})" if papers.F_LR is None else f"F_LR {papers.F_LR:.2f}"
     return (
-        f"{wall.wall.name}: {len(ways) - len(found)} of {len(ways)} treatments leave a wall that "
-        f"does not stand ({papers.name}: {theirs}, {papers.status}); with the others F_LR is "
-        f"{spread}, the paper's is {REFERENCES[wall.wall.number].F_LR:g}."
+        f"{wall.wall.name}: {papers.name}, the wall has {theirs}; the paper's is "
+        f"{REFERENCES[wall.wall.number].F_LR:g}. {len(ways) - len(found)} of {len(ways)} "
+        f"treatments leave a wall without a load multiplier; with the others F_LR is {spread}."
     )
 
 
@@ -82,9 +82,9 @@ def _altogether(treated: Sequence[Sequence[Treatment]]) -> str:
     ways = [way for each in treated for way in each]
     falls = sum(way.F_LR is None for way in ways)
     return (
-        f"In all, {falls} of {len(ways)} walls do not stand: dilation by one px closes gaps of at "
-        "most two, what stones drawn to the corner leave open stays open, and one stone without "
-        "support is enough for no load multiplier at all. The figure is one of the treatment and "
+        f"In all, {falls} of {len(ways)} walls have no load multiplier: dilation by one px closes "
+        "gaps of at most two, what stones drawn to the corner leave open stays open, and one stone "
+        "without support is enough for that. The figure is one of the treatment and "
         "of the tracing as much as of the wall; no F_LR of a masons' wall is a target here."
     )
 
@@ -106,7 +106,9 @@ def _metrics(walls: Sequence[MasonsWall]) -> Table:
         tuple(rows),
         (
             "F_SF is over the bounding box of the stones; dilation enlarges the stones, so F_SF "
-            "after it is not that of the wall. The paper does not say which of both it measured.",
+            "after it is not that of the wall. Table 2 refers to the walls of Fig. 18, which are "
+            "the treated ones, so that its other figures may be of these too; §5.1 says so of the "
+            "load multiplier alone.",
         ),
     )
 

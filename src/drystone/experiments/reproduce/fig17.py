@@ -163,8 +163,9 @@ def _picture(paths: Paths, number: int) -> Picture:
         ax.set_title(f"{paths.name}: {way} paths of {lengths} px", fontsize=8, loc="left")
     return Picture(
         "fig17" if number == 0 else "fig17-masons", figure,
-        f"The shortest paths along the joints, {paths.name}: {ACROSS} horizontal ones, from which "
-        f"F_AH comes, and {UPRIGHT} vertical ones, from which F_AV comes.",
+        f"The shortest paths along the joints, {paths.name}: {len(paths.across[:ACROSS])} "
+        f"horizontal and {len(paths.upright[:UPRIGHT])} vertical ones. F_AH and F_AV come from the "
+        f"{SHORTEST} shortest of each.",
     )  # fmt: skip
 
 

@@ -48,7 +48,10 @@ def compare(context: Context, walls: Sequence[PaperWall], seeds: Sequence[int]) 
             "the walls R, PR and IR, and the weak region with voids moves from the right end to "
             "the middle, where both halves meet. No metrics are given.",
         ),
-        ours=tuple(_said([each for each in trials if each.wall == wall]) for wall in walls),
+        ours=(
+            *(_said([each for each in trials if each.wall == wall]) for wall in walls),
+            "Where the voids are was not measured: the picture shows it for one seed.",
+        ),
         tables=(
             (
                 "fig21",
@@ -58,7 +61,7 @@ def compare(context: Context, walls: Sequence[PaperWall], seeds: Sequence[int]) 
                     tuple(_row(each) for each in trials),
                     (
                         "E_FLUSH: mean gap of the ends to the wall's end lines over the mean "
-                        "width of a stone; it is what the paper's alignment with both ends is.",
+                        "width of a stone; our measure of the paper's alignment with both ends.",
                     ),
                 ),
             ),

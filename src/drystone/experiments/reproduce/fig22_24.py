@@ -36,9 +36,9 @@ PAPER = (
     "The text says: the set of 80 % is the most difficult, its walls 'both unfilled and weak'; "
     "filling rises as the noise falls, with one level done surprisingly well (which one is lost in "
     "our copy of the text); below 60 % noise F_SF is always above .6, 'outperforming the random "
-    "strategy'; F_LR has no clear trend; F_AV rises with the noise in ours and in the reference "
-    "walls, and ours is better; F_AH has no obvious trend; the wall is filled as much as in the "
-    "reference.",
+    "strategy'; F_LR has no clear trend; F_AV rises with the noise in its own and in the "
+    "reference walls, and its own is better; F_AH has no obvious trend; the wall is filled as much "
+    "as in the reference.",
 )
 
 SETTING = (

@@ -205,21 +205,34 @@ def _setting(built: Walls, ratio: float) -> str:
     )
     return (
         f"The paper does not say how many stones a set has; here their area is {ratio:g} times "
-        f"that of the wall ({counts}). Every wall has stones of its own, so that what differs is "
-        "their kind and not the luck of one set; the paper may have used one set of each."
+        f"that of the wall ({counts}). {_chosen(ratio)}Every wall has stones of its own, so that "
+        "what differs is their kind and not the luck of one set; the paper may have used one set "
+        "of each, and its 20 walls may be of all kinds together."
+    )
+
+
+def _chosen(ratio: float) -> str:
+    """Say how the number of stones was chosen, where it is ours."""
+    if ratio != AREA_RATIOS[0]:
+        return ""
+    return (
+        f"We took {ratio:g} for the main version after we had seen the walls of both {ratio:g} and "
+        f"{AREA_RATIOS[1]:g} times, so agreement with the paper is in part our choice; the full "
+        "version tells both. "
     )
 
 
 def _fewer(by_ratio: Mapping[float, Walls]) -> tuple[str, ...]:
     """Say what becomes of the claims with fewer stones."""
     paragraphs = []
+    first = [one.holds for one in findings(next(iter(by_ratio.values())))]
     for ratio, built in list(by_ratio.items())[1:]:
         found = findings(built)
         each = " ".join(f"{one.claim} {one.found[0].upper()}{one.found[1:]}" for one in found)
+        same = [one.holds for one in found] == first
+        verdicts = "the verdicts are the same" if same else "the verdicts are not the same"
         paragraphs.append(
-            f"The number of stones matters. With {ratio:g} times the area of the wall: "
-            f"{agreeing(found)} {each} A set of few stones of many sizes often runs out of those "
-            "that would still fit."
+            f"With {ratio:g} times the area of the wall {verdicts}. {agreeing(found)} {each}"
         )
     return tuple(paragraphs)
 

@@ -111,7 +111,8 @@ def _layouts(outcomes: Mapping[float, Outcome]) -> str:
     return (
         f"Stones placed, by scale: {placed}. All walls have the seed of the plan in common and "
         f"come out the same whenever they are planned again. Ids of the first four stones, by "
-        f"scale: {orders}; {len({*first.values()})} of {len(first)} differ. Every resolution has "
+        f"scale: {orders}; there are {len({*first.values()})} "
+        f"different beginnings of {len(first)} walls. Every resolution has "
         "positions and indices of its own, and one other choice changes all that follow."
     )
 

@@ -9,6 +9,7 @@ from drystone.experiments.reproduce.item import Context, Item, Output, Picture
 from drystone.experiments.reproduce.summary import METRICS, metric_cells
 from drystone.experiments.reproduce.trials import Changes, Trials, all_specs, run_trials
 from drystone.experiments.table import Table
+from drystone.model.site import working_px
 from drystone.plotting.wall_grid import plot_walls
 
 SIDES: dict[str, Changes] = {"one-sided": (), "two-sided": (TWO_SIDED,)}
@@ -47,7 +48,8 @@ def build(context: Context, walls: Sequence[PaperWall]) -> Output:
         ours=(
             *(_said([each for each in trials if each.wall == wall]) for wall in walls),
             "One seed a method; how much walls of one method differ from seed to seed is seen in "
-            "table2, fig16 and fig21. The quick version has coarser walls, and none of IR.",
+            "table2, fig16 and fig21.",
+            *(("This quick version has coarser walls, and none of IR.",) if context.quick else ()),
         ),
         tables=(("figB30_32", _table(trials)),),
         pictures=tuple(_picture(context, trials, wall) for wall in walls),
@@ -59,10 +61,10 @@ def _said(group: Sequence[Trials]) -> str:
     filled = {each.way: float(each.outcomes[0].figures["F_SF"] or 0) for each in group}
     full = max(filled, key=lambda way: filled[way])
     whole = sum(o.figures["placed"] == o.figures["stones"] for t in group for o in t.outcomes)
-    site = group[0].specs[0]
-    size = f"{site.width * site.scale:.0f} x {site.height * site.scale:.0f} px"
+    wall = group[0].wall
+    size = " x ".join(f"{working_px(side, wall.scale)}" for side in (wall.width, wall.height))
     return (
-        f"{group[0].wall.name} on {size}: F_SF from {min(filled.values()):.3f} to "
+        f"{wall.name} on {size} px: F_SF from {min(filled.values()):.3f} to "
         f"{filled[full]:.3f}, the fullest by {full}; {whole} of {len(group)} walls have all stones."
     )
 

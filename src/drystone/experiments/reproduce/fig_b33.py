@@ -68,7 +68,7 @@ def make(context: Context, wall: PaperWall | None = None) -> Output:
         paper=PAPER,
         ours=_found(wall, outcomes),
         tables=(("walls", _table(wall, outcomes)),),
-        pictures=(_picture(context, specs, outcomes),),
+        pictures=(_picture(context, wall, specs, outcomes),),
         runs=tuple(specs.values()),
     )
 
@@ -98,7 +98,9 @@ def _found(wall: PaperWall, outcomes: Mapping[str, Outcome]) -> tuple[str, ...]:
         for side, outcome in outcomes.items()
     )
     whose = (
-        "generated, coursed rubble made as irregular as it gets" if wall.stand_in else "a user's"
+        "our own irregular rubble, as the paper's stones are not public"
+        if wall.stand_in
+        else "a user's"
     )
     return (
         f"{wall.name}, {whose}: {each}. How many of them fit depends on the wall that they are "
@@ -119,11 +121,15 @@ def _table(wall: PaperWall, outcomes: Mapping[str, Outcome]) -> Table:
 
 
 def _picture(
-    context: Context, specs: Mapping[str, RunSpec], outcomes: Mapping[str, Outcome]
+    context: Context,
+    wall: PaperWall,
+    specs: Mapping[str, RunSpec],
+    outcomes: Mapping[str, Outcome],
 ) -> Picture:
     walls = [
         (
-            f"from {side}: {outcome.figures['placed']} of {outcome.figures['stones']} stones",
+            f"{wall.name}, from {side}: {outcome.figures['placed']} of "
+            f"{outcome.figures['stones']} placed",
             outcome.wall(specs[side], context.data),
             outcome.clusters,
         )
@@ -131,7 +137,7 @@ def _picture(
     ]
     return Picture(
         "figB33", plot_walls(walls, 2),
-        "Walls of the same stones, built from one end and from both; stones of one cluster have "
+        f"Walls of {wall.name}, built from one end and from both; stones of one cluster have "
         "one colour, numbers are the order of placement, wedges are dark red.",
     )  # fmt: skip
 

@@ -131,14 +131,19 @@ def _found(built: Built) -> str:
 
 def _why(built: Sequence[Built]) -> str:
     clusters = max(len({*one.outcome.clusters.values()}) for one in built)
-    shares = [one.courses.crossed / one.courses.joints for one in built if one.courses.joints]
-    bond = "crossed" if shares and min(shares) > 0.5 else "not crossed everywhere"
+    number = "one cluster" if clusters == 1 else f"{clusters} clusters at most"
+    crossed = sum(one.courses.crossed for one in built)
+    joints = sum(one.courses.joints for one in built)
+    words = (
+        f"The bricks of a wall are in {number}, so that variant sampling has next to nothing to "
+        "choose from: Eq. 12 alone says where the next one lies, and the indices that reward a "
+        f"bond compare stones, not places. In all, {crossed} of {joints} head joints are crossed."
+    )
+    if 2 * crossed >= joints:
+        return words
     return (
-        f"The bricks of a wall are in {clusters} cluster, so that variant sampling has next to "
-        "nothing to choose from: Eq. 12 alone says where the next one lies, and the indices that "
-        f"reward a bond compare stones, not places. The bond is {bond}. §5.3 says the like of "
-        "stones of little variety: easy to stack and to fill with, 'but it often results in walls "
-        "with inferior interlocking'."
+        f"{words} §5.3 says the like of stones of little variety: easy to stack and to fill with, "
+        "'but it often results in walls with inferior interlocking'."
     )
 
 

@@ -109,6 +109,8 @@ def agreeing(findings: Sequence[Finding]) -> str:
     """
     told = [each for each in findings if each.holds is not None]
     right = sum(each.holds is True for each in told)
+    if not told:
+        return "None of the paper's claims can be told."
     claims, agree = "claim" if len(told) == 1 else "claims", "agrees" if right == 1 else "agree"
     return f"Of {len(told)} {claims} of the paper that can be told, {right} {agree}."
 

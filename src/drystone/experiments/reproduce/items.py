@@ -49,6 +49,9 @@ ALSO: Mapping[str, str] = MappingProxyType(
 )  # fmt: skip
 """Other names, of those that are made together."""
 
+OWN_STONES = ("figB33",)
+"""Items that can be made of a user's own stones."""
+
 ALL = "all"
 
 

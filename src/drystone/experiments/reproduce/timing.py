@@ -8,8 +8,8 @@ REPEATS = 3
 """Of each wall; the quickest of every step counts."""
 
 ONE_PROCESS = (
-    "Times are of one process with one thread and differ from machine to machine; the paper's are "
-    "of several processes on an i7-10700 of 2.9 GHz."
+    "Times are of one process with one thread and differ from machine to machine; where the paper "
+    "gives times, they are of several processes on an i7-10700 of 2.9 GHz."
 )
 
 

@@ -1,6 +1,8 @@
 """Errors of runs that could not be done; what had ended before is kept."""
 
-from drystone.errors import DrystoneError
+from collections.abc import Sequence
+
+from drystone.errors import DrystoneError, InputError
 from drystone.experiments.runs.spec import RunSpec
 
 
@@ -20,4 +22,30 @@ def died(spec: RunSpec, who: str) -> DrystoneError:
         where=str(spec),
         cure="Give the same command again: the runs that ended are kept. Ask for fewer at once if "
         "memory ran out.",
+    )
+
+
+def absent_data(absent: Sequence[str], *, known: bool) -> InputError:
+    """Return the error about published stones that are not there (E100).
+
+    Parameters
+    ----------
+    absent : sequence of str
+        Their paths in a folder of published data.
+    known : bool
+        Whether there is such a folder.
+
+    Examples
+    --------
+    >>> absent_data(["almeida/R.png", "almeida/PR.png"], known=True).where
+    'almeida/R.png, almeida/PR.png'
+    """
+    sets = " ".join(dict.fromkeys(name.split("/")[0] for name in absent))
+    why = "are not in the folder of published data" if known else "are not there"
+    return InputError(
+        "E100",
+        f"published stones that this needs {why}.",
+        where=", ".join(absent),
+        cure=f"`drystone fetch {sets}` gets them; or name a folder that has them with --data or "
+        "DRYSTONE_DATA.",
     )
