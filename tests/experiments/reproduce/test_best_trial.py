@@ -1,4 +1,4 @@
-"""The wall with the highest multiplier, to one decimal, and filling."""
+"""The wall with the highest filling and multiplier, to one decimal."""
 
 import pytest
 
@@ -14,16 +14,18 @@ def _wall(resistance: float | None, filled: float) -> Outcome:
 @pytest.mark.parametrize(
     ("walls", "best"),
     [
-        # The multiplier first, however full the others are.
-        ([_wall(0.38, 0.9), _wall(0.46, 0.7)], 1),
-        # .42 and .38 are both .4: filling decides.
-        ([_wall(0.42, 0.7), _wall(0.38, 0.8)], 1),
-        # Equal to one decimal and in filling: the larger multiplier, then the earlier trial.
+        # Filling to one decimal first, however strong the others are.
+        ([_wall(0.38, 0.9), _wall(0.98, 0.7)], 0),
+        # .78 and .82 are both .8: the multiplier decides.
+        ([_wall(0.38, 0.82), _wall(0.46, 0.78)], 1),
+        # .42 and .38 are both .4 too: the fuller one.
+        ([_wall(0.42, 0.78), _wall(0.38, 0.8)], 1),
+        # Equal in filling: the larger multiplier, then the earlier trial.
         ([_wall(0.38, 0.8), _wall(0.42, 0.8), _wall(0.42, 0.8)], 1),
         ([_wall(0.4, 0.8), _wall(0.4, 0.8)], 0),
-        # Walls without a multiplier are last.
-        ([_wall(None, 0.9), _wall(0.01, 0.2)], 1),
-        ([_wall(None, 0.7), _wall(None, 0.8)], 1),
+        # Among equally full walls those without a multiplier are last.
+        ([_wall(None, 0.84), _wall(0.01, 0.76)], 1),
+        ([_wall(None, 0.76), _wall(None, 0.8)], 1),
     ],
 )
 def test_the_rule(walls: list[Outcome], best: int) -> None:

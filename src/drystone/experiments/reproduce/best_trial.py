@@ -10,13 +10,13 @@ EXACT = 6
 
 
 def best_trial(outcomes: Sequence[Outcome]) -> int:
-    """Return the place of the wall with the highest multiplier, to one decimal, and filling.
+    """Return the place of the wall with the highest filling and multiplier, to one decimal.
 
     The paper chooses "the wall with the highest filling ratio and kinematics multiplier (rounded
-    to one decimal place)".  Two walls hardly ever have the same filling, so the multiplier must
-    come first or it would never count; filling decides between those that are equal to one
-    decimal, then the full multiplier, then the earlier trial.  Multipliers are over mu, as those
-    that the paper prints seem to be (Fig. 14: .79, above any mu that it names): F_LR.
+    to one decimal place)".  Taken here in the order in which they are named, both to one decimal,
+    or the second would never count; between walls that are equal then the full figures decide, in
+    the same order, and then the earlier trial.  Multipliers are over mu, as those that the paper
+    prints seem to be (Fig. 14: .79, above any mu that it names): F_LR.
 
     Parameters
     ----------
@@ -37,9 +37,9 @@ def tenths(value: float) -> int:
     return floor(10 * round(value, EXACT) + 0.5)
 
 
-def _merit(outcome: Outcome) -> tuple[float, float, float]:
+def _merit(outcome: Outcome) -> tuple[float, float, float, float]:
     resistance = outcome.figures["F_LR"]
     filled = float(outcome.figures["F_SF"] or 0.0)
     if resistance is None:
-        return -1.0, filled, 0.0
-    return tenths(resistance), filled, round(resistance, EXACT)
+        return tenths(filled), -1.0, filled, 0.0
+    return tenths(filled), tenths(resistance), filled, round(resistance, EXACT)

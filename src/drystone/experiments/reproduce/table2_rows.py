@@ -84,8 +84,8 @@ def comparison(walls: Sequence[FiveWall]) -> Table:
         (
             "F_SF a share, F_AV and F_AH in percent. Our walls: the area of their stones over the "
             "target; masons' walls: over the bounding box of their stones.",
-            "Best: the highest multiplier over mu to one decimal, then the highest filling (§5.2); "
-            "the paper does not say which of both counts first, so the fullest is shown too.",
+            "Best: the highest filling, then the highest multiplier over mu, both to one decimal "
+            "(§5.2); the paper does not say how both count, so the fullest is shown too.",
             "All stones: the area of all stones over the target, the largest F_SF there can be.",
             "Walls 4 and 5 of the paper are of stones that are not public; ours are of generated "
             "ones, so their rows are no comparison.",
