@@ -11,8 +11,8 @@ from drystone.kernels.backend import describe
 from tests.cli.conftest import Run
 
 COMMANDS = (
-    "plan", "demo", "stones", "analyse", "measure", "check", "bench", "generate", "reproduce",
-    "fetch",
+    "plan", "demo", "stones", "analyse", "measure", "check", "export", "craft", "markers",
+    "segment", "bench", "generate", "reproduce", "fetch",
 )  # fmt: skip
 
 

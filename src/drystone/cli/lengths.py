@@ -53,6 +53,7 @@ def _in_px(value: float, unit: str, px_per_m: float | None) -> float:
             "E131",
             "a wall in metres needs the scale of the image.",
             where="--wall",
-            cure="Say how many source pixels make a metre with --px-per-m, or give px.",
+            cure="Say how many source pixels make a metre with --px-per-m, name a length in the "
+            "image with --ruler x1,y1,x2,y2=1.0m, or give px.",
         )
     return value * metres * px_per_m

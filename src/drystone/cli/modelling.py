@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.cli.loads import is_range, load_case
-from drystone.cli.walls import GivenWall
 from drystone.errors import Notice, UsageError
+from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
 from drystone.statics.contacts.blocks import ImageModel, model_from_labels
 from drystone.statics.contacts.gaps import model_with_closed_gaps, settle_gaps

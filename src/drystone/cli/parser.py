@@ -6,8 +6,13 @@ from typing import NoReturn
 
 from drystone.cli.analyse_options import add_loads, add_model, add_scatter
 from drystone.cli.bench_options import add_bench
+from drystone.cli.craft_options import add_craft
+from drystone.cli.export_options import add_export
+from drystone.cli.markers_options import add_markers
 from drystone.cli.numbers import positive, share, whole_from
 from drystone.cli.reading import add_reading
+from drystone.cli.scale import add_scale
+from drystone.cli.segment_options import add_segment
 from drystone.errors import UsageError
 from drystone.planner.search_settings import AIMS
 
@@ -82,6 +87,7 @@ def _plan(command: argparse.ArgumentParser) -> None:
         help="begin the search with the wall of a plan of these stones (its file or folder)",
     )  # fmt: skip
     add_reading(command)
+    add_scale(command)
     _planning(command)
     _choosing(command)
     _writing(command)
@@ -91,6 +97,7 @@ def _demo(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "-o", "--output", default="drystone-demo", metavar="DIR", help="folder to write to"
     )
+    add_scale(command)
     _planning(command)
     _writing(command)
 
@@ -105,7 +112,6 @@ def _planning(command: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--scale", type=share, metavar="S", help="plan on images reduced by S, 0 to 1"
     )
-    group.add_argument("--px-per-m", type=positive, metavar="N", help="source px in a metre")
     group.add_argument(
         "--policy", metavar="NAME",
         help="who chooses the stones of a single pass: paper, random, lowest, scalarised, filter, "
@@ -300,6 +306,10 @@ _COMMANDS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "analyse": ("Limit analysis of a wall: load multipliers and mechanism.", _analyse),
     "measure": ("Measure filling, arrangement and lateral resistance of a wall.", _measure),
     "check": ("Re-derive a wall from stones and plan and verify every claim.", _check),
+    "export": ("Write a plan for robots, drawings and films: see --list.", add_export),
+    "craft": ("Look at a wall as a mason does: rules by name, stones and steps.", add_craft),
+    "markers": ("Print a sheet of markers that give photographs a scale.", add_markers),
+    "segment": ("Find stones in a photograph.", add_segment),
     "bench": ("Show how good the numbers are, and compare methods of choosing stones.", add_bench),
     "generate": ("Make a synthetic stone set.", _generate),
     "reproduce": ("Make tables and figures of the paper again, with a report.", _reproduce),

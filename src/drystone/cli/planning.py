@@ -22,6 +22,7 @@ from drystone.cli.progress import step_bar
 from drystone.cli.settings import search_seconds, settings_from
 from drystone.cli.timing import print_profile, profile_summary
 from drystone.errors import ExitCode, UsageError
+from drystone.io.photo_beside import place_photo
 from drystone.io.plan_json import read_plan
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
@@ -37,7 +38,10 @@ _EXIT = {
 
 
 def plan_and_write(
-    stones: StoneSet, wall: tuple[float, float], arguments: argparse.Namespace
+    stones: StoneSet,
+    wall: tuple[float, float],
+    arguments: argparse.Namespace,
+    photo: Path | None = None,
 ) -> ExitCode:
     """Plan a wall of given size in source px, write all files, print the summary."""
     folder = Path(arguments.output)
@@ -74,6 +78,7 @@ def plan_and_write(
         )
     for notice in result.notices:
         print(f"drystone: {notice}", file=sys.stderr)
+    place_photo(photo, folder)
     write_result(result, stones, folder)
     if arguments.pareto:
         write_choice(result, folder)

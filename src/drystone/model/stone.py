@@ -140,6 +140,9 @@ class Source:
     reading : tuple of (str, value) pairs
         Settings that the source was read with, where they are not the defaults: what reads it
         again needs them.
+    px_per_m : float or None
+        Source px in a metre, when the source says so itself: a rectified photograph, a drawing in
+        millimetres.
     """
 
     path: str = ""
@@ -148,6 +151,7 @@ class Source:
     height_px: int = 0
     files: tuple[str, ...] = ()
     reading: tuple[tuple[str, Any], ...] = ()
+    px_per_m: float | None = None
 
 
 @dataclass(frozen=True)

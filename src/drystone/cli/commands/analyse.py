@@ -14,8 +14,8 @@ from drystone.cli.card import Card, RangeCard
 from drystone.cli.loads import is_plain, is_range, load_case
 from drystone.cli.modelling import Modelled, modelled
 from drystone.cli.output import print_json, print_table
-from drystone.cli.walls import read_wall, unsupported
 from drystone.errors import ExitCode, Notice, UsageError
+from drystone.io.walls import read_wall, unsupported
 from drystone.statics.failing.mechanism import Failure, describe_mechanism
 from drystone.statics.flow.nonassociative import (
     NonassociativeResult,

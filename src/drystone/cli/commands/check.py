@@ -10,10 +10,10 @@ from drystone.cli.check_physics import physics_of
 from drystone.cli.checked import Checked
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_of
-from drystone.cli.walls import read_image_of
 from drystone.errors import ExitCode, PlanError
 from drystone.io.plan_json import read_plan
 from drystone.io.read_stones import read_stones
+from drystone.io.walls import read_image_of
 from drystone.model.plan import Plan
 from drystone.physics.table import load_engine
 from drystone.verify.check import check_plan

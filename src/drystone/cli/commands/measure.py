@@ -7,8 +7,8 @@ from pathlib import Path
 
 from drystone.cli.lengths import parse_wall
 from drystone.cli.output import number, prepare_files, print_json, print_table
-from drystone.cli.walls import GivenWall, read_wall, unsupported
 from drystone.errors import ExitCode, UsageError
+from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels

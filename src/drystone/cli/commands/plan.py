@@ -7,14 +7,19 @@ from pathlib import Path
 from drystone.cli.lengths import parse_wall
 from drystone.cli.planning import plan_and_write
 from drystone.cli.reading import reading_from
+from drystone.cli.scale import scale_with
 from drystone.errors import ExitCode
+from drystone.io.photo_beside import photo_of
 from drystone.io.read_stones import read_stones
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Plan a wall and write it."""
-    width, height = parse_wall(arguments.wall, arguments.px_per_m)
-    stones = read_stones(Path(arguments.stones), settings=reading_from(arguments))
+    parse_wall(arguments.wall, 1.0)  # what is no size is refused before anything is read
+    source = Path(arguments.stones)
+    stones = read_stones(source, settings=reading_from(arguments))
     for notice in stones.notices:
         print(f"drystone: {notice}", file=sys.stderr)
-    return plan_and_write(stones, (width, height), arguments)
+    arguments.px_per_m = scale_with(arguments.px_per_m, stones.source.px_per_m)
+    wall = parse_wall(arguments.wall, arguments.px_per_m)
+    return plan_and_write(stones, wall, arguments, photo_of(source))

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drystone.cli.walls import shows
+from drystone.io.walls import shows
 
 
 def plan(geometry: str) -> Any:

@@ -1,0 +1,79 @@
+"""`drystone export`."""
+
+import argparse
+import re
+import sys
+from importlib import import_module
+from pathlib import Path
+
+from drystone.assembly.read import read_assembly
+from drystone.cli.output import make_folder, prepare_files, print_json
+from drystone.errors import ExitCode, UsageError
+from drystone.export.formats import FORMATS
+from drystone.export.settings import ExportSettings
+
+_PROJECTOR = re.compile(r"(\d+)x(\d+)@(\d+(?:\.\d*)?)")
+
+
+def run(arguments: argparse.Namespace) -> ExitCode:
+    """Write a plan in every format that is asked for; nothing is written when one cannot be."""
+    if arguments.list:
+        for name, one in FORMATS.items():
+            print(f"{name}: {one.text}")
+        return ExitCode.DONE
+    if arguments.plan is None or not arguments.to:
+        raise UsageError(
+            "E138", "a plan and a format are needed.", where="export",
+            cure="drystone export out/plan.json --to svg pdf; --list names the formats.",
+        )  # fmt: skip
+    settings = settings_from(arguments)
+    path = Path(arguments.plan)
+    assembly = read_assembly(
+        path,
+        px_per_m=arguments.px_per_m,
+        thickness_m=arguments.thickness_m,
+        density_kg_m3=arguments.density_kg_m3,
+    )
+    asked = list(dict.fromkeys(arguments.to))
+    modules = {name: import_module(f"drystone.export.{FORMATS[name].module}") for name in asked}
+    for name in asked:
+        if FORMATS[name].metric:
+            assembly.require_scale(f"the format {name!r}")
+    folder = Path(arguments.output) if arguments.output else _beside(path)
+    names = [name for module in modules.values() for name in module.files(assembly, settings)]
+    make_folder(folder)
+    prepare_files([folder / name for name in names], overwrite=arguments.overwrite)
+    written: dict[str, list[str]] = {}
+    for name, module in modules.items():
+        written[name] = [str(file) for file in module.write(assembly, folder, settings)]
+    if any(FORMATS[name].metric for name in asked) and arguments.thickness_m is None:
+        said = f"no --thickness: parts are {assembly.thickness:.3g} m thick"
+        print(f"drystone: {said}", file=sys.stderr)
+    if arguments.json:
+        print_json({"files": written})
+    else:
+        for name, files in written.items():
+            more = f" and {len(files) - 1} more" if len(files) > 1 else ""
+            print(f"{name}: {files[0]}{more}")
+    return ExitCode.DONE
+
+
+def settings_from(arguments: argparse.Namespace) -> ExportSettings:
+    """Return what the options say; E138 for a projector that is none."""
+    found = _PROJECTOR.fullmatch(arguments.projector)
+    if found is None or not (int(found[1]) and int(found[2]) and float(found[3])):
+        raise UsageError(
+            "E138", f"{arguments.projector!r} is no projector.", where="--projector",
+            cure="Write 1920x1080@1000: its px, and how many of them are a metre on the wall.",
+        )  # fmt: skip
+    return ExportSettings(
+        paper_scale=arguments.paper_scale,
+        title=arguments.title,
+        projector_px=(int(found[1]), int(found[2])),
+        projector_px_per_m=float(found[3]),
+        seconds_per_step=arguments.seconds_per_step,
+    )
+
+
+def _beside(plan: Path) -> Path:
+    return plan if plan.is_dir() else plan.parent

@@ -1,0 +1,63 @@
+"""The scale of an image: how many of its px are a metre."""
+
+import argparse
+import math
+import re
+
+from drystone.cli.numbers import positive
+from drystone.errors import UsageError
+
+_NUMBER = r"\s*(-?\d+(?:\.\d*)?|-?\.\d+)\s*"
+_RULER = re.compile(rf"{_NUMBER},{_NUMBER},{_NUMBER},{_NUMBER}=\s*(\d+(?:\.\d*)?|\.\d+)(m|cm|mm)")
+_METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+
+
+def add_scale(command: argparse.ArgumentParser) -> None:
+    """Add the options that say how large a px is."""
+    group = command.add_argument_group("scale").add_mutually_exclusive_group()
+    group.add_argument("--px-per-m", type=positive, metavar="N", help="source px in a metre")
+    group.add_argument(
+        "--ruler", type=ruler, dest="px_per_m", metavar="X1,Y1,X2,Y2=LENGTH",
+        help="two points of the source image, px, and how far apart they are: 20,30,220,30=1.0m",
+    )  # fmt: skip
+
+
+def ruler(text: str) -> float:
+    """Read `--ruler`; return px in a metre.
+
+    Examples
+    --------
+    >>> ruler("0,0,300,400=2.5m")
+    200.0
+    """
+    found = _RULER.fullmatch(text)
+    if found is None:
+        message = f"{text!r} is not like 20,30,220,30=1.0m (or cm, mm)"
+        raise argparse.ArgumentTypeError(message)
+    x1, y1, x2, y2, length = (float(number) for number in found.groups()[:5])
+    px, metres = math.hypot(x2 - x1, y2 - y1), length * _METRES[found[6]]
+    if px == 0.0 or metres == 0.0:
+        raise argparse.ArgumentTypeError(f"{text!r} has no length")
+    return px / metres
+
+
+def scale_with(px_per_m: float | None, of_source: float | None) -> float | None:
+    """Return the scale that was given, or that of the source; refuse two that differ (E131).
+
+    Parameters
+    ----------
+    px_per_m : float or None
+        From the options.
+    of_source : float or None
+        What the source says itself (:attr:`drystone.model.stone.Source.px_per_m`).
+    """
+    if px_per_m is None or of_source is None:
+        return px_per_m or of_source
+    if abs(px_per_m / of_source - 1.0) > 0.01:
+        raise UsageError(
+            "E131",
+            f"the stones say {of_source:.6g} px a metre, the option {px_per_m:.6g}.",
+            where="--px-per-m",
+            cure="Leave the option out, or correct the scale beside the stones.",
+        )
+    return px_per_m

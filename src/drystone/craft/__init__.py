@@ -1,0 +1,1 @@
+"""A wall as a mason looks at it: rules that name stones and steps."""

@@ -1,0 +1,28 @@
+"""What the user may say about exports."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExportSettings:
+    """How drawings and films are made.
+
+    Parameters
+    ----------
+    paper_scale : float
+        The build sheet is drawn at 1 to this; the next usual scale where the wall does not fit.
+    title : str
+        In the title block; empty for the name of the stones.
+    projector_px : (int, int)
+        Width and height of a projector.
+    projector_px_per_m : float
+        Px of the projector in a metre on the wall.
+    seconds_per_step : float
+        Of films.
+    """
+
+    paper_scale: float = 10.0
+    title: str = ""
+    projector_px: tuple[int, int] = (1920, 1080)
+    projector_px_per_m: float = 1000.0
+    seconds_per_step: float = 0.6

@@ -1,0 +1,93 @@
+"""What stands beside the label image of a photograph: its scale, and where it came from."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from drystone.errors import InputError
+from drystone.io.atomic import write_atomically
+
+SCHEMA = "drystone-photo/1"
+SIDECAR = "stones.json"
+"""Name of the file beside `LABELS`."""
+LABELS = "stones.png"
+
+
+@dataclass(frozen=True)
+class PhotoSidecar:
+    """Beside a label image that was found in a photograph.
+
+    Parameters
+    ----------
+    width_px, height_px : int
+        Size of the label image, so that a scale does not go to another picture.
+    px_per_m : float or None
+        Px of the label image in a metre.
+    photo : str
+        Base name of the photograph in the frame of the label image, beside it; empty for none.
+    details : mapping
+        What else was found out: markers, residuals, doubts.  For people.
+    """
+
+    width_px: int
+    height_px: int
+    px_per_m: float | None = None
+    photo: str = ""
+    details: Mapping[str, Any] = field(default_factory=dict)
+
+
+def write_sidecar(sidecar: PhotoSidecar, folder: Path) -> Path:
+    """Write it into the folder of the label image."""
+    data = {
+        "schema": SCHEMA,
+        "labels": LABELS,
+        "width_px": sidecar.width_px,
+        "height_px": sidecar.height_px,
+        "px_per_m": sidecar.px_per_m,
+        "photo": sidecar.photo,
+        **sidecar.details,
+    }
+    path = folder / SIDECAR
+    write_atomically(path, (json.dumps(data, indent=1, ensure_ascii=False) + "\n").encode())
+    return path
+
+
+def read_sidecar(labels: Path) -> PhotoSidecar | None:
+    """Read what stands beside a label image; None when there is nothing of this kind.
+
+    Parameters
+    ----------
+    labels : Path
+        The label image.  Only one of the name `LABELS` has a sidecar.
+
+    Raises
+    ------
+    InputError
+        E112 when it is damaged.
+    """
+    path = labels.with_name(SIDECAR)
+    if labels.name != LABELS or not path.is_file():
+        return None
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        if not isinstance(data, dict) or data.get("schema") != SCHEMA:
+            return None
+        scale = data["px_per_m"]
+        if scale is not None and not 0.0 < float(scale) < math.inf:
+            raise ValueError(f"px_per_m is {scale}")
+        return PhotoSidecar(
+            int(data["width_px"]),
+            int(data["height_px"]),
+            None if scale is None else float(scale),
+            str(data.get("photo", "")),
+        )
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise InputError(
+            "E112",
+            f"what it says of the photograph cannot be used ({error}).",
+            where=str(path),
+            cure="Find the stones again with `drystone segment`, or remove the file.",
+        ) from error

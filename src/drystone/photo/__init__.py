@@ -1,0 +1,1 @@
+"""Stones in photographs: markers and scale, and which px are stone."""
