@@ -1,5 +1,6 @@
 """`drystone analyse`: the card, loads, contacts, gaps, scatter, failures."""
 
+import csv
 import hashlib
 import json
 from pathlib import Path
@@ -252,3 +253,57 @@ def test_a_failed_solve_is_saved_for_a_report(
     assert ran.code == 5
     assert "E140" in ran.err
     assert load_program(tmp_path / "out" / "drystone-failed.npz").block_ids == (1,)
+
+
+@pytest.fixture
+def drawn(tmp_path: Path) -> Path:
+    """Two stones on the ground, one on both, and one that floats 3 px above it."""
+    wall = np.zeros((43, 60), np.uint32)
+    wall[31:, :30], wall[31:, 30:], wall[19:31, 15:45], wall[4:16, 15:45] = 1, 2, 3, 4
+    path = tmp_path / "drawn.png"
+    write_labels(wall, path)
+    return path
+
+
+def test_what_touches_too_little_is_named_with_a_cure(drawn: Path, run: Run) -> None:
+    ran = run("analyse", drawn, "--px-per-m", "200", "--load", "tilt", "--mu", "0.6")
+    assert "W305 1 stone has fewer than two contact points: 4. The narrowest gap" in ran.err
+    assert "3 px (15 mm)" in ran.err
+    assert "--close-gaps 3px" in ran.err
+    assert "own weight" in ran.out
+    assert "does not stand" in ran.out
+    assert "0.30 m wide, 0.20 m high" in ran.out
+    closed = run("analyse", drawn, "--close-gaps", "3px")
+    assert "own weight           stands" in closed.out
+    assert "W305" not in closed.err
+
+
+def test_tables_have_every_contact_point_and_block(tmp_path: Path, run: Run) -> None:
+    wall = np.kron([[0, 3, 3, 0], [1, 1, 2, 2]], np.ones((10, 10), np.uint32)).astype(np.uint32)
+    write_labels(wall, tmp_path / "wall.png")
+    folder = tmp_path / "out"
+    report = run(
+        "analyse", tmp_path / "wall.png", "-o", folder, "--json", "--ruler", "0,0,40,0=2m"
+    ).json()
+    with (folder / "contacts.csv").open(encoding="utf-8") as file:
+        contacts = list(csv.DictReader(file))
+    with (folder / "blocks.csv").open(encoding="utf-8") as file:
+        blocks = {int(row["block"]): row for row in csv.DictReader(file)}
+    assert len(contacts) == report["contacts"]
+    assert float(blocks[3]["x_m"]) == pytest.approx(1.0)
+    assert float(blocks[3]["y_m"]) == pytest.approx(0.75)
+    assert float(blocks[3]["area_m2"]) == pytest.approx(0.5)
+    assert sum(float(row["share_of_weight"]) for row in blocks.values()) == pytest.approx(1)
+    # What the ground carries upwards is the whole weight, and sideways alpha times it.
+    ground = [row for row in contacts if row["other"] == "0"]
+    for side, sign in (("left", -1.0), ("right", 1.0)):
+        up = sum(float(row[f"normal_force_{side}"]) for row in ground)
+        along = sum(float(row[f"tangential_force_{side}"]) for row in ground)
+        assert up == pytest.approx(1)
+        assert along == pytest.approx(-sign * report[f"alpha_{side}"])
+    assert (folder / "friction.png").is_file()
+
+
+def test_a_scale_that_contradicts_the_plan_is_refused(drawn: Path, run: Run) -> None:
+    with_ruler = run("analyse", drawn, "--px-per-m", "200", "--ruler", "0,0,1,0=1m")
+    assert with_ruler.code == 2

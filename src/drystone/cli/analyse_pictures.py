@@ -4,12 +4,17 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
+from drystone.cli.analyse_tables import NAMES as TABLES
 from drystone.cli.modelling import Modelled
 from drystone.cli.output import prepare_files
+from drystone.statics.friction_curve import AtFriction, friction_curve
 from drystone.statics.loads import Loads
+from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus
 
 _DIRECTIONS = ("left", "right")
+
+FRICTION, REPORT = "friction.png", "report.html"
 
 
 def prepare(folder: Path, arguments: argparse.Namespace) -> list[Path]:
@@ -19,7 +24,11 @@ def prepare(folder: Path, arguments: argparse.Namespace) -> list[Path]:
         names += [f"{kind}_{direction}.png" for kind in ("mechanism", "forces")]
         names.append(f"mechanism_{direction}.gif")
     paths = [folder / name for name in names]
-    prepare_files(paths, overwrite=arguments.overwrite)
+    others = [folder / name for name in (*TABLES, FRICTION, REPORT)]
+    prepare_files([*paths, *others], overwrite=arguments.overwrite)
+    for path in others:
+        # One that an earlier run left would belong to another wall.
+        path.unlink(missing_ok=True)
     return paths
 
 
@@ -31,6 +40,16 @@ def draw(paths: list[Path], wall: Modelled, loads: Loads, ends: Sequence[LimitRe
     save(plot_contacts(wall.shapes, wall.model).figure, contacts)
     for end, files in zip(ends, (others[:3], others[3:]), strict=True):
         _draw_direction(files, wall, loads, end)
+
+
+def draw_friction(folder: Path, model: RigidBlockModel, loads: Loads) -> tuple[AtFriction, ...]:
+    """Analyse the wall at usual coefficients of friction, and draw that."""
+    from drystone.plotting import save  # noqa: PLC0415 - slow import
+    from drystone.plotting.friction import plot_friction  # noqa: PLC0415
+
+    curve = friction_curve(model, loads)
+    save(plot_friction(curve, model.mu).figure, folder / FRICTION)
+    return curve
 
 
 def _draw_direction(files: list[Path], wall: Modelled, loads: Loads, result: LimitResult) -> None:

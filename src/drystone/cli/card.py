@@ -60,6 +60,7 @@ class Card:
         both = self.resistance
         rows = [
             ("load case", self.load_case),
+            ("own weight", _standing(both)),
             ("load to the left", _alpha(both.left)),
             *self._further("left"),
             ("load to the right", _alpha(both.right)),
@@ -222,6 +223,13 @@ def _without(result: NonassociativeResult) -> str:
 
 def _lower_first(text: str) -> str:
     return text[:1].lower() + text[1:].rstrip(".")
+
+
+def _standing(both: LateralResistance) -> str:
+    """Say whether the dead load alone is carried, as far as that is known."""
+    if both.failed:
+        return "not known: no answer could be certified"
+    return "stands" if both.stable else "does not stand"
 
 
 def _least(both: LateralResistance) -> float | None:

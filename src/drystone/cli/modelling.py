@@ -159,7 +159,7 @@ def _reach(text: str) -> float | None:
     if text == "settle":
         return None
     try:
-        reach = float(text)
+        reach = float(text.removesuffix("px"))
     except ValueError:
         reach = math.nan
     if not 0 < reach < math.inf:

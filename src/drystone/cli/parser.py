@@ -226,6 +226,7 @@ def _wall_input(command: argparse.ArgumentParser) -> None:
 
 def _analyse(command: argparse.ArgumentParser) -> None:
     _wall_input(command)
+    add_scale(command)
     add_model(command)
     add_loads(command)
     add_scatter(command)

@@ -8,8 +8,10 @@ from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
-from drystone.cli.analyse_pictures import draw, prepare
+from drystone.cli.analyse_pictures import draw, draw_friction, prepare
 from drystone.cli.analyse_scatter import scatter_of, wants_scatter
+from drystone.cli.analyse_size import metres_per_unit, scarcity, size_words
+from drystone.cli.analyse_tables import write_tables
 from drystone.cli.card import Card, RangeCard
 from drystone.cli.loads import is_plain, is_range, load_case
 from drystone.cli.modelling import Modelled, modelled
@@ -37,9 +39,13 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if wants_scatter(arguments) and not is_plain(arguments):
         raise UsageError("E138", "the scatter is that of the tilting table; leave loads out.")
     path = Path(arguments.wall_path)
-    wall = modelled(read_wall(path), arguments)
-    for notice in wall.notices:
-        print(f"drystone: {notice}", file=sys.stderr)
+    given = read_wall(path)
+    wall = modelled(given, arguments)
+    per_unit_m = metres_per_unit(given, arguments)
+    for notice in (*wall.notices, scarcity(wall, per_unit_m)):
+        if notice is not None:
+            print(f"drystone: {notice}", file=sys.stderr)
+    wall = _with_size(wall, per_unit_m)
     folder = None if arguments.output is None else Path(arguments.output)
     pictures = [] if folder is None else prepare(folder, arguments)
     if is_range(arguments):
@@ -49,9 +55,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     loose = None if resistance.stable else unsupported(model)
     if loose is not None:
         print(f"drystone: {loose}", file=sys.stderr)
-    if pictures:
-        draw(pictures, wall, loads, (resistance.left, resistance.right))
     card = _card(wall, loads, resistance, arguments)
+    if folder is not None:
+        draw(pictures, wall, loads, (resistance.left, resistance.right))
+        write_tables(folder, model, (resistance.left, resistance.right), per_unit_m)
+        draw_friction(folder, model, loads)
     scatter = scatter_of(wall, arguments, folder) if wants_scatter(arguments) else None
     if arguments.json:
         report = card.report()
@@ -60,6 +68,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         title = f"{path}: {len(model.blocks)} blocks, {model.contact_count} contact points"
         print_table(title, card.rows() + ([] if scatter is None else scatter.rows()))
     return _keep_failure(model, loads, folder) if resistance.failed else ExitCode.DONE
+
+
+def _with_size(wall: Modelled, per_unit_m: float | None) -> Modelled:
+    words = size_words(wall.shapes, per_unit_m)
+    return wall if words is None else replace(wall, remarks={**wall.remarks, "size": words})
 
 
 def _card(

@@ -1,0 +1,63 @@
+"""The load multiplier over the coefficient of friction, which nobody knows exactly."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.loads import Loads
+from drystone.statics.model import RigidBlockModel
+
+USUAL = (0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8)
+"""From smooth and wet to rough and dry stone."""
+
+
+@dataclass(frozen=True)
+class AtFriction:
+    """What a wall carries at one coefficient of friction.
+
+    Parameters
+    ----------
+    mu : float
+        Of the interfaces that have none of their own.
+    alpha_left, alpha_right : float or None
+        Load multipliers; None unless there is an optimum, as for a wall that does not stand.
+    """
+
+    mu: float
+    alpha_left: float | None
+    alpha_right: float | None
+
+
+def friction_curve(
+    model: RigidBlockModel, loads: Loads | None = None, mus: Sequence[float] = USUAL
+) -> tuple[AtFriction, ...]:
+    """Analyse a wall at several coefficients of friction.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        The wall; interfaces with a coefficient of their own keep it.
+    loads : Loads, optional
+        Dead and live loads; the tilting table unless given.
+    mus : sequence of float
+        Coefficients, ascending.
+
+    Returns
+    -------
+    tuple of AtFriction
+        One a coefficient.
+
+    Examples
+    --------
+    A block 1 wide and 2 high slides below mu = .5 and rocks above.
+
+    >>> from drystone.statics.contacts.given import model_from_json
+    >>> block = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
+    >>> [round(at.alpha_right, 6) for at in friction_curve(block, mus=(0.4, 0.6))]
+    [0.4, 0.5]
+    """
+    found = []
+    for mu in mus:
+        both = lateral_resistance(replace(model, mu=mu), loads)
+        found.append(AtFriction(mu, both.left.alpha, both.right.alpha))
+    return tuple(found)

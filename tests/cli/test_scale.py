@@ -1,0 +1,33 @@
+"""How large a px is: options, and what the stones say themselves."""
+
+from argparse import ArgumentTypeError
+
+import pytest
+
+from drystone.cli.scale import ruler, scale_with
+from drystone.errors import UsageError
+
+
+@pytest.mark.parametrize(
+    ("text", "px_per_m"),
+    [("20,30,220,30=1.0m", 200.0), ("0,0,300,400=250cm", 200.0), ("-1,0, 4,12=26mm", 500.0)],
+)
+def test_a_ruler_is_a_length_between_two_points(text: str, px_per_m: float) -> None:
+    assert ruler(text) == pytest.approx(px_per_m)
+
+
+@pytest.mark.parametrize("text", ["", "1,2,3=1m", "1,2,3,4=1", "1,2,1,2=1m", "1,2,3,4=0m"])
+def test_what_is_no_ruler(text: str) -> None:
+    with pytest.raises(ArgumentTypeError):
+        ruler(text)
+
+
+def test_either_may_know_the_scale() -> None:
+    assert scale_with(None, None) is None
+    assert scale_with(200.0, None) == scale_with(None, 200.0) == 200.0
+    assert scale_with(200.0, 200.3) == 200.0
+
+
+def test_two_scales_that_differ_are_refused() -> None:
+    with pytest.raises(UsageError, match="E131"):
+        scale_with(200.0, 250.0)
