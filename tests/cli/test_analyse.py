@@ -307,3 +307,18 @@ def test_tables_have_every_contact_point_and_block(tmp_path: Path, run: Run) -> 
 def test_a_scale_that_contradicts_the_plan_is_refused(drawn: Path, run: Run) -> None:
     with_ruler = run("analyse", drawn, "--px-per-m", "200", "--ruler", "0,0,1,0=1m")
     assert with_ruler.code == 2
+
+
+def test_the_report_holds_the_card_and_needs_nothing_else(drawn: Path, run: Run) -> None:
+    folder = drawn.parent / "out"
+    asked = ("analyse", drawn, "--close-gaps", "3", "--px-per-m", "200", "-o", folder)
+    assert run(*asked).code == 0
+    report = (folder / "report.html").read_text(encoding="utf-8")
+    shown = json.loads(report.split('type="application/json"')[1].split(">", 1)[1].split("<")[0])
+    assert shown["unit"] == "m"
+    assert [part["id"] for part in shown["parts"]] == [1, 2, 3, 4]
+    assert dict(shown["inputs"])["own weight"] == "stands"
+    assert dict(shown["inputs"])["with mu = 0.4"].startswith("load multipliers: left 0.")
+    assert hashlib.sha256(drawn.read_bytes()).hexdigest() in dict(shown["inputs"])["cite"]
+    assert "://" not in report.replace("http://www.w3.org/", "")
+    assert "E129" in run(*asked).err

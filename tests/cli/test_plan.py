@@ -19,7 +19,7 @@ from tests.cli.conftest import WALL, Run
 
 FILES = {
     "plan.json", "settings.toml", "wall.png", "picture.png", "mechanism_left.png",
-    "mechanism_right.png", "report.html",
+    "mechanism_right.png", "report.html", "build.gif",
 }  # fmt: skip
 
 SUMMARY = [
@@ -63,7 +63,10 @@ def test_stdout_is_a_table_and_stderr_the_notices(
 
     monkeypatch.setattr(plan_command, "read_stones", read_with_notice)
     ran = run("plan", rubble, *WALL, "-o", tmp_path / "out")
-    assert ran.err == "drystone: W110 stone 1 may be two.\n"
+    notice, read, wrote = ran.err.splitlines()
+    assert notice == "drystone: W110 stone 1 may be two."
+    assert read.startswith("drystone: Read 8 stones (largest ")
+    assert wrote.startswith(f"drystone: wrote {tmp_path / 'out' / 'plan.json'} report.html ")
     lines = ran.out.splitlines()
     assert lines[0].startswith(("complete: ", "incomplete: "))
     names = [line.split()[0] for line in lines[1:]]
@@ -229,7 +232,8 @@ def test_stones_too_large(rubble: Path, tmp_path: Path, run: Run) -> None:
     ran = run("plan", rubble, *small, "--skip-too-large", "--json")
     assert ran.code in (0, 4)
     plan = read_plan(tmp_path / "out")
-    named = {int(text) for text in _listed(run("plan", rubble, *small, "--overwrite").err)}
+    said = run("plan", rubble, *small, "--overwrite").err.splitlines()[-1]
+    named = {int(text) for text in _listed(said)}
     assert named
     assert named <= set(plan.unused)
     assert ran.json()["unused"] == list(plan.unused)

@@ -238,11 +238,11 @@ def test_empty_and_missing_files(tmp_path):
         read_stones(tmp_path / "b.png")
 
 
-@pytest.mark.parametrize("content", [b'{"shapes": []}', b"PK\x03\x04...", b"hello"])
+@pytest.mark.parametrize("content", [b"%PDF-1.7", b"PK\x03\x04...", b"hello"])
 def test_unknown_formats_name_the_known_ones(tmp_path, content):
-    path = tmp_path / "stones.json"
+    path = tmp_path / "stones.any"
     path.write_bytes(content)
-    with pytest.raises(InputError, match=r"E107.*PNG, TIFF, BMP, GIF, NPY or a folder"):
+    with pytest.raises(InputError, match=r"E107.*PNG, TIFF, BMP, GIF, NPY, NPZ, JSON"):
         read_stones(path)
 
 

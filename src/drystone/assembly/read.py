@@ -1,11 +1,12 @@
 """From the files of a plan to its assembly."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
+import shapely
 
 from drystone.assembly.parts import DENSITY_KG_M3, Assembly, Part
 from drystone.errors import InputError, UsageError
@@ -101,6 +102,26 @@ def scaled(model: RigidBlockModel, factor: float) -> RigidBlockModel:
     )
 
 
+def outer_loop(loops: Sequence[Points]) -> Points:
+    """Return the outline of the largest piece of a stone's pixels, without its holes.
+
+    A pit that meets the outside at a corner of a pixel is a hole too: an outline with it would
+    touch itself, and bound no solid.
+
+    Parameters
+    ----------
+    loops : sequence of (n, 2) float array
+        Outlines and holes, not closed; holes are clockwise.
+    """
+    largest = max(loops, key=lambda loop: area_and_centroid(loop)[0])
+    polygon = shapely.Polygon(largest)
+    if polygon.is_valid:
+        return largest
+    pieces = shapely.get_parts(shapely.make_valid(polygon))
+    whole = shapely.Polygon(max(pieces, key=lambda piece: float(piece.area)).exterior)
+    return np.array(shapely.orient_polygons(whole).exterior.coords)[:-1]
+
+
 def _scale(plan: Plan, px_per_m: float | None, path: Path) -> float | None:
     if px_per_m is None or plan.px_per_m is None:
         return px_per_m or plan.px_per_m
@@ -122,8 +143,7 @@ def _shapes(wall: GivenWall, plan: Plan) -> tuple[Mapping[int, Points], RigidBlo
     assert wall.labels is not None  # noqa: S101 - a plan without blocks has an image
     per_px = 1.0 / (plan.working_scale * (plan.px_per_m or 1.0))
     loops = {region.id: region.loops for region in label_regions(wall.labels)}
-    outer = {i: max(found, key=lambda loop: area_and_centroid(loop)[0]) * per_px
-             for i, found in loops.items()}  # fmt: skip
+    outer = {i: outer_loop(found) * per_px for i, found in loops.items()}
     return outer, scaled(model_from_labels(wall.labels, wall.mu).model, per_px)
 
 

@@ -2,6 +2,8 @@
 
 import argparse
 
+from drystone.cli.numbers import finite, whole_from
+
 
 def add_craft(command: argparse.ArgumentParser) -> None:
     """Add what can be said about a look at a wall."""
@@ -11,3 +13,25 @@ def add_craft(command: argparse.ArgumentParser) -> None:
     command.add_argument("-o", "--output", metavar="DIR", help="draw the findings into a folder")
     command.add_argument("--overwrite", action="store_true", help="replace pictures")
     command.add_argument("--json", action="store_true", help="print as JSON")
+    command.add_argument(
+        "--cases", type=whole_from(0), default=3, metavar="N",
+        help="how many places a rule names in the table (default 3); JSON has all",
+    )  # fmt: skip
+    command.add_argument(
+        "--limit", action="append", type=_limit, default=[], metavar="RULE=GOOD:FAIR",
+        dest="limits",
+        help="last good and last fair number of a rule, such as laps=.1:.3; repeatable",
+    )  # fmt: skip
+    command.add_argument(
+        "--wedges", nargs="+", action="extend", type=whole_from(1), default=[], metavar="ID",
+        help="ids that are wedges, in a label image or block model",
+    )  # fmt: skip
+
+
+def _limit(text: str) -> tuple[str, float, float]:
+    """Read a rule and its two limits."""
+    name, equals, values = text.partition("=")
+    good, colon, fair = values.partition(":")
+    if not (equals and colon):
+        raise argparse.ArgumentTypeError(f"{text!r} is not RULE=GOOD:FAIR")
+    return name, finite(good), finite(fair)

@@ -36,6 +36,7 @@ def prepare_files(paths: Sequence[Path], *, overwrite: bool) -> None:
                 where=str(path),
                 cure="Choose another with -o, or add --overwrite to replace it.",
             )
+    for path in paths:
         make_folder(path.parent)
 
 

@@ -10,7 +10,7 @@ from drystone.cli.craft_options import add_craft
 from drystone.cli.export_options import add_export
 from drystone.cli.markers_options import add_markers
 from drystone.cli.numbers import positive, share, whole_from
-from drystone.cli.reading import add_reading
+from drystone.cli.reading import STONES, add_reading
 from drystone.cli.scale import add_scale
 from drystone.cli.segment_options import add_segment
 from drystone.errors import UsageError
@@ -72,7 +72,7 @@ class _Version(argparse.Action):
 
 
 def _plan(command: argparse.ArgumentParser) -> None:
-    command.add_argument("stones", metavar="STONES", help="label image, mask, folder of masks, NPY")
+    command.add_argument("stones", metavar="STONES", help=STONES)
     command.add_argument(
         "--wall", required=True, metavar="WxH",
         help="size in px of the source image, or 1.4mx0.4m with --px-per-m",
@@ -208,7 +208,7 @@ def _overwriting(command: argparse.ArgumentParser, text: str) -> None:
 
 
 def _stones(command: argparse.ArgumentParser) -> None:
-    command.add_argument("stones", metavar="STONES", help="label image, mask, folder of masks, NPY")
+    command.add_argument("stones", metavar="STONES", help=STONES)
     command.add_argument("-o", "--output", metavar="PICTURE.png", help="draw the stones")
     _overwriting(command, "replace the picture")
     add_reading(command)

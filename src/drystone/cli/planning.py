@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from drystone.cli.announce import read_line, say_written, scale_notice, write_film
 from drystone.cli.beginning import plan_to_begin_with
 from drystone.cli.choice import (
     choice_summary,
@@ -22,7 +23,7 @@ from drystone.cli.progress import step_bar
 from drystone.cli.settings import search_seconds, settings_from
 from drystone.cli.timing import print_profile, profile_summary
 from drystone.errors import ExitCode, UsageError
-from drystone.io.photo_beside import place_photo
+from drystone.io.photo_beside import photo_beside, place_photo
 from drystone.io.plan_json import read_plan
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
@@ -53,10 +54,7 @@ def plan_and_write(
     begin = plan_to_begin_with(stones, wall, arguments, settings)
     prepare_folder(folder, overwrite=arguments.overwrite or partial is not None)
     seconds = search_seconds(method_settings(arguments.method), len(stones), arguments)
-    said_aloud = not (arguments.quiet or arguments.json)
-    if seconds is not None and settings.search.budget > 1 and said_aloud:
-        said = f"looking for better walls for about {seconds:.0f} s (--time, --budget)"
-        print(f"drystone: {said}", file=sys.stderr)
+    _announce(stones, wall, arguments, seconds if settings.search.budget > 1 else None)
     with step_bar(
         len(stones), settings, seconds, quiet=arguments.quiet or arguments.json
     ) as callbacks:
@@ -80,6 +78,7 @@ def plan_and_write(
         print(f"drystone: {notice}", file=sys.stderr)
     place_photo(photo, folder)
     write_result(result, stones, folder)
+    write_film(result, folder)
     if arguments.pareto:
         write_choice(result, folder)
     else:
@@ -96,25 +95,39 @@ def plan_and_write(
         print_choice(result)
     if profile is not None:
         print_profile(profile)
+    if not arguments.quiet:
+        say_written(folder)
     return _EXIT[result.status]
+
+
+def _announce(
+    stones: StoneSet,
+    wall: tuple[float, float],
+    arguments: argparse.Namespace,
+    seconds: float | None,
+) -> None:
+    """Say what is planned with, and when its scale is odd."""
+    if not (arguments.quiet or arguments.json):
+        said = read_line(stones, wall, arguments.px_per_m, seconds)
+        more = "" if seconds is None else " (--time, --budget)"
+        print(f"drystone: {said}{more}", file=sys.stderr)
+    notice = scale_notice(stones, arguments.px_per_m)
+    if notice is not None:
+        print(f"drystone: {notice}", file=sys.stderr)
 
 
 def write_result(result: PlanResult, stones: StoneSet, folder: Path) -> None:
     """Write plan.json, settings.toml, wall.png, the pictures and the report."""
     write_built(result, folder)
     # Drawing loads matplotlib, which takes as long as a small plan.
-    from drystone.plotting import wall_outlines, write_pictures  # noqa: PLC0415
-    from drystone.report import write_report  # noqa: PLC0415
+    from drystone.plotting import write_pictures  # noqa: PLC0415
+    from drystone.report import view_of_result, write_report  # noqa: PLC0415
 
     write_pictures(folder, result.wall, result.clusters, resistance=result.resistance)
-    write_report(
-        folder / "report.html",
-        plan=result.plan,
-        pictures=folder,
-        notices=(*stones.notices, *result.notices),
-        timings={"planning": result.seconds},
-        outlines=wall_outlines(result.wall),
+    view = view_of_result(
+        result, photo=photo_beside(folder), notices=(*stones.notices, *result.notices)
     )
+    write_report(folder / "report.html", view, pictures=folder)
 
 
 def _partial_plan(

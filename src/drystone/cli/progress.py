@@ -9,6 +9,7 @@ from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
     Progress,
+    ProgressColumn,
     TaskID,
     TextColumn,
     TimeElapsedColumn,
@@ -22,27 +23,27 @@ from drystone.planner.settings import PlannerSettings
 class _Bar(Callbacks):
     def __init__(self, bar: Progress, stones: int, total: float, *, timed: bool) -> None:
         self._bar = bar
-        self._stones = bar.add_task("stones", total=stones)
+        self._stones = bar.add_task(f"stone 0/{stones}", total=stones)
+        self._count = stones
         self._total = total
         self._timed = timed
         self._walls: TaskID | None = None
         self._started = time.monotonic()
 
     def on_step(self, step: Step) -> None:
-        carried = step.action.resistance.value
-        text = "" if carried is None else f", LLC {carried:.2f}"
-        filling = 100 * step.build.wall.filling
-        self._bar.update(
-            self._stones, advance=1, description=f"stones, filling {filling:.0f} %{text}"
-        )
+        resistance = step.action.resistance
+        alphas = [a for a in (resistance.left.alpha, resistance.right.alpha) if a is not None]
+        text = f", alpha {min(alphas):.2f}" if alphas else ""
+        said = f"stone {step.number}/{self._count}, filling {100 * step.build.wall.filling:.0f} %"
+        self._bar.update(self._stones, completed=step.number, description=said + text)
 
     def on_walls(self, incumbent: Incumbent) -> None:
         if self._walls is None:
             self._walls = self._bar.add_task("walls", total=self._total)
+        # With the bar and the time that is left it fits into a line of 80 characters.
         text = (
             f"{incumbent.walls} walls; best: {incumbent.stones} stones, "
-            f"F_SF {incumbent.F_SF:.3f}, F_AV {incumbent.F_AV:.1f}, "
-            f"F_AH {incumbent.F_AH:.2f}, F_LR {incumbent.F_LR:.2f}"
+            f"F_SF {incumbent.F_SF:.3f}, F_LR {incumbent.F_LR:.2f}"
         )
         spent = time.monotonic() - self._started
         done = round(spent) if self._timed else incumbent.walls
@@ -88,19 +89,18 @@ def counting_bar(name: str, total: int, *, quiet: bool) -> Iterator[Callable[[in
     if quiet or not console.is_terminal:
         yield lambda _: None
         return
-    with _progress(console) as bar:
+    with _progress(console, MofNCompleteColumn(), TimeElapsedColumn()) as bar:
         task = bar.add_task(name, total=total)
         yield lambda done: bar.update(task, completed=done)
 
 
-def _progress(console: Console) -> Progress:
+def _progress(console: Console, *columns: ProgressColumn) -> Progress:
     return Progress(
         TextColumn("{task.description}"),
-        MofNCompleteColumn(),
-        BarColumn(bar_width=24),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        *columns,
+        BarColumn(bar_width=16),
+        TextColumn("eta"),
+        TimeRemainingColumn(compact=True),
         console=console,
         transient=True,
     )

@@ -2,10 +2,17 @@
 
 import argparse
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, get_args
 
-from drystone.io.read_settings import ReadSettings
+from drystone.io.read_settings import ReadSettings, Unit
 from drystone.model.settings import updated
+
+_NAMES = (
+    "background", "pieces", "holes", "mask", "min_area_px", "skip", "unit", "image", "px_per_m",
+)  # fmt: skip
+
+STONES = "label image, mask or NPY; folder of masks, or of `drystone segment`; labelme, COCO, SAM \
+or GeoJSON; DXF, SVG, OBJ, PLY, STL"
 
 
 def add_reading(command: argparse.ArgumentParser) -> None:
@@ -27,12 +34,19 @@ def add_reading(command: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--skip", type=int, action="append", metavar="ID", help="leave out a stone; may be repeated"
     )
+    group.add_argument(
+        "--unit", choices=get_args(Unit)[1:], help="of a drawing or mesh that does not say its own"
+    )
+    group.add_argument("--image", metavar="NAME", help="which image of a COCO file of several")
 
 
 def reading_from(arguments: argparse.Namespace) -> ReadSettings:
-    """Return the settings that the options ask for."""
-    names = ("background", "pieces", "holes", "mask", "min_area_px", "skip")
-    given = {name: getattr(arguments, name) for name in names}
+    """Return the settings that the options ask for.
+
+    ``--px-per-m`` is the resolution of drawings and meshes; pictures keep their own px, and for
+    them it is only the scale.
+    """
+    given = {name: getattr(arguments, name, None) for name in _NAMES}
     return _settings({name: value for name, value in given.items() if value is not None})
 
 

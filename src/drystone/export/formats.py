@@ -1,10 +1,33 @@
-"""The formats that there are; each is a module that is imported when it is asked for.
+"""The formats that there are; each is a module that is imported when it is asked for."""
 
-A module has ``files(assembly, settings) -> tuple[str, ...]``, the names that it will write, and
-``write(assembly, folder, settings) -> tuple[Path, ...]``, which writes them.
-"""
-
+from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Protocol, cast
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drystone.assembly.parts import Assembly
+    from drystone.export.settings import ExportSettings
+
+
+class Exporter(Protocol):
+    """What a module of a format has."""
+
+    def files(self, assembly: "Assembly", settings: "ExportSettings", /) -> tuple[str, ...]:
+        """Return the names that will be written, relative to a folder, ``/`` between folders.
+
+        Raises what would keep :meth:`write` from writing them, so that nothing is written when
+        one of several formats cannot be.
+        """
+        ...
+
+    def write(
+        self, assembly: "Assembly", folder: "Path", settings: "ExportSettings", /
+    ) -> "tuple[Path, ...]":
+        """Write them into a folder; return where they are."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -25,11 +48,17 @@ class Format:
     text: str
     metric: bool = False
 
+    def exporter(self) -> Exporter:
+        """Import the module."""
+        return cast(Exporter, import_module(f"drystone.export.{self.module}"))
 
-FORMATS: dict[str, Format] = {
+
+FORMATS: Mapping[str, Format] = {
     "poses": Format("poses", "poses.json: pick and place poses, grasps, masses", metric=True),
     "compas": Format("compas", "assembly.compas.json: COMPAS frames and meshes", metric=True),
-    "moveit": Format("moveit", "scene.yaml: collision objects for MoveIt, in order", metric=True),
+    "moveit": Format(
+        "moveit", "scene.yaml, wall.scene: collision objects for MoveIt, in order", metric=True
+    ),
     "urdf": Format("urdf", "urdf/: a URDF with mesh and inertia of every part", metric=True),
     "obj": Format("meshes", "wall.obj: extruded stones, named objects", metric=True),
     "glb": Format("meshes_glb", "wall.glb: the same as glTF", metric=True),

@@ -130,7 +130,8 @@ def _photo(census: Census, where: str) -> LabelImageError:
         "E102",
         f"this looks like a photo ({len(census.values):,} colours, few of them in plain areas).",
         where=where,
-        cure="Give a label image of it: one id a stone, 0 where there is none, as PNG or TIFF.",
+        cure="Find the stones in it with `drystone segment PHOTO`, or give a label image: one id "
+        "a stone, 0 where there is none, as PNG or TIFF.",
     )
 
 

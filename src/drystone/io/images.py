@@ -2,6 +2,7 @@
 
 import io
 import struct
+import tokenize
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,11 +15,14 @@ from PIL import BmpImagePlugin, GifImagePlugin, Image, JpegImagePlugin, PngImage
 from drystone.errors import InputError
 from drystone.io import tiff
 
-FORMATS = "PNG, TIFF, BMP, GIF, NPY or a folder of one-stone masks"
+FORMATS = (
+    "PNG, TIFF, BMP, GIF, NPY, NPZ, JSON of labelme, COCO or SAM, GeoJSON, DXF, SVG, OBJ, PLY, STL "
+    "or a folder of one-stone masks"
+)
 SUFFIXES = (".png", ".tif", ".tiff", ".bmp", ".gif", ".npy", ".jpg", ".jpeg")
 DAMAGE = (
     OSError, ValueError, TypeError, KeyError, IndexError, EOFError, SyntaxError, RuntimeError,
-    struct.error, zlib.error,
+    struct.error, zlib.error, tokenize.TokenError,
 )  # fmt: skip
 """What Pillow, tifffile and NumPy raise on damaged files."""
 

@@ -1,5 +1,6 @@
 """What the user may say about a picture of stones."""
 
+import math
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
 
@@ -7,6 +8,7 @@ from drystone.errors import UsageError
 
 Pieces = Literal["auto", "keep-largest", "split", "error"]
 Holes = Literal["fill", "keep"]
+Unit = Literal["", "px", "mm", "cm", "m", "in", "ft"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +34,14 @@ class ReadSettings:
         Ids of stones to leave out.
     max_image_mpx : float
         Largest picture that is decoded, in millions of pixels.
+    px_per_m : float or None
+        Px in a metre at which outlines of a drawing or mesh are drawn; None is such that the
+        longer side of the median stone has about 160 px.  Pictures, and annotations in px of an
+        image, keep their own px.
+    unit : {"px", "mm", "cm", "m", "in", "ft"}
+        Of a drawing or mesh that does not say its own; empty for none.
+    image : str
+        File name (or id) of the image in a COCO file of several.
 
     Examples
     --------
@@ -46,6 +56,9 @@ class ReadSettings:
     mask: bool | None = None
     skip: tuple[int, ...] = ()
     max_image_mpx: float = 200.0
+    px_per_m: float | None = None
+    unit: Unit = ""
+    image: str = ""
 
     def changed(self) -> tuple[tuple[str, Any], ...]:
         """Return the settings that are not the defaults, as names and JSON values."""
@@ -60,13 +73,18 @@ class ReadSettings:
         for name, value, choices in (
             ("pieces", self.pieces, get_args(Pieces)),
             ("holes", self.holes, get_args(Holes)),
+            ("unit", self.unit, get_args(Unit)),
         ):
             if value not in choices:
-                raise _usage(f"{name} is {value!r}", f"Use one of: {', '.join(choices)}.")
+                raise _usage(
+                    f"{name} is {value!r}", f"Use one of: {', '.join(filter(None, choices))}."
+                )
         if self.min_area_px is not None and self.min_area_px < 1:
             raise _usage(f"min_area_px is {self.min_area_px}", "Use 1 or more.")
         if not self.max_image_mpx > 0:
             raise _usage(f"max_image_mpx is {self.max_image_mpx}", "Use a positive number.")
+        if self.px_per_m is not None and not 0.0 < self.px_per_m < math.inf:
+            raise _usage(f"px_per_m is {self.px_per_m}", "Use a positive number.")
 
 
 def _usage(what: str, cure: str) -> UsageError:

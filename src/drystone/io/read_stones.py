@@ -1,8 +1,8 @@
-"""Read stones from label images, masks, folders of masks and arrays (paper §3.3; DESIGN 4.1)."""
+"""Read stones from pictures, arrays, and files of outlines (paper §3.3; DESIGN 4.1)."""
 
 import hashlib
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +18,16 @@ from drystone.io.checks import (
     check_not_resampled,
     check_not_uniform,
 )
+from drystone.io.found import Found, stone_set
 from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
 from drystone.io.labels import IdImage, to_ids
 from drystone.io.masks import BinaryMask, components, find_mask
-from drystone.io.necks import suspect_necks
-from drystone.io.patches import Patch, cut, filled, in_one_piece, smallest_stone_px, without_specks
+from drystone.io.outlines_in.detect import outline_reader
+from drystone.io.outlines_in.model import OutlineFile
+from drystone.io.outlines_in.npz import is_npz, read_npz
+from drystone.io.patches import Patch, cut
+from drystone.io.photo_sidecar import LABELS, SIDECAR, PhotoSidecar, read_sidecar
+from drystone.io.read_outlines import check_unit, stones_of
 from drystone.io.read_settings import ReadSettings
 from drystone.model.stone import Source, StoneSet
 
@@ -37,22 +42,25 @@ def read_stones(
     Parameters
     ----------
     source : str, Path or array
-        A label image, a picture of ids in colours, a binary mask (PNG, TIFF, BMP, GIF, NPY), a
-        folder of one-stone masks, or an array like one of these.
+        A label image, a picture of ids in colours, a binary mask (PNG, TIFF, BMP, GIF, NPY, NPZ),
+        a folder of one-stone masks, an array like one of these; annotations in JSON (labelme,
+        COCO, SAM, GeoJSON), a drawing (DXF, SVG), a mesh (OBJ, PLY, STL); or what `drystone
+        segment` wrote.  The content tells them apart.
     settings : ReadSettings, optional
-        Background, holes, pieces and the like.
+        Background, holes, pieces, units and the like.
 
     Returns
     -------
     StoneSet
         The stones under the picture's own ids; components of a mask are numbered in row order,
-        masks of a folder in natural file order from 1.  Its notices list every pixel that was
-        left out or added.
+        masks of a folder in natural file order from 1; outlines keep the numbers of their file
+        when all have different ones, else they are numbered in its order.  Its notices list every
+        pixel that was left out or added.  Its source has a scale when the file says so itself.
 
     Raises
     ------
     LabelImageError, InputError
-        E100 ... E111, see ``docs/errors.md``.
+        E100 ... E118, see ``docs/errors.md``.
 
     Examples
     --------
@@ -62,31 +70,51 @@ def read_stones(
     [(300, 375), (70000, 600)]
     """
     settings = settings or ReadSettings()
-    stones = _read(source, settings)
-    # A plan names its source; whoever reads that again must read it in the same way.
-    return replace(stones, source=replace(stones.source, reading=settings.changed()))
-
-
-def _read(source: str | Path | NDArray[Any], settings: ReadSettings) -> StoneSet:
     if not isinstance(source, str | Path):
         return _read_array(source, settings)
     path = Path(source)
     if path.is_dir():
-        return _read_folder(path, settings)
+        labels = path / LABELS
+        if read_sidecar(labels) is None:
+            return _read_folder(path, settings)
+        path = labels
     data = _bytes_of(path)
-    picture = decode(data, path.name, _max_px(settings))
+    reader = outline_reader(data, path.name)
+    if reader is not None:
+        return stones_of(reader, data, path.name, settings)
+    sidecar = read_sidecar(path)
+    if is_npz(data):
+        arrays = read_npz(data, path.name, _max_px(settings))
+        if isinstance(arrays, OutlineFile):
+            return stones_of(lambda *_: arrays, data, path.name, settings)
+        picture = Picture(arrays)
+    else:
+        picture = decode(data, path.name, _max_px(settings))
+    scale = None if sidecar is None else _scale_beside(sidecar, picture, path)
     digest = hashlib.sha256(data).hexdigest()
     del data  # as large as the picture when it is not compressed
-    return _read_picture(picture, Source(path.name, digest), settings)
+    return _read_picture(picture, Source(path.name, digest, px_per_m=scale), settings)
 
 
-@dataclass(frozen=True, eq=False)
-class _Found:
-    """Patches of a source and what was noticed on the way."""
+def _scale_beside(sidecar: PhotoSidecar, picture: Picture, path: Path) -> float | None:
+    """Return the scale of a photograph's label image; E117 when it is of another picture."""
+    height, width = picture.values.shape[:2]
+    if (width, height) != (sidecar.width_px, sidecar.height_px):
+        raise InputError(
+            "E117",
+            f"it has {width} x {height} px, but {SIDECAR} beside it is of one of "
+            f"{sidecar.width_px} x {sidecar.height_px}.",
+            where=str(path),
+            cure=f"Find the stones again with `drystone segment`, or remove {SIDECAR}, and give "
+            "the scale of the new picture.",
+        )
+    return sidecar.px_per_m
 
-    patches: list[Patch]
-    notices: list[Notice]
-    where: str
+
+def _of_px(settings: ReadSettings, where: str) -> tuple[tuple[str, Any], ...]:
+    """Return what a plan must keep of the settings with which a picture was read."""
+    check_unit(None, settings, where)
+    return replace(settings, px_per_m=None).changed()
 
 
 def _max_px(settings: ReadSettings) -> int:
@@ -128,12 +156,14 @@ def _read_picture(picture: Picture, source: Source, settings: ReadSettings) -> S
     binary = _check(image, census, picture.lossy, settings, where)
     if binary is None:
         ids = _stone_ids(census.values, image.background, where)
-        found = _Found(cut(census.index, ids), list(image.notices), where)
+        found = Found(cut(census.index, ids), list(image.notices), where)
     else:
         labels, count = components(binary.mask)
         patches = cut(labels, np.arange(1, count + 1))
-        found = _Found(patches, [_mask_notice(binary, count)], where)
-    return _stone_set(found, Source(source.path, source.sha256, width, height), settings)
+        found = Found(patches, [_mask_notice(binary, count)], where)
+    reading = _of_px(settings, where)
+    source = replace(source, width_px=width, height_px=height, reading=reading)
+    return stone_set(found, source, settings)
 
 
 def _check(
@@ -179,30 +209,6 @@ def _stone_ids(values: NDArray[np.int64], background: int, where: str) -> NDArra
     return np.where(values == background, 0, values)
 
 
-def _stone_set(found: _Found, source: Source, settings: ReadSettings) -> StoneSet:
-    """Put patches in order and make stones of them; every decision becomes a notice."""
-    known = {patch.id for patch in found.patches}
-    unknown = sorted(set(settings.skip) - known)
-    notices = list(found.notices)
-    if unknown:
-        listed = ", ".join(str(stone_id) for stone_id in unknown)
-        notices.append(Notice("W116", f"no stone {listed} to skip.", "Check the ids."))
-    patches = [patch for patch in found.patches if patch.id not in settings.skip]
-    limit_px = smallest_stone_px(patches, settings)
-    patches, specks = without_specks(patches, limit_px)
-    patches, holes = filled(patches, settings)
-    patches, pieces = in_one_piece(patches, settings, found.where)
-    patches, bits = without_specks(patches, limit_px)
-    notices += [*specks, *holes, *pieces, *bits, *suspect_necks(patches)]
-    if not patches:
-        why = " ".join(notice.message for notice in specks) or "all were skipped."
-        raise LabelImageError(
-            "E104", f"no stones are left: {why}", where=found.where,
-            cure="Check the picture, min_area_px and skip.",
-        )  # fmt: skip
-    return StoneSet(tuple(patch.to_stone() for patch in patches), source, tuple(notices))
-
-
 def _read_folder(folder: Path, settings: ReadSettings) -> StoneSet:
     """Read one-stone masks, numbered from 1 in natural file order."""
     entries = [entry for entry in folder.iterdir() if not entry.name.startswith(".")]
@@ -230,8 +236,9 @@ def _read_folder(folder: Path, settings: ReadSettings) -> StoneSet:
         ]
     height, width = (max(size[axis] for size in sizes) for axis in (0, 1))
     names = tuple(file.name for file in files)
-    source = Source(folder.name, digest.hexdigest(), width, height, names)
-    return _stone_set(_Found(patches, notices, folder.name), source, settings)
+    reading = _of_px(settings, folder.name)
+    source = Source(folder.name, digest.hexdigest(), width, height, names, reading)
+    return stone_set(Found(patches, notices, folder.name), source, settings)
 
 
 def _natural_order(path: Path) -> tuple[list[str | int], str]:

@@ -14,6 +14,7 @@ from PIL import Image
 
 from drystone.model.wall import Labels
 from drystone.plotting.canvas import block_path
+from drystone.plotting.gif import gif_bytes, palette_of
 from drystone.plotting.mechanism import COLOURS, Motion, motion_of, plot_mechanism
 from drystone.plotting.outlines import Loop
 from drystone.statics.model import Direction
@@ -99,17 +100,7 @@ def save_mechanism_animation(
     if Path(path).suffix.lower() != ".gif":
         raise ValueError(f"{path}: animations end in .gif")
     pictures = mechanism_frames(wall, mechanism, direction, alpha, frames=frames, **options)
-    first, *others = _with_few_colours(pictures)
-    first.save(
-        path,
-        format="GIF",
-        save_all=True,
-        append_images=others,
-        duration=FRAME_MS,
-        loop=0,
-        disposal=1,
-        optimize=False,
-    )
+    Path(path).write_bytes(gif_bytes(pictures, _few_colours(), FRAME_MS))
 
 
 def _move(ax: Axes, motion: Motion, amplitude: float) -> None:
@@ -130,13 +121,7 @@ def _picture(figure: Figure, box: Bbox, dpi: float) -> Image.Image:
         return Image.open(file).convert("RGB")
 
 
-def _with_few_colours(pictures: tuple[Image.Image, ...]) -> list[Image.Image]:
-    """Reduce the pictures to greys and the colours of the displacements.
-
-    The same few for every GIF: colours chosen from the picture would tint the black lines.
-    """
+def _few_colours() -> Image.Image:
+    """Return greys and the colours of the displacements: the same few for every GIF."""
     greys = np.linspace(0.0, 1.0, GREY_COUNT)[:, None].repeat(3, axis=1)
-    colours = COLOURS(np.linspace(0.0, 1.0, COLOUR_COUNT))[:, :3]
-    palette = Image.new("P", (1, 1))
-    palette.putpalette(np.rint(255 * np.vstack((greys, colours))).astype(np.uint8).tobytes())
-    return [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
+    return palette_of(np.vstack((greys, COLOURS(np.linspace(0.0, 1.0, COLOUR_COUNT))[:, :3])))

@@ -8,7 +8,7 @@ from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
-from drystone.cli.analyse_pictures import draw, draw_friction, prepare
+from drystone.cli.analyse_pictures import REPORT, draw, draw_friction, prepare
 from drystone.cli.analyse_scatter import scatter_of, wants_scatter
 from drystone.cli.analyse_size import metres_per_unit, scarcity, size_words
 from drystone.cli.analyse_tables import write_tables
@@ -42,9 +42,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     given = read_wall(path)
     wall = modelled(given, arguments)
     per_unit_m = metres_per_unit(given, arguments)
-    for notice in (*wall.notices, scarcity(wall, per_unit_m)):
-        if notice is not None:
-            print(f"drystone: {notice}", file=sys.stderr)
+    few = scarcity(wall, per_unit_m)
+    if few is not None:
+        wall = replace(wall, notices=(*wall.notices, few))
+    for notice in wall.notices:
+        print(f"drystone: {notice}", file=sys.stderr)
     wall = _with_size(wall, per_unit_m)
     folder = None if arguments.output is None else Path(arguments.output)
     pictures = [] if folder is None else prepare(folder, arguments)
@@ -57,9 +59,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         print(f"drystone: {loose}", file=sys.stderr)
     card = _card(wall, loads, resistance, arguments)
     if folder is not None:
-        draw(pictures, wall, loads, (resistance.left, resistance.right))
-        write_tables(folder, model, (resistance.left, resistance.right), per_unit_m)
-        draw_friction(folder, model, loads)
+        _write_all(folder, pictures, wall, card, loads, per_unit_m)
     scatter = scatter_of(wall, arguments, folder) if wants_scatter(arguments) else None
     if arguments.json:
         report = card.report()
@@ -68,6 +68,24 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         title = f"{path}: {len(model.blocks)} blocks, {model.contact_count} contact points"
         print_table(title, card.rows() + ([] if scatter is None else scatter.rows()))
     return _keep_failure(model, loads, folder) if resistance.failed else ExitCode.DONE
+
+
+def _write_all(
+    folder: Path,
+    pictures: list[Path],
+    wall: Modelled,
+    card: Card,
+    loads: Loads,
+    per_unit_m: float | None,
+) -> None:
+    """Write pictures, tables and the report."""
+    from drystone.cli.analyse_report import write_analysis  # noqa: PLC0415 - slow import
+
+    ends = (card.resistance.left, card.resistance.right)
+    draw(pictures, wall, loads, ends)
+    write_tables(folder, card.model, ends, per_unit_m)
+    curve = draw_friction(folder, card.model, loads)
+    write_analysis(folder / REPORT, wall, card, per_unit_m, curve)
 
 
 def _with_size(wall: Modelled, per_unit_m: float | None) -> Modelled:

@@ -3,7 +3,6 @@
 import argparse
 import re
 import sys
-from importlib import import_module
 from pathlib import Path
 
 from drystone.assembly.read import read_assembly
@@ -35,7 +34,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         density_kg_m3=arguments.density_kg_m3,
     )
     asked = list(dict.fromkeys(arguments.to))
-    modules = {name: import_module(f"drystone.export.{FORMATS[name].module}") for name in asked}
+    modules = {name: FORMATS[name].exporter() for name in asked}
     for name in asked:
         if FORMATS[name].metric:
             assembly.require_scale(f"the format {name!r}")

@@ -34,6 +34,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
                 "sha256": stones.source.sha256,
                 "width_px": stones.source.width_px,
                 "height_px": stones.source.height_px,
+                "px_per_m": stones.source.px_per_m,
                 "total_area_px": stones.total_area_px,
                 "median_area_px": statistics.median(areas),
                 "clusters": {str(stone.id): clusters[stone.id] for stone in stones},
@@ -46,6 +47,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         f"{stones.source.path}: {len(stones)} stones",
         [
             ("image", f"{stones.source.width_px} x {stones.source.height_px} px"),
+            *([("scale", f"{scale:g} px a metre")] if (scale := stones.source.px_per_m) else []),
             ("total area", f"{stones.total_area_px} px"),
             ("median stone", f"{median[0]:g} x {median[1]:g} px, {statistics.median(areas):g} px²"),
             (

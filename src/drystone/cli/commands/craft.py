@@ -1,0 +1,104 @@
+"""`drystone craft`: masons' rules as checks that name stones and steps."""
+
+import argparse
+from pathlib import Path
+
+from drystone.cli.output import prepare_files, print_json
+from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look
+from drystone.craft.look import UNSEEN
+from drystone.errors import ExitCode
+from drystone.io.walls import GivenWall, read_wall
+from drystone.statics.contacts.given import model_from_json, polygons_from_json
+
+SHEET = "craft.png"
+SHEET_DPI, SINGLE_DPI = 130, 150
+
+
+def run(arguments: argparse.Namespace) -> ExitCode:
+    """Print what each rule finds; a broken rule is a result, not an error."""
+    wall = read_wall(Path(arguments.wall_path))
+    masonry = masonry_of(wall, frozenset(arguments.wedges))
+    limits = {name: Limit(good, fair) for name, good, fair in arguments.limits}
+    report = look(masonry, limits)
+    if arguments.output is not None:
+        _draw(report, Path(arguments.output), overwrite=arguments.overwrite)
+    if arguments.json:
+        print_json(report.report())
+    else:
+        _print(report, arguments)
+    return ExitCode.DONE
+
+
+def masonry_of(wall: GivenWall, wedge_ids: frozenset[int] = frozenset()) -> Masonry:
+    """Return a wall from a file as the rules look at it.
+
+    Parameters
+    ----------
+    wall : GivenWall
+        Label image, plan or block model.
+    wedge_ids : frozenset of int
+        Ids that are wedges besides those of a plan.
+
+    Raises
+    ------
+    InputError
+        E191 for the id of a wedge that is not in the wall.
+    """
+    wedges = wall.wedge_ids | wedge_ids
+    steps = _steps(wall)
+    if wall.blocks is not None:
+        outlines = polygons_from_json(wall.blocks)
+        return Masonry(outlines, model_from_json(wall.blocks), wedges, steps)
+    assert wall.labels is not None  # noqa: S101 - a wall without blocks has an image
+    return Masonry.from_labels(wall.labels, wedges, steps=steps, mu=wall.mu)
+
+
+def _steps(wall: GivenWall) -> dict[int, int]:
+    if wall.plan is None:
+        return {}
+    stones = {step.stone: step.step for step in wall.plan.stone_steps}
+    return stones | {step.id: step.step for step in wall.plan.wedge_steps}
+
+
+def _print(report: CraftReport, arguments: argparse.Namespace) -> None:
+    masonry = report.masonry
+    wedges = len(set(masonry.wedge_ids))
+    also = f", {wedges} wedges" if wedges else ""
+    print(f"{arguments.wall_path}: {len(masonry.stones)} stones{also}")
+    width = max(len(rule.title) for rule in RULES.values())
+    for finding in report.findings.values():
+        rule = finding.rule
+        print(f"{rule.title:<{width}}  {finding.verdict:<10}  {_number(finding)}")
+        if finding.note and finding.number is not None:
+            print(f"{'':<{width}}    {finding.note}")
+        for case in finding.cases[: arguments.cases]:
+            named = ", ".join(masonry.name(stone) for stone in case.stones)
+            print(f"{'':<{width}}    {named}: {case.words}")
+        left = len(finding.cases) - arguments.cases
+        if arguments.cases and left > 0:
+            print(f"{'':<{width}}    and {left} more")
+    print(UNSEEN)
+
+
+def _number(finding: Finding) -> str:
+    """Write the number of a rule with its limits."""
+    if finding.number is None:
+        return finding.note
+    rule, limit = finding.rule, finding.limit
+    sign = ">=" if rule.higher_is_better else "<="
+    unit = f" {rule.unit}" if rule.unit not in ("", "°") else rule.unit
+    return (
+        f"{finding.number:.3g}{unit} (good {sign} {limit.good:g}, fair {sign} {limit.fair:g}): "
+        f"{rule.meaning}"
+    )
+
+
+def _draw(report: CraftReport, folder: Path, *, overwrite: bool) -> None:
+    from drystone.plotting.craft import plot_craft, plot_finding  # noqa: PLC0415 - slow import
+    from drystone.plotting.files import save  # noqa: PLC0415
+
+    single = {name: folder / f"{name}.png" for name in report.findings}
+    prepare_files([folder / SHEET, *single.values()], overwrite=overwrite)
+    save(plot_craft(report), folder / SHEET, dpi=SHEET_DPI)
+    for name, path in single.items():
+        save(plot_finding(report, name).figure, path, dpi=SINGLE_DPI)

@@ -1,0 +1,189 @@
+"""`drystone segment`: stones in a photograph."""
+
+import argparse
+import io
+import statistics
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from drystone.cli.output import prepare_folder, print_json, print_table
+from drystone.errors import ExitCode, Notice, UsageError
+from drystone.io.atomic import write_atomically
+from drystone.io.photo_file import Photo, read_photo
+from drystone.io.photo_sidecar import LABELS, PhotoSidecar, write_sidecar
+from drystone.photo.layout import MarkerLayout, parse_layout, parse_size_m
+from drystone.photo.segment_doubts import Doubt, StoneSize, doubts_of, notices_of, sizes_of
+from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
+from drystone.photo.segment_settings import SegmentSettings
+
+PHOTO, PREVIEW = "photo.jpg", "preview.png"
+QUALITY = 90
+
+
+def run(arguments: argparse.Namespace) -> ExitCode:
+    """Find the stones of a photograph, write them, and say what is in doubt."""
+    scale = scale_from(arguments)
+    settings = SegmentSettings(ground=arguments.ground, split=arguments.split)
+    photo = read_photo(Path(arguments.photo))
+    unit = None if arguments.min_area is None else arguments.min_area[1]
+    if unit == "cm2" and scale is None:
+        raise UsageError(
+            "E131", "an area in cm2 needs the scale of the photograph.", where="--min-area",
+            cure="Give it with --aruco, --px-per-m or --ruler, or give the area in px.",
+        )  # fmt: skip
+    folder = prepare_folder(Path(arguments.output), overwrite=arguments.overwrite)
+    result = segment_photo(
+        photo.values, scale, settings, arguments.min_area, max_px=round(arguments.mpx * 1e6)
+    )
+    doubts = doubts_of(result.found, result.px_per_m, settings)
+    notices = (*photo.notices, *result.notices, *notices_of(result.found, doubts))
+    _write(folder, photo, result, doubts)
+    sizes = sizes_of(result.found.labels)
+    if arguments.json:
+        print_json(_as_json(photo, result, sizes, doubts, notices))
+    else:
+        _print(folder, result, sizes, notices)
+    if result.px_per_m is None:
+        said = "no scale: sizes are px. --aruco, --px-per-m or --ruler give one"
+        print(f"drystone: {said}", file=sys.stderr)
+    return ExitCode.DONE
+
+
+def scale_from(arguments: argparse.Namespace) -> MarkerLayout | float | None:
+    """Return the markers or the px in a metre that are given; E138 for both."""
+    if arguments.aruco is None:
+        for name in ("marker_ids", "check_line"):
+            if getattr(arguments, name) is not None:
+                raise UsageError(
+                    "E138", "is about markers, and there are none.",
+                    where=f"--{name.replace('_', '-')}", cure="Add --aruco, or leave it out.",
+                )  # fmt: skip
+        scale: float | None = arguments.px_per_m
+        return scale
+    if arguments.px_per_m is not None:
+        raise UsageError(
+            "E138", "the scale is given twice.", where="--aruco",
+            cure="Give markers, or --px-per-m or --ruler.",
+        )  # fmt: skip
+    printed = 1.0 if arguments.check_line is None else parse_size_m(arguments.check_line) / 0.1
+    ids = None if arguments.marker_ids is None else tuple(arguments.marker_ids)
+    return parse_layout(arguments.aruco, ids, printed)
+
+
+def _write(folder: Path, photo: Photo, result: SegmentedPhoto, doubts: tuple[Doubt, ...]) -> None:
+    """Write stones.png, photo.jpg, stones.json and preview.png."""
+    from drystone.plotting.files import save  # noqa: PLC0415 - matplotlib is slow
+    from drystone.plotting.photo import plot_photo  # noqa: PLC0415
+
+    _save_image(Image.fromarray(result.found.labels), folder / LABELS, "PNG")
+    _save_image(Image.fromarray(result.picture), folder / PHOTO, "JPEG", quality=QUALITY)
+    height, width = result.found.labels.shape
+    write_sidecar(
+        PhotoSidecar(width, height, result.px_per_m, PHOTO, _details(photo, result, doubts)), folder
+    )
+    axes = plot_photo(result.picture, result.found.labels, _marked(doubts), result.px_per_m)
+    save(axes.figure, folder / PREVIEW, dpi=150)
+
+
+def _save_image(image: Image.Image, path: Path, kind: str, **settings: Any) -> None:
+    file = io.BytesIO()
+    image.save(file, kind, **settings)
+    write_atomically(path, file.getvalue())
+
+
+def _marked(doubts: tuple[Doubt, ...]) -> tuple[tuple[int, ...], tuple[tuple[float, float], ...]]:
+    """Return doubtful stones, and the places of necks."""
+    stones = sorted({stone for doubt in doubts for stone in doubt.stones})
+    return tuple(stones), tuple(doubt.at_px for doubt in doubts if doubt.code == "W175")
+
+
+def _details(photo: Photo, result: SegmentedPhoto, doubts: tuple[Doubt, ...]) -> dict[str, Any]:
+    view, found = result.view, result.found
+    return {
+        "source": {"name": photo.name, "sha256": photo.sha256,
+                   "width_px": photo.size_px[0], "height_px": photo.size_px[1]},
+        "from_photo": np.asarray(result.from_photo).tolist(),
+        "markers": None if view is None or not view.ids else {
+            "ids": list(view.ids), "residual_mm": view.residual_mm,
+            "residual_percent": view.residual_percent,
+        },
+        "ground": {
+            "lab": [round(float(part), 1) for part in found.ground.colour],
+            "share": round(found.ground.share, 3), "uneven": round(found.ground.uneven, 3),
+            "shadow": round(1.0 - found.shadow_level, 3),
+        },
+        "stones_found": found.count,
+        "doubts": [_doubt_json(doubt) for doubt in doubts],
+    }  # fmt: skip
+
+
+def _doubt_json(doubt: Doubt) -> dict[str, Any]:
+    x, y = (round(part, 1) for part in doubt.at_px)
+    return {"code": doubt.code, "stones": list(doubt.stones), "x_px": x, "y_px": y,
+            "text": doubt.text}  # fmt: skip
+
+
+def _as_json(
+    photo: Photo,
+    result: SegmentedPhoto,
+    sizes: tuple[StoneSize, ...],
+    doubts: tuple[Doubt, ...],
+    notices: tuple[Notice, ...],
+) -> dict[str, Any]:
+    metres = None if result.px_per_m is None else 1.0 / result.px_per_m
+    stones = [
+        {
+            "id": size.id, "x_px": round(size.at_px[0], 1), "y_px": round(size.at_px[1], 1),
+            "area_px": size.area_px, "length_px": round(size.length_px, 1),
+            "width_px": round(size.width_px, 1),
+            "length_m": None if metres is None else round(size.length_px * metres, 4),
+            "width_m": None if metres is None else round(size.width_px * metres, 4),
+        }
+        for size in sizes
+    ]  # fmt: skip
+    return {
+        "stones": len(sizes),
+        "px_per_m": result.px_per_m,
+        **_details(photo, result, doubts),
+        "sizes": stones,
+        "notices": [str(notice) for notice in notices],
+    }
+
+
+def _print(
+    folder: Path,
+    result: SegmentedPhoto,
+    sizes: tuple[StoneSize, ...],
+    notices: tuple[Notice, ...],
+) -> None:
+    per_px, unit = (1.0, "px") if result.px_per_m is None else (100.0 / result.px_per_m, "cm")
+    digits = 0 if result.px_per_m is None else 1
+
+    def size(length_px: float, width_px: float) -> str:
+        return f"{length_px * per_px:.{digits}f} x {width_px * per_px:.{digits}f} {unit}"
+
+    ordered = sorted(sizes, key=lambda one: one.area_px)
+    height, width = result.found.labels.shape
+    middle = (
+        statistics.median(one.length_px for one in sizes),
+        statistics.median(one.width_px for one in sizes),
+    )
+    rows = [
+        ("picture", f"{width} x {height} px"),
+        ("scale", "not known" if result.px_per_m is None else f"{result.px_per_m:.1f} px a metre"),
+        ("median stone", size(*middle)),
+        *(
+            (name, f"{one.id}: {size(one.length_px, one.width_px)}")
+            for name, one in (("smallest stone", ordered[0]), ("largest stone", ordered[-1]))
+        ),
+    ]
+    if result.view is not None and result.view.ids:
+        said = f"{len(result.view.ids)}, residual {result.view.residual_mm:.2f} mm"
+        rows.insert(2, ("markers", said))
+    rows += [("notice", str(notice)) for notice in notices]
+    rows.append(("to check", str(folder / PREVIEW)))
+    print_table(f"{folder / LABELS}: {len(sizes)} stones", rows)

@@ -1,0 +1,42 @@
+"""Patches of a source put in order, as stones."""
+
+from dataclasses import dataclass
+
+from drystone.errors import LabelImageError, Notice
+from drystone.io.necks import suspect_necks
+from drystone.io.patches import Patch, filled, in_one_piece, smallest_stone_px, without_specks
+from drystone.io.read_settings import ReadSettings
+from drystone.model.stone import Source, StoneSet
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Patches of a source and what was noticed on the way."""
+
+    patches: list[Patch]
+    notices: list[Notice]
+    where: str
+
+
+def stone_set(found: Found, source: Source, settings: ReadSettings) -> StoneSet:
+    """Put patches in order and make stones of them; every decision becomes a notice."""
+    known = {patch.id for patch in found.patches}
+    unknown = sorted(set(settings.skip) - known)
+    notices = list(found.notices)
+    if unknown:
+        listed = ", ".join(str(stone_id) for stone_id in unknown)
+        notices.append(Notice("W116", f"no stone {listed} to skip.", "Check the ids."))
+    patches = [patch for patch in found.patches if patch.id not in settings.skip]
+    limit_px = smallest_stone_px(patches, settings)
+    patches, specks = without_specks(patches, limit_px)
+    patches, holes = filled(patches, settings)
+    patches, pieces = in_one_piece(patches, settings, found.where)
+    patches, bits = without_specks(patches, limit_px)
+    notices += [*specks, *holes, *pieces, *bits, *suspect_necks(patches)]
+    if not patches:
+        why = " ".join(notice.message for notice in specks) or "all were skipped."
+        raise LabelImageError(
+            "E104", f"no stones are left: {why}", where=found.where,
+            cure="Check the picture, min_area_px and skip.",
+        )  # fmt: skip
+    return StoneSet(tuple(patch.to_stone() for patch in patches), source, tuple(notices))

@@ -1,0 +1,1 @@
+"""Outlines of stones from labelling tools, drawings and meshes; a module a format."""

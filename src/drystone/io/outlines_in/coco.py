@@ -1,0 +1,130 @@
+"""COCO: a JSON file of annotations with polygons or run lengths, for one image or for many."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import PurePath
+from typing import Any
+
+from drystone.errors import InputError, Notice
+from drystone.io.outlines_in.model import (
+    Area,
+    OutlinedStone,
+    OutlineFile,
+    PlacedMask,
+    entry,
+    left_aside,
+    number_in,
+    ring,
+)
+from drystone.io.outlines_in.nested import without_nested
+from drystone.io.outlines_in.run_lengths import is_runs, mask_of, size_of
+from drystone.io.read_settings import ReadSettings
+
+_OF_MODEL = ("predicted_iou", "stability_score")
+
+
+def is_coco(content: object) -> bool:
+    """Tell COCO by its keys."""
+    return isinstance(content, Mapping) and isinstance(content.get("annotations"), list)
+
+
+def read_coco(content: Mapping[str, Any], where: str, settings: ReadSettings) -> OutlineFile:
+    """Read the annotations of one image.
+
+    Polygons of one annotation are united, which is COCO's own rule: it has no holes but in run
+    lengths.  Files that the automatic masks of SAM were released in have ``image`` instead of
+    ``images``, and are read as :mod:`~drystone.io.outlines_in.sam` says.
+
+    Raises
+    ------
+    InputError
+        E114 naming the annotation that cannot be used, E115 when the image is not told.
+    """
+    chosen, image = _chosen(content, where, settings.image)
+    categories = {c.get("id"): str(c.get("name", "")) for c in content.get("categories") or ()}
+    shown = categories if len(categories) > 1 else {}
+    stones, sizes, aside = [], set(), Counter[str]()
+    for number, found in enumerate(chosen):
+        with entry(where, f"annotation {found.get('id', number)}"):
+            if found.get("iscrowd") and found.get("iscrowd") != "0":
+                aside["crowd regions (several stones as one)"] += 1
+                continue
+            segmentation = found.get("segmentation")
+            if not segmentation:
+                aside["annotations without an outline"] += 1
+                continue
+            areas, masks = shape_of(segmentation)
+            if is_runs(segmentation):
+                sizes.add(size_of(segmentation))
+            name = shown.get(found.get("category_id"), "")
+            stones.append(OutlinedStone(number_in(found.get("id")), name, areas, masks))
+    size = size_in(image, sizes, where)
+    notices: list[Notice] = left_aside(aside)
+    if any(name in found for found in chosen for name in _OF_MODEL):
+        stones, nested = without_nested(stones, settings.skip)
+        notices += nested
+    return OutlineFile(tuple(stones), size_px=size, notices=tuple(notices))
+
+
+def shape_of(segmentation: Any) -> tuple[tuple[Area, ...], tuple[PlacedMask, ...]]:
+    """Return a segmentation as areas or as a mask."""
+    if is_runs(segmentation):
+        mask = mask_of(segmentation)
+        return (), () if mask is None else (mask,)
+    polygons = []
+    for flat in segmentation:
+        if len(flat) % 2:
+            raise ValueError("a polygon has an odd number of coordinates")
+        polygons.append(Area((ring(list(zip(flat[0::2], flat[1::2], strict=True))),)))
+    return tuple(polygons), ()
+
+
+def size_in(
+    image: Mapping[str, Any] | None, masks: set[tuple[int, int]], where: str
+) -> tuple[int, int] | None:
+    """Return the size that the image and all run lengths agree on; E114 when they do not."""
+    sizes = set(masks)
+    with entry(where, "the image"):
+        if image is not None and image.get("width") and image.get("height"):
+            sizes.add((int(image["width"]), int(image["height"])))
+        if len(sizes) > 1:
+            listed = ", ".join(f"{width} x {height}" for width, height in sorted(sizes))
+            raise ValueError(f"its sizes differ: {listed} px")
+    return sizes.pop() if sizes else None
+
+
+def _chosen(
+    content: Mapping[str, Any], where: str, name: str
+) -> tuple[list[Mapping[str, Any]], Mapping[str, Any] | None]:
+    """Return the annotations of the image that was asked for, or of the only one."""
+    annotations = content["annotations"]
+    images = content.get("images") or ()
+    if isinstance(content.get("image"), Mapping):
+        images = ({**content["image"], "id": None},)
+    with entry(where, "the list of images"):
+        if not all(isinstance(found, Mapping) for found in annotations):
+            raise TypeError("annotations are no objects")
+        known = {image.get("id"): image for image in images}
+        names = {i: str(image.get("file_name", i)) for i, image in known.items()}
+    used = list(dict.fromkeys(found.get("image_id") for found in annotations))
+    if name:
+        used = [i for i in known if name in (names[i], PurePath(names[i]).name, str(i))]
+        if len(used) != 1:
+            raise image_needed(f"no image or several are called {name!r}", where, names.values())
+    if len(used) > 1:
+        raise image_needed(
+            f"stones of {len(used)} images are in it", where, [names.get(i, str(i)) for i in used]
+        )
+    only = used[0] if used else None
+    image = known.get(only) or (next(iter(known.values())) if len(known) == 1 else None)
+    return [found for found in annotations if found.get("image_id") == only], image
+
+
+def image_needed(what: str, where: str, names: Sequence[str] | Any) -> InputError:
+    """Make the error for several images in one file (E115)."""
+    listed = list(names)
+    shown = ", ".join(listed[:8]) + (f" and {len(listed) - 8} more" if len(listed) > 8 else "")
+    return InputError(
+        "E115", f"{what}.", where=where,
+        cure=f"Say which one with --image NAME (ReadSettings.image); there are {shown}.",
+    )  # fmt: skip

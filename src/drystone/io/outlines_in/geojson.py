@@ -1,0 +1,101 @@
+"""GeoJSON: polygons with holes, in px of an image or in a unit that the file names."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from drystone.errors import InputError
+from drystone.io.outlines_in.model import (
+    METRES,
+    Area,
+    OutlinedStone,
+    OutlineFile,
+    entry,
+    left_aside,
+    number_in,
+    ring,
+)
+from drystone.io.read_settings import ReadSettings
+
+_KINDS = frozenset(
+    {
+        "FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon", "Point",
+        "MultiPoint", "LineString", "MultiLineString",
+    }
+)  # fmt: skip
+_DEGREES = ("CRS84", "4326", "WGS84")
+
+
+def is_geojson(content: object) -> bool:
+    """Tell GeoJSON by its type."""
+    return isinstance(content, Mapping) and content.get("type") in _KINDS
+
+
+def read_geojson(content: Mapping[str, Any], where: str, settings: ReadSettings) -> OutlineFile:
+    """Read polygons and multi-polygons, a stone a feature.
+
+    A foreign member ``unit`` of the file ("m", "mm" …), or the setting, makes it a drawing with y
+    up; without one, or with "px", coordinates are px of an image with y down, as image tools
+    write them, unless its ``frame`` is that of a wall of drystone.  The id of a stone is the
+    ``id`` of its feature or of its properties, its name their ``name``.
+
+    Raises
+    ------
+    InputError
+        E114 naming the feature that cannot be used, E116 for degrees of latitude.
+    """
+    if any(name in str(content.get("crs", "")) for name in _DEGREES):
+        raise InputError(
+            "E116", "its coordinates are degrees of latitude and longitude.", where=where,
+            cure="Project it to metres, and give the file a member \"unit\": \"m\".",
+        )  # fmt: skip
+    unit = content.get("unit", "px")
+    if unit not in (*METRES, "px"):
+        raise InputError(
+            "E116", f"its unit {unit!r} is not known.", where=where,
+            cure=f"Use one of px, {', '.join(METRES)}.",
+        )  # fmt: skip
+    stones: list[OutlinedStone] = []
+    aside = Counter[str]()
+    for number, feature in enumerate(_features(content, where)):
+        with entry(where, f"feature {number} (from 0)"):
+            stones += _stones(feature, aside)
+    unit_m = METRES.get(unit if "unit" in content else settings.unit or "px")
+    upwards = unit_m is not None or str(content.get("frame")).startswith("wall")
+    return OutlineFile(tuple(stones), unit_m, upwards, notices=tuple(left_aside(aside)))
+
+
+def _features(content: Mapping[str, Any], where: str) -> Iterator[Mapping[str, Any]]:
+    with entry(where, "the list of features"):
+        if content["type"] == "FeatureCollection":
+            yield from content["features"]
+        elif content["type"] == "Feature":
+            yield content
+        else:
+            yield {"geometry": content}
+
+
+def _stones(feature: Mapping[str, Any], aside: Counter[str]) -> Iterator[OutlinedStone]:
+    geometry = feature["geometry"]
+    if geometry is None:
+        aside["features without a geometry"] += 1
+        return
+    said = {**(feature.get("properties") or {})}
+    own = number_in(feature.get("id"))
+    if own is None:
+        own = number_in(said.get("id", said.get("stone")))
+    name = str(said.get("name") or (feature["id"] if isinstance(feature.get("id"), str) else ""))
+    kind = geometry["type"]
+    if kind == "GeometryCollection":
+        for part in geometry["geometries"]:
+            yield from _stones({**feature, "geometry": part}, aside)
+    elif said.get("kind", "stone") != "stone":
+        aside[f"features of the kind {said['kind']!r}"] += 1
+    elif kind in {"Polygon", "MultiPolygon"}:
+        polygons = [geometry["coordinates"]] if kind == "Polygon" else geometry["coordinates"]
+        areas = tuple(Area(tuple(ring(points) for points in rings)) for rings in polygons)
+        if not areas or not all(area.rings for area in areas):
+            raise ValueError("a polygon has no ring")
+        yield OutlinedStone(own, name, areas)
+    else:
+        aside[f"{kind}s"] += 1

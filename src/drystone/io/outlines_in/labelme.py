@@ -1,0 +1,99 @@
+"""labelme: a JSON file an image, with polygons and other shapes in px."""
+
+import base64
+import io
+import math
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from drystone.io.outlines_in.model import (
+    Area,
+    OutlinedStone,
+    OutlineFile,
+    PlacedMask,
+    entry,
+    left_aside,
+    number_in,
+    ring,
+)
+from drystone.io.read_settings import ReadSettings
+
+_CORNERS_OF_CIRCLE = 256
+
+
+def is_labelme(content: object) -> bool:
+    """Tell labelme by its keys."""
+    return isinstance(content, Mapping) and isinstance(content.get("shapes"), list)
+
+
+def read_labelme(content: Mapping[str, Any], where: str, _: ReadSettings) -> OutlineFile:
+    """Read polygons, rectangles, circles and masks.
+
+    Shapes of one label and ``group_id`` are one stone.  A label that is a number, also after
+    the word stone, is its id.
+
+    Raises
+    ------
+    InputError
+        E114 naming the shape that cannot be used.
+    """
+    parts: dict[object, list[tuple[tuple[Area, ...], tuple[PlacedMask, ...]]]] = {}
+    names: dict[object, str] = {}
+    aside: Counter[str] = Counter()
+    for number, shape in enumerate(content["shapes"]):
+        with entry(where, f"shape {number} (from 0)"):
+            read = _areas(shape) if shape.get("shape_type") != "mask" else ((), (_mask(shape),))
+            kind, label = shape.get("shape_type") or "polygon", str(shape.get("label") or "")
+            if read is None:
+                aside[f"{kind}s"] += 1
+                continue
+            group = shape.get("group_id")
+            key = ("alone", number) if group is None else (label, str(group))
+            parts.setdefault(key, []).append(read)
+            names[key] = label
+    stones = tuple(
+        OutlinedStone(
+            number_in(names[key]),
+            names[key],
+            tuple(area for areas, _ in read for area in areas),
+            tuple(mask for _, masks in read for mask in masks),
+        )
+        for key, read in parts.items()
+    )
+    return OutlineFile(stones, size_px=_size(content, where), notices=tuple(left_aside(aside)))
+
+
+def _size(content: Mapping[str, Any], where: str) -> tuple[int, int] | None:
+    with entry(where, "the size of the image"):
+        width, height = content.get("imageWidth"), content.get("imageHeight")
+        return None if width is None or height is None else (int(width), int(height))
+
+
+def _areas(shape: Mapping[str, Any]) -> tuple[tuple[Area, ...], tuple[PlacedMask, ...]] | None:
+    kind, points = shape.get("shape_type") or "polygon", shape["points"]
+    if kind in {"polygon", "oriented_rectangle"}:
+        return (Area((ring(points),)),), ()
+    if kind == "rectangle":
+        (x0, y0), (x1, y1) = points
+        return (Area((ring([(x0, y0), (x1, y0), (x1, y1), (x0, y1)]),)),), ()
+    if kind == "circle":
+        (x, y), (on_x, on_y) = points
+        angles = np.arange(_CORNERS_OF_CIRCLE) * (2.0 * math.pi / _CORNERS_OF_CIRCLE)
+        circle = math.hypot(on_x - x, on_y - y) * np.column_stack([np.cos(angles), np.sin(angles)])
+        return (Area((ring(circle + np.array([x, y])),)),), ()
+    return None
+
+
+def _mask(shape: Mapping[str, Any]) -> PlacedMask:
+    """Return a shape that is a picture within a box, as a model draws it."""
+    (x0, y0), _ = shape["points"]
+    try:
+        with Image.open(io.BytesIO(base64.b64decode(shape["mask"], validate=True))) as image:
+            mask = np.asarray(image.convert("L")) > 0
+    except (OSError, SyntaxError) as error:
+        raise ValueError(f"its mask is no picture: {error}") from error
+    return PlacedMask(mask, round(float(y0)), round(float(x0)))

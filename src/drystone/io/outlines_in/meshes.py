@@ -1,0 +1,218 @@
+"""OBJ, PLY and STL: the outlines of bodies as they are seen from one side."""
+
+import io
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from drystone.errors import InputError, Notice, UsageError
+from drystone.io.outlines_in.model import (
+    METRES,
+    OutlinedStone,
+    OutlineFile,
+    damaged,
+    number_in,
+)
+from drystone.io.outlines_in.silhouettes import shadow
+from drystone.io.read_settings import ReadSettings
+
+_PLANES = {0: (1, 2), 1: (0, 2), 2: (0, 1)}
+"""Axes to the right and up, when one looks along the third: along -X, +Y, or -Z."""
+_WORDS = {
+    0: "along X, with Y to the right and Z up",
+    1: "along Y, with X to the right and Z up",
+    2: "along Z, with X to the right and Y up",
+}
+_OURS = (b"# drystone ", b"drystone, ")
+_HEAD = 400
+_STL_FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_STL_VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
+_PLY_FACES = re.compile(rb"^element\s+face\s+(\d+)", re.MULTILINE)
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A body of a mesh.
+
+    Parameters
+    ----------
+    name : str
+        Empty when it has none.
+    vertices : (n, 3) float array
+        Of the whole file.
+    faces : sequence of integer arrays
+        Positions in `vertices`, three or more a face.
+    """
+
+    name: str
+    vertices: NDArray[np.float64]
+    faces: Sequence[NDArray[np.int64]]
+
+
+def mesh_kind(data: bytes, suffix: str) -> str | None:
+    """Tell PLY, STL and OBJ by content, and by ending; None for anything else."""
+    head = data[:_HEAD]
+    if head.startswith((b"ply\n", b"ply\r\n")):
+        return "ply"
+    if suffix == ".stl" or (head.lstrip().startswith(b"solid") and b"facet" in head):
+        return "stl"
+    if len(data) >= 84 and len(data) == 84 + 50 * int.from_bytes(data[80:84], "little"):
+        return "stl"
+    lines = [line.split() for line in data[:65536].split(b"\n")]
+    is_obj = any(line[0] == b"v" and len(line) >= 4 for line in lines if line)
+    return "obj" if suffix == ".obj" or is_obj else None
+
+
+def read_mesh(kind: str, data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
+    """Read the outlines of bodies.
+
+    Named objects of an OBJ are a stone each; otherwise every connected body is one.  Meshes
+    that drystone wrote are seen along Y with Z up, others along the axis in which all of it
+    together is thinnest.  Their unit is taken as the metre unless the settings name another.
+
+    Raises
+    ------
+    InputError
+        E106 for a damaged file, E114 for a mesh without faces or with impossible ones.
+    UsageError
+        E305 when trimesh is not installed (PLY).
+    """
+    bodies = _BODIES[kind](data, where)
+    used = np.unique(np.concatenate([np.concatenate(list(b.faces)) for b in bodies]))
+    vertices = bodies[0].vertices[used]
+    if not np.isfinite(vertices).all() or np.abs(vertices).max() > 1e9:
+        raise damaged(where, "a vertex is not finite or beyond 1e9")
+    ours = data.startswith(_OURS)
+    axis = 1 if ours else int(np.argmin(np.ptp(vertices, axis=0)))
+    plane = _PLANES[axis]
+    stones = tuple(
+        OutlinedStone(
+            number_in(body.name),
+            body.name,
+            shadow([body.vertices[face][:, plane] for face in body.faces]),
+        )
+        for body in bodies
+    )
+    why = "as drystone writes meshes" if ours else "in which the mesh is thinnest"
+    notices = [Notice("W119", f"{len(stones)} bodies, seen {_WORDS[axis]} ({why}).")]
+    if not settings.unit and not ours:
+        text = f"{kind.upper()} has no unit: lengths were taken as metres."
+        notices.append(Notice("W119", text, "Say --unit mm (or cm, in, ft) if they are not."))
+    unit_m = METRES.get(settings.unit or "m")
+    return OutlineFile(stones, unit_m, y_up=True, notices=tuple(notices))
+
+
+def load_trimesh() -> Any:
+    """Return trimesh; it is an extra, so it is loaded only when it is needed (E305)."""
+    try:
+        return import_module("trimesh")
+    except ImportError as error:
+        raise UsageError(
+            "E305", "trimesh is not installed, and it reads PLY.", where="mesh",
+            cure="Install it with `pip install drystone[mesh]`.",
+        ) from error  # fmt: skip
+
+
+def _stl_bodies(data: bytes, where: str) -> list[Body]:
+    """Read triangles; equal corners are one vertex, so that bodies hang together."""
+    corners = _stl_text(data, where) if _is_text(data) else _stl_binary(data, where)
+    vertices, places = np.unique(corners, axis=0, return_inverse=True)
+    return _bodies("", vertices, list(places.reshape(-1, 3)), where)
+
+
+def _stl_text(data: bytes, where: str) -> NDArray[np.float64]:
+    found = _STL_VERTEX.findall(data)
+    if not found or len(found) != 3 * data.count(b"endfacet") or b"endsolid" not in data[-_HEAD:]:
+        raise _cut("its facets have no three corners, or endsolid is missing", where)
+    try:
+        return np.array([[float(word) for word in corner] for corner in found])
+    except ValueError as error:
+        raise _cut(str(error), where) from error
+
+
+def _stl_binary(data: bytes, where: str) -> NDArray[np.float64]:
+    number = int.from_bytes(data[80:84], "little")
+    if number == 0 or len(data) < 84 + _STL_FACET.itemsize * number:
+        raise _cut(f"it has {len(data)} bytes, and says {number} triangles", where)
+    corners = np.frombuffer(data, _STL_FACET, number, offset=84)["corners"].reshape(-1, 3)
+    if not np.isfinite(corners).all():
+        raise damaged(where, "a vertex is not finite")
+    return corners.astype(float)
+
+
+def _is_text(data: bytes) -> bool:
+    return data.lstrip().startswith(b"solid") and b"facet" in data[:_HEAD]
+
+
+def _ply_bodies(data: bytes, where: str) -> list[Body]:
+    trimesh = load_trimesh()
+    try:
+        mesh = trimesh.load_mesh(io.BytesIO(data), file_type="ply", process=True)
+        vertices, faces = np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.int64)
+    except Exception as error:  # damaged bytes in a parser of another package
+        raise _cut(str(error), where) from error
+    said = _PLY_FACES.search(data)
+    if said and len(faces) < int(said[1]):
+        raise _cut(f"{len(faces)} of {int(said[1])} faces", where)
+    return _bodies("", vertices, list(faces), where)
+
+
+def _cut(why: str, where: str) -> InputError:
+    return InputError(
+        "E106", f"the mesh is damaged or cut short ({why}).", where=where,
+        cure="Copy or export it again.",
+    )  # fmt: skip
+
+
+def _obj_bodies(data: bytes, where: str) -> list[Body]:
+    """Read vertices, faces and object names of an OBJ; faces may have any number of corners."""
+    points: list[list[float]] = []
+    objects: dict[str, list[NDArray[np.int64]]] = {}
+    name = ""
+    for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), start=1):
+        words = line.split()
+        try:
+            if words[:1] == ["v"]:
+                points.append([float(word) for word in words[1:4]])
+            elif words[:1] == ["f"]:
+                corners = np.array([int(word.split("/")[0]) for word in words[1:]])
+                corners = np.where(corners < 0, corners + len(points), corners - 1)
+                if len(corners) < 3 or corners.min() < 0 or corners.max() >= len(points):
+                    raise ValueError(f"a face of {len(words) - 1} corners, or of unknown vertices")
+                objects.setdefault(name, []).append(corners)
+            elif words[:1] == ["o"] or (words[:1] == ["g"] and not name.startswith("o ")):
+                name = " ".join(words[:2])
+        except ValueError as error:
+            raise damaged(where, f"line {number} cannot be used ({error})") from error
+    if any(len(point) < 3 for point in points):
+        raise damaged(where, "a vertex has less than three coordinates")
+    vertices = np.array(points, float).reshape(-1, 3)
+    if len(objects) < 2 and not any(objects):
+        return _bodies("", vertices, objects.get("", []), where)
+    return [Body(name[2:], vertices, faces) for name, faces in objects.items()]
+
+
+def _bodies(
+    name: str, vertices: NDArray[np.float64], faces: list[NDArray[np.int64]], where: str
+) -> list[Body]:
+    """Split faces into bodies that hang together, in the order of their first faces."""
+    if not faces or not len(vertices):
+        raise damaged(where, "the mesh has no faces")
+    first = np.array([face[0] for face in faces])
+    pairs = np.concatenate([np.column_stack([face, np.roll(face, 1)]) for face in faces])
+    links = coo_array((np.ones(len(pairs), bool), pairs.T), shape=(len(vertices),) * 2)
+    labels = connected_components(links, directed=False)[1][first]
+    found: dict[int, list[NDArray[np.int64]]] = {}
+    for label, face in zip(labels.tolist(), faces, strict=True):
+        found.setdefault(label, []).append(face)
+    return [Body(name, vertices, part) for part in found.values()]
+
+
+_BODIES = {"obj": _obj_bodies, "ply": _ply_bodies, "stl": _stl_bodies}

@@ -1,0 +1,187 @@
+"""Stones as a file describes them: outlines or masks, before they are pixels of one picture."""
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import Any, Literal
+
+import numpy as np
+
+from drystone.errors import InputError, Notice
+from drystone.io.labels import MAX_ID
+from drystone.kernels.polygons import Points
+from drystone.kernels.raster import Mask
+
+METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048})
+"""Metres in each unit that a user may name."""
+
+_STONE_NAME = re.compile(r"(?:stones?[ _-]*)?0*([1-9][0-9]*)", re.IGNORECASE)
+_WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
+
+
+@dataclass(frozen=True, eq=False)
+class Area:
+    """What rings enclose together.
+
+    Parameters
+    ----------
+    rings : tuple of (n, 2) float arrays
+        Not closed, in any sense of rotation, in the unit of the file.
+    rule : {"evenodd", "nonzero"}
+        Which points are inside: by the number of rings around them, or by the sum of their turns.
+    """
+
+    rings: tuple[Points, ...]
+    rule: Literal["evenodd", "nonzero"] = "evenodd"
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedMask:
+    """Pixels at a place of a picture.
+
+    Parameters
+    ----------
+    mask : (h, w) bool array
+        Row 0 at the top.
+    row, col : int
+        Of its upper left pixel.
+    """
+
+    mask: Mask
+    row: int
+    col: int
+
+
+@dataclass(frozen=True, eq=False)
+class OutlinedStone:
+    """A stone of a file: the union of areas and masks.
+
+    Parameters
+    ----------
+    id : int or None
+        The file's own number, if it has one.
+    name : str
+        The file's own name.
+    areas : tuple of Area
+        Outlines.
+    masks : tuple of PlacedMask
+        Pixels; only in files in px.
+    """
+
+    id: int | None
+    name: str = ""
+    areas: tuple[Area, ...] = ()
+    masks: tuple[PlacedMask, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class OutlineFile:
+    """What a file of outlines holds.
+
+    Parameters
+    ----------
+    stones : tuple of OutlinedStone
+        In the order of the file.
+    unit_m : float or None
+        Metres in a unit of the file; None when its unit is the px of an image.
+    y_up : bool
+        False when y runs down, as in images.
+    size_px : (int, int) or None
+        Width and height of the image of a file in px, if the file says so.
+    notices : tuple of Notice
+        What had to be decided.
+    """
+
+    stones: tuple[OutlinedStone, ...]
+    unit_m: float | None = None
+    y_up: bool = False
+    size_px: tuple[int, int] | None = None
+    notices: tuple[Notice, ...] = ()
+
+
+def number_in(text: object) -> int | None:
+    """Return the number that a label is, or that follows the word stone in it.
+
+    Examples
+    --------
+    >>> number_in("stone_012"), number_in(7), number_in("wall 3"), number_in(True)
+    (12, 7, None, None)
+    """
+    if isinstance(text, bool) or not isinstance(text, int | str):
+        return None
+    found = _STONE_NAME.fullmatch(str(text).strip())
+    number = int(found[1]) if found and len(found[1]) < 11 else 0
+    return number if 0 < number <= MAX_ID else None
+
+
+def numbered(stones: tuple[OutlinedStone, ...]) -> tuple[tuple[OutlinedStone, ...], list[Notice]]:
+    """Give every stone an id: the file's own when all differ, else 1, 2, 3 and so on."""
+    counts = Counter(stone.id for stone in stones)
+    if None not in counts and all(count == 1 for count in counts.values()):
+        return stones, []
+    several = sorted(key for key, count in counts.items() if key is not None and count > 1)
+    notices = []
+    if several:
+        shown = ", ".join(map(str, several[:8])) + (" …" if len(several) > 8 else "")
+        text = f"the numbers of the file are not different ({shown}): stones are numbered in order."
+        notices.append(Notice("W119", text, "Give every stone a number of its own to keep them."))
+    return tuple(replace(stone, id=i) for i, stone in enumerate(stones, start=1)), notices
+
+
+def without_wedges(
+    stones: tuple[OutlinedStone, ...],
+) -> tuple[tuple[OutlinedStone, ...], list[Notice]]:
+    """Leave out wedges of a planned wall, which nobody found."""
+    kept = tuple(stone for stone in stones if not _WEDGE_NAME.fullmatch(stone.name))
+    left = len(stones) - len(kept)
+    return kept, [Notice("W119", f"{left} wedges of a planned wall were left out.")] if left else []
+
+
+def left_aside(kinds: Counter[str], cure: str = "") -> list[Notice]:
+    """Say what in a file is no outline of a stone."""
+    if not kinds:
+        return []
+    listed = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
+    return [Notice("W119", f"no outlines of stones, left aside: {listed}.", cure)]
+
+
+def ring(points: Any) -> Points:
+    """Return a ring from numbers; ValueError when it is none.
+
+    Parameters
+    ----------
+    points : (n, 2) array_like
+        Closed or not; further columns (heights) are left out.
+    """
+    corners = np.asarray(points, dtype=float)
+    if corners.ndim != 2 or corners.shape[1] < 2:
+        raise ValueError("points are pairs of numbers")
+    corners = corners[:, :2]
+    if len(corners) > 1 and (corners[0] == corners[-1]).all():
+        corners = corners[:-1]
+    if len(corners) < 3:
+        raise ValueError(f"an outline needs 3 points, not {len(corners)}")
+    if not np.isfinite(corners).all():
+        raise ValueError("a coordinate is not finite")
+    if np.abs(corners).max() > 1e9:
+        raise ValueError("a coordinate is beyond 1e9")
+    return corners
+
+
+@contextmanager
+def entry(where: str, what: str) -> Iterator[None]:
+    """Turn what fails in one entry of a file into an error that names it (E114)."""
+    try:
+        yield
+    except KeyError as error:
+        raise damaged(where, f"{what} has no {error}") from error
+    except (TypeError, ValueError, IndexError, AttributeError, OverflowError) as error:
+        raise damaged(where, f"{what} cannot be used ({error})") from error
+
+
+def damaged(where: str, what: str) -> InputError:
+    """Make the error for a file whose content is not what its format says (E114)."""
+    return InputError("E114", f"{what}.", where=where, cure="Correct it, or export the file again.")

@@ -1,0 +1,103 @@
+"""Masks as run lengths, the way COCO writes them: column by column, background first."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.io.outlines_in.model import PlacedMask
+
+_MOST_PX = 2**31
+
+
+def is_runs(value: object) -> bool:
+    """Tell whether something is meant to be run lengths."""
+    return isinstance(value, Mapping) and "counts" in value
+
+
+def size_of(value: Mapping[str, Any]) -> tuple[int, int]:
+    """Return width and height of run lengths."""
+    height, width = (int(side) for side in value["size"])
+    if min(height, width) < 1 or height * width > _MOST_PX:
+        raise ValueError(f"a picture of {width} x {height} px")
+    return width, height
+
+
+def mask_of(value: Mapping[str, Any]) -> PlacedMask | None:
+    """Return the mask of run lengths, cut to its bounding box; None when no pixel is set.
+
+    Parameters
+    ----------
+    value : mapping
+        With ``size`` (height, width) and ``counts``: numbers, or text as pycocotools packs them.
+
+    Raises
+    ------
+    ValueError
+        When the counts do not add up to the size, or the text is none of this kind.
+
+    Examples
+    --------
+    >>> mask_of({"size": [2, 3], "counts": [1, 2, 3]}).mask.astype(int)
+    array([[0, 1],
+           [1, 0]])
+    """
+    width, height = size_of(value)
+    counts = value["counts"]
+    runs = unpacked(counts) if isinstance(counts, str | bytes) else _numbers(counts)
+    if int(runs.sum()) != width * height:
+        raise ValueError(f"counts add up to {int(runs.sum())}, not to {width} x {height} px")
+    ends = np.cumsum(runs)
+    starts, stops = ends[0::2][: len(ends) // 2], ends[1::2]
+    starts, stops = starts[stops > starts], stops[stops > starts]
+    if not len(starts):
+        return None
+    first, last = int(starts[0]) // height, (int(stops[-1]) - 1) // height
+    change = np.zeros((last - first + 1) * height + 1, np.int8)
+    np.add.at(change, starts - first * height, 1)
+    np.add.at(change, stops - first * height, -1)
+    columns = np.cumsum(change[:-1], dtype=np.int8).astype(bool).reshape(-1, height)
+    rows = np.flatnonzero(columns.any(axis=0))
+    top, bottom = int(rows[0]), int(rows[-1]) + 1
+    return PlacedMask(np.ascontiguousarray(columns[:, top:bottom].T), top, first)
+
+
+def unpacked(text: str | bytes) -> NDArray[np.int64]:
+    """Return the counts of compressed run lengths.
+
+    Five bits a character, least first, 32 for one more to come; from the fourth count on it is
+    the difference to the one before the last.
+
+    Examples
+    --------
+    >>> unpacked("6210")
+    array([6, 2, 1, 2])
+    """
+    data = text.encode() if isinstance(text, str) else text
+    counts: list[int] = []
+    number, shift = 0, 0
+    for byte in data:
+        bits = byte - 48
+        if not 0 <= bits < 64 or shift > 30:
+            raise ValueError(f"{chr(byte)!r} does not belong into packed counts")
+        number |= (bits & 31) << shift
+        shift += 5
+        if bits & 32:
+            continue
+        if bits & 16:
+            number -= 1 << shift
+        counts.append(number + counts[-2] if len(counts) > 2 else number)
+        number, shift = 0, 0
+    if shift:
+        raise ValueError("packed counts are cut short")
+    return _numbers(counts)
+
+
+def _numbers(counts: Any) -> NDArray[np.int64]:
+    runs = np.asarray(counts)
+    if runs.ndim != 1 or (runs.size and runs.dtype.kind not in "iu"):
+        raise ValueError("counts are whole numbers")
+    if runs.size and (int(runs.min()) < 0 or int(runs.max()) > _MOST_PX):
+        raise ValueError("a count is below 0 or too large")
+    return runs.astype(np.int64)

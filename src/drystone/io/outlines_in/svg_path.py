@@ -1,0 +1,227 @@
+"""Path data of SVG to corners: lines, Béziers and elliptical arcs."""
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.kernels.polygons import Points
+
+CORNERS_OF_CIRCLE = 256
+CORNERS_OF_CURVE = 128
+"""Chords of a full turn stay within 8e-5 of the radius."""
+
+_COMMAND = re.compile(r"([MmZzLlHhVvCcSsQqTtAa])")
+_NUMBER = re.compile(r"\s*,?\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)")
+_FLAG = re.compile(r"\s*,?\s*([01])")
+_ARGUMENTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
+
+Corner = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Subpath:
+    """A line of a path.
+
+    Parameters
+    ----------
+    points : (n, 2) float array
+        Corners in order.
+    closed : bool
+        Whether the path says so, or it ends where it began.
+    """
+
+    points: Points
+    closed: bool
+
+
+def subpaths(data: str) -> list[Subpath]:
+    """Return the lines of path data.
+
+    Parameters
+    ----------
+    data : str
+        The attribute ``d``.
+
+    Raises
+    ------
+    ValueError
+        When it is none.
+
+    Examples
+    --------
+    >>> subpaths("M1 1 h2 v2 z")[0].points.tolist()
+    [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0]]
+    """
+    pen = _Pen()
+    for command, numbers in _segments(data):
+        pen.draw(command, numbers)
+    return pen.lines()
+
+
+def bounded(text: str) -> float:
+    """Return a number; ValueError for one beyond 1e12, which no drawing has."""
+    value = float(text)
+    if not abs(value) < 1e12:
+        raise ValueError(f"{text} is too large")
+    return value
+
+
+def _segments(data: str) -> Iterator[tuple[str, list[float]]]:
+    """Yield commands with their numbers, repeated ones one by one."""
+    parts = _COMMAND.split(data)
+    if parts[0].strip():
+        raise ValueError(f"path data begins with {parts[0].strip()[:20]!r}")
+    for command, text in zip(parts[1::2], parts[2::2], strict=True):
+        count = _ARGUMENTS[command.upper()]
+        numbers = _numbers(text, arc=command in "Aa")
+        if count == 0:
+            if numbers:
+                raise ValueError("numbers after z")
+            yield command, []
+            continue
+        if not numbers or len(numbers) % count:
+            raise ValueError(f"{command} has {len(numbers)} numbers, not a multiple of {count}")
+        for start in range(0, len(numbers), count):
+            # What follows the first pair of a move is a line.
+            later = {"M": "L", "m": "l"}.get(command, command) if start else command
+            yield later, numbers[start : start + count]
+
+
+def _numbers(text: str, *, arc: bool) -> list[float]:
+    """Read numbers; the flags of arcs may stand together without a space."""
+    numbers: list[float] = []
+    place, end = 0, len(text.rstrip())
+    while place < end:
+        is_flag = arc and len(numbers) % 7 in (3, 4)
+        found = (_FLAG if is_flag else _NUMBER).match(text, place)
+        if found is None:
+            raise ValueError(f"{text[place:end].strip()[:20]!r} is no number")
+        numbers.append(bounded(found[1]))
+        place = found.end()
+    return numbers
+
+
+@dataclass
+class _Pen:
+    """Where a path has come to."""
+
+    done: list[Subpath] = field(default_factory=list)
+    line: list[Corner] = field(default_factory=list)
+    at: Corner = field(default_factory=lambda: np.zeros(2))
+    begun: Corner = field(default_factory=lambda: np.zeros(2))
+    handle: Corner | None = None
+    """Last control point, which smooth curves mirror."""
+    last: str = ""
+
+    def lines(self) -> list[Subpath]:
+        self._end(closed=False)
+        return self.done
+
+    def draw(self, command: str, numbers: list[float]) -> None:
+        """Follow one command."""
+        kind = command.upper()
+        if not self.last and kind != "M":
+            raise ValueError(f"path data begins with {command}, not with a move")
+        base = self.at if command.islower() else np.zeros(2)
+        if kind == "Z":
+            self._end(closed=True)
+            self.at = self.begun
+        elif kind == "M":
+            self._end(closed=False)
+            self.at = self.begun = base + numbers
+        elif kind in "LHV":
+            self._line(kind, numbers, relative=command.islower())
+        elif kind == "A":
+            self._to(arc(self.at, numbers[:5], base + numbers[5:]))
+        else:
+            self._curve(kind, base + np.reshape(numbers, (-1, 2)))
+            self.last = kind
+            return
+        self.handle, self.last = None, kind
+
+    def _line(self, kind: str, numbers: list[float], *, relative: bool) -> None:
+        end = self.at.copy()
+        if kind == "L":
+            end = self.at + numbers if relative else np.array(numbers)
+        else:
+            axis = 0 if kind == "H" else 1
+            end[axis] = numbers[0] + (self.at[axis] if relative else 0.0)
+        self._to(end[None])
+
+    def _curve(self, kind: str, points: Points) -> None:
+        if kind in "ST":
+            # A smooth curve mirrors the last handle only after a curve of its own degree.
+            mirrored = self.handle is not None and self.last in ("CS" if kind == "S" else "QT")
+            first = 2.0 * self.at - self.handle if mirrored and self.handle is not None else self.at
+            points = np.concatenate([[first], points])
+        self.handle = points[-2]
+        self._to(bezier(np.concatenate([[self.at], points])))
+
+    def _to(self, points: Points) -> None:
+        if not self.line:
+            self.line = [self.at]
+        self.line += list(points)
+        self.at = points[-1]
+
+    def _end(self, *, closed: bool) -> None:
+        if self.line:
+            points = np.array(self.line)
+            returns = bool(np.allclose(points[0], points[-1], rtol=0.0, atol=1e-9))
+            points = points[:-1] if returns else points
+            self.done.append(Subpath(points, closed or returns))
+        self.line = []
+
+
+def bezier(points: Points) -> Points:
+    """Return points on a Bézier curve of any degree, without its first.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        Control points, its ends included.
+    """
+    t = np.arange(1, CORNERS_OF_CURVE + 1) / CORNERS_OF_CURVE
+    degree = len(points) - 1
+    weights = [math.comb(degree, k) * t**k * (1.0 - t) ** (degree - k) for k in range(degree + 1)]
+    curve = np.column_stack(weights) @ points
+    curve[-1] = points[-1]
+    return np.asarray(curve)
+
+
+def arc(start: Corner, shape: list[float], end: Corner) -> Points:
+    """Return points on an elliptical arc, without its first (SVG 1.1, F.6).
+
+    Parameters
+    ----------
+    start, end : (2,) arrays
+        Where it begins and ends.
+    shape : list of float
+        Both radii, turn of the x axis in degrees, large-arc flag, sweep flag.
+    """
+    rx, ry = abs(shape[0]), abs(shape[1])
+    if rx == 0.0 or ry == 0.0 or (start == end).all():
+        return end[None]
+    angle = math.radians(shape[2])
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    half = turn.T @ ((start - end) / 2.0) / (rx, ry)
+    length = float(half @ half)
+    if length > 1.0:
+        # Radii that cannot reach grow until they do.
+        rx, ry = rx * math.sqrt(length), ry * math.sqrt(length)
+        half, length = half / math.sqrt(length), 1.0
+    side = -1.0 if bool(shape[3]) == bool(shape[4]) else 1.0
+    middle = side * math.sqrt(max(0.0, 1.0 / length - 1.0)) * np.array([half[1], -half[0]])
+    first = math.atan2(*(half - middle)[::-1])
+    sweep = (math.atan2(*(-half - middle)[::-1]) - first) % (2.0 * math.pi)
+    if not shape[4] and sweep > 0.0:
+        sweep -= 2.0 * math.pi
+    number = max(2, math.ceil(abs(sweep) / (2.0 * math.pi) * CORNERS_OF_CIRCLE))
+    angles = first + sweep * np.arange(1, number + 1) / number
+    circle = np.column_stack([np.cos(angles), np.sin(angles)]) + middle
+    points = (circle * (rx, ry)) @ turn.T + (start + end) / 2.0
+    points[-1] = end
+    return np.asarray(points)

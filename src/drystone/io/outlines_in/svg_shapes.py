@@ -1,0 +1,126 @@
+"""Elements of SVG as path lines, and their transforms."""
+
+import math
+import re
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.io.outlines_in.svg_path import CORNERS_OF_CIRCLE, Subpath, arc, bounded, subpaths
+from drystone.kernels.polygons import Points
+
+SHAPES = frozenset({"path", "polygon", "polyline", "rect", "circle", "ellipse"})
+
+Matrix = NDArray[np.float64]
+
+_CALL = re.compile(r"\s*,?\s*([a-zA-Z]+)\s*\(([^)]*)\)")
+_LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-z%]*)\s*")
+UNITS_M = {
+    "mm": 0.001, "cm": 0.01, "q": 0.00025, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6,
+}  # fmt: skip
+"""Metres in a unit of length."""
+
+
+def length(text: str) -> tuple[float, str]:
+    """Split a length into number and unit; ValueError when it is none.
+
+    Examples
+    --------
+    >>> length("120.5mm"), length("30")
+    ((120.5, 'mm'), (30.0, ''))
+    """
+    found = _LENGTH.fullmatch(text.lower())
+    if found is None:
+        raise ValueError(f"{text!r} is no length")
+    return bounded(found[1]), found[2]
+
+
+def transform(text: str) -> Matrix:
+    """Return the (3, 3) matrix of the attribute ``transform``.
+
+    Examples
+    --------
+    >>> transform("translate(10) scale(2, 3)").tolist()
+    [[2.0, 0.0, 10.0], [0.0, 3.0, 0.0], [0.0, 0.0, 1.0]]
+    """
+    matrix, place = np.eye(3), 0
+    while place < len(text.rstrip()):
+        found = _CALL.match(text, place)
+        if found is None:
+            raise ValueError(f"{text[place:][:30]!r} is no transform")
+        numbers = [bounded(word) for word in re.split(r"[\s,]+", found[2].strip()) if word]
+        matrix = matrix @ _matrix(found[1], numbers)
+        place = found.end()
+    return matrix
+
+
+def _matrix(name: str, numbers: list[float]) -> Matrix:
+    matrix = np.eye(3)
+    count = len(numbers)
+    if name == "matrix" and count == 6:
+        matrix[:2] = np.reshape(numbers, (3, 2)).T
+    elif name == "translate" and count in (1, 2):
+        matrix[:2, 2] = numbers[0], numbers[1] if count == 2 else 0.0
+    elif name == "scale" and count in (1, 2):
+        matrix[0, 0], matrix[1, 1] = numbers[0], numbers[-1]
+    elif name == "rotate" and count in (1, 3):
+        angle = math.radians(numbers[0])
+        matrix[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
+        centre = np.array(numbers[1:] or (0.0, 0.0))
+        matrix[:2, 2] = centre - matrix[:2, :2] @ centre
+    elif name in {"skewX", "skewY"} and count == 1:
+        row = 0 if name == "skewX" else 1
+        matrix[row, 1 - row] = math.tan(math.radians(numbers[0]))
+    else:
+        raise ValueError(f"{name} of {count} numbers is no transform")
+    return matrix
+
+
+def moved(matrix: Matrix, points: Points) -> Points:
+    """Return points under a transform."""
+    return np.asarray(points @ matrix[:2, :2].T + matrix[:2, 2])
+
+
+def lines_of(kind: str, attributes: Mapping[str, str]) -> list[Subpath]:
+    """Return the lines of a shape in its own coordinates; ValueError when it cannot be used."""
+    if kind == "path":
+        return subpaths(attributes.get("d", ""))
+    if kind in {"polygon", "polyline"}:
+        numbers = [bounded(word) for word in re.split(r"[\s,]+", attributes["points"].strip())]
+        points = np.reshape(numbers, (-1, 2))
+        closed = kind == "polygon" or bool((points[0] == points[-1]).all())
+        return [Subpath(points, closed)]
+    if kind == "rect":
+        return [Subpath(_rectangle(attributes), closed=True)]
+    rx, ry = (_number(attributes, "r" if kind == "circle" else name) for name in ("rx", "ry"))
+    angles = np.arange(CORNERS_OF_CIRCLE) * (2.0 * math.pi / CORNERS_OF_CIRCLE)
+    circle = np.column_stack([rx * np.cos(angles), ry * np.sin(angles)])
+    middle = np.array([_number(attributes, "cx"), _number(attributes, "cy")])
+    return [Subpath(circle + middle, closed=True)]
+
+
+def _rectangle(attributes: Mapping[str, str]) -> Points:
+    x, y, width, height = (_number(attributes, name) for name in ("x", "y", "width", "height"))
+    given = [_number(attributes, name) for name in ("rx", "ry") if name in attributes]
+    # One radius counts for both.
+    rx, ry = (min(given[0], width / 2), min(given[-1], height / 2)) if given else (0.0, 0.0)
+    if rx <= 0.0 or ry <= 0.0:
+        return np.array([(x, y), (x + width, y), (x + width, y + height), (x, y + height)])
+    corners = []
+    for (x0, y0), (x1, y1) in (
+        ((x + width - rx, y), (x + width, y + ry)),
+        ((x + width, y + height - ry), (x + width - rx, y + height)),
+        ((x + rx, y + height), (x, y + height - ry)),
+        ((x, y + ry), (x + rx, y)),
+    ):
+        start = np.array([x0, y0])
+        corners += [start[None], arc(start, [rx, ry, 0.0, 0.0, 1.0], np.array([x1, y1]))]
+    return np.concatenate(corners)
+
+
+def _number(attributes: Mapping[str, str], name: str) -> float:
+    value, unit = length(attributes.get(name, "0"))
+    if unit not in {"", "px"}:
+        raise ValueError(f"{name} in {unit or 'another unit'} is not read, only user units")
+    return value

@@ -1,0 +1,75 @@
+"""Stones from a file of outlines: labelling tools, drawings, meshes (see docs/formats.md)."""
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import replace
+
+from drystone.errors import UsageError
+from drystone.io.found import Found, stone_set
+from drystone.io.outlines_in.model import METRES, OutlineFile, numbered, without_wedges
+from drystone.io.outlines_in.raster import rastered
+from drystone.io.read_settings import ReadSettings
+from drystone.model.stone import Source, StoneSet
+
+
+def stones_of(
+    read: Callable[[bytes, str, ReadSettings], OutlineFile],
+    data: bytes,
+    where: str,
+    settings: ReadSettings,
+) -> StoneSet:
+    """Read a file of outlines.
+
+    Parameters
+    ----------
+    read : callable
+        Of :func:`drystone.io.outlines_in.detect.outline_reader`.
+    data : bytes
+        The whole file.
+    where : str
+        Its name.
+    settings : ReadSettings
+        ``unit``, ``px_per_m`` and ``image`` are for such files.
+
+    Returns
+    -------
+    StoneSet
+        Its source has a scale when the file has a unit.
+
+    Raises
+    ------
+    InputError
+        E113 ... E116, see ``docs/errors.md``.
+    UsageError
+        E118 when the file has another unit than the settings say.
+    """
+    file = read(data, where, settings)
+    check_unit(file.unit_m, settings, where)
+    kept, wedges = without_wedges(file.stones)
+    stones, renumbered = numbered(kept)
+    drawn = rastered(replace(file, stones=stones), settings, where)
+    notices = [*file.notices, *wedges, *renumbered, *drawn.notices]
+    source = Source(
+        where,
+        hashlib.sha256(data).hexdigest(),
+        drawn.width,
+        drawn.height,
+        # What has px of its own has no other resolution.
+        reading=(settings if drawn.px_per_m else replace(settings, px_per_m=None)).changed(),
+        px_per_m=drawn.px_per_m,
+    )
+    return stone_set(Found(drawn.patches, notices, where), source, settings)
+
+
+def check_unit(unit_m: float | None, settings: ReadSettings, where: str) -> None:
+    """Refuse a unit in the settings that is not that of the file (E118)."""
+    if not settings.unit:
+        return
+    asked = METRES.get(settings.unit)
+    if asked == unit_m or (asked and unit_m and abs(asked / unit_m - 1.0) < 1e-6):
+        return
+    own = "px" if unit_m is None else f"a unit of its own ({unit_m:g} m)"
+    raise UsageError(
+        "E118", f"this file is in {own}, not in {settings.unit}.", where=where,
+        cure="Leave the unit out: it is for drawings that do not say theirs.",
+    )  # fmt: skip

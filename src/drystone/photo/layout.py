@@ -1,0 +1,188 @@
+"""How large printed markers are, and where they lie on their sheet."""
+
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.errors import UsageError
+
+PAGES_MM = {"A4": (210.0, 297.0), "A3": (297.0, 420.0), "letter": (215.9, 279.4)}
+"""Width and height of pages."""
+
+ON_A_SHEET = 4
+"""Markers of a sheet: upper left, upper right, lower right, lower left."""
+
+CHECK_LINE_MM = 100.0
+LEAST_MARGIN_MM = 15.0
+LEAST_SIZE_MM = 10.0
+
+MIDDLE_MM = 45.0
+"""Room for the check line and the text, between the margins of the upper and lower markers."""
+
+_SIZE = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(mm|cm|m)\s*")
+_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
+
+
+@dataclass(frozen=True)
+class MarkerLayout:
+    """What is known of the markers in a photograph.
+
+    Parameters
+    ----------
+    size_m : float
+        Side of the black square of a marker, metres, as it was printed.
+    page : str or None
+        Key of `PAGES_MM` when they are sheets of four that `drystone markers` made: markers
+        4 k to 4 k + 3 are one sheet, and their distances are known.  None for single markers:
+        only their size is known.
+    ids : tuple of int or None
+        Markers that belong to it; others are left out with a notice.  None for any.
+    printed : float
+        Length of the printed check line over 100 mm; it multiplies size and distances.
+
+    Examples
+    --------
+    >>> parse_layout("A4:50mm").corners_m(1)[0].tolist()
+    [0.145, 0.015]
+    """
+
+    size_m: float
+    page: str | None = None
+    ids: tuple[int, ...] | None = None
+    printed: float = 1.0
+
+    @property
+    def side_m(self) -> float:
+        """Side of a marker as it was printed, metres."""
+        return self.size_m * self.printed
+
+    def group(self, marker_id: int) -> int:
+        """Return the number of the piece of paper that a marker is on."""
+        return marker_id if self.page is None else marker_id // ON_A_SHEET
+
+    def corners_m(self, marker_id: int) -> NDArray[np.float64]:
+        """Return where the corners of a marker are on its piece of paper.
+
+        Returns
+        -------
+        corners : (4, 2) float array
+            Upper left, upper right, lower right, lower left of the pattern; metres, x to the
+            right and y down, from the upper left of the sheet (or of a single marker).
+        """
+        unit = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]) * self.size_m
+        if self.page is not None:
+            unit = unit + sheet_positions_m(self.page, self.size_m)[marker_id % ON_A_SHEET]
+        return np.asarray(unit * self.printed, dtype=np.float64)
+
+
+def sheet_positions_m(page: str, size_m: float) -> NDArray[np.float64]:
+    """Return the upper left corners of the four markers of a sheet, metres.
+
+    Raises
+    ------
+    UsageError
+        E174: no such page, or markers that do not fit on it.
+    """
+    width, height = page_mm(page)
+    size = size_m * 1000.0
+    margin = margin_mm(size)
+    if not size >= LEAST_SIZE_MM:
+        raise _no_sheet(f"markers of {size:g} mm are too small", f"{LEAST_SIZE_MM:g} mm or more")
+    # Two markers may not come nearer to each other than to the edge: that is their quiet zone.
+    if 2 * size + 3 * margin > width or 2 * size + 4 * margin + MIDDLE_MM > height:
+        largest = _largest_mm(width, height)
+        raise _no_sheet(
+            f"four markers of {size:g} mm do not fit on {page}", f"{largest:g} mm or less"
+        )
+    left, right = margin, width - margin - size
+    top, bottom = margin, height - margin - size
+    return np.array([[left, top], [right, top], [right, bottom], [left, bottom]]) / 1000.0
+
+
+def single_position_m(page: str, size_m: float) -> NDArray[np.float64]:
+    """Return the upper left corner of the marker of a single page, metres; E174 as for sheets."""
+    width, height = page_mm(page)
+    size = size_m * 1000.0
+    room = min(width - 2 * margin_mm(size), height - 3 * margin_mm(size) - MIDDLE_MM)
+    if not LEAST_SIZE_MM <= size <= room:
+        what = f"a marker of {size:g} mm does not fit on {page}"
+        raise _no_sheet(what, f"{LEAST_SIZE_MM:g} mm or more, and less than its width")
+    return np.array([(width - size) / 2.0, margin_mm(size)]) / 1000.0
+
+
+def margin_mm(size_mm: float) -> float:
+    """Return the white border around markers: the printer's, and at least 1.5 squares."""
+    return max(LEAST_MARGIN_MM, float(math.ceil(size_mm / 4.0)))
+
+
+def page_mm(page: str) -> tuple[float, float]:
+    """Return width and height of a page; E174 for one that is not known."""
+    if page not in PAGES_MM:
+        raise _no_sheet(f"{page!r} is no page", f"one of {', '.join(PAGES_MM)}")
+    return PAGES_MM[page]
+
+
+def parse_size_m(text: str) -> float:
+    """Read the size of a marker such as ``50mm``, ``5cm`` or ``0.05m``; E174 for anything else.
+
+    Examples
+    --------
+    >>> parse_size_m("50mm")
+    0.05
+    """
+    found = _SIZE.fullmatch(text)
+    value = 0.0 if found is None else float(found[1]) * _MM[found[2]]
+    if not 0.0 < value < 10_000.0:
+        raise _no_sheet(f"{text!r} is no size of a marker", "a length such as 50mm, 5cm or 0.05m")
+    return value / 1000.0
+
+
+def parse_layout(
+    text: str, ids: tuple[int, ...] | None = None, printed: float = 1.0
+) -> MarkerLayout:
+    """Read what `drystone segment` is told of the markers.
+
+    Parameters
+    ----------
+    text : str
+        ``50mm``: single markers of this size, anywhere on the ground; ``A4:50mm`` or ``A4``
+        (50 mm): a sheet of four.
+    ids : tuple of int, optional
+        Markers that belong to it; for sheets 0 to 3 unless given.
+    printed : float
+        Length of the printed check line over 100 mm.
+
+    Raises
+    ------
+    UsageError
+        E174: no size, no page, or markers that do not fit on it.
+    """
+    if not 0.5 < printed < 2.0:
+        raise _no_sheet(
+            f"a check line of {CHECK_LINE_MM * printed:g} mm is not plausible",
+            "what a ruler says, such as 97mm",
+        )
+    page, _, size = text.partition(":")
+    named = {known.lower(): known for known in PAGES_MM}.get(page.strip().lower())
+    if named is None:
+        return MarkerLayout(parse_size_m(text), None, ids, printed)
+    size_m = parse_size_m(size or "50mm")
+    sheet_positions_m(named, size_m)
+    return MarkerLayout(size_m, named, tuple(range(ON_A_SHEET)) if ids is None else ids, printed)
+
+
+def _largest_mm(width: float, height: float) -> int:
+    """Return the largest size of a sheet of four that leaves the margins, whole millimetres."""
+    sizes = range(int(LEAST_SIZE_MM), int(width))
+    rooms = (
+        (size, min(width - 3 * margin_mm(size), height - 4 * margin_mm(size) - MIDDLE_MM))
+        for size in sizes
+    )
+    return max(size for size, room in rooms if 2 * size <= room)
+
+
+def _no_sheet(what: str, instead: str) -> UsageError:
+    return UsageError("E174", f"{what}.", where="markers", cure=f"Give {instead}.")

@@ -1,0 +1,252 @@
+"""From markers to the scale and the view of a photograph."""
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.errors import InputError, Notice
+from drystone.photo.common_plane import CommonPlane, Piece, direct, fit_plane
+from drystone.photo.layout import MarkerLayout
+from drystone.photo.markers import FoundMarker
+from drystone.photo.rectify import refuse_horizon
+from drystone.photo.view import View, apply, jacobian
+
+
+@dataclass(frozen=True)
+class MarkerLimits:
+    """When markers are not used, and when they are not believed.
+
+    Parameters
+    ----------
+    least_side_px : float
+        Smaller markers are left out (W171).
+    small_side_px : float
+        When the largest marker is smaller, the scale is in doubt (W172).
+    least_slant : float
+        Markers that are foreshortened more, length over width, are left out (W171).
+    most_percent : float
+        Residual of a marker in percent of its side from which on they disagree (E172).
+    most_size_percent : float
+        Difference of the sizes of two papers, where it is no noise, from which on they disagree
+        (E172).
+    surer : float
+        F statistic from which on it is no noise.
+    doubtful_percent : float
+        Residual of all from which on the scale is in doubt (W172).
+    """
+
+    least_side_px: float = 40.0
+    small_side_px: float = 100.0
+    least_slant: float = 0.35
+    most_percent: float = 1.0
+    most_size_percent: float = 1.5
+    surer: float = 15.0
+    doubtful_percent: float = 0.5
+
+
+def scale_and_view(
+    found: tuple[FoundMarker, ...],
+    layout: MarkerLayout,
+    size_px: tuple[int, int],
+    limits: MarkerLimits | None = None,
+) -> View:
+    """Find the scale and the perspective of a photograph from at least two markers.
+
+    Parameters
+    ----------
+    found : tuple of FoundMarker
+        Of :func:`drystone.photo.markers.find_markers`.
+    layout : MarkerLayout
+        Their size, and whether they are sheets; see :func:`drystone.photo.layout.parse_layout`.
+    size_px : (int, int)
+        Width and height of the photograph.
+    limits : MarkerLimits, optional
+        What is believed.
+
+    Returns
+    -------
+    view : View
+        With residuals and notices.
+
+    Raises
+    ------
+    InputError
+        E170 fewer than two markers that can be used; E171 an id twice; E172 markers that disagree;
+        E173 a view with the horizon in it.
+    """
+    limits = limits or MarkerLimits()
+    used, notices = _usable(found, layout, limits)
+    groups = sorted({layout.group(marker.id) for marker in used})
+    papers = [[marker for marker in used if layout.group(marker.id) == one] for one in groups]
+    plane = fit_plane([_piece(paper, layout) for paper in papers])
+    if plane is None:
+        raise _disagreement("No view of the ground gives all of them their size")
+    residual_m = _believed(papers, plane, layout, limits)
+    percent = 100.0 * residual_m / layout.side_m
+    notices += _doubts(used, percent, limits)
+    refuse_horizon(View(plane.to_plane, 1.0, (used[0].id,)), size_px)
+    to_ground = _upright(plane.to_plane, size_px)
+    metres_per_px = math.sqrt(np.linalg.det(jacobian(to_ground, _middle(size_px))))
+    ids = tuple(marker.id for marker in used)
+    return View(to_ground, 1.0 / metres_per_px, ids, 1000.0 * residual_m, percent, notices)
+
+
+def _usable(
+    found: Sequence[FoundMarker], layout: MarkerLayout, limits: MarkerLimits
+) -> tuple[tuple[FoundMarker, ...], tuple[Notice, ...]]:
+    """Return at least two markers that can be measured, and say which were left out."""
+    known = [one for one in found if layout.ids is None or one.id in layout.ids]
+    twice = [one for one, count in Counter(marker.id for marker in known).items() if count > 1]
+    if twice:
+        raise InputError(
+            "E171",
+            f"{_markers(twice)} can be seen twice, so it is not known which is which.",
+            where="markers",
+            cure="Use every marker once: `drystone markers --ids` prints others.",
+        )
+    notices = []
+    strange = sorted({one.id for one in found} - {one.id for one in known})
+    if strange:
+        others = "of the sheet" if layout.page else "to be used"
+        notices.append(
+            Notice("W170", f"{_markers(strange)} left out: not one {others} ({_ids(layout)}).")
+        )
+    small = [one for one in known if one.side_px < limits.least_side_px]
+    slanted = [one for one in known if one not in small and _slant(one) < limits.least_slant]
+    used = tuple(one for one in known if one not in small and one not in slanted)
+    for poor, why in (
+        (small, f"smaller than {limits.least_side_px:g} px"),
+        (slanted, "seen at too flat an angle"),
+    ):
+        if poor:
+            said = ", ".join(f"{one.id} ({one.side_px:.0f} px)" for one in poor)
+            notices.append(Notice("W171", f"Markers left out, {why}: {said}.", _NEARER))
+    if len(used) < 2:
+        raise _too_few(found, used, notices)
+    return used, tuple(notices)
+
+
+_NEARER = "Go nearer, photograph from above, or print larger markers."
+
+
+def _too_few(
+    found: Sequence[FoundMarker], used: Sequence[FoundMarker], notices: Sequence[Notice]
+) -> InputError:
+    what = "no marker was found" if not found else "no marker can be used"
+    if used:
+        what = f"only marker {used[0].id} can be used"
+    left_out = "".join(f" {notice.message}" for notice in notices)
+    return InputError(
+        "E170",
+        f"{what}, and two are needed to know the scale and to see when it is wrong.{left_out}",
+        where="markers",
+        cure="Print markers with `drystone markers`, lay them flat beside the stones with all of "
+        "their white border, and photograph them sharp and without glare; or say the scale with "
+        "--px-per-m or --ruler.",
+    )
+
+
+def _piece(paper: Sequence[FoundMarker], layout: MarkerLayout) -> Piece:
+    seen = np.concatenate([marker.corners_px for marker in paper])
+    return Piece(seen, np.concatenate([layout.corners_m(marker.id) for marker in paper]))
+
+
+def _believed(
+    papers: Sequence[Sequence[FoundMarker]],
+    plane: CommonPlane,
+    layout: MarkerLayout,
+    limits: MarkerLimits,
+) -> float:
+    """Return the residual of all corners, metres; refuse markers that disagree (E172)."""
+    _same_size(papers, plane, layout, limits)
+    square_m = {
+        marker.id: (off[4 * i : 4 * i + 4] ** 2).sum(axis=1)
+        for paper, off in zip(papers, plane.off_m, strict=True)
+        for i, marker in enumerate(paper)
+    }
+    rms_m = {one: math.sqrt(float(square.mean())) for one, square in square_m.items()}
+    worst = max(rms_m, key=lambda one: rms_m[one])
+    if not 100.0 * rms_m[worst] <= limits.most_percent * layout.side_m:
+        raise _disagreement(
+            f"Marker {worst} is {1000 * rms_m[worst]:.1f} mm off "
+            f"({100 * rms_m[worst] / layout.side_m:.1f} % of its side; the limit is "
+            f"{limits.most_percent:g} %)"
+        )
+    return math.sqrt(float(np.concatenate(list(square_m.values())).mean()))
+
+
+def _same_size(
+    papers: Sequence[Sequence[FoundMarker]],
+    plane: CommonPlane,
+    layout: MarkerLayout,
+    limits: MarkerLimits,
+) -> None:
+    """Refuse markers of sizes that differ (E172): perspective can hide that from the residual."""
+    spread = 100.0 * (float(plane.sizes.max() / plane.sizes.min()) - 1.0)
+    if plane.surer <= limits.surer or spread <= limits.most_size_percent:
+        return
+    low, high = (papers[int(one)][0].id for one in (plane.sizes.argmin(), plane.sizes.argmax()))
+    raise _disagreement(
+        f"Marker {high} seems to be {spread:.1f} % larger than marker {low}, and both should "
+        f"measure {1000 * layout.side_m:g} mm"
+    )
+
+
+def _disagreement(what: str) -> InputError:
+    return InputError(
+        "E172",
+        f"the markers disagree with each other. {what}.",
+        where="markers",
+        cure="Check that all were printed in the same size (at 100 %) and that it is the size "
+        "that was given, that they lie flat in one plane, and that a sheet was not cut up.",
+    )
+
+
+def _doubts(
+    used: Sequence[FoundMarker], percent: float, limits: MarkerLimits
+) -> tuple[Notice, ...]:
+    notices = []
+    largest = max(marker.side_px for marker in used)
+    if largest < limits.small_side_px:
+        said = f"The largest marker is {largest:.0f} px wide: the scale may be 1 % off."
+        notices.append(Notice("W172", said, _NEARER))
+    if percent > limits.doubtful_percent:
+        said = f"The corners of the markers are {percent:.1f} % of a marker off on average."
+        notices.append(Notice("W172", said, "Are they flat, sharp, and in the same plane?"))
+    return tuple(notices)
+
+
+def _slant(marker: FoundMarker) -> float:
+    """Return how foreshortened a marker is: 1 from straight above, 0 from the side."""
+    square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    local = jacobian(direct(square, marker.corners_px), np.array([0.5, 0.5]))
+    long, short = np.linalg.svd(local, compute_uv=False)
+    return float(short / long)
+
+
+def _upright(to_plane: NDArray[np.float64], size_px: tuple[int, int]) -> NDArray[np.float64]:
+    """Turn and move the plane so that the picture stays upright and begins at 0, 0."""
+    local = jacobian(to_plane, _middle(size_px))
+    angle = math.atan2(local[1, 0] - local[0, 1], local[0, 0] + local[1, 1])
+    cos, sin = math.cos(angle), math.sin(angle)
+    turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ to_plane
+    width, height = size_px
+    corners = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
+    low = apply(turned, corners).min(axis=0)
+    return np.array([[1.0, 0.0, -low[0]], [0.0, 1.0, -low[1]], [0.0, 0.0, 1.0]]) @ turned
+
+
+def _middle(size_px: tuple[int, int]) -> NDArray[np.float64]:
+    return np.array([size_px[0] / 2.0, size_px[1] / 2.0])
+
+
+def _markers(ids: Sequence[int]) -> str:
+    return f"marker{'s' * (len(ids) > 1)} {', '.join(map(str, ids))}"
+
+
+def _ids(layout: MarkerLayout) -> str:
+    return ", ".join(map(str, layout.ids or ()))

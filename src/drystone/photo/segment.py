@@ -1,0 +1,221 @@
+"""Stones in a photograph of stones laid out on a ground of another colour."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from drystone.errors import InputError
+from drystone.kernels.raster import Mask
+from drystone.photo.segment_ground import GroundModel, fit_ground
+from drystone.photo.segment_outline import contrast_along, refine_outlines
+from drystone.photo.segment_settings import SegmentSettings
+from drystone.photo.segment_shadow import Shadows, find_shadows
+from drystone.photo.segment_split import Labels, Neck, split_stones
+
+WORKING_PX = 1_600_000
+"""Size that a photograph is reduced to for this."""
+
+_FLOOR_SHARE = 2e-4
+"""Share of the picture of the smallest stone."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Stones that were found in a photograph.
+
+    Parameters
+    ----------
+    labels : (h, w) uint16 array
+        Stones 1 ... n, numbered in rows from the top left; 0 elsewhere.
+    necks : tuple of Neck
+        Cut and doubtful ones.
+    contrast : tuple of float
+        Contrast of every stone along the weakest quarter of its outline, in CIELAB.
+    shaded : tuple of int
+        Stones with a part that may be shadow.
+    cut_px : tuple of (float, float)
+        Middles (column, row) of stones that the edge of the photograph cuts.
+    specks : int
+        Areas that were too small.
+    beside_papers : int
+        Areas that touch a marker and were taken for its paper.
+    ground : GroundModel
+        The ground.
+    shadow_level : float
+        Light in cast shadows over that beside them; 1 when there are none.
+    """
+
+    labels: NDArray[np.uint16]
+    necks: tuple[Neck, ...]
+    contrast: tuple[float, ...]
+    shaded: tuple[int, ...]
+    cut_px: tuple[tuple[float, float], ...]
+    specks: int
+    beside_papers: int
+    ground: GroundModel
+    shadow_level: float
+
+    @property
+    def count(self) -> int:
+        """Number of stones."""
+        return int(self.labels.max())
+
+
+def segment(
+    image: NDArray[np.uint8],
+    inside: Mask | None = None,
+    settings: SegmentSettings | None = None,
+    papers: Mask | None = None,
+) -> Found:
+    """Find stones.
+
+    Parameters
+    ----------
+    image : (h, w, 3) uint8 array
+        RGB, as seen from above; of `WORKING_PX` or less for speed.
+    inside : (h, w) bool array, optional
+        False where there is no photograph.
+    settings : SegmentSettings, optional
+        How stones are told from the ground.
+    papers : (h, w) bool array, optional
+        True on markers; what touches them is their paper.
+
+    Raises
+    ------
+    InputError
+        E175 no stones; E176 no even ground.
+    """
+    settings = settings or SegmentSettings()
+    papers = np.zeros(image.shape[:2], bool) if papers is None else papers
+    usable = ~papers if inside is None else inside & ~papers
+    ground = fit_ground(image, usable, settings.ground)
+    foreground = _unlike(ground, usable)
+    shadows = find_shadows(ground, foreground)
+    stone = _solid(foreground & ~shadows.mask, usable)
+    stone = refine_outlines(ground.lab, stone, usable)
+    stone, beside = _without_papers(_solid(stone, usable), papers)
+    labels, necks = split_stones(stone, ground.lab, settings)
+    return _sorted_out(labels, necks, _Context(ground, shadows, usable | papers, beside), settings)
+
+
+def _unlike(ground: GroundModel, usable: Mask) -> Mask:
+    """Return what is not ground: far from its colour, or less far and beside what is."""
+    distance = np.where(usable, ground.distance, 0)
+    near = distance[usable & (distance < 6)]
+    low = float(np.clip(1.3 * np.percentile(near, 98), 3.0, 6.0)) if near.size else 3.0
+    mask = ndimage.binary_opening(distance > low)
+    pieces, count = ndimage.label(mask)
+    seen = ndimage.maximum(distance, pieces, np.arange(count + 1))
+    return np.asarray(mask & (np.asarray(seen) > 1.6 * low)[pieces])
+
+
+def _solid(mask: Mask, usable: Mask) -> Mask:
+    """Smooth, and fill holes; what stones enclose by touching all round stays open."""
+    mask = ndimage.binary_opening(ndimage.binary_closing(mask, iterations=2) & usable, iterations=2)
+    holes, count = ndimage.label(ndimage.binary_fill_holes(mask) & ~mask)
+    pieces, _ = ndimage.label(mask, np.ones((3, 3)))
+    sizes = np.bincount(pieces.ravel())
+    areas = np.bincount(holes.ravel(), minlength=count + 1)
+    around = ndimage.maximum_filter(pieces, 3)
+    owner = np.asarray(ndimage.maximum(around, holes, np.arange(count + 1)), int)
+    small = areas < 0.15 * sizes[owner]
+    small[0] = False
+    return np.asarray(mask | (small[holes] & usable))
+
+
+def _without_papers(stone: Mask, papers: Mask) -> tuple[Mask, int]:
+    """Take away what touches markers; return the rest and how much was taken."""
+    if not papers.any():
+        return stone, 0
+    pieces, count = ndimage.label(stone, np.ones((3, 3)))
+    touched = np.zeros(count + 1, bool)
+    touched[np.unique(pieces[ndimage.binary_dilation(papers, iterations=5)])] = True
+    touched[0] = False
+    return stone & ~touched[pieces], int(touched.sum())
+
+
+@dataclass(frozen=True, eq=False)
+class _Context:
+    ground: GroundModel
+    shadows: Shadows
+    shown: Mask
+    beside_papers: int
+
+
+def _sorted_out(
+    labels: Labels,
+    necks: tuple[Neck, ...],
+    context: _Context,
+    settings: SegmentSettings,
+) -> Found:
+    """Leave out what is too small or cut, and number the rest in rows."""
+    areas = np.bincount(labels.ravel())
+    areas[0] = 0
+    least = settings.min_area_px
+    if least is None:
+        least = max(_FLOOR_SHARE * float(context.shown.sum()), _usual(areas) / 50)
+    large = areas >= least
+    number = np.arange(len(areas))
+    middles = np.array(ndimage.center_of_mass(labels > 0, labels, number[1:])).reshape(-1, 2)
+    near_edge = ~ndimage.binary_erosion(context.shown, iterations=4)
+    cut = np.isin(number, np.unique(labels[near_edge])) & large
+    kept = np.flatnonzero(large & ~cut)
+    if not len(kept):
+        raise _no_stones(int(cut.sum()), context.ground)
+    order = _in_rows(middles[kept - 1], float(np.sqrt(np.median(areas[kept]))))
+    new = np.zeros(len(areas), np.uint16)
+    new[kept[order]] = np.arange(1, len(kept) + 1)
+    numbered = new[labels]
+    contrast = contrast_along(context.ground.lab, numbered.astype(np.int32), len(kept))
+    return Found(
+        labels=numbered,
+        necks=tuple(neck for neck in necks if stones_at(numbered, neck.at_px)),
+        contrast=tuple(float(value) for value in contrast),
+        shaded=_shaded(numbered, context.shadows, len(kept)),
+        cut_px=tuple((float(x), float(y)) for y, x in middles[np.flatnonzero(cut) - 1]),
+        specks=int(((areas > 0) & ~large).sum()),
+        beside_papers=context.beside_papers,
+        ground=context.ground,
+        shadow_level=context.shadows.level,
+    )
+
+
+def _usual(areas: NDArray[np.int64]) -> float:
+    """Return the area that half of all that was found belongs to pieces larger than."""
+    ordered = np.sort(areas)[::-1]
+    total = np.cumsum(ordered)
+    return float(ordered[int(np.searchsorted(total, total[-1] / 2))]) if total[-1] else 0.0
+
+
+def _in_rows(middles: NDArray[np.float64], size: float) -> list[int]:
+    """Return the order in which one reads: by rows as high as a stone, then from left to right."""
+    rows = np.floor(middles[:, 0] / max(size, 1.0))
+    return [int(k) for k in np.lexsort((middles[:, 1], rows))]
+
+
+def stones_at(labels: NDArray[np.uint16], at_px: tuple[float, float], near: int = 4) -> list[int]:
+    """Return the stones around a place."""
+    column, row = round(at_px[0]), round(at_px[1])
+    area = labels[max(row - near, 0) : row + near + 1, max(column - near, 0) : column + near + 1]
+    return [int(k) for k in np.unique(area) if k]
+
+
+def _shaded(labels: NDArray[np.uint16], shadows: Shadows, count: int) -> tuple[int, ...]:
+    """Return stones of which a part, but not all, has the colour of shaded ground."""
+    body = ndimage.binary_opening(shadows.alike & (labels > 0), iterations=3)
+    alike = np.bincount(labels[body], minlength=count + 1)
+    share = alike / np.maximum(np.bincount(labels.ravel(), minlength=count + 1), 1)
+    return tuple(int(k) for k in range(1, count + 1) if 0.15 < share[k] < 0.85)
+
+
+def _no_stones(cut: int, ground: GroundModel) -> InputError:
+    beside = f" ({cut} are cut by the edge of the photograph)" if cut else ""
+    return InputError(
+        "E175",
+        f"no stones were found{beside}: {100 * ground.share:.0f} % of the photograph has the "
+        "colour of its ground.",
+        cure="Photograph whole stones on a ground of another colour; --min-area finds smaller "
+        "ones.",
+    )

@@ -1,0 +1,179 @@
+"""What a person should look at before building with stones from a photograph."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.errors import Notice
+from drystone.photo.segment import Found, stones_at
+from drystone.photo.segment_settings import SegmentSettings
+
+LOW_CONTRAST = 8.0
+"""Distance in CIELAB from the ground below which an outline is not to be relied on."""
+
+SURELY_TWO = 0.45
+"""Necks narrower than this share of the stone are cut without a word."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """Something that may be wrong.
+
+    Parameters
+    ----------
+    code : str
+        W175 neck, W176 left out at the edge, W177 shadow, W178 low contrast, W179 unusual size.
+    stones : tuple of int
+        Stones concerned; empty when it is none of them.
+    at_px : (float, float)
+        Where, column and row of the label image.
+    text : str
+        What is in doubt.
+    """
+
+    code: str
+    stones: tuple[int, ...]
+    at_px: tuple[float, float]
+    text: str
+
+
+@dataclass(frozen=True)
+class StoneSize:
+    """Size of a stone.
+
+    Parameters
+    ----------
+    id : int
+        Its number.
+    at_px : (float, float)
+        Its middle, column and row.
+    length_px, width_px : float
+        Along its longest direction (of its second moments) and across.
+    area_px : int
+        Number of its px.
+    """
+
+    id: int
+    at_px: tuple[float, float]
+    length_px: float
+    width_px: float
+    area_px: int
+
+
+def sizes_of(labels: NDArray[np.uint16]) -> tuple[StoneSize, ...]:
+    """Return the sizes of the stones of a label image, in the order of their numbers.
+
+    Examples
+    --------
+    >>> labels = np.zeros((9, 9), np.uint16)
+    >>> labels[2:4, 1:7] = 1
+    >>> sizes_of(labels)
+    (StoneSize(id=1, at_px=(4.0, 3.0), length_px=6.0, width_px=2.0, area_px=12),)
+    """
+    rows, cols = np.nonzero(labels)
+    order = np.argsort(labels[rows, cols], kind="stable")
+    numbers, starts = np.unique(labels[rows, cols][order], return_index=True)
+    points = np.column_stack([cols, rows])[order] + 0.5
+    sizes = []
+    for number, inside in zip(numbers, np.split(points, starts[1:]), strict=True):
+        middle = inside.mean(axis=0)
+        _, axes = np.linalg.eigh(np.cov((inside - middle).T, bias=True))
+        extent = np.ptp((inside - middle) @ axes, axis=0) + 1
+        sizes.append(
+            StoneSize(
+                int(number), (float(middle[0]), float(middle[1])),
+                round(float(extent.max()), 6), round(float(extent.min()), 6), len(inside),
+            )
+        )  # fmt: skip
+    return tuple(sizes)
+
+
+def doubts_of(
+    found: Found, px_per_m: float | None = None, settings: SegmentSettings | None = None
+) -> tuple[Doubt, ...]:
+    """Return what is in doubt, stone by stone.
+
+    Parameters
+    ----------
+    found : Found
+        Of :func:`drystone.photo.segment.segment`.
+    px_per_m : float or None
+        For lengths in centimetres.
+    settings : SegmentSettings, optional
+        What size is unusual.
+    """
+    sizes = sizes_of(found.labels)
+    settings = settings or SegmentSettings()
+    at = {size.id: size.at_px for size in sizes}
+    doubts = [*_necks(found, px_per_m)]
+    doubts += [
+        Doubt("W176", (), place, f"cut by the edge at {_place(place)}") for place in found.cut_px
+    ]
+    doubts += [
+        Doubt("W177", (stone,), at[stone], f"stone {stone} at {_place(at[stone])}")
+        for stone in found.shaded
+    ]
+    doubts += [
+        Doubt("W178", (stone,), at[stone], f"stone {stone} at {_place(at[stone])}")
+        for stone, contrast in enumerate(found.contrast, start=1)
+        if contrast < LOW_CONTRAST
+    ]
+    usual = float(np.median([size.area_px for size in sizes]))
+    for size in sizes:
+        times = size.area_px / usual
+        if not 1 / settings.unusual < times < settings.unusual:
+            large = f"{times:.2g} times as large as usual"
+            doubts.append(Doubt("W179", (size.id,), size.at_px, f"stone {size.id}: {large}"))
+    return tuple(doubts)
+
+
+def notices_of(found: Found, doubts: Iterable[Doubt]) -> tuple[Notice, ...]:
+    """Return the doubts as notices, one of each kind."""
+    texts: dict[str, list[str]] = {}
+    for doubt in doubts:
+        texts.setdefault(doubt.code, []).append(doubt.text)
+    if found.beside_papers:
+        texts.setdefault("W176", []).append(
+            f"{found.beside_papers} beside a marker, which may be its paper"
+        )
+    if found.specks:
+        texts.setdefault("W179", []).append(f"{found.specks} specks were left out")
+    return tuple(
+        Notice(code, f"{_KINDS[code][0]}: {'; '.join(said)}.", _KINDS[code][1])
+        for code, said in sorted(texts.items())
+    )
+
+
+_KINDS = {
+    "W175": ("necks", "Look at them in preview.png; draw or erase a line in stones.png."),
+    "W176": ("left out", "Photograph whole stones, clear of markers."),
+    "W177": ("a part may be shadow", "Look at preview.png; avoid hard light."),
+    "W178": ("hardly differs from the ground", "Look at preview.png; take another ground."),
+    "W179": ("unusual sizes", "Is it a stone, and is it one?  --min-area changes the limit."),
+}
+"""What a code means, and the cure."""
+
+
+def _necks(found: Found, px_per_m: float | None) -> list[Doubt]:
+    doubts = []
+    for neck in found.necks:
+        stones = tuple(stones_at(found.labels, neck.at_px))
+        wide = f"{neck.width_px:.0f} px"
+        if px_per_m is not None:
+            wide = f"{100 * neck.width_px / px_per_m:.1f} cm"
+        where = f"at {_place(neck.at_px)}, {wide} wide"
+        if neck.cut and neck.share >= SURELY_TWO and len(stones) > 1:
+            names = " and ".join(str(stone) for stone in stones)
+            text = f"stones {names} were cut apart {where}: maybe one stone"
+        elif not neck.cut:
+            text = f"stone {stones[0]} has a neck {where}: maybe two stones"
+        else:
+            continue
+        doubts.append(Doubt("W175", stones, neck.at_px, text))
+    return doubts
+
+
+def _place(at_px: tuple[float, float]) -> str:
+    return f"({at_px[0]:.0f}, {at_px[1]:.0f}) px"

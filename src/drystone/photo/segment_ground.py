@@ -1,0 +1,201 @@
+"""The colour of the ground in a photograph, and the light on it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from skimage.color import rgb2lab
+from skimage.filters import threshold_otsu
+
+from drystone.errors import InputError
+from drystone.kernels.raster import Mask
+from drystone.photo.segment_settings import Ground
+
+Planes = NDArray[np.float32]
+"""(h, w, 3)."""
+
+LEAST_SHARE = 0.2
+"""Share of the picture that must be ground, or it is no photograph of stones laid out."""
+
+_NEAR = 10.0
+"""Distance in Lab of what may be ground, of the first guess."""
+
+_BIN = 4.0
+_ORDERS = (0, 1, 1, 2, 2, 2, 3, 3, 3)
+"""Order of the polynomial of the light in every round: more is found with what was fitted."""
+
+
+@dataclass(frozen=True, eq=False)
+class GroundModel:
+    """A photograph as it would be if the ground were lit evenly.
+
+    Parameters
+    ----------
+    log_light : (h, w, 3) float32 array
+        Natural logarithm of linear light over that of the ground at the same place: 0 on the
+        ground.
+    lab : (h, w, 3) float32 array
+        CIELAB of the evenly lit picture.
+    colour : (3,) float array
+        CIELAB of the ground.
+    spread : (3,) float array
+        Robust standard deviation of the ground in L, a, b; at least 0.8.
+    share : float
+        Share of the picture that has the colour of the ground.
+    uneven : float
+        How much darker the darkest place of the ground is lit than the brightest, 0 to 1.
+    """
+
+    log_light: Planes
+    lab: Planes
+    colour: NDArray[np.float64]
+    spread: NDArray[np.float64]
+    share: float
+    uneven: float
+
+    @property
+    def distance(self) -> NDArray[np.float32]:
+        """Distance of every px from the ground, (h, w), in standard deviations of the ground."""
+        away = (self.lab - self.colour) / self.spread
+        return np.asarray(np.sqrt((away**2).sum(axis=-1)), np.float32)
+
+
+def fit_ground(image: NDArray[np.uint8], usable: Mask, ground: Ground) -> GroundModel:
+    """Find the ground and take its uneven light out of a photograph.
+
+    Parameters
+    ----------
+    image : (h, w, 3) uint8 array
+        RGB.
+    usable : (h, w) bool array
+        What may be ground or stone: not the markers, nor what the photograph does not show.
+    ground : str
+        See :class:`~drystone.photo.segment_settings.SegmentSettings`.
+
+    Raises
+    ------
+    InputError
+        E176 when no colour is frequent enough to be a ground.
+    """
+    light = linear_light(image)
+    smooth = np.stack([ndimage.gaussian_filter(light[..., k], 1.0) for k in range(3)], axis=-1)
+    step = max(1, round(np.sqrt(usable.size / 60_000)))
+    coarse = np.stack(
+        [ndimage.gaussian_filter(light[..., k], 2.0)[::step, ::step] for k in range(3)], axis=-1
+    )
+    field = _fit_light(coarse, usable[::step, ::step], ground)
+    log_ground = _evaluated(field, usable.shape)
+    log_light = np.log(np.maximum(smooth, 1e-3)) - log_ground
+    middle = log_ground[usable].mean(axis=0)
+    even = np.exp(log_light + middle)
+    lab = lab_of(even)
+    colour, spread, share = _statistics(lab, usable, middle)
+    if share < LEAST_SHARE:
+        raise InputError(
+            "E176",
+            "no even ground was found: its most frequent colour fills only "
+            f"{100 * share:.0f} % of the photograph.",
+            cure="Lay the stones on a plain sheet of another colour than theirs, and photograph "
+            "nothing else; or say --ground light or --ground dark.",
+        )
+    brightness = log_ground[usable].mean(axis=-1)
+    uneven = 1 - float(np.exp(np.percentile(brightness, 1) - np.percentile(brightness, 99)))
+    return GroundModel(log_light.astype(np.float32), lab, colour, spread, share, uneven)
+
+
+def linear_light(image: NDArray[np.uint8]) -> Planes:
+    """Return the linear light of sRGB values, 0 to 1."""
+    value = np.arange(256) / 255
+    table = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+    return np.asarray(table.astype(np.float32)[image])
+
+
+def lab_of(light: NDArray[Any]) -> Planes:
+    """Return CIELAB of linear light; above 1 is cut off."""
+    low = np.clip(light, 0, 1)
+    value = np.where(low <= 0.0031308, 12.92 * low, 1.055 * low ** (1 / 2.4) - 0.055)
+    return np.asarray(rgb2lab(value.astype(np.float32)), np.float32)
+
+
+def _fit_light(light: Planes, usable: Mask, ground: Ground) -> NDArray[np.float64]:
+    """Return coefficients (10, 3) of the logarithm of the light on the ground."""
+    lab = lab_of(light)
+    log = np.log(np.maximum(light, 1e-3))
+    near = usable & (_away(lab - _frequent(lab, usable, ground)) < _NEAR)
+    basis = _basis(usable.shape)
+    field = np.zeros((10, 3))
+    for order in _ORDERS:
+        terms = (order + 1) * (order + 2) // 2
+        field[:] = 0
+        field[:terms] = np.linalg.lstsq(basis[near][:, :terms], log[near], rcond=None)[0]
+        expected = lab_of(np.exp(basis @ field))
+        away = _away(lab - expected)
+        known = away[near]
+        limit = np.clip(3.5 * 1.48 * np.median(known), 6.0, 1.6 * _NEAR)
+        near = usable & (away < limit)
+        if near.sum() < max(20, 0.5 * LEAST_SHARE * usable.sum()):
+            break
+    return field
+
+
+def _away(difference: NDArray[Any]) -> NDArray[Any]:
+    return np.asarray(np.sqrt((difference**2).sum(axis=-1)))
+
+
+def _frequent(lab: Planes, usable: Mask, ground: Ground) -> NDArray[np.float64]:
+    """Return the most frequent colour, counted along the borders and all over."""
+    allowed = usable
+    if ground != "auto":
+        split = threshold_otsu(lab[..., 0][usable])
+        allowed = usable & ((lab[..., 0] > split) == (ground == "light"))
+    depth = ndimage.distance_transform_edt(np.pad(usable, 1))[1:-1, 1:-1]
+    border = allowed & (depth < 0.06 * max(usable.shape))
+    edges = [np.arange(0, 105, _BIN), np.arange(-110, 114, _BIN), np.arange(-110, 114, _BIN)]
+    counts = np.zeros([len(edge) - 1 for edge in edges])
+    for part in (allowed, border):
+        if part.any():
+            counts = counts + np.histogramdd(lab[part], edges)[0] / part.sum()
+    best = np.unravel_index(int(ndimage.gaussian_filter(counts, 0.8).argmax()), counts.shape)
+    middle = np.array([edges[k][best[k]] + _BIN / 2 for k in range(3)])
+    near = lab[allowed][_away(lab[allowed] - middle) < 2 * _BIN]
+    return np.asarray(np.median(near, axis=0) if len(near) else middle, np.float64)
+
+
+def _basis(shape: tuple[int, int]) -> NDArray[np.float64]:
+    """Return the products of powers of x and y up to the third, (h, w, 10), from low to high."""
+    y, x = np.meshgrid(*(np.linspace(-1, 1, side) for side in shape), indexing="ij")
+    return np.stack(
+        [x ** (order - k) * y**k for order in range(4) for k in range(order + 1)], axis=-1
+    )
+
+
+def _evaluated(field: NDArray[np.float64], shape: tuple[int, int]) -> Planes:
+    """Evaluate the light everywhere; it is smooth, so coarse first."""
+    coarse = _basis((40, 40)) @ field
+    ratio = (shape[0] / 40, shape[1] / 40)
+    fine = [
+        ndimage.zoom(coarse[..., k], ratio, order=1, grid_mode=False, mode="nearest")
+        for k in range(3)
+    ]
+    return np.stack(fine, axis=-1).astype(np.float32)
+
+
+def _statistics(
+    lab: Planes, usable: Mask, log_ground: NDArray[Any]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    colour = lab_of(np.exp(log_ground)[None, None])[0, 0].astype(float)
+    values = lab[usable][:: max(1, int(usable.sum()) // 200_000)]
+    limit = 1.6 * _NEAR
+    for _ in range(3):
+        near = values[_away(values - colour) < limit]
+        if len(near) < 10:
+            break
+        colour = np.median(near, axis=0).astype(float)
+        limit = np.clip(4 * 1.48 * np.median(_away(near - colour)), 8.0, 30.0)
+    near = values[_away(values - colour) < limit]
+    if len(near) < 10:
+        return colour, np.full(3, 0.8), 0.0
+    spread = 1.48 * np.median(np.abs(near - colour), axis=0)
+    return colour, np.maximum(spread, 0.8), len(near) / len(values)

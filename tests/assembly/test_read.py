@@ -1,0 +1,102 @@
+"""Plans read with the files beside them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+
+from drystone.assembly.read import outer_loop, read_assembly, scaled
+from drystone.errors import DrystoneError
+from drystone.plotting.outlines import label_regions
+from drystone.statics.limit import lateral_resistance
+from tests.export.robot_plans import PX_PER_M, assembly, write_plan_folder
+
+
+def refused(code: str, path: Path, **options: float) -> DrystoneError:
+    with pytest.raises(DrystoneError) as caught:
+        read_assembly(path, **options)
+    assert caught.value.code == code
+    return caught.value
+
+
+def test_folder_and_file_are_the_same_plan(tmp_path: Path) -> None:
+    write_plan_folder("exact", tmp_path)
+    one, other = read_assembly(tmp_path), read_assembly(tmp_path / "plan.json")
+    assert one.plan == other.plan
+    assert [part.name for part in one.parts] == [part.name for part in other.parts]
+    assert one.unit == "px"
+    assert one.size == (110.0, 40.0)
+
+
+def test_areas_of_outlines_are_those_of_the_blocks() -> None:
+    for name in ("exact", "exact-m", "raster", "raster-m"):
+        wall = assembly(name)
+        areas = {block.id: block.area for block in wall.model.blocks}
+        for part in wall.parts:
+            polygon = shapely.Polygon(part.corners)
+            assert polygon.is_valid
+            assert polygon.exterior.is_ccw
+            assert polygon.area == pytest.approx(part.area, rel=1e-12)
+            assert polygon.area == pytest.approx(areas[part.id], rel=1e-9)
+            x, y = polygon.centroid.coords[0]
+            near_m = 1e-9 if name.startswith("exact") else 1.0 / PX_PER_M
+            assert part.centroid == pytest.approx((x, y), abs=near_m)
+
+
+def test_a_scale_changes_no_load_multiplier() -> None:
+    wall = assembly("exact", None)
+    other = lateral_resistance(scaled(wall.model, 1 / PX_PER_M))
+    assert other.left.alpha == pytest.approx(wall.resistance.left.alpha, abs=1e-8)
+    assert wall.resistance.left.alpha == pytest.approx(wall.plan.metrics.alpha_left, abs=1e-6)
+
+
+def test_one_scale_only(tmp_path: Path) -> None:
+    write_plan_folder("exact-m", tmp_path)
+    assert read_assembly(tmp_path, px_per_m=PX_PER_M).px_per_m == PX_PER_M
+    assert "137 px a metre, not 200" in refused("E131", tmp_path, px_per_m=200.0).what
+
+
+def test_a_thickness_needs_a_scale(tmp_path: Path) -> None:
+    write_plan_folder("raster", tmp_path)
+    refused("E131", tmp_path, thickness_m=0.3)
+    assert read_assembly(tmp_path, thickness_m=0.3, px_per_m=100.0).thickness == 0.3
+
+
+def test_files_must_be_there(tmp_path: Path) -> None:
+    write_plan_folder("exact", tmp_path)
+    (tmp_path / "blocks.json").unlink()
+    refused("E133", tmp_path)
+
+
+def test_the_usual_thickness_is_the_side_of_the_median_stone(tmp_path: Path) -> None:
+    write_plan_folder("exact", tmp_path)
+    wall = read_assembly(tmp_path)
+    sides = sorted(shapely.Polygon(part.corners).area ** 0.5 for part in wall.stones)
+    middle = len(sides) // 2
+    assert len(sides) % 2 == 0
+    assert wall.thickness == pytest.approx((sides[middle - 1] + sides[middle]) / 2)
+
+
+def test_a_pit_that_meets_the_outside_at_a_corner_is_filled() -> None:
+    labels = np.zeros((8, 9), np.uint32)
+    labels[1:7, 1:8] = 3
+    labels[1, 1] = labels[2, 2] = 0
+    ((found, *_),) = (region.loops for region in label_regions(labels))
+    assert not shapely.Polygon(found).is_valid
+    polygon = shapely.Polygon(outer_loop([found]))
+    assert polygon.is_valid
+    assert polygon.exterior.is_ccw
+    assert polygon.area == 6 * 7 - 1
+
+
+def test_holes_and_lesser_pieces_are_left_out() -> None:
+    labels = np.zeros((9, 12), np.uint32)
+    labels[1:8, 1:8] = 3
+    labels[3:5, 3:5] = 0
+    labels[4, 9:11] = 3
+    (region,) = label_regions(labels)
+    assert len(region.loops) == 3
+    found = outer_loop(region.loops)
+    assert found.tolist() in [loop.tolist() for loop in region.loops]
+    assert shapely.Polygon(found).area == 49.0

@@ -1,0 +1,76 @@
+"""What a plan says before it begins, and what it wrote."""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from drystone.cli import announce
+from drystone.cli.announce import read_line, scale_notice
+from drystone.io.plan_json import read_plan
+from drystone.model.stone import Stone, StoneSet
+from tests.cli.conftest import WALL, Run
+
+
+def stones(*sizes: tuple[int, int]) -> StoneSet:
+    masks = (np.ones((height, width), bool) for width, height in sizes)
+    return StoneSet(tuple(Stone(i, mask) for i, mask in enumerate(masks, 1)))
+
+
+def test_sizes_are_metres_centimetres_or_px() -> None:
+    three = stones((62, 24), (20, 30), (44, 30))
+    said = read_line(three, (280.0, 80.0), 200.0, 10.7)
+    # Medians of the longer and of the shorter sides: 44 and 24 px.
+    assert said == (
+        "Read 3 stones (largest 31.0 x 12.0 cm, median 22.0 x 12.0 cm), wall 1.40 x 0.40 m, "
+        "estimate 11 s"
+    )
+    assert read_line(three, (280.0, 80.5), None, None) == (
+        "Read 3 stones (largest 62 x 24 px, median 44 x 24 px), wall 280 x 80.5 px"
+    )
+    assert "largest 3.10 x 1.20 m" in read_line(three, (280.0, 80.0), 20.0, None)
+    assert read_line(StoneSet(()), (280.0, 80.0), None, None) == "Read 0 stones, wall 280 x 80 px"
+
+
+@pytest.mark.parametrize(
+    ("px_per_m", "said"), [(25_000, "1.6 mm"), (10, "4 m"), (4_001, "10 mm"), (19.9, "2.01 m")]
+)
+def test_a_scale_that_makes_no_building_stones_is_asked_about(px_per_m: float, said: str) -> None:
+    notice = scale_notice(stones((40, 20)), px_per_m)
+    assert notice is not None
+    assert notice.code == "W123"
+    assert f"is {said} long" in notice.message
+
+
+@pytest.mark.parametrize("px_per_m", [None, 20.0, 200.0, 4_000.0])
+def test_others_are_not(px_per_m: float | None) -> None:
+    assert scale_notice(stones((40, 20)), px_per_m) is None
+    assert scale_notice(StoneSet(()), 1.0) is None
+
+
+def test_a_plan_begins_and_ends_with_what_is_read_and_written(
+    rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    out = tmp_path / "out"
+    scaled = ("--px-per-m", 5000, *WALL[2:], "--wall", "100x36")
+    ran = run("plan", rubble, *scaled, "-o", out)
+    first, odd, *_, last = ran.err.splitlines()
+    assert first.startswith("drystone: Read 8 stones (largest ")
+    assert "W123" in odd
+    written = last.removeprefix("drystone: wrote ").split()
+    assert Path(written[0]) == out / "plan.json"
+    assert {Path(written[0]).name, *written[1:]} == {path.name for path in out.iterdir()}
+    with Image.open(out / "build.gif") as film:
+        assert film.n_frames == len(read_plan(out).steps) + 1
+    quiet = run("plan", rubble, *scaled, "-o", out, "--overwrite", "--json")
+    assert [line.split()[1] for line in quiet.err.splitlines()] == ["W123"]
+
+
+def test_a_long_film_is_left_to_export(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    result = argparse.Namespace(plan=argparse.Namespace(stone_steps=[None] * 3))
+    monkeypatch.setattr(announce, "FILM_STONES", 2)
+    (tmp_path / "build.gif").touch()
+    announce.write_film(result, tmp_path)  # type: ignore[arg-type]
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,162 @@
+"""`drystone export`: what it writes, what it refuses, and that nothing is written then."""
+
+import csv
+import json
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from drystone.export.formats import FORMATS
+from drystone.export.settings import ExportSettings
+from tests.cli.conftest import Run
+from tests.export.robot_plans import assembly, write_plan_folder
+
+QUICK = ("poses", "compas", "moveit", "urdf", "obj", "glb", "stl", "csv", "geojson")
+"""Formats that need no drawing."""
+
+METRIC = [name for name, one in FORMATS.items() if one.metric]
+
+
+@pytest.fixture(scope="module")
+def planned(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a plan in px; not to be changed."""
+    return write_plan_folder("exact", tmp_path_factory.mktemp("plan"))
+
+
+@pytest.fixture
+def plan(planned: Path, tmp_path: Path) -> Path:
+    """The plan.json of a plan in px."""
+    return Path(shutil.copytree(planned, tmp_path / "plan")) / "plan.json"
+
+
+def tree(folder: Path) -> dict[str, bytes]:
+    return {
+        str(path.relative_to(folder)): path.read_bytes() if path.is_file() else b""
+        for path in sorted(folder.rglob("*"))
+    }
+
+
+def test_formats_are_listed(run: Run) -> None:
+    ran = run("export", "--list")
+    assert ran.code == 0
+    assert [line.partition(":")[0] for line in ran.out.splitlines()] == list(FORMATS)
+
+
+@pytest.mark.parametrize("arguments", [[], ["plan.json"], ["--to", "csv"]])
+def test_a_plan_and_a_format_are_needed(run: Run, arguments: list[str]) -> None:
+    ran = run("export", *arguments)
+    assert ran.code == 2
+    assert "E138" in ran.err
+
+
+def test_an_unknown_format_is_refused_with_those_that_there_are(run: Run, plan: Path) -> None:
+    ran = run("export", plan, "--to", "step")
+    assert ran.code == 2
+    assert "geojson" in ran.err
+
+
+def test_files_are_added_beside_the_plan(run: Run, plan: Path) -> None:
+    before = tree(plan.parent)
+    ran = run("export", plan, "--to", *QUICK, "--px-per-m", 200, "--thickness", 0.25)
+    assert ran.code == 0, ran.err
+    after = tree(plan.parent)
+    assert {name: after[name] for name in before} == before
+    new = set(after) - set(before)
+    assert {"poses.json", "assembly.compas.json", "scene.yaml", "wall.scene", "urdf/wall.urdf",
+            "wall.obj", "wall.mtl", "wall.glb", "stl/wedge_010.stl", "steps.csv",
+            "wall.geojson"} <= new  # fmt: skip
+    assert [line.partition(":")[0] for line in ran.out.splitlines()] == list(QUICK)
+    assert ran.err == ""
+    assert json.loads((plan.parent / "poses.json").read_bytes())["thickness_m"] == 0.25
+
+
+def test_json_names_every_file(run: Run, plan: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "new" / "deep"
+    ran = run("export", plan.parent, "--to", *QUICK, "--px-per-m", 200, "-o", folder, "--json")
+    files = ran.json()["files"]
+    assert list(files) == list(QUICK)
+    named = sorted(Path(name) for names in files.values() for name in names)
+    assert named == sorted(path for path in folder.rglob("*") if path.is_file())
+    assert "no --thickness: parts are 0." in ran.err
+
+
+@pytest.mark.parametrize("name", METRIC)
+def test_nothing_for_robots_without_a_scale(run: Run, plan: Path, name: str) -> None:
+    before = tree(plan.parent)
+    ran = run("export", plan, "--to", "csv", name)
+    assert ran.code == 2
+    assert "E131" in ran.err
+    for way in ("--px-per-m", "--ruler", "markers"):
+        assert way in ran.err
+    assert tree(plan.parent) == before
+
+
+def test_a_thickness_without_a_scale_is_refused(run: Run, plan: Path) -> None:
+    ran = run("export", plan, "--to", "csv", "--thickness", 0.3)
+    assert (ran.code, "E131" in ran.err) == (2, True)
+
+
+def test_a_ruler_is_a_scale(run: Run, plan: Path, tmp_path: Path) -> None:
+    for folder, scale in (("a", ("--px-per-m", "200")), ("b", ("--ruler", "0,0,30,40=25cm"))):
+        assert run("export", plan, "--to", *QUICK, *scale, "-o", tmp_path / folder).code == 0
+    assert tree(tmp_path / "a") == tree(tmp_path / "b")
+    both = run("export", plan, "--to", "csv", "--px-per-m", "200", "--ruler", "0,0,3,4=1m")
+    assert both.code == 2
+
+
+def test_another_scale_than_that_of_the_plan_is_refused(run: Run, tmp_path: Path) -> None:
+    folder = write_plan_folder("raster-m", tmp_path)
+    assert "E131" in run("export", folder, "--to", "csv", "--px-per-m", "200").err
+    assert run("export", folder, "--to", "csv", "poses").code == 0
+
+
+def test_files_of_the_same_name_are_refused_and_nothing_is_written(run: Run, plan: Path) -> None:
+    scale = ("--px-per-m", "200")
+    assert run("export", plan, "--to", "poses", *scale).code == 0
+    before = tree(plan.parent)
+    ran = run("export", plan, "--to", "urdf", "stl", "csv", "poses", *scale)
+    assert ran.code == 2
+    assert "E129" in ran.err
+    assert "poses.json" in ran.err
+    assert tree(plan.parent) == before
+    ran = run("export", plan, "--to", "poses", *scale, "--density", 2000, "--overwrite")
+    assert ran.code == 0
+    assert json.loads((plan.parent / "poses.json").read_bytes())["density_kg_m3"] == 2000
+
+
+def test_nothing_is_written_when_a_package_is_missing(
+    run: Run, plan: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    before = tree(plan.parent)
+    ran = run("export", plan, "--to", "csv", "parquet")
+    assert ran.code == 2
+    assert "E181" in ran.err
+    assert tree(plan.parent) == before
+
+
+def test_no_plan_is_no_export(run: Run, plan: Path) -> None:
+    ran = run("export", plan.parent / "wall.png", "--to", "csv")
+    assert (ran.code, "E132" in ran.err) == (3, True)
+
+
+def test_tables_need_no_scale(run: Run, plan: Path) -> None:
+    ran = run("export", plan, "--to", "csv", "geojson", "parquet", "csv")
+    assert ran.code == 0
+    assert ran.err == ""
+    with (plan.parent / "steps.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    steps = json.loads(plan.read_bytes())["steps"]
+    assert [int(row["step"]) for row in rows] == [step["step"] for step in steps]
+    assert {row["mass_kg"] for row in rows} == {""}
+
+
+def test_no_two_formats_write_the_same_file() -> None:
+    wall = assembly("exact")
+    named = [
+        name for one in FORMATS.values() for name in one.exporter().files(wall, ExportSettings())
+    ]
+    assert len(set(named)) == len(named)
+    assert not {"plan.json", "blocks.json", "wall.png", "report.html"} & set(named)

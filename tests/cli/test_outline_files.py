@@ -1,0 +1,122 @@
+"""Plans of stones from annotations, drawings and photographs; `check` reads them again."""
+
+import json
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+from PIL import Image
+
+from drystone.io.photo_sidecar import PhotoSidecar, write_sidecar
+from drystone.io.plan_json import read_plan
+from tests.cli.conftest import Run
+
+SIZES = [(90, 40), (70, 42), (84, 38), (60, 44), (96, 36), (72, 40)]
+"""Of six blocks, px or mm."""
+QUICK = ["--method", "paper", "--quiet"]
+
+
+def boxes() -> list[list[tuple[float, float]]]:
+    found = []
+    for number, (width, height) in enumerate(SIZES):
+        x, y = 10 + 110 * (number % 3), 10 + 60 * (number // 3)
+        found.append([(x, y), (x + width, y), (x + width, y + height), (x, y + height)])
+    return found
+
+
+def dxf(folder: Path, unit: int = 4) -> Path:
+    document = ezdxf.new("R2010")  # type: ignore[attr-defined]
+    document.header["$INSUNITS"] = unit
+    for corners in boxes():
+        document.modelspace().add_lwpolyline(corners, close=True)
+    document.saveas(folder / "stones.dxf")
+    return folder / "stones.dxf"
+
+
+def coco(folder: Path) -> Path:
+    images = [{"id": i, "file_name": f"{i}.jpg", "width": 340, "height": 130} for i in (1, 2)]
+    found = [
+        {"id": 10 * i + n, "image_id": i, "segmentation": [list(np.ravel(corners).tolist())]}
+        for i in (1, 2)
+        for n, corners in enumerate(boxes()[i:])
+    ]
+    path = folder / "coco.json"
+    path.write_text(json.dumps({"images": images, "annotations": found}))
+    return path
+
+
+@pytest.mark.parametrize("options", [[], ["--px-per-m", "800"], ["--unit", "mm"]])
+def test_a_drawing_has_a_scale_and_its_plan_holds(
+    tmp_path: Path, run: Run, options: list[str]
+) -> None:
+    path = dxf(tmp_path)
+    out = tmp_path / "out"
+    ran = run("plan", path, "--wall", "0.25mx0.12m", *options, *QUICK, "-o", out)
+    assert ran.code in (0, 4), ran.err
+    plan = read_plan(out)
+    assert plan.length_unit == "m"
+    assert plan.px_per_m == (800.0 if "--px-per-m" in options else 2100.0)
+    given = {"--px-per-m": {"px_per_m": 800.0}, "--unit": {"unit": "mm"}}
+    assert plan.source.get("reading", {}) == given.get(options[0] if options else "", {})
+    assert run("check", out, "--json").json()["ok"]
+    path.rename(tmp_path / "moved.dxf")
+    assert run("check", out, "--stones", tmp_path / "moved.dxf", "--json").json()["ok"]
+
+
+def test_px_of_an_image_are_not_drawn_again(tmp_path: Path, run: Run) -> None:
+    path, out = coco(tmp_path), tmp_path / "out"
+    ran = run(
+        "plan", path, "--image", "2.jpg", "--px-per-m", "1000", "--wall", "0.25mx0.12m", *QUICK,
+        "-o", out,
+    )  # fmt: skip
+    assert ran.code in (0, 4), ran.err
+    plan = read_plan(out)
+    assert plan.px_per_m == 1000.0
+    assert plan.source["reading"] == {"image": "2.jpg"}
+    assert (plan.source["width_px"], plan.source["stones"]) == (340, 4)
+    assert {step.stone for step in plan.stone_steps} <= {20, 21, 22, 23}
+    assert run("check", out, "--json").json()["ok"]
+
+
+def test_a_photograph_has_its_scale_beside_it(tmp_path: Path, run: Run) -> None:
+    folder, out = tmp_path / "photo", tmp_path / "out"
+    folder.mkdir()
+    labels = np.zeros((130, 340), np.uint8)
+    for number, corners in enumerate(np.array(boxes()), start=1):
+        (left, top), (right, bottom) = corners.min(axis=0), corners.max(axis=0)
+        labels[top:bottom, left:right] = number
+    Image.fromarray(labels).save(folder / "stones.png")
+    write_sidecar(PhotoSidecar(340, 130, 1000.0), folder)
+    ran = run("plan", folder, "--wall", "0.25mx0.12m", *QUICK, "-o", out)
+    assert ran.code in (0, 4), ran.err
+    assert read_plan(out).px_per_m == 1000.0
+    assert run("check", out, "--stones", folder, "--json").json()["ok"]
+    shown = run("stones", folder, "--json").json()
+    assert (shown["stones"], shown["px_per_m"]) == (6, 1000.0)
+    refused = run("plan", folder, "--wall", "0.25mx0.12m", "--px-per-m", "900", *QUICK, "-o", out)
+    assert refused.code == 2
+    assert "E131" in refused.err
+
+
+def test_stones_says_the_scale_and_what_was_decided(tmp_path: Path, run: Run) -> None:
+    out = run("stones", dxf(tmp_path)).out
+    assert "2100 px a metre" in out
+    assert "W119 the longer side of the median stone is 0.078 m" in out
+
+
+@pytest.mark.parametrize(
+    ("name", "code", "text"),
+    [("drawing", 3, "E116"), ("coco", 3, "E115"), ("plan", 3, "E113"), ("unit", 2, "E118")],
+)
+def test_what_cannot_be_read(tmp_path: Path, run: Run, name: str, code: int, text: str) -> None:
+    (tmp_path / "plan.json").write_text('{"steps": [], "source": {}}')
+    options = {
+        "drawing": lambda: [dxf(tmp_path, 0)],
+        "coco": lambda: [coco(tmp_path)],
+        "plan": lambda: [tmp_path / "plan.json"],
+        "unit": lambda: [dxf(tmp_path), "--unit", "ft"],
+    }
+    ran = run("stones", *options[name]())
+    assert (ran.code, text in ran.err) == (code, True)
+    assert ran.out == ""

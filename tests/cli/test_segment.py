@@ -1,0 +1,135 @@
+import io
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from drystone.experiments.photographs.level import Level
+from drystone.experiments.photographs.scene import photograph
+from drystone.experiments.photos import overlaps
+
+SHEET = Level(
+    name="sheet", count=7, width_px=900, height_px=675, px_per_m=800.0, gap_px=10, tilt_deg=12.0,
+    shadow=0.35, ground="plywood", rocks=("granite", "basalt"), turn_deg=5.0,
+)  # fmt: skip
+BARE = replace(
+    SHEET, markers="none", width_px=600, height_px=450, tilt_deg=0.0, turn_deg=0.0, shadow=0.0
+)
+
+
+@pytest.fixture(scope="module")
+def sheet():
+    return photograph(SHEET)
+
+
+@pytest.fixture(scope="module")
+def bare():
+    return photograph(BARE)
+
+
+def saved(made, tmp_path, name="photo-1.jpg"):
+    path = tmp_path / name
+    path.write_bytes(made.jpeg)
+    return path
+
+
+def test_markers_give_scale_and_view_and_are_no_stones(run, tmp_path, sheet):
+    out = tmp_path / "out"
+    ran = run("segment", saved(sheet, tmp_path), "--aruco", "A4:75mm", "-o", out, "--json")
+    assert ran.code == 0
+    said = ran.json()
+    beside = json.loads((out / "stones.json").read_text())
+    labels = np.asarray(Image.open(out / "stones.png"))
+    assert labels.dtype == np.uint16
+    assert (beside["width_px"], beside["height_px"]) == labels.shape[::-1]
+    assert Image.open(out / "photo.jpg").size == labels.shape[::-1]
+    assert Image.open(out / "preview.png").size[0] > 600
+    assert beside["markers"]["ids"] == [0, 1, 2, 3]
+    assert beside["px_per_m"] == said["px_per_m"]
+    true = np.sort(np.bincount(sheet.truth.ravel())[1:]) / SHEET.px_per_m**2
+    found = np.sort([stone["area_px"] for stone in said["sizes"]]) / said["px_per_m"] ** 2
+    assert found == pytest.approx(true, rel=0.06)
+    truth = sheet.truth_in(np.linalg.inv(np.array(beside["from_photo"])), labels.shape)
+    assert overlaps(truth, labels).max(axis=1).min() > 0.9
+
+
+def test_a_plan_is_made_of_what_was_written(run, tmp_path, sheet):
+    out, wall = tmp_path / "out", tmp_path / "wall"
+    assert run("segment", saved(sheet, tmp_path), "--aruco", "A4:75mm", "-o", out).code == 0
+    ran = run(
+        "plan", out / "stones.png", "--wall", "0.5mx0.2m", "-o", wall, "--budget", "1",
+        "--scale", "0.25", "--geometry", "raster", "--quiet",
+    )  # fmt: skip
+    assert ran.code in (0, 4), ran.err
+    assert (wall / "photo.jpg").read_bytes() == (out / "photo.jpg").read_bytes()
+    assert json.loads((wall / "plan.json").read_text())["placements"]
+
+
+def test_a_turned_photograph_gives_the_same_stones(run, tmp_path, bare):
+    picture = Image.open(io.BytesIO(bare.jpeg))
+    upright, turned = tmp_path / "upright.png", tmp_path / "turned.png"
+    picture.save(upright)
+    exif = Image.Exif()
+    exif[0x0112] = 6
+    picture.transpose(Image.Transpose.ROTATE_90).save(turned, exif=exif)
+    for path in (upright, turned):
+        out = tmp_path / path.stem
+        assert run("segment", path, "--px-per-m", "800", "-o", out).code == 0
+    one, other = (np.asarray(Image.open(tmp_path / k / "stones.png")) for k in ("upright", "turned"))
+    assert np.array_equal(one, other)
+
+
+def test_the_scale_may_be_a_ruler_or_not_known(run, tmp_path, bare):
+    path = saved(bare, tmp_path)
+    ruled = run("segment", path, "--ruler", "0,0,400,0=50cm", "-o", tmp_path / "ruled")
+    assert ruled.code == 0
+    assert "800.0 px a metre" in ruled.out
+    assert " cm" in ruled.out
+    assert json.loads((tmp_path / "ruled" / "stones.json").read_text())["px_per_m"] == 800.0
+    without = run("segment", path, "-o", tmp_path / "without")
+    assert "not known" in without.out
+    assert "no scale" in without.err
+    assert json.loads((tmp_path / "without" / "stones.json").read_text())["px_per_m"] is None
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "exit_code"),
+    [
+        (["--aruco", "A4:75mm"], "E170", 3),
+        (["--aruco", "50mm", "--px-per-m", "100"], "E138", 2),
+        (["--aruco", "A9:50mm"], "E174", 2),
+        (["--marker-ids", "1"], "E138", 2),
+        (["--check-line", "97mm"], "E138", 2),
+        (["--min-area", "5cm2"], "E131", 2),
+        (["--min-area", "much"], "E138", 2),
+    ],
+)
+def test_what_cannot_be_is_refused_and_nothing_is_written(
+    run, tmp_path, bare, options, code, exit_code
+):
+    ran = run("segment", saved(bare, tmp_path), "-o", tmp_path / "out", *options)
+    assert ran.code == exit_code
+    assert f"drystone: {code}" in ran.err
+    assert not list((tmp_path / "out").glob("*"))
+
+
+def test_no_stones_and_noise_are_errors(run, tmp_path):
+    rng = np.random.default_rng(0)
+    Image.fromarray(np.full((300, 400, 3), 180, np.uint8)).save(tmp_path / "plain.png")
+    Image.fromarray(rng.integers(0, 256, (300, 400, 3), np.uint8)).save(tmp_path / "noise.png")
+    for name in ("plain", "noise"):
+        ran = run("segment", tmp_path / f"{name}.png", "-o", tmp_path / name)
+        assert ran.code == 3
+        assert "drystone: E17" in ran.err
+
+
+def test_a_folder_with_files_is_not_touched(run, tmp_path, bare):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "note.txt").write_text("mine")
+    path = saved(bare, tmp_path)
+    assert run("segment", path, "-o", out).code == 2
+    assert run("segment", path, "-o", out, "--overwrite").code == 0
+    assert (out / "note.txt").read_text() == "mine"

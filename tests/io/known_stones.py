@@ -1,0 +1,96 @@
+"""Seven stones with known outlines, and their label image by a rasteriser of another package.
+
+No edge goes through the centre of a pixel, so every rule for edges gives the same pixels.
+"""
+
+import functools
+import math
+
+import numpy as np
+from matplotlib.path import Path as Outline
+
+from drystone.io.read_stones import ReadSettings, read_stones
+
+WIDTH, HEIGHT = 320, 200
+
+_ROUND = [(250 + 22 * math.cos(a), 150 + 18 * math.sin(a)) for a in np.arange(128) * (math.pi / 64)]
+
+# id: polygons of an outer ring and holes, px, y down
+STONES = {
+    3: [[[(10, 10), (58.2, 12.3), (71.7, 40.1), (49.6, 63.8), (19.1, 55.3)]]],
+    5: [[[(90, 12), (150, 12), (150, 30), (112, 30), (112, 70), (90, 70)]]],  # concave
+    8: [
+        [
+            [(169.7, 10), (235, 14), (230, 74), (174, 70)],
+            [(190, 32), (190, 52), (212, 52), (212, 32)],  # a hole
+        ]
+    ],
+    13: [[[(10, 90), (60.3, 90), (70.2, 140), (10, 140)]]],  # touches the next one
+    21: [[[(60.3, 90), (120, 90), (120, 140), (70.2, 140)]]],
+    34: [
+        [[(140, 100), (190, 100), (190, 140), (140, 140)]],
+        [[(195, 104), (207, 104), (201, 135)]],
+    ],
+    300: [[_ROUND]],
+}
+PIECES = ReadSettings(pieces="keep-largest", holes="keep")
+"""What the stone in two pieces and the one with a hole need."""
+
+
+@functools.cache
+def masks():
+    """Masks of all stones, by id."""
+    rows, cols = np.mgrid[:HEIGHT, :WIDTH] + 0.5
+    centres = np.column_stack([cols.ravel(), rows.ravel()])
+    found = {}
+    for stone, polygons in STONES.items():
+        mask = np.zeros(HEIGHT * WIDTH, bool)
+        for outer, *holes in polygons:
+            inside = Outline(outer).contains_points(centres)
+            for hole in holes:
+                inside &= ~Outline(hole).contains_points(centres)
+            mask |= inside
+        found[stone] = mask.reshape(HEIGHT, WIDTH)
+    return found
+
+
+def label_image():
+    """The masks as one image of ids."""
+    labels = np.zeros((HEIGHT, WIDTH), np.uint16)
+    for stone, mask in masks().items():
+        labels[mask] = stone
+    return labels
+
+
+def placed(stone, width, height):
+    """The pixels of a stone in its picture."""
+    whole = np.zeros((height, width), bool)
+    rows, cols = stone.mask.shape
+    top = height - stone.bottom_px - rows
+    whole[top : top + rows, stone.left_px : stone.left_px + cols] = stone.mask
+    return whole
+
+
+def compare(stones, settings=PIECES, ids=None):
+    """Return the least IoU, the largest relative error of an area, and of a centroid in px.
+
+    The picture may be cut to the box of the stones; then it is compared with the cut truth.
+    """
+    truth = read_stones(label_image(), settings=settings)
+    assert len(stones) == len(truth)
+    ids = ids or {stone.id: stone.id for stone in truth}
+    left = min(stone.left_px for stone in truth) - min(stone.left_px for stone in stones)
+    bottom = min(stone.bottom_px for stone in truth) - min(stone.bottom_px for stone in stones)
+    ious, areas, centroids = [], [], []
+    for true in truth:
+        found = stones.by_id(ids[true.id])
+        mask = np.zeros((2 * HEIGHT, 2 * WIDTH), bool)
+        rows, cols = found.mask.shape
+        row, col = 2 * HEIGHT - (found.bottom_px + bottom) - rows, found.left_px + left
+        mask[row : row + rows, col : col + cols] = found.mask
+        want = np.zeros_like(mask)
+        want[HEIGHT:, :WIDTH] = placed(true, WIDTH, HEIGHT)
+        ious.append((mask & want).sum() / (mask | want).sum())
+        areas.append(abs(found.area_px / true.area_px - 1.0))
+        centroids.append(math.dist(found.centroid, np.subtract(true.centroid, (left, bottom))))
+    return float(min(ious)), max(areas), round(max(centroids), 9)

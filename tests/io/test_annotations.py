@@ -1,0 +1,371 @@
+"""labelme, COCO, SAM and GeoJSON give the very pixels of the known stones."""
+
+import base64
+import io
+import json
+import time
+
+import numpy as np
+import pytest
+from PIL import Image
+from pycocotools import mask as coco_mask
+
+from drystone.errors import InputError, LabelImageError
+from drystone.io.read_stones import ReadSettings, read_stones
+from tests.io.known_stones import (
+    HEIGHT,
+    PIECES,
+    STONES,
+    WIDTH,
+    compare,
+    label_image,
+    masks,
+)
+from tests.io.pictures import codes
+
+EXACT = (1.0, 0.0, 0.0)
+"""Every pixel the same: outlines and truth both take the centres of pixels."""
+
+
+def written(tmp_path, content, name="stones.json"):
+    path = tmp_path / name
+    path.write_text(json.dumps(content))
+    return path
+
+
+def labelme(**changes):
+    shapes = [
+        {
+            "label": str(stone),
+            "points": polygon[0],
+            "group_id": stone if len(polygons) > 1 else None,
+            "shape_type": "polygon",
+        }
+        for stone, polygons in STONES.items()
+        for polygon in polygons
+    ]
+    return {
+        "version": "5.8.1",
+        "shapes": shapes,
+        "imagePath": "photo.jpg",
+        "imageData": None,
+        "imageHeight": HEIGHT,
+        "imageWidth": WIDTH,
+    } | changes
+
+
+def runs(mask, *, packed=True):
+    """Run lengths by pycocotools, or by a plain count of changes."""
+    if packed:
+        found = coco_mask.encode(np.asfortranarray(mask.astype(np.uint8)))
+        return {"size": found["size"], "counts": found["counts"].decode()}
+    counts, value, run = [], 0, 0
+    for pixel in mask.ravel(order="F").astype(int).tolist():
+        if pixel != value:
+            counts.append(run)
+            value, run = pixel, 0
+        run += 1
+    return {"size": list(mask.shape), "counts": [*counts, run]}
+
+
+def coco(segmentation_of, **changes):
+    return {
+        "images": [{"id": 7, "file_name": "a/photo.jpg", "width": WIDTH, "height": HEIGHT}],
+        "categories": [{"id": 1, "name": "stone"}],
+        "annotations": [
+            {"id": i, "image_id": 7, "category_id": 1, "iscrowd": 0, "segmentation": s}
+            for i, s in segmentation_of.items()
+        ],
+    } | changes
+
+
+def flat_polygons():
+    """COCO's own form, which has no holes."""
+    return {
+        stone: [[v for point in polygon[0] for v in point] for polygon in polygons]
+        for stone, polygons in STONES.items()
+    }
+
+
+def test_labelme_keeps_labels_as_ids_and_joins_groups(tmp_path):
+    stones = read_stones(written(tmp_path, labelme()), settings=ReadSettings(pieces="keep-largest"))
+    assert compare(stones, ReadSettings(pieces="keep-largest")) == EXACT
+    assert (stones.source.width_px, stones.source.height_px) == (WIDTH, HEIGHT)
+    assert stones.by_id(300).name == "300"
+    assert stones.source.px_per_m is None
+    assert "W119" not in codes(stones)  # stones that touch share no pixel
+
+
+def test_labelme_pieces_of_a_group_are_one_stone(tmp_path):
+    with pytest.raises(LabelImageError, match=r"E103.*stone 34 \(34\)"):
+        read_stones(written(tmp_path, labelme()))
+
+
+def test_labelme_rectangles_circles_and_masks(tmp_path):
+    rng = np.random.default_rng(3)
+    grain = rng.random((20, 30)) < 0.9
+    buffer = io.BytesIO()
+    Image.fromarray(grain.astype(np.uint8) * 255).save(buffer, "PNG")
+    shapes = [
+        {"label": "a", "shape_type": "rectangle", "points": [[60, 50], [10, 20]]},
+        {"label": "b", "shape_type": "circle", "points": [[120, 60], [120, 90]]},
+        {
+            "label": "c",
+            "shape_type": "mask",
+            "points": [[200, 40], [229, 59]],
+            "mask": base64.b64encode(buffer.getvalue()).decode(),
+        },
+        {"label": "d", "shape_type": "line", "points": [[0, 0], [9, 9]]},
+        {"label": "d", "shape_type": "point", "points": [[0, 0]]},
+    ]
+    path = written(tmp_path, labelme(shapes=shapes))
+    stones = read_stones(path, settings=ReadSettings(pieces="keep-largest", holes="keep"))
+    assert [stone.name for stone in stones] == ["a", "b", "c"]
+    assert [stone.id for stone in stones] == [1, 2, 3]
+    assert stones.by_id(1).area_px == 50 * 30
+    assert stones.by_id(2).area_px == pytest.approx(np.pi * 30**2, rel=0.003)
+    assert stones.by_id(2).centroid == pytest.approx((120, HEIGHT - 60))
+    assert stones.by_id(3).area_px == pytest.approx(int(grain.sum()), abs=2)  # less lone pixels
+    assert (stones.by_id(3).left_px, stones.by_id(3).bottom_px) == (200, HEIGHT - 60)
+    assert "1 lines, 1 points" in stones.notices[0].message
+
+
+def test_labels_that_are_no_different_numbers_are_names(tmp_path):
+    same = labelme()
+    for shape in same["shapes"]:
+        shape["label"] = "stone 5"
+    stones = read_stones(written(tmp_path, same), settings=PIECES)
+    assert [stone.id for stone in stones] == list(range(1, len(STONES) + 1))
+    assert {stone.name for stone in stones} == {"stone 5"}
+    assert any("not different (5)" in notice.message for notice in stones.notices)
+
+
+def test_coco_polygons(tmp_path):
+    settings = ReadSettings(pieces="keep-largest")
+    stones = read_stones(written(tmp_path, coco(flat_polygons())), settings=settings)
+    assert compare(stones, settings) == EXACT
+
+
+@pytest.mark.parametrize("packed", [True, False])
+def test_coco_run_lengths_have_holes(tmp_path, packed):
+    content = coco({stone: runs(mask, packed=packed) for stone, mask in masks().items()})
+    stones = read_stones(written(tmp_path, content), settings=PIECES)
+    assert compare(stones) == EXACT
+    assert stones.by_id(8).area_px == masks()[8].sum()
+    assert (stones.source.width_px, stones.source.height_px) == (WIDTH, HEIGHT)
+
+
+def test_coco_of_several_images_needs_a_name(tmp_path):
+    content = coco({stone: runs(mask) for stone, mask in masks().items()})
+    content["images"].append({"id": 9, "file_name": "other.jpg", "width": 50, "height": 60})
+    content["annotations"].append(
+        {"id": 1, "image_id": 9, "segmentation": [[5, 5, 45, 5, 45, 55, 5, 55]]}
+    )
+    path = written(tmp_path, content)
+    with pytest.raises(InputError, match=r"E115.*2 images.*--image.*a/photo.jpg, other.jpg"):
+        read_stones(path)
+    for name in ("photo.jpg", "a/photo.jpg", "7"):
+        settings = ReadSettings(pieces="keep-largest", holes="keep", image=name)
+        assert compare(read_stones(path, settings=settings)) == EXACT
+    other = read_stones(path, settings=ReadSettings(image="other.jpg"))
+    assert [(stone.id, stone.area_px) for stone in other] == [(1, 2000)]
+    assert dict(other.source.reading) == {"image": "other.jpg"}
+    with pytest.raises(InputError, match=r"E115.*'third.jpg'"):
+        read_stones(path, settings=ReadSettings(image="third.jpg"))
+
+
+def test_coco_says_what_has_no_outline(tmp_path):
+    content = coco(flat_polygons())
+    content["annotations"] += [
+        {"id": 900, "image_id": 7, "iscrowd": 1, "segmentation": runs(masks()[3])},
+        {"id": 901, "image_id": 7, "bbox": [1, 1, 5, 5], "segmentation": []},
+    ]
+    stones = read_stones(written(tmp_path, content), settings=PIECES)
+    assert {900, 901}.isdisjoint(stone.id for stone in stones)
+    assert stones.notices[0].message.count("1 ") == 2
+    assert "crowd" in stones.notices[0].message
+    assert "annotations without an outline" in stones.notices[0].message
+
+
+def test_three_hundred_stones_of_a_photograph_are_read_in_seconds(tmp_path):
+    found = {}
+    for i in range(300):
+        row, col = divmod(i, 20)
+        first = (col * 200 + 10) * 3000 + row * 200 + 10
+        counts = [first, *[170, 3000 - 170] * 159, 170]
+        found[i + 1] = {"size": [3000, 4000], "counts": [*counts, 12_000_000 - sum(counts)]}
+    one = np.zeros((3000, 4000), bool, order="F")
+    one[4 * 200 + 10 : 4 * 200 + 180, 210:370] = True
+    found[82] = runs(one)
+    content = coco(found)
+    content["images"][0] |= {"width": 4000, "height": 3000}
+    path = written(tmp_path, content)
+    start = time.process_time()
+    stones = read_stones(path)
+    seconds = time.process_time() - start
+    assert [stone.area_px for stone in stones] == [170 * 160] * 300
+    assert seconds < 10.0  # about .5 s
+
+
+@pytest.mark.parametrize("form", ["packed", "counts", "rows", "released"])
+def test_sam_masks_that_do_not_nest(tmp_path, form):
+    found = [
+        {
+            "segmentation": mask.tolist()
+            if form == "rows"
+            else runs(mask, packed=form != "counts"),
+            "area": int(mask.sum()),
+            "bbox": [0, 0, 1, 1],
+            "predicted_iou": 0.97,
+            "stability_score": 0.98,
+        }
+        for mask in masks().values()
+    ]
+    if form == "released":
+        found = [one | {"id": stone} for one, stone in zip(found, STONES, strict=True)]
+        image = {"image_id": 1, "width": WIDTH, "height": HEIGHT, "file_name": "sa_1.jpg"}
+        stones = read_stones(
+            written(tmp_path, {"image": image, "annotations": found}), settings=PIECES
+        )
+        assert compare(stones) == EXACT
+        return
+    stones = read_stones(written(tmp_path, found), settings=PIECES)
+    ids = {stone: number for number, stone in enumerate(STONES, start=1)}
+    assert compare(stones, ids=ids) == EXACT
+
+
+def test_sam_ground_groups_parts_and_repeats_are_left_out(tmp_path):
+    stones = masks()
+    ground = ~np.any(list(stones.values()), axis=0)
+    group = stones[13] | stones[21]
+    spot = np.zeros_like(ground)
+    spot[20:30, 30:40] = True
+    again = stones[5].copy()
+    again[12, 90:110] = False
+    given = [spot, ground, group, *stones.values(), again]
+    content = [{"segmentation": runs(mask), "predicted_iou": 0.9} for mask in given]
+    path = written(tmp_path, content)
+    found = read_stones(path, settings=PIECES)
+    ids = {stone: number for number, stone in enumerate(STONES, start=4)}
+    assert compare(found, ids=ids) == EXACT
+    (notice,) = [n for n in found.notices if n.code == "W119"]
+    for text in (
+        "4 of 11",
+        "2 (the ground",
+        "3 (a group of 7, 8)",
+        "1 (a part of 4)",
+        "11 (5 again)",
+    ):
+        assert text in notice.message
+    settings = ReadSettings(pieces="keep-largest", holes="keep", skip=(2, 7, 8))
+    other = read_stones(path, settings=settings)
+    assert {stone.id for stone in other} == {3, 4, 5, 6, 9, 10}  # the group became a stone
+
+
+def test_overlapping_outlines_keep_all_their_pixels(tmp_path):
+    shapes = [
+        {"label": "1", "points": [[10, 10], [60, 10], [60, 60], [10, 60]]},
+        {"label": "2", "points": [[50, 10], [90, 10], [90, 60], [50, 60]]},
+    ]
+    stones = read_stones(written(tmp_path, labelme(shapes=shapes)))
+    assert [stone.area_px for stone in stones] == [2500, 2000]
+    assert "1 and 2 (500 px)" in stones.notices[0].message
+
+
+def test_a_stone_in_the_hole_of_another_is_said(tmp_path):
+    square = [[[10, 10], [90, 10], [90, 90], [10, 90]], [[20, 20], [80, 20], [80, 80], [20, 80]]]
+    inner = [[[30, 30], [70, 30], [70, 70], [30, 70]]]
+    features = [
+        {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": c}}
+        for c in (square, inner)
+    ]
+    path = written(tmp_path, {"type": "FeatureCollection", "features": features})
+    stones = read_stones(path)
+    (notice,) = [n for n in stones.notices if n.code == "W112"]
+    assert "3600 px, 1600 px of them other stones'" in notice.message
+
+
+def test_what_reaches_over_the_image_is_cut_off(tmp_path):
+    shapes = [{"label": "1", "points": [[-5, 10], [20, 10], [20, 60], [-5, 60]]}]
+    stones = read_stones(written(tmp_path, labelme(shapes=shapes)))
+    assert stones.by_id(1).area_px == 20 * 50
+    assert stones.by_id(1).left_px == 0
+    assert "cut off: stone 1 (1): 250 px" in stones.notices[0].message
+
+
+def geojson(**changes):
+    def closed(ring):
+        return [*map(list, ring), list(ring[0])]
+
+    features = [
+        {
+            "type": "Feature",
+            "id": stone,
+            "properties": {"name": f"block {stone}"},
+            "geometry": {"type": "Polygon", "coordinates": [closed(r) for r in polygons[0]]}
+            if len(polygons) == 1
+            else {
+                "type": "MultiPolygon",
+                "coordinates": [[closed(r) for r in polygon] for polygon in polygons],
+            },
+        }
+        for stone, polygons in STONES.items()
+    ]
+    return {"type": "FeatureCollection", "features": features} | changes
+
+
+@pytest.mark.parametrize("name", ["stones.geojson", "stones.json"])
+def test_geojson_in_px_of_an_image(tmp_path, name):
+    stones = read_stones(written(tmp_path, geojson(), name), settings=PIECES)
+    assert compare(stones) == EXACT
+    assert stones.by_id(8).name == "block 8"
+    assert stones.by_id(8).area_px == masks()[8].sum()
+    assert stones.source.px_per_m is None
+    assert stones.source.height_px == 168  # the lowest stone ends at y = 168
+
+
+def test_geojson_in_metres_has_y_up_and_a_scale(tmp_path):
+    content = geojson(unit="m")
+    for feature in content["features"]:
+        text = json.dumps(feature["geometry"]["coordinates"])
+        feature["geometry"]["coordinates"] = json.loads(text, parse_int=float)
+        _scale(feature["geometry"]["coordinates"])
+    settings = ReadSettings(pieces="keep-largest", holes="keep", px_per_m=400.0)
+    stones = read_stones(written(tmp_path, content), settings=settings)
+    assert stones.source.px_per_m == 400.0
+    assert dict(stones.source.reading)["px_per_m"] == 400.0
+    iou, area, centroid = compare(stones)
+    assert iou > 0.999
+    assert area < 1e-3
+    assert centroid < 0.01
+    assert stones.by_id(3).area_px / 400.0**2 == pytest.approx(masks()[3].sum() / 400**2, rel=1e-3)
+
+
+def _scale(coordinates):
+    for part in coordinates:
+        if isinstance(part[0], list):
+            _scale(part)
+        else:
+            part[:] = [part[0] / 400.0, (HEIGHT - part[1]) / 400.0]
+
+
+def test_geojson_kinds_that_are_no_stones(tmp_path):
+    content = geojson()
+    content["features"] += [
+        {
+            "type": "Feature",
+            "properties": None,
+            "geometry": {"type": "Point", "coordinates": [1, 2]},
+        },
+        {"type": "Feature", "properties": {}, "geometry": None},
+    ]
+    stones = read_stones(written(tmp_path, content), settings=PIECES)
+    assert "1 Points, 1 features without a geometry" in stones.notices[0].message
+    bare = geojson()["features"][0]["geometry"]
+    assert read_stones(written(tmp_path, bare)).by_id(1).area_px == masks()[3].sum()
+
+
+def test_label_image_is_the_truth():
+    labels = label_image()
+    assert set(np.unique(labels)) == {0, *STONES}
+    assert sum(int(mask.sum()) for mask in masks().values()) == (labels > 0).sum()

@@ -1,0 +1,322 @@
+"""DXF and SVG of the known stones, written by ezdxf and by hand."""
+
+import io
+import math
+
+import ezdxf
+import numpy as np
+import pytest
+from ezdxf import units
+
+from drystone.errors import InputError, UsageError
+from drystone.io.read_stones import ReadSettings, read_stones
+from tests.io.known_stones import HEIGHT, STONES, WIDTH, compare, masks
+from tests.io.pictures import codes
+
+PX_PER_M = 500.0
+METRIC = ReadSettings(pieces="keep-largest", holes="keep", px_per_m=PX_PER_M)
+MM = 1000.0 / PX_PER_M
+ONE_PIECE = [stone for stone in STONES if len(STONES[stone]) == 1]
+
+
+def close(found):
+    """Almost every pixel: edges through centres may go either way after a change of unit."""
+    iou, area, centroid = found
+    assert iou > 0.998
+    assert area < 2e-3
+    assert centroid < 0.02
+
+
+def dxf(unit=units.MM, per_unit=MM, *, layers=True, version="R2010"):
+    """Closed polylines with y up; both pieces of stone 34 cannot be one in DXF: only the first."""
+    document = ezdxf.new(version, units=unit)
+    document.header["$INSUNITS"] = unit
+    space = document.modelspace()
+    for stone, polygons in STONES.items():
+        for number, points in enumerate(polygons[0]):
+            corners = [(x * per_unit, (HEIGHT - y) * per_unit) for x, y in points]
+            style = {"layer": f"stone {stone}" if layers and number == 0 else "0"}
+            if stone % 2:
+                space.add_lwpolyline(corners, close=True, dxfattribs=style)
+            else:  # closed by its last point, and of the old kind
+                space.add_polyline2d([*corners, corners[0]], dxfattribs=style)
+    return document
+
+
+def saved(document, tmp_path, name="stones.dxf", **options):
+    document.saveas(tmp_path / name, **options)
+    return tmp_path / name
+
+
+@pytest.mark.parametrize(
+    ("unit", "metres"), [(units.MM, 0.001), (units.M, 1.0), (units.IN, 0.0254), (units.FT, 0.3048)]
+)
+def test_dxf_in_its_own_unit(tmp_path, unit, metres):
+    path = saved(dxf(unit, 1.0 / PX_PER_M / metres), tmp_path)
+    stones = read_stones(path, settings=METRIC)
+    close(compare(stones))
+    assert stones.source.px_per_m == PX_PER_M
+    assert stones.by_id(8).name == "stone 8"
+    assert stones.by_id(5).area_px / PX_PER_M**2 == pytest.approx(
+        masks()[5].sum() / PX_PER_M**2, rel=2e-3
+    )
+    assert any("1 outlines lie in others and are their holes" in n.message for n in stones.notices)
+
+
+@pytest.mark.parametrize("version", ["R2000", "R2018"])
+@pytest.mark.parametrize("kind", ["asc", "bin"])
+def test_dxf_versions_and_binary(tmp_path, version, kind):
+    path = saved(dxf(version=version), tmp_path, "drawing", fmt=kind)
+    close(compare(read_stones(path, settings=METRIC)))
+
+
+def test_dxf_without_a_unit_is_refused_unless_it_is_told(tmp_path):
+    path = saved(dxf(0), tmp_path)
+    with pytest.raises(InputError, match=r"E116.*does not say its unit.*--unit mm"):
+        read_stones(path)
+    told = ReadSettings(pieces="keep-largest", holes="keep", px_per_m=PX_PER_M, unit="mm")
+    stones = read_stones(path, settings=told)
+    close(compare(stones))
+    assert dict(stones.source.reading)["unit"] == "mm"
+    in_px = ReadSettings(holes="keep", unit="px")
+    stones = read_stones(saved(dxf(0, 1.0), tmp_path), settings=in_px)
+    close(compare(stones, ReadSettings(pieces="keep-largest", holes="keep")))
+    assert stones.source.px_per_m is None
+
+
+def test_a_unit_that_is_not_the_files_is_refused(tmp_path):
+    path = saved(dxf(), tmp_path)
+    with pytest.raises(UsageError, match=r"E118.*0.001 m\), not in cm"):
+        read_stones(path, settings=ReadSettings(unit="cm"))
+    assert len(read_stones(path, settings=ReadSettings(unit="mm"))) == len(STONES)
+    with pytest.raises(UsageError, match=r"E118.*in px, not in mm"):
+        read_stones(np.pad(np.ones((9, 9), np.uint8), 3), settings=ReadSettings(unit="mm"))
+
+
+def test_dxf_curves_and_blocks(tmp_path):
+    document = ezdxf.new("R2010", units=units.M)
+    space = document.modelspace()
+    space.add_circle((1, 1), 0.4)
+    space.add_ellipse((3, 1), major_axis=(0.5, 0), ratio=0.4)
+    corners = [(5, 0.5, 0), (6, 0.5, 0), (6, 1.5, 0), (5, 1.5, 0)]
+    space.add_spline().set_closed(corners)  # periodic: its first knots are before its beginning
+    space.add_spline().set_open_rational(
+        [(12, 0, 0), (14, 0, 0), (13, 1.7320508, 0), (12.5, 0.8660254, 0), (12, 0, 0)], [1] * 5, 1
+    )
+    # Half a circle as a bulge.
+    space.add_lwpolyline([(7, 0.5, 0), (8, 0.5, 1), (8, 1.5, 0), (7, 1.5, 0)], "xyb", close=True)
+    block = document.blocks.new("STONE")
+    block.add_lwpolyline([(0, 0), (0.4, 0), (0.4, 0.3), (0, 0.3)], close=True)
+    space.add_blockref("STONE", (10, 1), dxfattribs={"rotation": 90, "xscale": 2, "yscale": 2})
+    # Not stones:
+    space.add_line((0, 3), (1, 3))
+    space.add_lwpolyline([(0, 3), (1, 3), (1, 4)])
+    space.add_arc((2, 3), 0.3, 0, 120)
+    space.add_text("stones")
+    stones = read_stones(saved(document, tmp_path), settings=ReadSettings(px_per_m=400))
+    areas = [stone.area_px / 400**2 for stone in stones]
+    assert areas[0] == pytest.approx(math.pi * 0.4**2, rel=1e-3)
+    assert areas[1] == pytest.approx(math.pi * 0.5 * 0.2, rel=2e-3)
+    assert areas[2] == pytest.approx(61 / 90, rel=2e-3)  # uniform cubic around a unit square
+    assert areas[3] == pytest.approx(math.sqrt(3), rel=2e-3)  # a triangle
+    assert areas[4] == pytest.approx(1 + math.pi / 8, rel=1e-3)
+    assert areas[5] == pytest.approx(0.8 * 0.6, rel=1e-3)
+    assert stones.by_id(6).mask.shape == (320, 240)  # turned
+    (notice,) = [n for n in stones.notices if "left aside" in n.message]
+    for kind in ("1 ARC", "1 LINE", "1 TEXT", "1 open LWPOLYLINE"):
+        assert kind in notice.message
+
+
+def test_resolution_of_a_drawing_makes_the_median_stone_160_px_long(tmp_path):
+    stones = read_stones(saved(dxf(), tmp_path), settings=ReadSettings(holes="keep"))
+    sides = [max(stone.mask.shape) for stone in stones]
+    assert 150 <= np.median(sides) <= 170
+    scale = stones.source.px_per_m
+    assert float(f"{scale:.2g}") == scale
+    (notice,) = [n for n in stones.notices if "median stone" in n.message]
+    assert f"{scale:g} px a metre" in notice.message
+    assert "px_per_m" not in dict(stones.source.reading)
+
+
+def svg(body, width=f"{WIDTH * MM}mm", height=f"{HEIGHT * MM}mm", box=f"0 0 {WIDTH} {HEIGHT}"):
+    return (
+        f'<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg" width="{width}" '
+        f'height="{height}" viewBox="{box}" xmlns:xlink="http://www.w3.org/1999/xlink">\n'
+        f"{body}\n</svg>\n"
+    )
+
+
+def data_of(polygons):
+    return " ".join(
+        "M" + "L".join(f"{x} {y}" for x, y in ring) + "Z" for rings in polygons for ring in rings
+    )
+
+
+def paths():
+    return "\n".join(
+        f'<path id="stone-{i}" fill-rule="evenodd" d="{data_of(polygons)}"/>'
+        for i, polygons in STONES.items()
+    )
+
+
+def kept(text, tmp_path, settings=METRIC):
+    (tmp_path / "stones.svg").write_text(text)
+    return read_stones(tmp_path / "stones.svg", settings=settings)
+
+
+@pytest.mark.parametrize(
+    ("width", "height"),
+    [
+        (f"{WIDTH * MM}mm", f"{HEIGHT * MM}mm"),
+        (f"{WIDTH * MM / 10} cm", f"{HEIGHT * MM / 10} cm"),
+        (f"{WIDTH * MM / 25.4}in", f"{HEIGHT * MM / 25.4}in"),
+        (f"{WIDTH * MM / 25.4 * 72}pt", f"{HEIGHT * MM / 25.4 * 72}pt"),
+        (f"{WIDTH * MM}mm", f"{HEIGHT * MM / 25.4}in"),
+    ],
+)
+def test_svg_to_scale(tmp_path, width, height):
+    stones = kept(svg(paths(), width, height), tmp_path)
+    close(compare(stones))
+    assert stones.source.px_per_m == PX_PER_M
+    assert stones.by_id(300).name == "stone-300"
+
+
+@pytest.mark.parametrize(("width", "box"), [("320", "0 0 320 200"), ("320px", "0 0 320 200")])
+def test_svg_in_px_is_an_image(tmp_path, width, box):
+    stones = kept(svg(paths(), width, "200", box), tmp_path)
+    assert compare(stones) == (1.0, 0.0, 0.0)
+    assert stones.source.px_per_m is None
+    assert (stones.source.width_px, stones.source.height_px) == (WIDTH, HEIGHT)
+    assert dict(stones.source.reading) == {"pieces": "keep-largest", "holes": "keep"}
+
+
+def test_svg_in_px_with_a_unit_that_is_told(tmp_path):
+    told = ReadSettings(pieces="keep-largest", holes="keep", px_per_m=PX_PER_M, unit="cm")
+    text = svg(paths(), "100%", "100%").replace("<path ", f'<path transform="scale({MM / 10})" ')
+    close(compare(kept(text, tmp_path, told)))
+
+
+def test_svg_larger_and_smaller_view_boxes(tmp_path):
+    body = f'<g transform="translate(-100 50) scale(.5)">{paths()}</g>'
+    box = f"-100 50 {WIDTH / 2} {HEIGHT / 2}"
+    close(compare(kept(svg(body, box=box), tmp_path)))
+
+
+def test_svg_definitions_are_used_under_nested_transforms(tmp_path):
+    """Every stone is defined turned and mirrored, and put back by the transforms around it."""
+    defined, used = [], []
+    for number, (i, polygons) in enumerate(STONES.items()):
+        cos, sin = math.cos(math.radians(17 * number)), math.sin(math.radians(17 * number))
+        turned = [
+            [[(x * cos - y * sin, x * sin + y * cos) for x, y in ring] for ring in rings]
+            for rings in polygons
+        ]
+        href = "href" if number % 2 else "xlink:href"
+        defined.append(f'<path id="stone_{i}" style="fill-rule: evenodd" d="{data_of(turned)}"/>')
+        used.append(f'<use {href}="#stone_{i}" transform="rotate({-17 * number})" id="u{i}"/>')
+    body = (
+        f"<defs>{''.join(defined)}</defs>"
+        f'<g transform="matrix(2 0 0 -2 30 {HEIGHT})"><g transform="scale(.5 -.5)">'
+        f'<svg x="-25" y="{HEIGHT}"><g transform="translate(-5,{-2 * HEIGHT + HEIGHT})">'
+        f'<g transform="translate(0 {HEIGHT})">{"".join(used)}</g></g></svg></g></g>'
+    )
+    close(compare(kept(svg(body), tmp_path)))
+
+
+def test_svg_shapes_by_closed_forms(tmp_path):
+    body = """
+      <rect width="320" height="200" fill="white"/>
+      <rect id="stone1" x="10" y="10" width="60" height="40"/>
+      <rect id="stone2" x="80" y="10" width="60" height="40" rx="10"/>
+      <rect id="stone3" x="150" y="10" width="60" height="40" rx="10" ry="90"/>
+      <circle id="stone4" cx="250" cy="40" r="30"/>
+      <ellipse id="stone5" cx="60" cy="110" rx="40" ry="25" transform="rotate(30 60 110)"/>
+      <polygon id="stone6" points="120,90 180,90 180,140 120,140"/>
+      <polyline id="stone7" points="200 90 260 90 260 140 200 140 200 90"/>
+      <symbol id="s"><circle cx="10" cy="10" r="10"/></symbol>
+      <use href="#s" id="stone8" x="20" y="150" width="20" height="20"/>
+      <path id="stone9" d="M100 150h60v40h-60zM110 160v20h40v-20z"/>
+      <path id="stone10" d="M180 150h60v40h-60zM190 160h40v20h-40z"/>
+      <polyline points="0 0 5 5 9 0"/> <text>stone</text> <line x2="4"/>
+      <path d="M0 0 L9 9 L4 9"/> <circle r="5" display="none"/>
+      <g style="visibility:hidden"><circle r="5"/></g>
+      <clipPath><rect width="9" height="9"/></clipPath>
+    """
+    settings = ReadSettings(holes="keep")
+    stones = kept(svg(body, "320", "200"), tmp_path, settings)
+    areas = {stone.id: stone.area_px for stone in stones}
+    assert areas == pytest.approx(
+        {
+            1: 2400,
+            2: 2400 - (4 - math.pi) * 100,
+            3: 2400 - (4 - math.pi) * 10 * 20,
+            4: math.pi * 900,
+            5: math.pi * 1000,
+            6: 3000,
+            7: 3000,
+            8: math.pi * 100,
+            9: 2400 - 800,  # the hole turns the other way
+            10: 2400,  # and here it does not
+        },
+        rel=6e-3,
+    )
+    (notice,) = [n for n in stones.notices if "left aside" in n.message]
+    for kind in ("1 text", "1 line,", "1 open lines in path", "1 open lines in polyline",
+                 "1 rectangles over the whole page"):  # fmt: skip
+        assert kind in notice.message
+
+
+def test_svg_layer_of_stones_is_all_that_counts(tmp_path):
+    body = f'<rect x="3" y="3" width="90" height="90"/><g id="STONES">{paths()}</g>'
+    stones = kept(svg(body), tmp_path)
+    close(compare(stones))
+    assert "1 shapes outside the group STONES" in stones.notices[0].message
+
+
+@pytest.mark.parametrize(
+    ("body", "text"),
+    [
+        ('<path id="a" d="M0 0 L5"/>', r"E114 .*the path 'a' cannot be used \(L has 1 numbers"),
+        ('<use href="#nothing"/>', r"E114 .*'#nothing', which is not there"),
+        ('<g id="a"><use href="#a"/></g>', r"E114 .*use each other too often or too deeply"),
+        ('<circle r="1mm"/>', r"E114 .*a circle cannot be used \(r in mm"),
+        ('<polygon points="1 2 3"/>', r"E114 .*a polygon cannot be used"),
+        ('<g transform="turn(3)"/>', r"E114 .*no transform"),
+        ("<text>nothing</text>", r"E104 .*no stones in it.*1 text"),
+        ("<g>", r"E106 .*damaged or cut short \(mismatched tag"),
+    ],
+)
+def test_damaged_svg(tmp_path, body, text):
+    with pytest.raises(InputError, match=text):
+        kept(svg(body), tmp_path)
+
+
+@pytest.mark.parametrize("width", ["wide", "3em", "0mm"])
+def test_svg_pages_that_are_none(tmp_path, width):
+    with pytest.raises(InputError, match=r"E114 .*the element svg"):
+        kept(svg(paths(), width), tmp_path)
+
+
+def test_damaged_dxf(tmp_path):
+    text = io.StringIO()
+    dxf().write(text)
+    path = tmp_path / "stones.dxf"
+    for share in (0.3, 0.9):
+        path.write_text(text.getvalue()[: int(share * len(text.getvalue()))])
+        with pytest.raises(InputError, match=r"E106 .*damaged or cut short"):
+            read_stones(path)
+    document = ezdxf.new(units=units.M)
+    document.modelspace().add_line((0, 0), (1, 1))
+    with pytest.raises(InputError, match=r"E104 .*no stones.*1 LINE"):
+        read_stones(saved(document, tmp_path))
+
+
+def test_a_stray_outline_far_away_is_too_large_a_picture(tmp_path):
+    document = dxf()
+    document.modelspace().add_circle((1e6, 1e6), 5)
+    with pytest.raises(InputError, match=r"E110.*far away"):
+        read_stones(saved(document, tmp_path), settings=METRIC)
+
+
+def test_wholly_one_stone(tmp_path):
+    assert "W119" in codes(kept(svg('<circle cx="9" cy="9" r="4"/>'), tmp_path, ReadSettings()))

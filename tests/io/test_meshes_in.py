@@ -1,0 +1,157 @@
+"""OBJ, PLY and STL of the known stones, extruded and written by trimesh."""
+
+import numpy as np
+import pytest
+import shapely
+import trimesh
+
+from drystone.errors import InputError
+from drystone.io.read_stones import ReadSettings, read_stones
+from tests.io.known_stones import HEIGHT, STONES, compare, masks
+from tests.io.pictures import codes
+
+PX_PER_M = 500.0
+METRIC = ReadSettings(pieces="keep-largest", holes="keep", px_per_m=PX_PER_M)
+AXES = {
+    "z": np.eye(4),
+    "y": trimesh.transformations.rotation_matrix(np.pi / 2, (1, 0, 0)),
+    "x": np.array([[0, 0, 1, 0], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 1]], float),
+}
+"""Turns that put the plane of the stones where one looks along an axis."""
+
+
+def solid(polygons, turn, unit):
+    """The first piece of a stone as a prism of 2 cm, in metres over `unit`."""
+    outer, *holes = ([(x, HEIGHT - y) for x, y in ring] for ring in polygons[0])
+    polygon = shapely.Polygon(outer, holes)
+    triangles = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
+    corners = shapely.get_coordinates(shapely.orient_polygons(triangles)).reshape(-1, 4, 2)[:, :3]
+    vertices, faces = np.unique(corners.reshape(-1, 2), axis=0, return_inverse=True)
+    mesh = trimesh.creation.extrude_triangulation(vertices, faces.reshape(-1, 3), 10.0)
+    mesh.apply_transform(turn)
+    mesh.apply_scale(1 / PX_PER_M / unit)
+    return mesh
+
+
+def meshes(axis="z", unit=1.0):
+    return {i: solid(polygons, AXES[axis], unit) for i, polygons in STONES.items()}
+
+
+def saved(tmp_path, data, name):
+    path = tmp_path / name
+    path.write_bytes(data if isinstance(data, bytes) else data.encode())
+    return path
+
+
+def apart(axis="z", unit=1.0):
+    """The bodies that touch nothing, as one mesh without names, and their ids in order."""
+    found = meshes(axis, unit)
+    names = [i for i in STONES if i not in (13, 21)]
+    return trimesh.util.concatenate([found[i] for i in names]), names
+
+
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+def test_obj_with_named_objects(tmp_path, axis):
+    scene = trimesh.Scene()
+    for i, mesh in meshes(axis).items():
+        scene.add_geometry(mesh, geom_name=f"stone_{i:03d}")
+    stones = read_stones(saved(tmp_path, scene.export(file_type="obj"), "s.obj"), settings=METRIC)
+    iou, area, centroid = compare(stones)
+    assert iou > 0.998
+    assert area < 2e-3
+    assert centroid < 0.02
+    assert stones.source.px_per_m == PX_PER_M
+    assert stones.by_id(21).name == "stone_021"
+    seen, unit = stones.notices[:2]
+    assert f"seen along {axis.upper()}, with" in seen.message
+    assert "taken as metres" in unit.message
+
+
+@pytest.mark.parametrize(
+    ("kind", "options"),
+    [("stl", {}), ("stl_ascii", {}), ("ply", {}), ("ply", {"encoding": "ascii"}), ("obj", {})],
+)
+def test_bodies_without_names(tmp_path, kind, options):
+    mesh, names = apart("y", unit=0.001)
+    suffix = kind.removesuffix("_ascii")
+    path = saved(tmp_path, mesh.export(file_type=kind, **options), f"stones.{suffix}")
+    settings = ReadSettings(pieces="keep-largest", holes="keep", px_per_m=PX_PER_M, unit="mm")
+    stones = read_stones(path, settings=settings)
+    assert [stone.id for stone in stones] == list(range(1, len(names) + 1))
+    for stone in stones:
+        assert stone.area_px == pytest.approx(_largest_piece(names[stone.id - 1]), rel=3e-3)
+    assert not any("taken as metres" in notice.message for notice in stones.notices)
+    unnamed = saved(tmp_path, mesh.export(file_type=kind, **options), "stones")
+    assert len(read_stones(unnamed, settings=settings)) == len(names)  # by the content alone
+
+
+def _largest_piece(stone):
+    return int(masks()[stone].sum()) if stone != 34 else 50 * 40
+
+
+def test_obj_faces_may_have_many_corners_and_count_from_the_end(tmp_path):
+    text = """# an L, as one face of six corners, and a box of quadrilaterals
+o wall_1
+v 0 0 0
+v 4 0 0
+v 4 0 1
+v 1 0 1
+v 1 0 3
+v 0 0 3
+f 1/1/1 2/2/1 3/3/1 4//1 5 6
+g part
+o wall_2
+v 6 0 0
+v 8 0 0
+v 8 0 2
+v 6 0 2
+f -4 -3 -2 -1
+"""
+    stones = read_stones(saved(tmp_path, text, "s.obj"), settings=ReadSettings(px_per_m=50))
+    assert [stone.area_px for stone in stones] == [6 * 2500, 4 * 2500]
+    assert [stone.name for stone in stones] == ["wall_1", "wall_2"]
+
+
+def test_a_sphere_shows_its_circle(tmp_path):
+    sphere = trimesh.creation.icosphere(subdivisions=4, radius=0.3)
+    sphere.apply_scale((1, 1, 0.5))
+    stones = read_stones(saved(tmp_path, sphere.export(file_type="stl"), "a.stl"))
+    (stone,) = stones
+    scale = stones.source.px_per_m
+    assert stone.area_px / scale**2 == pytest.approx(np.pi * 0.09, rel=5e-3)
+    assert stone.mask.shape[0] == pytest.approx(0.6 * scale, abs=2)
+    assert "median stone is 0.6 m" in stones.notices[-1].message
+    assert codes(stones) == ["W119"] * 3
+
+
+@pytest.mark.parametrize(
+    ("data", "name", "text"),
+    [
+        (
+            "o a\nv 0 0 0\nv 1 0 0\nf 1 2 3\n",
+            "a.obj",
+            r"E114 .*line 4 cannot be used \(a face of 3",
+        ),
+        ("v 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj", r"E114 .*less than three coordinates"),
+        ("v 0 0 x\n", "a.obj", r"E114 .*line 1"),
+        ("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj", r"E114 .*not finite"),
+        ("v 0 0 0\n", "a.obj", r"E114 .*no faces"),
+        (b"ply\nformat binary_little_endian 1.0\nend_header\n", "a.ply", r"E1(06|14) "),
+        (b"too short", "a.stl", r"E106 .*damaged"),
+    ],
+)
+def test_damaged_meshes(tmp_path, data, name, text):
+    with pytest.raises(InputError, match=text):
+        read_stones(saved(tmp_path, data, name))
+
+
+@pytest.mark.parametrize(
+    ("kind", "options"),
+    [("stl", {}), ("stl_ascii", {}), ("ply", {}), ("ply", {"encoding": "ascii"})],
+)
+@pytest.mark.parametrize("share", [0.5, 0.95])
+def test_meshes_that_are_cut_short(tmp_path, kind, options, share):
+    data = apart()[0].export(file_type=kind, **options)
+    path = saved(tmp_path, data[: int(share * len(data))], f"a.{kind[:3]}")
+    with pytest.raises(InputError, match=r"E106 .*damaged or cut short"):
+        read_stones(path)

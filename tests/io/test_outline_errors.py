@@ -1,0 +1,148 @@
+"""Every damaged file of outlines gets a coded error that names the entry; extras are named too."""
+
+import json
+from importlib import import_module
+
+import pytest
+
+from drystone.errors import InputError, UsageError
+from drystone.io.outlines_in import dxf, meshes
+from drystone.io.read_stones import ReadSettings, read_stones
+from tests.io.known_stones import masks
+from tests.io.test_annotations import coco, geojson, labelme, runs
+
+SQUARE = [[1, 1], [30, 1], [30, 30], [1, 30]]
+
+
+def read(tmp_path, content, name="stones.json"):
+    text = content if isinstance(content, str) else json.dumps(content)
+    (tmp_path / name).write_text(text)
+    return read_stones(tmp_path / name)
+
+
+@pytest.mark.parametrize(
+    ("content", "text"),
+    [
+        ("{", r"cannot be read, it may be cut short"),
+        ("[" * 100_000, r"cannot be read"),
+        ({"a": 1, "b": 2}, r"its keys are 'a', 'b'.*labelme.*COCO.*SAM.*GeoJSON"),
+        ([1, 2], r"none of the known forms.*labelme"),
+        ([{"bbox": [1, 2]}], r"none of the known forms"),
+        ("3", r"none of the known forms"),
+        ({"schema": "drystone-photo/1", "px_per_m": 3}, r"beside the label image.*Give stones.png"),
+        ({"steps": [], "source": {}, "wall": {}}, r"is a plan.*Give the stones"),
+        ({"blocks": []}, r"block model of a wall"),
+    ],
+)
+def test_json_of_another_kind(tmp_path, content, text):
+    with pytest.raises(InputError, match=rf"E113 stones.json: .*{text}"):
+        read(tmp_path, content)
+
+
+def shape(**changes):
+    return labelme(shapes=[{"label": "1", "points": SQUARE} | changes])
+
+
+def annotation(segmentation):
+    return coco({5: segmentation})
+
+
+def feature(geometry):
+    good = {"type": "Feature", "properties": {}, "geometry": geometry}
+    return geojson(features=[good])
+
+
+@pytest.mark.parametrize(
+    ("content", "text"),
+    [
+        (shape(points=SQUARE[:2]), r"shape 0.*needs 3 points, not 2"),
+        (shape(points=[*SQUARE, ["a", 2]]), r"shape 0.*could not convert"),
+        (shape(points=[*SQUARE, [2]]), r"shape 0"),
+        (shape(points=[*SQUARE, [float("nan"), 2]]), r"shape 0.*not finite"),
+        (shape(points=[*SQUARE, [1e300, 2]]), r"shape 0.*beyond 1e9"),
+        (shape(points=None), r"shape 0"),
+        (shape(shape_type="circle", points=[[1, 2]]), r"shape 0"),
+        (shape(shape_type="mask", points=SQUARE[:2], mask="####"), r"shape 0"),
+        (shape(shape_type="mask", points=SQUARE[:2], mask="aGVsbG8="), r"shape 0.*no picture"),
+        (labelme(shapes=[{"label": "1"}]), r"shape 0.*has no 'points'"),
+        (labelme(shapes=["a"]), r"shape 0"),
+        (labelme(imageWidth="wide"), r"size of the image"),
+        (annotation([[1, 1, 5]]), r"annotation 5.*odd number"),
+        (annotation([[1, 1, 5, 5]]), r"annotation 5.*needs 3 points"),
+        (annotation({"size": [3, 3], "counts": [1, 2]}), r"annotation 5.*add up to 3, not"),
+        (annotation({"size": [3], "counts": [3]}), r"annotation 5"),
+        (annotation({"counts": [3]}), r"annotation 5.*has no 'size'"),
+        (annotation({"size": [3, 3], "counts": "~~~"}), r"annotation 5.*does not belong"),
+        (annotation({"size": [90000, 90000], "counts": [1]}), r"annotation 5.*90000 x 90000"),
+        (annotation({"size": [3, 3], "counts": [0, 9]}), r"the image.*sizes differ: 3 x 3, 320 x"),
+        (coco({}, annotations=[3]), r"annotations are no objects"),
+        ([{"segmentation": [[True, False], [True]]}], r"mask 1"),
+        ([{"segmentation": None}], r"mask 1"),
+        ([{"segmentation": runs(masks()[3])}, {"segmentation": {"size": [3, 3], "counts": [9]}}],
+         r"the image.*sizes differ"),
+        (feature({"type": "Polygon", "coordinates": []}), r"feature 0.*no ring"),
+        (feature({"type": "Polygon", "coordinates": [[[1, 1], [2, 2]]]}), r"needs 3 points"),
+        (feature({"type": "Polygon"}), r"feature 0.*has no 'coordinates'"),
+        (feature({"coordinates": []}), r"feature 0.*has no 'type'"),
+        (geojson(features=None), r"list of features|feature"),
+    ],
+)  # fmt: skip
+def test_damaged_entries_are_named(tmp_path, content, text):
+    with pytest.raises(InputError, match=rf"E114 stones.json: .*{text}"):
+        read(tmp_path, content)
+
+
+def test_sam_of_several_images(tmp_path):
+    content = [{"image_id": i, "segmentation": [[1, 1, 30, 1, 30, 30]]} for i in (1, 2)]
+    with pytest.raises(InputError, match=r"E115 .*2 images.*there are 1, 2"):
+        read(tmp_path, content)
+    stones = read_stones(tmp_path / "stones.json", settings=ReadSettings(image="2"))
+    assert len(stones) == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({"crs": {"properties": {"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}}, "degrees"),
+        ({"unit": "parsec"}, "'parsec' is not known"),
+        ({"unit": None}, "None is not known"),
+    ],
+)
+def test_geojson_in_no_length(tmp_path, changes, text):
+    with pytest.raises(InputError, match=rf"E116 .*{text}"):
+        read(tmp_path, geojson(**changes))
+
+
+def test_no_stones(tmp_path):
+    for content in (labelme(shapes=[]), coco({}), [], geojson(features=[])):
+        with pytest.raises(InputError, match=r"E104 stones.json: there are no stones"):
+            read(tmp_path, content)
+
+
+def test_stones_outside_the_image_are_none(tmp_path):
+    far = shape(points=[[400, 400], [430, 400], [430, 430]])
+    with pytest.raises(InputError, match=r"E104"):
+        read(tmp_path, far)
+
+
+@pytest.mark.parametrize(
+    ("load", "name"), [(dxf.load_ezdxf, "ezdxf"), (meshes.load_trimesh, "trimesh")]
+)
+def test_extras_that_are_not_installed(monkeypatch, load, name):
+    def missing(module):
+        if module == name:
+            raise ImportError(module)
+        return import_module(module)
+
+    for module in (dxf, meshes):
+        monkeypatch.setattr(module, "import_module", missing)
+    with pytest.raises(
+        UsageError, match=rf"E305 .*{name} is not installed.*pip install drystone\["
+    ):
+        load()
+
+
+@pytest.mark.parametrize("bad", [{"unit": "yard"}, {"px_per_m": 0.0}, {"px_per_m": float("inf")}])
+def test_settings_that_mean_nothing(bad):
+    with pytest.raises(UsageError, match="E119"):
+        ReadSettings(**bad)

@@ -1,0 +1,133 @@
+import hashlib
+
+import cv2
+import numpy as np
+import pytest
+import tifffile
+from PIL import Image
+
+from drystone.errors import InputError
+from drystone.io.photo_file import read_photo
+
+PICTURE = np.random.default_rng(3).integers(0, 256, (6, 9, 3), dtype=np.uint8)
+
+
+def saved(path, values=PICTURE, mode=None, **more):
+    image = Image.fromarray(values)
+    (image.convert(mode) if mode else image).save(path, **more)
+    return path
+
+
+@pytest.mark.parametrize("name", ["photo.png", "photo.tif", "photo.TIFF"])
+def test_values_are_kept(tmp_path, name):
+    path = saved(tmp_path / name)
+    photo = read_photo(path)
+    assert np.array_equal(photo.values, PICTURE)
+    assert (photo.name, photo.size_px, photo.notices) == (name, (9, 6), ())
+    assert photo.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+@pytest.mark.parametrize("orientation", range(2, 9))
+@pytest.mark.parametrize("ending", ["jpg", "png", "tif"])
+def test_photos_are_turned_as_opencv_does(tmp_path, ending, orientation):
+    smooth = np.zeros((24, 32, 3), dtype=np.uint8)
+    smooth[:12, :16], smooth[12:, :16] = (250, 20, 20), (20, 20, 250)
+    exif = Image.Exif()
+    exif[0x0112] = orientation
+    options = {"quality": 95} if ending == "jpg" else {}
+    path = tmp_path / f"photo.{ending}"
+    if ending == "tif":
+        tifffile.imwrite(path, smooth, photometric="rgb",
+                         extratags=[(274, "H", 1, orientation, True)])  # fmt: skip
+    else:
+        Image.fromarray(smooth).save(path, exif=exif, **options)
+    photo = read_photo(path)
+    if ending != "tif":
+        theirs = cv2.imread(str(path), cv2.IMREAD_COLOR_RGB)
+        assert np.abs(photo.values.astype(int) - theirs).max() < 12
+    with Image.open(path) as image:
+        image.load()
+        upright = smooth.shape[:2] if orientation < 5 else smooth.shape[1::-1]
+    assert photo.values.shape[:2] == upright
+    corner = {2: (0, -1), 3: (-1, -1), 4: (-1, 0), 5: (0, 0), 6: (0, -1), 7: (-1, -1), 8: (-1, 0)}
+    red = photo.values[corner[orientation]]
+    assert red[0] > 200
+    assert red[2] < 60
+    assert [notice.code for notice in photo.notices] == ["W173"]
+    assert path.name in photo.notices[0].message
+
+
+def test_16_bits_are_scaled_and_said(tmp_path):
+    deep = PICTURE.astype(np.uint16) * 257
+    tifffile.imwrite(tmp_path / "deep.tif", deep, photometric="rgb")
+    photo = read_photo(tmp_path / "deep.tif")
+    assert np.array_equal(photo.values, PICTURE)
+    assert [notice.code for notice in photo.notices] == ["W174"]
+    Image.fromarray(deep[..., 0]).save(tmp_path / "grey.png")
+    grey = read_photo(tmp_path / "grey.png")
+    assert np.array_equal(grey.values, np.repeat(PICTURE[..., :1], 3, axis=2))
+    assert [notice.code for notice in grey.notices] == ["W174"]
+    assert cv2.imwrite(str(tmp_path / "colour.png"), deep[..., ::-1])
+    colour = read_photo(tmp_path / "colour.png")
+    assert np.array_equal(colour.values, PICTURE)
+    assert [notice.code for notice in colour.notices] == ["W174"]
+
+
+def test_alpha_is_ignored_and_said(tmp_path):
+    clear = np.dstack([PICTURE, np.full(PICTURE.shape[:2], 100, dtype=np.uint8)])
+    photo = read_photo(saved(tmp_path / "photo.png", clear))
+    assert np.array_equal(photo.values, PICTURE)
+    assert [notice.code for notice in photo.notices] == ["W174"]
+    clear[..., 3] = 255
+    assert read_photo(saved(tmp_path / "photo.png", clear)).notices == ()
+
+
+def test_grey_palette_and_cmyk_become_rgb(tmp_path):
+    grey = read_photo(saved(tmp_path / "grey.jpg", PICTURE[..., 0]))
+    assert grey.values.shape == (6, 9, 3)
+    assert (grey.values[..., 0] == grey.values[..., 2]).all()
+    two = np.where(PICTURE[..., :1] > 127, 255, 0).astype(np.uint8).repeat(3, axis=2)
+    assert np.array_equal(read_photo(saved(tmp_path / "p.png", two, "P")).values, two)
+    cmyk = read_photo(saved(tmp_path / "cmyk.tif", two, "CMYK"))
+    assert np.abs(cmyk.values.astype(int) - two).max() <= 1
+
+
+@pytest.mark.parametrize(
+    ("data", "code"),
+    [
+        (b"", "E106"),
+        (b"hello", "E107"),
+        (b"\xff\xd8\xff\xe0 broken", "E106"),
+        (b"\x89PNG\r\n\x1a\n", "E106"),
+        (b"II*\0\x08\0\0\0", "E106"),
+    ],
+)
+def test_files_that_are_no_photographs(tmp_path, data, code):
+    path = tmp_path / "photo.jpg"
+    path.write_bytes(data)
+    with pytest.raises(InputError) as caught:
+        read_photo(path)
+    assert caught.value.code == code
+    assert str(path) in str(caught.value)
+
+
+def test_cut_short_missing_large_and_several(tmp_path):
+    whole = saved(tmp_path / "whole.jpg", np.tile(PICTURE, (40, 40, 1)))
+    cut = tmp_path / "cut.jpg"
+    cut.write_bytes(whole.read_bytes()[:3000])
+    pages = tmp_path / "pages.tif"
+    tifffile.imwrite(pages, np.stack([PICTURE, PICTURE]), photometric="rgb")
+    real = tmp_path / "real.tif"
+    tifffile.imwrite(real, PICTURE.astype(np.float32), photometric="rgb")
+    for path, code in (
+        (cut, "E106"),
+        (tmp_path / "none.jpg", "E100"),
+        (pages, "E109"),
+        (real, "E107"),
+    ):
+        with pytest.raises(InputError) as caught:
+            read_photo(path)
+        assert caught.value.code == code, path
+    with pytest.raises(InputError) as caught:
+        read_photo(whole, max_px=1000)
+    assert caught.value.code == "E110"

@@ -1,0 +1,87 @@
+"""Photographs of markers by a camera of which all is known."""
+
+import cv2
+import numpy as np
+
+from drystone.photo.view import apply
+
+BITS = {
+    "aruco": (cv2.aruco.DICT_4X4_50, 6),
+    "apriltag": (cv2.aruco.DICT_APRILTAG_36h11, 8),
+}
+
+
+def camera(focal_px, size_px, *, tilt_deg=0.0, turn_deg=0.0, distance_m=1.0):
+    """Ground (x to the right, y down, metres; 0, 0 in the middle of the photo) to photo px."""
+    tilt, turn = np.deg2rad([tilt_deg, turn_deg])
+    about_x = np.array(
+        [[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)], [0, np.sin(tilt), np.cos(tilt)]]
+    )
+    about_z = np.array(
+        [[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]]
+    )
+    turned = about_x @ about_z
+    return intrinsics(focal_px, size_px) @ np.column_stack(
+        [turned[:, 0], turned[:, 1], [0, 0, distance_m]]
+    )
+
+
+def intrinsics(focal_px, size_px):
+    return np.array([[focal_px, 0, size_px[0] / 2], [0, focal_px, size_px[1] / 2], [0, 0, 1]])
+
+
+def outline(angle_deg, x, y, side):
+    """Corners of a marker on the ground, as printed clockwise from its upper left."""
+    cos, sin = np.cos(np.deg2rad(angle_deg)), np.sin(np.deg2rad(angle_deg))
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * side
+    return square @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
+
+
+def photograph(
+    to_photo, size_px, placed, *, dictionary="aruco", border=1.3, blur_px=0.7, noise=3.0, finer=2
+):
+    """Render markers on grey ground; each px is the mean of finer x finer samples.
+
+    `placed` has (id, angle_deg, x, y, side) for each marker: metres, upper left corner.
+    """
+    family, across = BITS[dictionary]
+    family = cv2.aruco.getPredefinedDictionary(family)
+    width, height = size_px
+    shown = np.full((height, width), 105.0)
+    to_ground = np.linalg.inv(to_photo)
+    for marker_id, angle, x, y, side in placed:
+        bits = cv2.aruco.generateImageMarker(family, marker_id, across) > 127
+        module = side / across
+        edge = border * module
+        paper = outline(angle, 0, 0, side + 2 * edge)
+        paper += np.array([x, y]) + outline(angle, 0, 0, -edge)[2]
+        seen = apply(to_photo, paper)
+        low = np.clip(np.floor(seen.min(axis=0)).astype(int), 0, [width, height])
+        high = np.clip(np.ceil(seen.max(axis=0)).astype(int), 0, [width, height])
+        sub = (np.arange(finer) + 0.5) / finer
+        columns = (np.arange(low[0], high[0])[:, None] + sub).ravel()
+        rows = (np.arange(low[1], high[1])[:, None] + sub).ravel()
+        grid = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
+        cos, sin = np.cos(np.deg2rad(angle)), np.sin(np.deg2rad(angle))
+        on_paper = (apply(to_ground, grid) - (x, y)) @ np.array([[cos, -sin], [sin, cos]])
+        on_paper /= module
+        value = np.full(len(grid), 105.0)
+        value[((on_paper > -border) & (on_paper < across + border)).all(axis=1)] = 225.0
+        inside = ((on_paper > 0) & (on_paper < across)).all(axis=1)
+        column, row = np.floor(on_paper[inside]).astype(int).T
+        value[inside] = np.where(bits[row, column], 225.0, 35.0)
+        blocks = value.reshape(high[1] - low[1], finer, high[0] - low[0], finer).mean(axis=(1, 3))
+        part = shown[low[1] : high[1], low[0] : high[0]]
+        part[blocks != 105.0] = blocks[blocks != 105.0]
+    shown = cv2.GaussianBlur(shown, (0, 0), blur_px)
+    shown += np.random.default_rng(5).normal(0.0, noise, shown.shape)
+    return np.repeat(np.clip(np.round(shown), 0, 255).astype(np.uint8)[..., None], 3, axis=2)
+
+
+def distance_error_percent(view, to_photo, width_m, height_m):
+    """Largest error of distances between nine points of the ground, percent."""
+    points = np.array([[x, y] for x in (-1, 0, 1) for y in (-1, 0, 1)]) * (width_m, height_m) / 2
+    found = view.to_ground(apply(to_photo, points))
+    one, other = np.triu_indices(len(points), 1)
+    true = np.linalg.norm(points[one] - points[other], axis=1)
+    return 100.0 * np.abs(np.linalg.norm(found[one] - found[other], axis=1) / true - 1.0).max()

@@ -1,0 +1,118 @@
+import sys
+
+import cv2
+import numpy as np
+import pytest
+
+from drystone.errors import UsageError
+from drystone.photo import markers
+from drystone.photo.dictionaries import id_count, marker_modules, modules_across
+from drystone.photo.markers import FoundMarker, find_markers
+from drystone.photo.view import apply
+from tests.photo.scenes import BITS, camera, outline, photograph
+
+SIDE = 0.05
+SIZE = (420, 320)
+PLACED = ((3, 15.0, -0.08, -0.06, SIDE), (11, 200.0, 0.07, 0.06, SIDE))
+
+
+def to_photo(tilt_deg=0.0):
+    return camera(600, SIZE, tilt_deg=tilt_deg, distance_m=0.4)
+
+
+@pytest.mark.parametrize("dictionary", ["aruco", "apriltag"])
+@pytest.mark.parametrize("tilt_deg", [0.0, 35.0])
+def test_corners_are_found_to_a_tenth_of_a_px(dictionary, tilt_deg):
+    shown = photograph(to_photo(tilt_deg), SIZE, PLACED, dictionary=dictionary)
+    found = find_markers(shown)
+    assert [(one.id, one.dictionary) for one in found] == [(3, dictionary), (11, dictionary)]
+    for one, (_, *lies) in zip(found, PLACED, strict=True):
+        off = one.corners_px - apply(to_photo(tilt_deg), outline(*lies))
+        assert np.abs(off).max() < 0.25
+        assert np.sqrt((off**2).mean()) < 0.1
+
+
+def test_better_than_the_corners_of_opencv():
+    """Blur rounds corners off: what looks for them alone reads a marker too small."""
+    shown = photograph(to_photo(), SIZE, PLACED, blur_px=1.2)
+    parameters = cv2.aruco.DetectorParameters()
+    parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
+    family = cv2.aruco.getPredefinedDictionary(BITS["aruco"][0])
+    theirs, _, _ = cv2.aruco.ArucoDetector(family, parameters).detectMarkers(shown)
+    sides = [FoundMarker(0, one.reshape(4, 2), "aruco").side_px for one in theirs]
+    true = 600 * SIDE / 0.4
+    assert max(sides) < true * 0.996
+    for one in find_markers(shown):
+        assert one.side_px == pytest.approx(true, rel=0.001)
+
+
+def test_a_shadow_over_one_half_moves_nothing():
+    shown = photograph(to_photo(), SIZE, PLACED).astype(float)
+    shown *= np.linspace(1.0, 0.5, SIZE[0])[None, :, None]
+    found = find_markers(shown.astype(np.uint8))
+    assert [one.id for one in found] == [3, 11]
+    for one, (_, *lies) in zip(found, PLACED, strict=True):
+        assert np.abs(one.corners_px - apply(to_photo(), outline(*lies))).max() < 0.3
+
+
+def test_where_edges_cannot_be_measured_the_corners_are_taken(monkeypatch):
+    monkeypatch.setattr(markers, "corners_by_edges", lambda *_: None)
+    found = find_markers(photograph(to_photo(), SIZE, PLACED))
+    assert [one.id for one in found] == [3, 11]
+    for one, (_, *lies) in zip(found, PLACED, strict=True):
+        true = apply(to_photo(), outline(*lies))
+        assert np.abs(one.corners_px - true).max() < 0.6
+        assert one.corners_px.mean(axis=0) == pytest.approx(true.mean(axis=0), abs=0.1)
+
+
+def test_grey_pictures_are_read_too():
+    shown = photograph(to_photo(), SIZE, PLACED)
+    grey, rgb = find_markers(shown[..., 0]), find_markers(shown)
+    assert [one.id for one in grey] == [one.id for one in rgb]
+
+
+def test_an_id_may_be_found_twice():
+    twice = [PLACED[0], (3, *PLACED[1][1:])]
+    assert [one.id for one in find_markers(photograph(to_photo(), SIZE, twice))] == [3, 3]
+
+
+def test_nothing_is_found_where_there_is_nothing():
+    noise = np.random.default_rng(1).integers(0, 256, (300, 400, 3), dtype=np.uint8)
+    assert find_markers(noise) == ()
+    assert find_markers(np.zeros((50, 50), dtype=np.uint8)) == ()
+
+
+def test_the_other_family_is_not_found():
+    shown = photograph(to_photo(), SIZE, PLACED)
+    assert find_markers(shown, "apriltag") == ()
+    assert len(find_markers(shown, "aruco")) == 2
+
+
+def test_a_mirrored_marker_is_none():
+    shown = photograph(to_photo(), SIZE, PLACED)
+    assert find_markers(np.ascontiguousarray(shown[:, ::-1])) == ()
+
+
+def test_patterns_are_those_of_opencv():
+    for name, (family, across) in BITS.items():
+        assert modules_across(name) == across
+        picture = cv2.aruco.generateImageMarker(
+            cv2.aruco.getPredefinedDictionary(family), 5, across * 10
+        )
+        assert np.array_equal(marker_modules(name, 5), picture[5::10, 5::10] < 128)
+    assert id_count("aruco") == 50
+
+
+@pytest.mark.parametrize(("name", "marker_id"), [("qr", 0), ("aruco", 50), ("aruco", -1)])
+def test_markers_that_do_not_exist(name, marker_id):
+    with pytest.raises(UsageError) as caught:
+        marker_modules(name, marker_id)
+    assert caught.value.code == "E174"
+
+
+def test_without_opencv_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    with pytest.raises(UsageError) as caught:
+        find_markers(np.zeros((50, 50), dtype=np.uint8))
+    assert caught.value.code == "E305"
+    assert "drystone[photo]" in str(caught.value)

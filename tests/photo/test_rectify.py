@@ -1,0 +1,114 @@
+import cv2
+import numpy as np
+import pytest
+
+from drystone.errors import InputError
+from drystone.photo.layout import MarkerLayout
+from drystone.photo.markers import FoundMarker, find_markers
+from drystone.photo.rectify import rectify
+from drystone.photo.scale import scale_and_view
+from drystone.photo.view import View, apply
+from tests.photo.scenes import camera, outline, photograph
+
+SIDE = 0.05
+SIZE = (640, 480)
+PLACED = ((3, 15.0, -0.12, -0.08, SIDE), (11, 80.0, 0.12, 0.05, SIDE))
+TO_PHOTO = camera(800, SIZE, tilt_deg=30.0, distance_m=0.5)
+
+
+@pytest.fixture(scope="module")
+def shown():
+    return photograph(TO_PHOTO, SIZE, PLACED)
+
+
+@pytest.fixture(scope="module")
+def view():
+    corners = [FoundMarker(one, apply(TO_PHOTO, outline(*lies)), "aruco") for one, *lies in PLACED]
+    return scale_and_view(tuple(corners), MarkerLayout(SIDE), SIZE)
+
+
+def test_markers_are_squares_of_their_size_and_distance(shown, view):
+    above = rectify(shown, view, 1500.0)
+    assert above.px_per_m == 1500.0
+    found = find_markers(above.values)
+    assert [one.id for one in found] == [3, 11]
+    for one in found:
+        sides = one.corners_px - np.roll(one.corners_px, 1, axis=0)
+        assert np.hypot(*sides.T) == pytest.approx(np.full(4, 75.0), abs=0.4)
+    apart = outline(*PLACED[0][1:]).mean(axis=0) - outline(*PLACED[1][1:]).mean(axis=0)
+    seen = found[0].corners_px.mean(axis=0) - found[1].corners_px.mean(axis=0)
+    assert np.hypot(*seen) == pytest.approx(1500.0 * np.hypot(*apart), abs=0.5)
+
+
+def test_points_go_where_they_are_said_to_go(shown, view):
+    above = rectify(shown, view, 1500.0)
+    for one, of_photo in zip(find_markers(above.values), find_markers(shown), strict=True):
+        moved = apply(above.from_photo, of_photo.corners_px)
+        assert np.abs(moved - one.corners_px).max() < 0.5
+        on_ground = view.to_ground(of_photo.corners_px)
+        assert moved == pytest.approx(on_ground * 1500.0, abs=1e-6)
+
+
+def test_all_of_the_photo_is_shown_and_nothing_else(shown, view):
+    above = rectify(np.full_like(shown, 200), view)
+    corners = apply(
+        above.from_photo, np.array([[0.0, 0.0], [640.0, 0.0], [640.0, 480.0], [0.0, 480.0]])
+    )
+    height, width = above.inside.shape
+    assert above.values.shape == (height, width, 3)
+    assert corners.min() >= -1e-6
+    assert corners[:, 0].max() == pytest.approx(width, abs=1.0)
+    assert corners[:, 1].max() == pytest.approx(height, abs=1.0)
+    drawn = cv2.contourArea(corners.astype(np.float32))
+    assert above.inside.sum() == pytest.approx(drawn, rel=0.005)
+    assert (above.values[~above.inside] == 0).mean() > 0.98
+
+
+def test_the_size_is_bounded(shown, view):
+    small = rectify(shown, view, max_px=50_000)
+    assert small.inside.size <= 50_000 * 1.02
+    assert small.px_per_m < view.px_per_m
+    with pytest.raises(InputError) as caught:
+        rectify(shown, view, 5000.0, max_px=1_000_000)
+    assert caught.value.code == "E110"
+
+
+def test_a_flat_view_changes_nothing(shown):
+    same = rectify(shown, View.flat(800.0))
+    assert same.values is shown
+    assert same.inside.all()
+    assert same.px_per_m == 800.0
+    half = rectify(shown, View.flat(800.0), 400.0)
+    assert half.values.shape == (240, 320, 3)
+    assert half.inside.all()
+    mean = shown.reshape(240, 2, 320, 2, 3).mean(axis=(1, 3))
+    # Half a px of shift would be worth some 20 grey values at the edges of the markers.
+    assert np.abs(half.values - mean).mean() < 2.0
+    assert np.abs(half.values[4:-4, 4:-4] - mean[4:-4, 4:-4]).max() < 60.0
+
+
+def test_no_half_px_is_lost():
+    ramp = np.broadcast_to(np.arange(256, dtype=np.uint8)[None, :, None], (64, 256, 3))
+    small = rectify(np.ascontiguousarray(ramp), View.flat(400.0), 100.0)
+    # The centre of px j of four px each lies between px 4 j + 1 and 4 j + 2.
+    expected = 4.0 * np.arange(64) + 1.5
+    assert np.abs(small.values[8, 1:-1, 0] - expected[1:-1]).max() <= 0.5
+    across = np.ascontiguousarray(ramp.transpose(1, 0, 2))
+    small = rectify(across, View.flat(400.0), 100.0)
+    assert np.abs(small.values[1:-1, 8, 0] - expected[1:-1]).max() <= 0.5
+
+
+def test_fine_texture_is_averaged_and_not_skipped():
+    stripes = np.zeros((240, 240, 3), dtype=np.uint8)
+    stripes[:, ::4] = 240
+    small = rectify(stripes, View.flat(400.0), 50.0)
+    assert small.values.shape == (30, 30, 3)
+    assert np.abs(small.values[:, 1:-1].astype(float) - 60.0).max() < 6.0
+
+
+@pytest.mark.parametrize("row", [[0.0, -0.003, 1.0], [0.0, -0.00195, 1.0], [0.0028, 0.0, -0.9]])
+def test_the_horizon_is_refused(shown, row):
+    steep = np.vstack([np.diag([0.001, 0.001, 1.0])[:2], row])
+    with pytest.raises(InputError) as caught:
+        rectify(shown, View(steep, 1000.0, (0, 1)))
+    assert caught.value.code == "E173"

@@ -1,0 +1,262 @@
+import cv2
+import numpy as np
+import pytest
+
+from drystone.errors import InputError
+from drystone.photo.layout import MarkerLayout, parse_layout
+from drystone.photo.markers import FoundMarker, find_markers
+from drystone.photo.scale import MarkerLimits, scale_and_view
+from drystone.photo.view import View, apply, jacobian
+from tests.photo.scenes import (
+    camera,
+    distance_error_percent,
+    intrinsics,
+    outline,
+    photograph,
+)
+
+SIDE = 0.05
+SIZE = (1000, 750)
+APART = ((0, 10.0, -0.14, -0.10, SIDE), (2, 95.0, 0.14, 0.05, SIDE))
+SHEET = parse_layout("A4:50mm")
+
+
+def sheet_on_ground(ids=(0, 1, 2, 3), angle=0.0):
+    """The sheet with its middle at 0, 0."""
+    cos, sin = np.cos(np.deg2rad(angle)), np.sin(np.deg2rad(angle))
+    turn = np.array([[cos, sin], [-sin, cos]])
+    return [
+        (one, angle, *((SHEET.corners_m(one)[0] - (0.105, 0.1485)) @ turn), SIDE) for one in ids
+    ]
+
+
+def seen(to_photo, placed, noise_px=0.05):
+    """Corners as they would be found, without a picture."""
+    rng = np.random.default_rng(2)
+    return tuple(
+        FoundMarker(one, apply(to_photo, outline(*lies)) + rng.normal(0, noise_px, (4, 2)), "aruco")
+        for one, *lies in placed
+    )
+
+
+def view_of(side_px, tilt_deg, placed, layout, reach):
+    """Photograph markers that are side_px wide in the middle, and look for the view."""
+    size = (round(reach[0] / SIDE * side_px), round(reach[1] / SIDE * side_px))
+    focal = 1.2 * size[0]
+    to_photo = camera(
+        focal, size, tilt_deg=tilt_deg, turn_deg=7.0, distance_m=focal * SIDE / side_px
+    )
+    found = find_markers(photograph(to_photo, size, placed), "aruco")
+    assert len(found) == len(placed)
+    return scale_and_view(found, layout, size), to_photo
+
+
+@pytest.mark.parametrize("tilt_deg", [0.0, 30.0])
+@pytest.mark.parametrize(("side_px", "limit"), [(60, 0.5), (100, 0.3), (200, 0.2)])
+def test_single_markers_measure_the_ground(side_px, limit, tilt_deg):
+    placed = [(0, 10.0, -0.09, -0.06, SIDE), (7, 100.0, 0.09, 0.02, SIDE)]
+    view, to_photo = view_of(side_px, tilt_deg, placed, MarkerLayout(SIDE), (0.26, 0.2))
+    assert distance_error_percent(view, to_photo, 0.2, 0.15) < limit
+    assert view.ids == (0, 7)
+    assert view.residual_percent < 0.15
+
+
+@pytest.mark.parametrize("tilt_deg", [0.0, 30.0])
+@pytest.mark.parametrize(("side_px", "limit"), [(60, 0.2), (100, 0.1)])
+def test_a_sheet_measures_the_ground(side_px, limit, tilt_deg):
+    view, to_photo = view_of(side_px, tilt_deg, sheet_on_ground(), SHEET, (0.3, 0.4))
+    assert distance_error_percent(view, to_photo, 0.25, 0.35) < limit
+    assert view.residual_mm < 0.1
+
+
+def test_the_scale_is_that_of_the_middle_of_the_photo():
+    view, _ = view_of(100, 0.0, APART, MarkerLayout(SIDE), (0.45, 0.34))
+    assert view.px_per_m == pytest.approx(100 / SIDE, rel=0.002)
+
+
+def test_a_sheet_agrees_with_opencv():
+    """The same ground from cv2.findHomography, and from a calibrated camera and cv2.solvePnP."""
+    to_photo = camera(1200, SIZE, tilt_deg=25.0, turn_deg=-12.0, distance_m=0.7)
+    found = seen(to_photo, sheet_on_ground(), 0.2)
+    view = scale_and_view(found, SHEET, SIZE)
+    flat = np.concatenate([SHEET.corners_m(one.id) for one in found])
+    px = np.concatenate([one.corners_px for one in found])
+    # findHomography makes the same squares least: distances on the sheet, in the photo.
+    theirs, _ = cv2.findHomography(flat, px)
+    corners = np.array([[100.0, 100.0], [900.0, 100.0], [900.0, 650.0], [100.0, 650.0]])
+    ours, other = view.to_ground(corners), apply(np.linalg.inv(theirs), corners)
+    assert lengths(ours) == pytest.approx(lengths(other), rel=2e-5)
+    good, turn, shift = cv2.solvePnP(
+        np.column_stack([flat, np.zeros(16)]), px, intrinsics(1200, SIZE), None
+    )
+    assert good
+    turn, _ = cv2.Rodrigues(turn)
+    by_camera = intrinsics(1200, SIZE) @ np.column_stack([turn[:, 0], turn[:, 1], shift[:, 0]])
+    other = apply(np.linalg.inv(by_camera), corners)
+    assert lengths(ours) == pytest.approx(lengths(other), rel=5e-3)
+
+
+def test_single_markers_agree_with_a_calibrated_camera():
+    to_photo = camera(1200, SIZE, tilt_deg=20.0, distance_m=0.6)
+    found = seen(to_photo, APART)
+    view = scale_and_view(found, MarkerLayout(SIDE), SIZE)
+    square = np.column_stack([outline(0, 0, 0, SIDE), np.zeros(4)])
+    _, turn, shift = cv2.solvePnP(
+        square, found[0].corners_px, intrinsics(1200, SIZE), None, flags=cv2.SOLVEPNP_IPPE
+    )
+    turn, _ = cv2.Rodrigues(turn)
+    plane = intrinsics(1200, SIZE) @ np.column_stack([turn[:, 0], turn[:, 1], shift[:, 0]])
+    near = found[0].corners_px + np.array([[-40, -40], [40, -40], [40, 40], [-40, 40]])
+    by_camera = apply(np.linalg.inv(plane), near)
+    assert lengths(view.to_ground(near)) == pytest.approx(lengths(by_camera), rel=0.01)
+
+
+def lengths(points):
+    one, other = np.triu_indices(len(points), 1)
+    return np.linalg.norm(points[one] - points[other], axis=1)
+
+
+@pytest.mark.parametrize("angle", [0.0, 80.0, 180.0, 275.0])
+def test_the_picture_stays_upright_and_is_never_mirrored(angle):
+    to_photo = camera(1000, SIZE, tilt_deg=20.0, turn_deg=angle, distance_m=0.7)
+    for found, layout in (
+        (seen(to_photo, sheet_on_ground()), SHEET),
+        (seen(to_photo, APART), MarkerLayout(SIDE)),
+    ):
+        view = scale_and_view(found, layout, SIZE)
+        local = jacobian(view.photo_to_ground, np.array(SIZE) / 2.0)
+        assert np.linalg.det(local) > 0
+        assert local[1, 0] == pytest.approx(local[0, 1], abs=1e-9)
+        assert local[0, 0] > 0
+        assert local[1, 1] > 0
+        corners = view.to_ground([[0, 0], [SIZE[0], 0], SIZE, [0, SIZE[1]]])
+        assert corners.min(axis=0) == pytest.approx([0, 0], abs=1e-12)
+
+
+def test_two_markers_of_a_sheet_are_enough():
+    to_photo = camera(1200, SIZE, tilt_deg=15.0, distance_m=0.7)
+    for ids in ((0, 2), (1, 2), (0, 1, 3)):
+        view = scale_and_view(seen(to_photo, sheet_on_ground(ids), 0.02), SHEET, SIZE)
+        assert view.ids == ids
+        assert distance_error_percent(view, to_photo, 0.2, 0.25) < 0.3
+
+
+def test_two_sheets_lie_anywhere():
+    to_photo = camera(1200, SIZE, distance_m=0.9)
+    first = np.array([0.2, -0.1])
+    across = SHEET.corners_m(1)[0] - SHEET.corners_m(0)[0]
+    cos, sin = np.cos(np.deg2rad(33.0)), np.sin(np.deg2rad(33.0))
+    second = first + np.array([cos * across[0], sin * across[0]])
+    other = [(4, 33.0, *first, SIDE), (5, 33.0, *second, SIDE)]
+    layout = parse_layout("A4:50mm", tuple(range(8)))
+    view = scale_and_view(seen(to_photo, [*sheet_on_ground(), *other]), layout, SIZE)
+    assert view.ids == (0, 1, 2, 3, 4, 5)
+    assert distance_error_percent(view, to_photo, 0.3, 0.3) < 0.1
+
+
+def test_a_print_of_97_percent_is_measured_with_its_check_line():
+    to_photo = camera(1200, SIZE, distance_m=0.7)
+    small = [(one, a, 0.97 * x, 0.97 * y, 0.97 * s) for one, a, x, y, s in sheet_on_ground()]
+    found = seen(to_photo, small)
+    wrong = scale_and_view(found, SHEET, SIZE)
+    assert distance_error_percent(wrong, to_photo, 0.2, 0.2) == pytest.approx(3.1, abs=0.1)
+    view = scale_and_view(found, parse_layout("A4", printed=0.97), SIZE)
+    assert distance_error_percent(view, to_photo, 0.2, 0.2) < 0.1
+
+
+def code_of(found, layout=None, size=SIZE):
+    with pytest.raises(InputError) as caught:
+        scale_and_view(found, layout or MarkerLayout(SIDE), size)
+    return caught.value.code, str(caught.value)
+
+
+STRAIGHT = camera(1200, SIZE, distance_m=0.6)
+
+
+def test_no_marker_and_one_marker_are_no_scale():
+    assert code_of(())[0] == "E170"
+    code, text = code_of(seen(STRAIGHT, APART[:1]))
+    assert code == "E170"
+    assert "only marker 0" in text
+
+
+def test_markers_of_another_sheet_are_left_out():
+    stray = (17, 0.0, 0.0, 0.0, 0.3)
+    view = scale_and_view(seen(STRAIGHT, [*sheet_on_ground((0, 1)), stray]), SHEET, SIZE)
+    assert view.ids == (0, 1)
+    assert [notice.code for notice in view.notices] == ["W170"]
+    assert "17" in view.notices[0].message
+    code, text = code_of(seen(STRAIGHT, [stray, (18, 0.0, 0.2, 0.0, SIDE)]), SHEET)
+    assert code == "E170"
+    assert "17, 18" in text
+
+
+def test_an_id_twice_is_refused():
+    twice = [APART[0], (0, 20.0, 0.1, 0.1, SIDE), APART[1]]
+    code, text = code_of(seen(STRAIGHT, twice))
+    assert code == "E171"
+    assert "arker 0" in text
+
+
+@pytest.mark.parametrize("tilt_deg", [0.0, 15.0, 30.0])
+@pytest.mark.parametrize("ratio", [0.96, 0.9, 0.5])
+def test_prints_of_different_sizes_disagree(ratio, tilt_deg):
+    to_photo = camera(1200, SIZE, tilt_deg=tilt_deg, distance_m=0.6)
+    mixed = [APART[0], (*APART[1][:4], SIDE * ratio)]
+    code, text = code_of(seen(to_photo, mixed))
+    assert code == "E172"
+    assert "arker 0" in text
+
+
+def test_a_sheet_that_was_cut_up_disagrees():
+    code, _ = code_of(seen(STRAIGHT, APART), SHEET)
+    assert code == "E172"
+
+
+def test_a_marker_out_of_the_plane_disagrees():
+    """One marker lies on a stone 6 cm high."""
+    found = list(seen(STRAIGHT, APART))
+    high = camera(1200, SIZE, distance_m=0.54)
+    found[1] = seen(high, APART[1:])[0]
+    assert code_of(tuple(found))[0] == "E172"
+
+
+def test_small_and_slanted_markers_are_left_out():
+    far = camera(400, SIZE, distance_m=0.6)
+    code, text = code_of(seen(far, APART))
+    assert code == "E170"
+    assert "smaller than 40 px: 0 (33 px), 2 (33 px)" in text
+    flat = camera(2400, SIZE, tilt_deg=75.0, distance_m=1.2)
+    code, text = code_of(seen(flat, [(0, 0.0, -0.1, 0, SIDE), (1, 0.0, 0.1, 0, SIDE)]))
+    assert code == "E170"
+    assert "too flat an angle" in text
+
+
+def test_small_markers_that_are_used_are_said():
+    view = scale_and_view(seen(camera(800, SIZE, distance_m=0.6), APART), MarkerLayout(SIDE), SIZE)
+    assert [notice.code for notice in view.notices] == ["W172"]
+    assert "67 px" in view.notices[0].message
+
+
+def test_a_bent_sheet_is_doubted():
+    found = list(seen(STRAIGHT, sheet_on_ground(), 0.0))
+    moved = found[3].corners_px + np.array([1.0, -0.6])
+    found[3] = FoundMarker(3, moved, "aruco")
+    limits = MarkerLimits(doubtful_percent=0.1)
+    view = scale_and_view(tuple(found), SHEET, SIZE, limits)
+    assert [notice.code for notice in view.notices] == ["W172"]
+    assert "off on average" in view.notices[0].message
+
+
+def test_the_horizon_in_the_photo_is_refused():
+    size = (1000, 2600)
+    to_photo = camera(900, size, tilt_deg=55.0, distance_m=0.5)
+    placed = [(0, 0.0, -0.1, 0.0, SIDE), (1, 20.0, 0.1, 0.03, SIDE)]
+    assert code_of(seen(to_photo, placed), size=size)[0] == "E173"
+
+
+def test_a_flat_view_is_a_scale():
+    view = View.flat(250.0)
+    assert view.is_flat
+    assert view.residual_mm is None
+    assert view.to_ground([[250.0, 125.0]]).tolist() == [[1.0, 0.5]]

@@ -1,0 +1,218 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from drystone.errors import InputError
+from drystone.experiments.photographs.level import Level
+from drystone.experiments.photographs.scene import photograph
+from drystone.experiments.photos import overlaps, pixels, score
+from drystone.photo.segment import segment
+from drystone.photo.segment_doubts import doubts_of, notices_of, sizes_of
+from drystone.photo.segment_photo import segment_photo
+from drystone.photo.segment_settings import SegmentSettings
+
+SMALL = Level(
+    name="small", count=8, width_px=600, height_px=450, px_per_m=400.0, gap_px=10, markers="none"
+)
+
+
+def disc(shape, row, col, radius):
+    rows, cols = np.indices(shape)
+    return (rows - row) ** 2 + (cols - col) ** 2 <= radius**2
+
+
+def drawn(*stones, ground=(60, 110, 180), shape=(300, 400), noise=2.0):
+    """A picture of masks in colours, with noise."""
+    picture = np.empty((*shape, 3))
+    picture[:] = ground
+    for mask, colour in stones:
+        picture[mask] = colour
+    picture += np.random.default_rng(0).normal(0, noise, picture.shape)
+    return np.clip(picture, 0, 255).astype(np.uint8)
+
+
+def codes(found, settings=None):
+    return [notice.code for notice in notices_of(found, doubts_of(found, None, settings))]
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"ground": "tarpaulin"},
+        {"ground": "rubber", "rocks": ("granite", "limestone"), "seed": 2},
+        {"ground": "plywood", "rocks": ("granite", "basalt"), "uneven": 0.35, "seed": 3},
+        {"ground": "grass", "seed": 4},
+    ],
+    ids=["tarpaulin", "dark", "uneven light", "grass"],
+)
+def test_easy_photographs_are_found_with_tight_outlines(changes):
+    made = photograph(replace(SMALL, **changes))
+    got = score(made, segment_photo(pixels(made)))
+    assert got.recall == 1.0
+    assert got.precision == 1.0
+    assert np.median(got.ious) > 0.95
+    assert min(got.ious) > 0.9
+
+
+def test_a_disc_has_its_size_to_a_px():
+    mask = disc((300, 400), 150.3, 200.6, 60)
+    found = segment(drawn((mask, (170, 160, 150))))
+    wrong = np.count_nonzero((found.labels > 0) ^ mask)
+    # A px all round would be 377.
+    assert wrong < 120
+    (size,) = sizes_of(found.labels)
+    assert size.length_px == pytest.approx(120, abs=2)
+    assert size.at_px == pytest.approx((201.1, 150.8), abs=0.5)
+
+
+def test_cast_shadows_are_not_added_to_stones():
+    level = replace(SMALL, shadow=0.5, sun_deg=45.0, ground="plywood", rocks=("limestone", "basalt"))
+    made = photograph(level)
+    result = segment_photo(pixels(made))
+    got = score(made, result)
+    assert got.recall == 1.0
+    assert min(got.ious) > 0.9
+    assert result.found.shadow_level == pytest.approx(0.5, abs=0.06)
+
+
+def test_dark_stones_of_the_grounds_hue_are_not_shadows():
+    # No more light than a shadow has, but all round: no side is the shaded one.
+    ground = np.array([150, 150, 148])
+    stones = [
+        (disc((300, 400), 80 + 140 * (k // 3), 70 + 130 * (k % 3), 40), ground * 0.72)
+        for k in range(6)
+    ]
+    found = segment(drawn(*stones, ground=ground))
+    assert found.count == 6
+    assert found.shadow_level == 1.0
+
+
+def test_touching_stones_are_cut_where_they_touch():
+    one, other = disc((300, 400), 150, 130, 60), disc((300, 400), 150, 245, 58)
+    picture = drawn((one, (150, 150, 150)), (other, (150, 150, 150)))
+    found = segment(picture)
+    assert found.count == 2
+    truth = (one & ~other) * 1 + (other & ~one) * 2
+    assert overlaps(truth.astype(np.uint16), found.labels).max(axis=1).min() > 0.93
+    whole = segment(picture, settings=SegmentSettings(split=False))
+    assert whole.count == 1
+    assert "W175" in codes(whole, SegmentSettings(split=False))
+
+
+def test_a_waist_is_doubted_with_its_place_and_width():
+    rows, cols = np.indices((300, 400))
+    half = 28 + 14 * ((cols - 200) / 80) ** 2
+    stone = (np.abs(rows - 150) < half) & (np.abs(cols - 200) < 90)
+    found = segment(drawn((stone, (180, 170, 150))))
+    assert found.count == 1
+    (doubt,) = [one for one in doubts_of(found, 200.0) if one.code == "W175"]
+    assert doubt.stones == (1,)
+    assert doubt.at_px == pytest.approx((200, 150), abs=8)
+    assert "maybe two stones" in doubt.text
+    assert float(doubt.text.split(" cm wide")[0].split()[-1]) == pytest.approx(28, abs=3)
+
+
+def test_convex_stones_are_never_cut():
+    rows, cols = np.indices((300, 400))
+    bar = (np.abs(rows - 150) < 18) & (np.abs(cols - 200) < 160)
+    wedge = (rows > 200) & (rows < 280) & (cols > 40) & (cols < 40 + 2 * (rows - 200))
+    found = segment(drawn((bar, (180, 170, 150)), (wedge, (90, 90, 90))))
+    assert found.count == 2
+    assert not found.necks
+
+
+def test_stones_at_the_edge_are_left_out_and_said():
+    whole, cut = disc((300, 400), 150, 200, 50), disc((300, 400), 150, 10, 50)
+    found = segment(drawn((whole, (170, 160, 150)), (cut, (170, 160, 150))))
+    assert found.count == 1
+    assert found.labels[150, 200] == 1
+    assert found.labels[150, 10] == 0
+    (doubt,) = [one for one in doubts_of(found) if one.code == "W176"]
+    assert doubt.at_px[0] < 60
+
+
+def test_numbers_follow_the_rows():
+    places = [(70, 80), (75, 200), (65, 320), (220, 80), (225, 320)]
+    stones = [(disc((300, 400), *place, 35), (170, 160, 150)) for place in places]
+    found = segment(drawn(*stones))
+    assert [found.labels[place] for place in places] == [1, 2, 3, 4, 5]
+
+
+def test_holes_are_filled_but_not_what_stones_enclose():
+    ring = disc((300, 400), 150, 200, 60) & ~disc((300, 400), 150, 200, 8)
+    assert segment(drawn((ring, (170, 160, 150)))).labels[150, 200] == 1
+    frame = np.zeros((300, 400), bool)
+    frame[40:260, 60:340] = True
+    frame[90:210, 110:290] = False
+    assert segment(drawn((frame, (170, 160, 150)))).labels[150, 200] == 0
+
+
+def test_light_and_dark_ground_can_be_said():
+    picture = drawn((np.indices((300, 400))[1] < 190, (230, 225, 215)), ground=(40, 40, 45))
+    spot = disc((300, 400), 150, 90, 40)
+    picture[spot] = (110, 90, 70)
+    picture[disc((300, 400), 150, 300, 40)] = (120, 60, 40)
+    light = segment(picture, settings=SegmentSettings(ground="light"))
+    dark = segment(picture, settings=SegmentSettings(ground="dark"))
+    assert light.ground.colour[0] > 80
+    assert dark.ground.colour[0] < 30
+    assert light.labels[150, 90]
+    assert dark.labels[150, 300]
+
+
+def test_small_and_unusual_stones_are_said():
+    stones = [(disc((300, 400), 70, 60 + 90 * k, 35), (170, 160, 150)) for k in range(4)]
+    small = (disc((300, 400), 220, 100, 12), (170, 160, 150))
+    speck = (disc((300, 400), 220, 250, 4), (170, 160, 150))
+    found = segment(drawn(*stones, small, speck))
+    assert found.count == 5
+    assert found.specks == 1
+    assert any("stone 5" in doubt.text for doubt in doubts_of(found) if doubt.code == "W179")
+    least = SegmentSettings(min_area_px=600)
+    assert segment(drawn(*stones, small, speck), settings=least).count == 4
+
+
+def test_low_contrast_is_said():
+    faint = disc((300, 400), 150, 200, 60)
+    found = segment(drawn((faint, (60, 118, 186)), ground=(60, 110, 180), noise=0.5))
+    assert "W178" in codes(found)
+
+
+@pytest.mark.parametrize("picture", ["plain", "noise"])
+def test_no_stones_is_an_error(picture):
+    rng = np.random.default_rng(0)
+    values = {
+        "plain": np.clip(rng.normal(150, 3, (300, 400, 3)), 0, 255).astype(np.uint8),
+        "noise": rng.integers(0, 256, (300, 400, 3), np.uint8),
+    }[picture]
+    with pytest.raises(InputError) as refused:
+        segment(values)
+    assert refused.value.code in ("E175", "E176")
+
+
+def test_a_picture_of_something_else_has_no_ground():
+    noise = np.random.default_rng(3).standard_normal((3, 300, 400))
+    clouds = np.stack([ndimage.gaussian_filter(one, 12) for one in noise], axis=-1)
+    clouds = 128 + 70 * clouds / clouds.std()
+    with pytest.raises(InputError) as refused:
+        segment(np.clip(clouds, 0, 255).astype(np.uint8))
+    assert refused.value.code == "E176"
+
+
+def test_large_photographs_are_reduced_and_the_scale_with_them():
+    picture = drawn((disc((300, 400), 150, 200, 60), (170, 160, 150)))
+    result = segment_photo(picture, 100.0, max_px=30_000)
+    assert result.found.labels.shape == (150, 200)
+    assert result.px_per_m == pytest.approx(50.0)
+    assert result.from_photo == pytest.approx(np.diag([0.5, 0.5, 1.0]))
+
+
+def test_areas_in_square_centimetres():
+    stones = [(disc((300, 400), 150, 100, 40), (170, 160, 150)),
+              (disc((300, 400), 150, 300, 20), (170, 160, 150))]  # fmt: skip
+    picture = drawn(*stones)
+    # 1 px is .25 cm2: the discs have 1257 and 314 cm2.
+    assert segment_photo(picture, 200.0, min_area=(400, "cm2")).found.count == 1
+    assert segment_photo(picture, 200.0, min_area=(400, "px")).found.count == 2
