@@ -1,0 +1,119 @@
+"""Head joints that go on above each other."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from drystone.craft.finding import Line
+from drystone.craft.joints import Joint
+from drystone.craft.masonry import Masonry
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """Head joints that form one joint, from the lowest to the highest.
+
+    Parameters
+    ----------
+    joints : tuple of Joint
+        At least one.
+    """
+
+    joints: tuple[Joint, ...]
+
+    @property
+    def left(self) -> tuple[int, ...]:
+        """Stones on its left side, upwards."""
+        return tuple(dict.fromkeys(joint.first for joint in self.joints))
+
+    @property
+    def right(self) -> tuple[int, ...]:
+        """Stones on its right side, upwards."""
+        return tuple(dict.fromkeys(joint.second for joint in self.joints))
+
+    @property
+    def courses(self) -> int:
+        """Through how many courses it goes: the lesser number of stones on a side."""
+        return min(len(self.left), len(self.right))
+
+    @property
+    def height(self) -> float:
+        """From its lower to its upper end."""
+        return float(self.joints[-1].top[1] - self.joints[0].bottom[1])
+
+    @property
+    def line(self) -> Line:
+        """Its middle, upwards."""
+        return np.concatenate(
+            [np.vstack([joint.bottom, joint.points, joint.top]) for joint in self.joints]
+        )
+
+
+def chains(masonry: Masonry) -> tuple[Chain, ...]:
+    """Join the head joints that go on above each other.
+
+    A joint goes on when the next one begins no farther to the side than the offset of the
+    settings and no farther above than a hole, and no stone lies between them.  Where several
+    could go on, the one straight above does.
+
+    Parameters
+    ----------
+    masonry : Masonry
+        Any wall.
+
+    Returns
+    -------
+    tuple of Chain
+        Every head joint is in one; from left to right by their lower ends.
+    """
+    heads = masonry.heads
+    above: dict[int, int] = {}
+    below: dict[int, int] = {}
+    for _, lower, upper in sorted(_links(masonry)):
+        if lower not in above and upper not in below:
+            above[lower], below[upper] = upper, lower
+    found = []
+    for index in range(len(heads)):
+        if index not in below:
+            place, chain = index, [index]
+            while place in above:
+                place = above[place]
+                chain.append(place)
+            found.append(Chain(tuple(heads[i] for i in chain)))
+    return tuple(found)
+
+
+def _links(masonry: Masonry) -> list[tuple[tuple[float, float], int, int]]:
+    """Return how far apart two joints are that may be one, and their indices, lower first."""
+    heads = masonry.heads
+    if not heads:
+        return []
+    settings, height = masonry.settings, masonry.mean_height
+    bottoms = np.array([joint.bottom for joint in heads])
+    tops = np.array([joint.top for joint in heads])
+    slack = 1e-9 * height
+    aside = np.abs(bottoms[None, :, 0] - tops[:, None, 0])
+    up = bottoms[None, :, 1] - tops[:, None, 1]
+    near = (aside <= settings.offset * height + slack) & (up <= settings.hole * height + slack)
+    # The ends of two joints that meet overlap by the rounding of stones to lines of the scan.
+    near &= up >= -2.5 * masonry.rows.spacing
+    stones = shapely.union_all(list(masonry.shapes.values()))
+    allowed = settings.offset * height + 2.5 * masonry.rows.spacing
+    found = []
+    for lower, upper in np.argwhere(near).tolist():
+        if lower == upper or not _climbs(heads[lower], heads[upper]):
+            continue
+        way = shapely.LineString([tops[lower], bottoms[upper]])
+        if shapely.intersection(stones, way).length <= allowed:
+            cost = (
+                round(float(aside[lower, upper]) / height, 6),
+                round(float(abs(up[lower, upper])) / height, 6),
+            )
+            found.append((cost, lower, upper))
+    return found
+
+
+def _climbs(lower: Joint, upper: Joint) -> bool:
+    """Whether a joint lies above another, rather than beside it with the sides changed over."""
+    return lower.first != upper.second and lower.second != upper.first

@@ -1,0 +1,248 @@
+"""A wall as stones, joints and beds."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from drystone.craft.joints import Joint, joints
+from drystone.craft.scans import Scan, scan
+from drystone.craft.settings import CraftSettings
+from drystone.errors import InputError
+from drystone.kernels.polygons import area_and_centroid
+from drystone.model.wall import Labels
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.outlines import outlines_of_labels
+from drystone.statics.model import RigidBlockModel
+
+Points = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Masonry:
+    """A wall of any origin, as the rules look at it.
+
+    Parameters
+    ----------
+    outlines : mapping of int to (n, 2) float array
+        Corners of stones and wedges by id, wall frame, y up, either way round, closed or not.
+    model : RigidBlockModel or None
+        Contacts, where they are known; None for a drawn wall.
+    wedge_ids : collection of int
+        Which of them are wedges.
+    steps : mapping of int to int
+        Step of the plan that places a stone or wedge; empty for what is no plan.
+    settings : CraftSettings
+        What counts as a joint, a bearing and so on.
+
+    Raises
+    ------
+    InputError
+        E191 for the id of a wedge that is not in the wall.
+
+    Examples
+    --------
+    >>> brick = np.array([[0, 0], [2, 0], [2, 1], [0, 1]])
+    >>> pair = Masonry({1: brick, 2: brick + [2, 0]})
+    >>> [(joint.first, joint.second) for joint in pair.heads], pair.mean_height
+    ([(1, 2)], 1.0)
+    """
+
+    outlines: Mapping[int, Points]
+    model: RigidBlockModel | None = None
+    wedge_ids: Collection[int] = frozenset()
+    steps: Mapping[int, int] = field(default_factory=dict)
+    settings: CraftSettings = field(default_factory=CraftSettings)
+
+    def __post_init__(self) -> None:
+        strangers = sorted(set(self.wedge_ids) - set(self.outlines))
+        if strangers:
+            raise InputError(
+                "E191",
+                f"the wall has no {', '.join(map(str, strangers))}, said to be wedges.",
+                where="wedges",
+                cure="Name ids of the label image or block model.",
+            )
+
+    @classmethod
+    def from_labels(
+        cls,
+        labels: Labels,
+        wedge_ids: Collection[int] = frozenset(),
+        settings: CraftSettings | None = None,
+        *,
+        steps: Mapping[int, int] | None = None,
+        mu: float = 0.58,
+    ) -> "Masonry":
+        """Return the wall of a label image, along sub-pixel outlines.
+
+        Parameters
+        ----------
+        labels : (h, w) integer array
+            0 where nothing is; row 0 at the top.
+        wedge_ids : collection of int
+            Labels that are wedges.
+        settings : CraftSettings, optional
+            The usual ones unless given.
+        steps : mapping of int to int, optional
+            Of a plan, by label.
+        mu : float
+            Coefficient of friction, for what wedges carry.
+
+        Raises
+        ------
+        InputError
+            E191 for the id of a wedge that is not in the image.
+        """
+        picture = model_from_labels(labels, mu)
+        outlines = outlines_of_labels(labels[: picture.ground_row]) if picture.model.blocks else {}
+        return cls(outlines, picture.model, wedge_ids, steps or {}, settings or CraftSettings())
+
+    @cached_property
+    def loops(self) -> Mapping[int, Points]:
+        """Outlines by ascending id, counter-clockwise, not closed."""
+        return {i: _open(np.asarray(self.outlines[i], float)) for i in sorted(self.outlines)}
+
+    @cached_property
+    def stones(self) -> Mapping[int, Points]:
+        """The loops of stones alone."""
+        wedges = set(self.wedge_ids)
+        return {i: loop for i, loop in self.loops.items() if i not in wedges}
+
+    @cached_property
+    def shapes(self) -> Mapping[int, shapely.Geometry]:
+        """The stones as shapes; outlines of pixels may pass a corner twice."""
+        return {i: shapely.Polygon(loop).buffer(0) for i, loop in self.stones.items()}
+
+    @cached_property
+    def boxes(self) -> Mapping[int, tuple[float, float, float, float]]:
+        """x0, y0, x1, y1 of every stone and wedge."""
+        return {
+            i: (*loop.min(axis=0).tolist(), *loop.max(axis=0).tolist())
+            for i, loop in self.loops.items()
+        }
+
+    @cached_property
+    def areas(self) -> Mapping[int, float]:
+        """Of stones and wedges."""
+        return {i: area_and_centroid(loop)[0] for i, loop in self.loops.items()}
+
+    @cached_property
+    def box(self) -> tuple[float, float, float, float]:
+        """x0, y0, x1, y1 of the stones; zeros when there are none."""
+        if not self.stones:
+            return 0.0, 0.0, 0.0, 0.0
+        points = np.concatenate(list(self.stones.values()))
+        (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+        return x0, y0, x1, y1
+
+    @cached_property
+    def mean_height(self) -> float:
+        """Of the upright boxes of the stones; 1 when there are none."""
+        heights = [self.boxes[i][3] - self.boxes[i][1] for i in self.stones]
+        return float(np.mean(heights)) if heights else 1.0
+
+    @cached_property
+    def mean_width(self) -> float:
+        """Of the upright boxes of the stones; 1 when there are none."""
+        widths = [self.boxes[i][2] - self.boxes[i][0] for i in self.stones]
+        return float(np.mean(widths)) if widths else 1.0
+
+    @cached_property
+    def rows(self) -> Scan:
+        """What lies on level lines."""
+        return scan(self.loops, 0, self.settings.sample * self.mean_height)
+
+    @cached_property
+    def columns(self) -> Scan:
+        """What lies on upright lines."""
+        return scan(self.loops, 1, self.settings.sample * self.mean_height)
+
+    @cached_property
+    def heads(self) -> tuple[Joint, ...]:
+        """Head joints: between a stone and the one to the right of it."""
+        widest = self.settings.joint * self.mean_height
+        return joints(self.rows, 0, widest, frozenset(self.wedge_ids))
+
+    @cached_property
+    def beds(self) -> tuple[Joint, ...]:
+        """Bed joints: between a stone and the one above it."""
+        widest = self.settings.joint * self.mean_height
+        return joints(self.columns, 1, widest, frozenset(self.wedge_ids))
+
+    @cached_property
+    def supports(self) -> Mapping[int, tuple[tuple[int, float, float], ...]]:
+        """Id, left and right end of the beds that each stone rests on, from left to right.
+
+        Beds narrower than the least bearing are left out; the ground is not among them.
+        """
+        found: dict[int, dict[int, list[Joint]]] = {i: {} for i in self.stones}
+        for bed in self.beds:
+            found[bed.second].setdefault(bed.first, []).append(bed)
+        return {i: self._supports(i, beds) for i, beds in found.items()}
+
+    def _supports(
+        self, stone: int, beds: Mapping[int, list[Joint]]
+    ) -> tuple[tuple[int, float, float], ...]:
+        least = self.settings.bearing * (self.boxes[stone][2] - self.boxes[stone][0])
+        wide = [
+            (lower, min(bed.x0 for bed in pieces), max(bed.x1 for bed in pieces))
+            for lower, pieces in beds.items()
+            if sum(bed.length for bed in pieces) >= least * (1.0 - 1e-9)
+        ]
+        return tuple(sorted(wide, key=lambda one: one[1] + one[2]))
+
+    @cached_property
+    def on_ground(self) -> frozenset[int]:
+        """Stones of the foot: nothing but a joint is between them and the ground."""
+        ground, widest = self.box[1], self.settings.joint * self.mean_height
+        counts = dict.fromkeys(self.stones, 0)
+        for runs in self.columns.runs:
+            first = next((run for run in runs if run.id in counts), None)
+            if first is not None and first.begin - ground <= widest:
+                counts[first.id] += 1
+        return frozenset(
+            i
+            for i, count in counts.items()
+            if count * self.columns.spacing
+            >= self.settings.bearing * (self.boxes[i][2] - self.boxes[i][0])
+        )
+
+    @cached_property
+    def ends(self) -> tuple[frozenset[int], frozenset[int]]:
+        """Stones at the left and at the right end: outermost in at least half of their rows."""
+        total = dict.fromkeys(self.stones, 0)
+        outermost = (dict(total), dict(total))
+        for runs in self.rows.runs:
+            ids = [run.id for run in runs if run.id in total]
+            for i in set(ids):
+                total[i] += 1
+            if ids:
+                outermost[0][ids[0]] += 1
+                outermost[1][ids[-1]] += 1
+        left, right = (
+            frozenset(i for i, count in side.items() if total[i] and 2 * count >= total[i])
+            for side in outermost
+        )
+        return left, right
+
+    def name(self, stone: int) -> str:
+        """Return what a stone is called: with its step when there is a plan.
+
+        Examples
+        --------
+        >>> Masonry({7: np.eye(3, 2)}, steps={7: 3}).name(7)
+        '7 (step 3)'
+        """
+        step = self.steps.get(stone)
+        return str(stone) if step is None else f"{stone} (step {step})"
+
+
+def _open(loop: Points) -> Points:
+    if len(loop) > 1 and (loop[0] == loop[-1]).all():
+        loop = loop[:-1]
+    x, y = loop.T
+    return loop if float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) >= 0 else loop[::-1]

@@ -1,0 +1,144 @@
+"""Pins and wedges: they fill, they do not carry."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from drystone.craft.finding import VERDICTS, Case, Finding, Limit, Line, Rule
+from drystone.craft.masonry import Masonry
+from drystone.craft.wedge_loads import least_wedge_loads
+from drystone.statics.contacts.joints import is_head_joint, loose_blocks
+from drystone.statics.model import RigidBlockModel
+
+RULE = Rule(
+    "pins",
+    "pins and wedges",
+    "Wedges fill gaps and stop rocking; the load goes beside them, and none sticks out.",
+    "The paper, section 2 (shards fill openings or prevent rocking); rockinwalls.com, Pinning & "
+    "Chinks, 2011 (pins that lift a large stone fall out or are crushed); Delaware Quarries, "
+    "rule 10 (fill cracks after the wall is complete). The number: own definition",
+    "greatest load that a wedge cannot help carrying under the wall's own weight, "
+    "with open upright joints, over the weight of the stones that lie on it",
+    higher_is_better=False,
+    limit=Limit(0.1, 0.5),
+)
+
+
+def find(masonry: Masonry, limit: Limit = RULE.limit) -> Finding:
+    """Find wedges that carry, and wedges that stick out.
+
+    Wedges are known in plans; in a label image or block model they have to be named.  The verdict
+    is that of the number, or "broken" when a wedge sticks out.
+
+    Parameters
+    ----------
+    masonry : Masonry
+        Any wall.
+    limit : Limit
+        Of the number.
+    """
+    wedges = frozenset(masonry.wedge_ids)
+    if not wedges:
+        return Finding(RULE, limit, None, "not judged", note="No wedges are known.")
+    resting = {wedge: _resting(masonry, wedge) for wedge in wedges}
+    outside = [case for wedge in sorted(wedges) for case in _outside(masonry, wedge, resting)]
+    loads, note = _loads(masonry, wedges)
+    figures: dict[str, float | None] = {
+        "wedges": float(len(wedges)),
+        "wedges that stick out": float(len(outside)),
+    }
+    if loads is None:
+        verdict = VERDICTS[2] if outside else "not judged"
+        return Finding(RULE, limit, None, verdict, tuple(outside), figures, note)
+    shares = {wedge: _share(masonry, loads[wedge], resting[wedge]) for wedge in sorted(wedges)}
+    number = round(max(shares.values()), 9)
+    carrying = [
+        Case((wedge, *resting[wedge]), round(share, 6), _words(share), _frame(masonry, wedge))
+        for wedge, share in shares.items()
+        if share > limit.good + 1e-9
+    ]
+    carrying.sort(key=lambda case: -case.value)
+    verdict = VERDICTS[2] if outside else RULE.verdict(number, limit)
+    figures["wedges that carry"] = float(len(carrying))
+    figures["mean load"] = float(np.mean(list(shares.values())))
+    return Finding(RULE, limit, number, verdict, (*carrying, *outside), figures, note)
+
+
+def _loads(masonry: Masonry, wedges: frozenset[int]) -> tuple[Mapping[int, float] | None, str]:
+    """Return what wedges cannot help carrying, and a remark.
+
+    Stones squeezed between their neighbours could hang on the upright joints, in theory with any
+    force; a mason does not count on it.
+    """
+    model = masonry.model
+    if model is not None and not loose_blocks(model):
+        loads = least_wedge_loads(_open_heads(model), wedges)
+        if loads is not None:
+            return loads, ""
+        loads = least_wedge_loads(model, wedges)
+        if loads is not None:
+            return (
+                loads,
+                "The wall stands only by pressure in upright joints, which was counted on.",
+            )
+    return None, "What the wedges carry is not known: the wall does not stand as it is drawn."
+
+
+def _open_heads(model: RigidBlockModel) -> RigidBlockModel:
+    return replace(model, interfaces=tuple(i for i in model.interfaces if not is_head_joint(i)))
+
+
+def _words(share: float) -> str:
+    return f"the wedge carries at least {share:.2f} of the weight of the stone on it"
+
+
+def _frame(masonry: Masonry, wedge: int) -> tuple[Line, ...]:
+    """Return a frame around a wedge, which may be too small to be seen."""
+    room = 0.12 * masonry.mean_height
+    x0, y0, x1, y1 = masonry.boxes[wedge]
+    low, high = (x0 - room, y0 - room), (x1 + room, y1 + room)
+    return (np.array([low, (high[0], low[1]), high, (low[0], high[1]), low]),)
+
+
+def _share(masonry: Masonry, load: float, resting: tuple[int, ...]) -> float:
+    assert masonry.model is not None  # noqa: S101 - loads are those of a model
+    weights = {block.id: block.weight for block in masonry.model.blocks}
+    on_it = sum(weights[stone] for stone in resting)
+    return load / on_it if on_it else 0.0
+
+
+def _resting(masonry: Masonry, wedge: int) -> tuple[int, ...]:
+    """Return the stones that lie on a wedge: next above it in a column, within a joint."""
+    found: set[int] = set()
+    widest = masonry.settings.joint * masonry.mean_height
+    for runs in masonry.columns.runs:
+        for one, other in pairwise(runs):
+            near = other.begin - one.end <= widest
+            if one.id == wedge and other.id in masonry.stones and near:
+                found.add(other.id)
+    return tuple(sorted(found))
+
+
+def _outside(masonry: Masonry, wedge: int, resting: dict[int, tuple[int, ...]]) -> list[Case]:
+    """Say whether a wedge reaches out sideways beyond what lies on it, into the open."""
+    if not resting[wedge]:
+        return []
+    x0, y0, x1, y1 = masonry.boxes[wedge]
+    left = min(masonry.boxes[i][0] for i in resting[wedge]) - x0
+    right = x1 - max(masonry.boxes[i][2] for i in resting[wedge])
+    out = max(left, right) / masonry.mean_height
+    if out <= masonry.settings.stick_out + 1e-9 or not _open(masonry, wedge, left > right):
+        return []
+    y = 0.5 * (y0 + y1)
+    line = np.array([[x0, y], [x0 + left, y]] if left > right else [[x1 - right, y], [x1, y]])
+    words = f"the wedge sticks out by {out:.2f} mean stone heights"
+    return [Case((wedge, *resting[wedge]), round(out, 6), words, (line,))]
+
+
+def _open(masonry: Masonry, wedge: int, at_left: bool) -> bool:
+    """Whether nothing is beside a wedge on a side in at least half of its rows."""
+    rows = [runs for runs in masonry.rows.runs if any(run.id == wedge for run in runs)]
+    outermost = [runs[0 if at_left else -1].id == wedge for runs in rows]
+    return bool(outermost) and 2 * sum(outermost) >= len(outermost)

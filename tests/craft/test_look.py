@@ -1,0 +1,149 @@
+"""All rules at once: walls of every kind, limits, and numbers without a scale."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as npst
+
+from drystone.craft import RULES, CraftSettings, Limit, Masonry, look
+from drystone.errors import InputError, UsageError
+from drystone.io.walls import read_wall
+from tests.craft.walls import both, box, painted, running_bond, stack_bond
+
+
+@pytest.mark.parametrize(
+    "masonry",
+    [
+        Masonry({}),
+        Masonry.from_labels(np.zeros((5, 7), np.uint32)),
+        Masonry({3: box(0, 0, 2, 1)}),
+        Masonry({3: box(0, 0, 2, 1)}, wedge_ids={3}),
+        Masonry.from_labels(np.full((9, 20), 7, np.uint32)),
+        Masonry({1: box(0, 0, 2, 1), 2: box(50, 30, 2, 1)}),
+    ],
+    ids=["nothing", "no label", "a stone", "a wedge alone", "one label", "two far apart"],
+)
+def test_walls_of_next_to_nothing_are_judged(masonry):
+    report = look(masonry)
+    assert list(report.findings) == list(RULES)
+    assert "NaN" not in json.dumps(report.report())
+    if len(masonry.stones) < 2:
+        assert report.broken == ()
+        assert report.findings["running_joints"].verdict == "not judged"
+
+
+@settings(max_examples=25, deadline=None)
+@given(npst.arrays(np.uint8, st.tuples(st.integers(1, 9), st.integers(1, 12)),
+                   elements=st.integers(0, 5)))  # fmt: skip
+def test_any_picture_of_ids_can_be_looked_at(labels):
+    """Stones of one pixel, in pieces, with holes, touching at corners."""
+    ids = set(np.unique(labels).tolist()) - {0}
+    report = look(Masonry.from_labels(labels.astype(np.uint32), wedge_ids=set(sorted(ids)[:1])))
+    json.dumps(report.report(), allow_nan=False)
+    for finding in report.findings.values():
+        assert {stone for case in finding.cases for stone in case.stones} <= ids
+
+
+@pytest.mark.parametrize("factor", [1e-3, 2.5, 1e4])
+def test_numbers_have_no_scale(factor):
+    rng = np.random.default_rng(5)
+    loops = {i: loop + rng.uniform(-0.08, 0.08, (4, 2)) for i, loop in running_bond().items()}
+    one = look(Masonry(loops))
+    other = look(Masonry({i: loop * factor + [3 * factor, 0] for i, loop in loops.items()}))
+    for name in RULES:
+        found, scaled = one.findings[name], other.findings[name]
+        assert found.number == pytest.approx(scaled.number, abs=1e-6), name
+        assert found.verdict == scaled.verdict
+        assert [case.stones for case in found.cases] == [case.stones for case in scaled.cases]
+        assert [case.words for case in found.cases] == [case.words for case in scaled.cases]
+
+
+def test_polygons_and_pixels_are_judged_alike():
+    for loops in (stack_bond(), running_bond()):
+        drawn, painted_wall = (look(wall) for wall in both(loops))
+        for name in RULES:
+            one, other = drawn.findings[name], painted_wall.findings[name]
+            assert one.verdict == other.verdict, name
+            assert [c.stones for c in one.cases] == [c.stones for c in other.cases], name
+
+
+def test_closed_and_clockwise_outlines_are_the_same_wall():
+    loops = stack_bond(3, 2)
+    closed = {i: np.vstack([loop[::-1], loop[-1:]]) for i, loop in loops.items()}
+    one, other = look(Masonry(loops)).report(), look(Masonry(closed)).report()
+    assert one == other
+
+
+def test_limits_are_settings():
+    wall = Masonry(stack_bond(3, 2))
+    assert look(wall).findings["running_joints"].verdict == "fair"
+    strict = look(wall, {"running_joints": Limit(0, 1)})
+    assert strict.findings["running_joints"].verdict == "broken"
+    assert "running_joints" in strict.broken
+    assert strict.report()["rules"]["running_joints"]["limits"] == {"good": 0, "fair": 1}
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [
+        {"no_rule": Limit(0, 1)},
+        {"laps": Limit(0.3, 0.1)},
+        {"one_over_two": Limit(0.6, 0.8)},
+        {"laps": Limit(float("nan"), 0.1)},
+    ],
+)
+def test_limits_that_make_no_sense_are_refused(limits):
+    with pytest.raises(UsageError, match="E190"):
+        look(Masonry(stack_bond(2, 2)), limits)
+
+
+def test_a_wedge_that_is_not_there_is_refused():
+    with pytest.raises(InputError, match="E191 wedges: the wall has no 12, 99"):
+        Masonry(stack_bond(2, 2), wedge_ids={99, 12, 1})
+
+
+@pytest.mark.parametrize("changes", [{"joint": 0.0}, {"lap": float("nan")}, {"sample": 0.2}])
+def test_settings_are_checked(changes):
+    with pytest.raises(ValueError, match="must be"):
+        CraftSettings(**changes)
+
+
+def test_every_rule_says_what_it_is():
+    for name, rule in RULES.items():
+        assert name == rule.name
+        assert rule.title
+        assert rule.source
+        assert rule.meaning
+        assert rule.sentence.endswith(".")
+        assert rule.checked(rule.limit) is rule.limit
+
+
+def test_json_names_stones_steps_and_lines():
+    steps = {i: 100 + i for i in stack_bond()}
+    report = look(Masonry(stack_bond(), steps=steps)).report()
+    again = json.loads(json.dumps(report))
+    assert again == report
+    case = again["rules"]["cross_joints"]["cases"][0]
+    assert case["steps"] == [100 + i for i in case["stones"]]
+    assert len(case["lines"]) == 2
+    assert again["stones"] == 20
+    assert "traced" in again["unseen"]
+    without = look(Masonry(stack_bond())).report()
+    assert "steps" not in without["rules"]["cross_joints"]["cases"][0]
+
+
+def test_the_masons_regular_wall_keeps_its_bond(data_dir):
+    """Independent of our outlines: courses of R are level and every joint is crossed."""
+    found = look(Masonry.from_labels(read_wall(data_dir / "almeida" / "R.png").labels)).findings
+    assert found["running_joints"].number == 1.0
+    assert found["one_over_two"].number == 1.0
+    assert found["level_beds"].number < 0.1
+
+
+def test_the_foot_is_the_lowest_stone_of_a_picture():
+    labels = painted(running_bond())
+    lower = np.vstack([labels, np.zeros((40, labels.shape[1]), np.uint32)])
+    assert look(Masonry.from_labels(labels)).report() == look(Masonry.from_labels(lower)).report()
