@@ -212,6 +212,7 @@ def _stones(command: argparse.ArgumentParser) -> None:
     command.add_argument("-o", "--output", metavar="PICTURE.png", help="draw the stones")
     _overwriting(command, "replace the picture")
     add_reading(command)
+    add_scale(command)
     command.add_argument("--json", action="store_true", help="print as JSON")
 
 

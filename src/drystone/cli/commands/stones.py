@@ -6,6 +6,7 @@ from pathlib import Path
 
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_from
+from drystone.cli.scale import scale_with
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode
 from drystone.io.read_stones import read_stones
@@ -18,6 +19,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if picture is not None:
         prepare_picture(picture, overwrite=arguments.overwrite)
     stones = read_stones(Path(arguments.stones), settings=reading_from(arguments))
+    px_per_m = scale_with(arguments.px_per_m, stones.source.px_per_m)
     clusters = cluster_stones(stones, PoseBook())
     areas = [stone.area_px for stone in stones]
     sizes = [(stone.mask.shape[1], stone.mask.shape[0]) for stone in stones]
@@ -34,7 +36,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
                 "sha256": stones.source.sha256,
                 "width_px": stones.source.width_px,
                 "height_px": stones.source.height_px,
-                "px_per_m": stones.source.px_per_m,
+                "px_per_m": px_per_m,
                 "total_area_px": stones.total_area_px,
                 "median_area_px": statistics.median(areas),
                 "clusters": {str(stone.id): clusters[stone.id] for stone in stones},
@@ -47,15 +49,24 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         f"{stones.source.path}: {len(stones)} stones",
         [
             ("image", f"{stones.source.width_px} x {stones.source.height_px} px"),
-            *([("scale", f"{scale:g} px a metre")] if (scale := stones.source.px_per_m) else []),
-            ("total area", f"{stones.total_area_px} px"),
-            ("median stone", f"{median[0]:g} x {median[1]:g} px, {statistics.median(areas):g} px²"),
-            (
-                "largest stone",
-                f"{largest.id}: {largest.mask.shape[1]} x {largest.mask.shape[0]} px",
-            ),
+            *([] if px_per_m is None else [("scale", f"{px_per_m:g} px a metre")]),
+            ("total area", _area(stones.total_area_px, px_per_m)),
+            ("median stone", f"{_size(*median, px_per_m)}, {statistics.median(areas):g} px²"),
+            ("largest stone", f"{largest.id}: {_size(*largest.mask.shape[::-1], px_per_m)}"),
             ("clusters", str(max(clusters.values()))),
             *[("notice", str(notice)) for notice in stones.notices],
         ],
     )
     return ExitCode.DONE
+
+
+def _size(width_px: float, height_px: float, px_per_m: float | None) -> str:
+    px = f"{width_px:g} x {height_px:g} px"
+    if px_per_m is None:
+        return px
+    per_px_cm = 100.0 / px_per_m
+    return f"{width_px * per_px_cm:.1f} x {height_px * per_px_cm:.1f} cm ({px})"
+
+
+def _area(area_px: int, px_per_m: float | None) -> str:
+    return f"{area_px} px" if px_per_m is None else f"{area_px / px_per_m**2:.3f} m² ({area_px} px)"
