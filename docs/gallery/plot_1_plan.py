@@ -48,3 +48,9 @@ for step in result.plan.steps[:5]:
         x, y = step.centroid
         turned = f"stone {step.stone} turned by {step.angle_deg:.1f} deg"
         print(f"step {step.step}: {turned}, centroid at {x:.1f}, {y:.1f} px")
+
+# %%
+# At the end of a notebook's cell a result shows itself: step through it, choose stones, look at
+# forces and at how it fails.
+
+result

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from drystone.planner.planner import Planner as Planner
     from drystone.planner.settings import PlannerSettings as PlannerSettings
     from drystone.planner.settings import method_settings as method_settings
+    from drystone.report.notebook import view as view
     from drystone.search.plan_wall import PlanResult as PlanResult
     from drystone.search.plan_wall import plan_wall as plan_wall
     from drystone.statics.contacts.blocks import model_from_labels as model_from_labels
@@ -49,6 +50,7 @@ _HOMES = {
     "Site": "drystone.model.site",
     "Stone": "drystone.model.stone",
     "StoneSet": "drystone.model.stone",
+    "view": "drystone.report.notebook",
     "PlanResult": "drystone.search.plan_wall",
     "plan_wall": "drystone.search.plan_wall",
     "Planner": "drystone.planner.planner",

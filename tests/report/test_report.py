@@ -3,25 +3,27 @@ import json
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from drystone.errors import Notice
 from drystone.model.plan import PlanMetrics
-from drystone.plotting import wall_outlines, write_pictures
-from drystone.plotting.palette import cluster_colour
-from drystone.report import write_report
+from drystone.plotting import write_pictures
+from drystone.report import view_of_result, view_of_wall, write_report
 from drystone.report.content import (
     assumptions,
     cards,
     flat_settings,
     number,
-    rows,
     weaker_direction,
 )
-from drystone.report.player import drawing
+from drystone.report.embedding import viewer_frame, viewer_page, viewer_script, viewer_style
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.limit import lateral_resistance
 from tests.plotting import examples
+from tests.report.walls import result
 from tests.verify.exact_examples import exact_example
 
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
@@ -34,7 +36,7 @@ class Page(HTMLParser):
 
     def __init__(self, text):
         super().__init__()
-        self.open, self.elements, self.texts = [], [], []
+        self.open, self.elements, self.texts, self.scripts = [], [], [], []
         self.feed(text)
         self.close()
         assert not self.open
@@ -51,7 +53,9 @@ class Page(HTMLParser):
         assert self.open.pop() == tag
 
     def handle_data(self, data):
-        if self.open and self.open[-1] not in ("style", "script"):
+        if self.open and self.open[-1] == "script":
+            self.scripts.append(data)
+        elif self.open and self.open[-1] != "style":
             self.texts.append(data.strip())
 
     def all(self, tag):
@@ -60,6 +64,25 @@ class Page(HTMLParser):
     @property
     def text(self):
         return " ".join(text for text in self.texts if text)
+
+    @property
+    def data(self):
+        return json.loads(self.scripts[0])
+
+
+def example_view(plan=None, wall=None):
+    """Return the view of the wall made by hand, or of another one, with a plan that says more."""
+    wall = examples.wall() if wall is None else wall
+    model = model_from_labels(wall.labels).model
+    found = SimpleNamespace(
+        plan=plan or examples.plan(wall),
+        wall=wall,
+        model=model,
+        resistance=lateral_resistance(model, mechanism=True),
+        seconds=3.456,
+        notices=(Notice("W112", "3 specks in <i>PR</i> were left out.", "Nothing to do."),),
+    )
+    return view_of_result(found)
 
 
 @pytest.fixture
@@ -74,14 +97,7 @@ def pictures(tmp_path):
 
 @pytest.fixture
 def report(tmp_path, pictures):
-    path = write_report(
-        tmp_path / "report.html",
-        plan=examples.plan(),
-        pictures=pictures,
-        notices=[Notice("W112", "3 specks in <i>PR</i> were left out.", "Nothing to do.")],
-        timings={"planning": 3.456},
-        outlines=wall_outlines(examples.wall()),
-    )
+    path = write_report(tmp_path / "report.html", example_view(), pictures=pictures)
     return path.read_text(encoding="utf-8")
 
 
@@ -91,7 +107,7 @@ def test_every_stone_and_step_is_in_the_table(report):
     assert [a["id"] for a in page.all("tr") if "id" in a] == [f"step-{s.step}" for s in steps]
     for stone in (*examples.CLUSTERS, examples.UNUSED):
         assert re.search(rf"\b{stone}\b", page.text)
-    assert f"wedge {examples.WEDGE} under stone 300, 3.0 wide, 2.0 high" in page.text
+    assert f"Push wedge {examples.WEDGE} in under stone 300: 3.0 wide, 2.0 high" in page.text
     assert "Stones left over: 40" in page.text
 
 
@@ -103,6 +119,7 @@ def test_results_inputs_and_notices_are_said(report):
         "0.672",
         "4.25 %",
         "Load multiplier (adequacy factor) to the left",
+        "in three walls of masons, of other stones",
         f"44.0 {TIMES} 20.0 px",
         "0" * 64,
         "W112",
@@ -125,20 +142,16 @@ def test_a_plan_on_outlines_says_so(tmp_path):
     made = exact_example()
     metrics = replace(made.plan.metrics, F_LR=0.71, F_LR_half=0.512, F_LR_double=None)
     plan = replace(made.plan, metrics=metrics)
-    pictures = tmp_path / "none"
-    outlines = wall_outlines(made.wall)
-    path = write_report(tmp_path / "one.html", plan=plan, pictures=pictures, outlines=outlines)
-    page = Page(path.read_text(encoding="utf-8"))
+    page = Page(
+        write_report(tmp_path / "one.html", example_view(plan, made.wall)).read_text("utf-8")
+    )
     assert "Stones are their outlines" in page.text
     assert "within the contact tolerance, 0.1 px of the image" in page.text
     assert "0.512 and not defined at half and twice the contact tolerance." in page.text
     assert "pixels have edges" not in page.text
-    # Drawn a thousand wide: the wall is 84 px wide and 30 px high.
-    drawn = [a["points"] for a in page.all("polygon")]
-    for (_, corners), points in zip(made.wall.outlines.blocks, drawn, strict=True):
-        found = np.array([point.split(",") for point in points.split()], float)
-        expected = (corners * (1, -1) + (0, 30)) * 1000 / 84
-        np.testing.assert_allclose(found, expected, atol=0.06)
+    for (block, corners), part in zip(made.wall.outlines.blocks, page.data["parts"], strict=True):
+        assert part["id"] == block
+        np.testing.assert_allclose(part["points"][0], corners, atol=0.0006)
     settle = {**plan.settings["settle"], "contact_px": 0.25}
     other = replace(plan, settings={**plan.settings, "settle": settle})
     assert "0.25 px of the image" in assumptions(other)[-1]
@@ -150,10 +163,11 @@ def test_names_are_escaped(report):
     assert "<b>" not in report
     assert "<script>alert" not in report
     assert "<i>" not in report
-    text = Page(report).text
-    assert "<b>PR.png" in text
-    assert "<script>alert(1)</script>" in text
-    assert "<i>PR</i>" in text
+    page = Page(report)
+    assert "<b>PR.png" in page.text
+    assert "<script>alert(1)</script>" in page.text
+    assert "<i>PR</i>" in page.text
+    assert page.data["title"] == "Dry-stone wall from <b>PR.png"
 
 
 def test_the_file_needs_nothing_else(report, pictures):
@@ -164,10 +178,22 @@ def test_the_file_needs_nothing_else(report, pictures):
     names = ("picture.png", "mechanism_left.png")
     assert embedded == [(pictures / name).read_bytes() for name in names]
     assert all(attrs["alt"] for attrs in images)
-    assert not re.search(r"https?:|url\(|@import", re.sub(r'src="[^"]*"', "", report))
+    rest = re.sub(r'src="[^"]*"', "", report).replace("http://www.w3.org/2000/svg", "")
+    assert not re.search(r"https?:|url\((?!#)|@import", rest)
     assert all("src" not in attrs for attrs in page.all("script"))
     assert [a["href"] for a in page.all("link")] == ["data:,"]
+    (policy,) = (a["content"] for a in page.all("meta") if "http-equiv" in a)
+    assert policy.startswith("default-src 'none'; ")
     assert "no picture of a mechanism to the right" in page.text
+
+
+def test_script_and_style_cannot_end_their_elements():
+    assert "</script" not in viewer_script()
+    assert "</style" not in viewer_style()
+
+
+def test_no_markup_is_made_of_data():
+    assert not re.search(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write", viewer_script())
 
 
 def test_missing_metrics_are_not_defined_and_never_zero(tmp_path):
@@ -177,70 +203,51 @@ def test_missing_metrics_are_not_defined_and_never_zero(tmp_path):
     for name in ("F_AV", "F_AH", "F_LR", f"{ALPHA} left", "Weaker direction"):
         assert values[name] == "not defined"
     assert values[f"{ALPHA} right"] == "0.300"
-    path = write_report(tmp_path / "report.html", plan=plan, pictures=tmp_path)
+    path = write_report(tmp_path / "report.html", example_view(plan), pictures=tmp_path)
     page = Page(path.read_text(encoding="utf-8"))
     assert page.texts.count("not defined") == 5
     assert "no picture of the wall" in page.text
-    assert not page.all("svg")
 
 
 def test_same_arguments_same_bytes(tmp_path, pictures):
-    plan, outlines = examples.plan(), wall_outlines(examples.wall())
     first, second = (
-        write_report(tmp_path / name, plan=plan, pictures=pictures, outlines=outlines).read_bytes()
+        write_report(tmp_path / name, example_view(), pictures=pictures).read_bytes()
         for name in ("one.html", "two.html")
     )
     assert first == second
 
 
-def test_steps_are_drawn_in_the_colours_of_their_clusters(report):
-    page = Page(report)
-    steps = examples.plan().steps
-    groups = [a for a in page.all("g") if a["class"] == "shape"]
-    assert [int(a["data-step"]) for a in groups] == [step.step for step in steps]
-    fills = [a["fill"] for a in page.all("polygon")]
-    expected = [cluster_colour(step.cluster) for step in examples.plan().stone_steps]
-    assert fills[:-1] == expected
-    assert "place stone 300" in groups[-2]["data-says"]
-    assert "Load multipliers" not in groups[-2]["data-says"]
-    assert "left 0.410, right 0.390" in groups[-1]["data-says"]
-    (slider,) = page.all("input")
-    assert slider["max"] == str(len(steps))
+def test_lengths_in_metres_have_millimetres(tmp_path):
+    path = write_report(tmp_path / "m.html", example_view(wall=examples.wall(px_per_m=50.0)))
+    assert "<td>0.140</td><td>0.080</td>" in path.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("px_per_m", [None, 50.0])
-def test_drawing_is_a_thousand_wide_with_y_down(px_per_m):
-    wall = examples.wall(px_per_m)
-    plan = examples.plan(wall)
-    units = wall.site.units_per_px
-    square = np.array([[0, 0], [11, 0], [11, 22], [0, 22]]) * units
-    drawn = drawing(plan, dict.fromkeys(examples.CLUSTERS, square))
-    assert drawn.height == pytest.approx(1000 * 20 / 44, abs=0.05)
-    first, wedge = drawn.shapes[0], drawn.shapes[-1]
-    assert first.points == "0.0,454.5 250.0,454.5 250.0,-45.5 0.0,-45.5"
-    # Centroid of stone 3: 7 px from the left, 4 px up.
-    assert (first.x, first.y) == pytest.approx((1000 * 7 / 44, 1000 * 16 / 44), abs=0.06)
-    # No outline was given for the wedge: the polygon of its step.
-    assert wedge.kind == "wedge"
-    assert wedge.points.split()[0] == "454.5,318.2"
-
-
-def test_a_stone_without_outline_is_named():
-    with pytest.raises(ValueError, match=r"no outline for the placed stones \[3, 5, 8, 12, 300\]"):
-        drawing(examples.plan(), {})
-
-
-def test_lengths_in_metres_have_millimetres():
-    plan = examples.plan(examples.wall(px_per_m=50.0))
-    first = next(iter(rows(plan)))
-    assert first.cells[1:3] == ("0.140", "0.080")
-
-
-def test_a_missing_index_is_not_defined():
+def test_a_missing_index_is_a_dash(tmp_path):
     plan = examples.plan()
-    step = replace(plan.stone_steps[0], indices={"SF": 0.9, "LLC": 0.5})
-    (row,) = rows(replace(plan, steps=(step,)))
-    assert row.cells[5:] == ("0.900", *["not defined"] * 5, "0.500")
+    step = replace(plan.stone_steps[0], indices={"SF": 0.9, "LLC": None})
+    text = write_report(
+        tmp_path / "one.html", example_view(replace(plan, steps=(step, *plan.steps[1:])))
+    ).read_text(encoding="utf-8")
+    cells = re.findall(r"<td>(.*?)</td>", text.split('id="step-1"')[1].split("</tr>")[0])
+    assert cells[-9:-2] == ["0.900", *["\N{EN DASH}"] * 6]
+
+
+def test_a_wall_that_was_not_planned_has_a_table_of_blocks(tmp_path):
+    labels = examples.wall().labels
+    model = model_from_labels(labels).model
+    shown = view_of_wall(labels, model, lateral_resistance(model, mechanism=True), title="found")
+    page = Page(write_report(tmp_path / "found.html", shown).read_text(encoding="utf-8"))
+    assert "Steps of construction" not in page.text
+    assert "6 stones, " in page.text
+    assert page.text.count("There is no picture of a mechanism") == 2
+
+
+def test_the_viewer_alone_is_a_page_or_a_frame():
+    shown = view_of_result(result("paper"))
+    page = Page(viewer_page(shown, {"chart": False}))
+    assert page.data == json.loads(json.dumps(shown))
+    (frame,) = Page(viewer_frame(shown)).all("iframe")
+    assert frame["srcdoc"] == viewer_page(shown)
 
 
 @pytest.mark.parametrize(

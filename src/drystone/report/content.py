@@ -4,11 +4,11 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
-from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
-from drystone.plotting.palette import WEDGE_COLOUR, cluster_colour
+from drystone.model.plan import Plan
 from drystone.settle.settings import SettleSettings
+from drystone.statics.result import LateralResistance
 
 UNDEFINED = "not defined"
 ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
@@ -46,6 +46,46 @@ ASSUMPTIONS = (
 Better = Literal["higher", "lower", ""]
 
 
+class Strength(Protocol):
+    """What is said of a wall's strength; a plan's metrics say it too."""
+
+    @property
+    def F_LR(self) -> float | None:  # noqa: N802 - the paper's name
+        """Lateral resistance."""
+
+    @property
+    def F_LR_half(self) -> float | None:  # noqa: N802
+        """At half the contact tolerance; None where there is none."""
+
+    @property
+    def F_LR_double(self) -> float | None:  # noqa: N802
+        """At twice the contact tolerance; None where there is none."""
+
+    @property
+    def alpha_left(self) -> float | None:
+        """Load multiplier to the left."""
+
+    @property
+    def alpha_right(self) -> float | None:
+        """Load multiplier to the right."""
+
+
+@dataclass(frozen=True)
+class Resisted:
+    """The strength of a wall that was not planned."""
+
+    F_LR: float | None
+    alpha_left: float | None
+    alpha_right: float | None
+    F_LR_half: float | None = None
+    F_LR_double: float | None = None
+
+    @classmethod
+    def of(cls, resistance: LateralResistance) -> "Resisted":
+        """Take it from a limit analysis."""
+        return cls(resistance.value, resistance.left.alpha, resistance.right.alpha)
+
+
 @dataclass(frozen=True)
 class Card:
     """A result, its name and one sentence that explains it."""
@@ -55,19 +95,6 @@ class Card:
     value: str
     better: Better
     sentence: str
-
-
-@dataclass(frozen=True)
-class Row:
-    """A line of the table of steps; `cells` belong to stones only."""
-
-    step: int
-    kind: Literal["stone", "wedge"]
-    what: str
-    colour: str
-    cells: tuple[str, ...]
-    alpha_left: str
-    alpha_right: str
 
 
 def number(value: float | None, digits: int = 3) -> str:
@@ -113,7 +140,7 @@ def geometry(plan: Plan) -> Literal["raster", "exact"]:
 
 
 def assumptions(plan: Plan) -> tuple[str, ...]:
-    """Return what the results rest on."""
+    """Return what the results of a plan rest on."""
     contact_px = plan.settings.get("settle", {}).get("contact_px", SettleSettings().contact_px)
     return (*ASSUMPTIONS, TOUCHING[geometry(plan)].format(contact_px=contact_px))
 
@@ -128,10 +155,11 @@ def summary(plan: Plan) -> str:
 
 def cards(plan: Plan) -> tuple[Card, ...]:
     """Return the results, the ones to look at first at the front."""
-    return (*_strength(plan.metrics), *_layout(plan))
+    return (*strength_cards(plan.metrics), *_layout(plan))
 
 
-def _strength(metrics: PlanMetrics) -> tuple[Card, ...]:
+def strength_cards(metrics: Strength) -> tuple[Card, ...]:
+    """Return what is said of a wall's strength."""
     multiplier = "Load multiplier (adequacy factor) to the "
     meaning = "A horizontal load of this share of the wall's weight, pushing to the {}, is the "
     meaning += "most that it carries."
@@ -168,7 +196,7 @@ def _strength(metrics: PlanMetrics) -> tuple[Card, ...]:
     )
 
 
-def _by_tolerance(metrics: PlanMetrics) -> str:
+def _by_tolerance(metrics: Strength) -> str:
     """Say what it is with other contact tolerances, where there is a tolerance."""
     half, double = metrics.F_LR_half, metrics.F_LR_double
     if half is None and double is None:
@@ -176,7 +204,7 @@ def _by_tolerance(metrics: PlanMetrics) -> str:
     return f" {number(half)} and {number(double)} at half and twice the contact tolerance."
 
 
-def weaker_direction(metrics: PlanMetrics) -> str:
+def weaker_direction(metrics: Strength) -> str:
     """Return the direction of the smaller load multiplier."""
     left, right = metrics.alpha_left, metrics.alpha_right
     if left is None or right is None:
@@ -250,33 +278,6 @@ def _layout(plan: Plan) -> tuple[Card, ...]:
 
 def _percent(value: float | None) -> str:
     return UNDEFINED if value is None else f"{number(value, 2)} %"
-
-
-def rows(plan: Plan) -> Iterator[Row]:
-    """Yield the lines of the table of steps."""
-    for step in plan.steps:
-        alphas = (number(step.alpha_left), number(step.alpha_right))
-        if isinstance(step, StoneStep):
-            colour = cluster_colour(step.cluster)
-            yield Row(step.step, "stone", str(step.stone), colour, _cells(plan, step), *alphas)
-        else:
-            what = f"wedge {step.id} under stone {step.under}, {_wedge_size(plan, step)}"
-            yield Row(step.step, "wedge", what, WEDGE_COLOUR, (), *alphas)
-
-
-def _cells(plan: Plan, step: StoneStep) -> tuple[str, ...]:
-    digits = length_digits(plan)
-    x, y = (number(value, digits) for value in step.centroid)
-    indices = (number(step.indices.get(name)) for name in INDICES)
-    return (number(step.angle_deg, 1), x, y, step.side, str(step.cluster), *indices)
-
-
-def _wedge_size(plan: Plan, step: WedgeStep) -> str:
-    digits = length_digits(plan)
-    xs, ys = zip(*step.polygon, strict=True)
-    wide, high = number(max(xs) - min(xs), digits), number(max(ys) - min(ys), digits)
-    x, y = number(sum(xs) / len(xs), digits), number(sum(ys) / len(ys), digits)
-    return f"{wide} wide, {high} high, around ({x}, {y})"
 
 
 def flat_settings(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:

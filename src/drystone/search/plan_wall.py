@@ -7,6 +7,7 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
+from importlib import import_module
 from importlib.metadata import version
 from typing import Any, NamedTuple
 
@@ -101,6 +102,10 @@ class PlanResult:
     notices: tuple[Notice, ...] = ()
     profile: Profile = field(default_factory=Profile)
     choice: "tuple[PlanResult, ...]" = ()
+
+    def _repr_html_(self) -> str:
+        # By name, as the package itself loads its rooms: the report lies above the search.
+        return str(import_module("drystone.report.notebook").frame_of_result(self))
 
 
 def working_scale(stones: StoneSet) -> float:

@@ -1,0 +1,1025 @@
+// Shows a dry-stone wall: data of the schema "drystone-view/1" as a drawing that one can go through.
+// One file, no dependencies, no network.  Everything that comes from the data is set as text or as
+// an attribute, never as markup.
+
+const SVG = "http://www.w3.org/2000/svg";
+const WIDTH = 1000;
+const STEP_MS = 700;
+const SWING_MS = 2600;
+const LARGEST_MOVE = 0.12;
+const LONGEST_FORCE = 0.22;
+const WIDEST_THRUST = 14;
+const KINDS = {
+  closed: { mark: "dot", words: "closed" },
+  opening: { mark: "ring", words: "opening" },
+  sliding: { mark: "triangle", words: "sliding" },
+  "opening and sliding": { mark: "square", words: "opening and sliding" },
+};
+const PATTERNS = {
+  rising: "M-2 2 2 -2M0 12 12 0M10 14 14 10",
+  falling: "M-2 10 2 14M0 0 12 12M10 -2 14 2",
+  dots: "M6 4.6a1.4 1.4 0 1 0 .01 0",
+  level: "M0 6H12",
+  upright: "M6 0V12",
+  crossed: "M0 12 12 0M0 0 12 12",
+  grid: "M0 6H12M6 0V12",
+};
+let count = 0;
+
+/**
+ * Show a wall inside of an element.
+ *
+ * @param {Element|ShadowRoot} element where to put it; what is in it stays.
+ * @param {object} data of the schema "drystone-view/1".
+ * @param {object} [options] css: style sheet to add; chart, metrics, about: false leaves a part
+ *   out; step: first step to show (the last); pageKeys: left and right arrows also work when
+ *   nothing has the focus; onStep(step), onTheme(theme): called on changes.
+ * @returns {{root: Element, show: function(number), step: number, select: function(number),
+ *   destroy: function()}}
+ */
+export function mount(element, data, options = {}) {
+  if (data.schema !== "drystone-view/1") {
+    throw new Error(`this viewer shows drystone-view/1, not ${data.schema}`);
+  }
+  return new Viewer(element, data, options).handle();
+}
+
+function make(tag, attributes = {}, ...children) {
+  return fill(document.createElement(tag), attributes, children);
+}
+
+function draw(tag, attributes = {}, ...children) {
+  return fill(document.createElementNS(SVG, tag), attributes, children);
+}
+
+function fill(node, attributes, children) {
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === true) node.setAttribute(name, "");
+    else if (value !== false && value !== null && value !== undefined) node.setAttribute(name, value);
+  }
+  for (const child of children.flat()) {
+    if (child !== null && child !== undefined && child !== false) node.append(child);
+  }
+  return node;
+}
+
+function text(value, digits = 3) {
+  return typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : "–";
+}
+
+function sum(values) {
+  return values.reduce((total, value) => total + value, 0);
+}
+
+function bounds(loops) {
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  for (const loop of loops) {
+    for (const [x, y] of loop) {
+      box[0] = Math.min(box[0], x);
+      box[1] = Math.min(box[1], y);
+      box[2] = Math.max(box[2], x);
+      box[3] = Math.max(box[3], y);
+    }
+  }
+  return box;
+}
+
+function pathOf(loops, x, y) {
+  return loops
+    .map((loop) => "M" + loop.map((p) => `${x(p[0]).toFixed(1)} ${y(p[1]).toFixed(1)}`).join("L") + "Z")
+    .join("");
+}
+
+function freeName() {
+  let name;
+  do {
+    count += 1;
+    name = `ds-view-${count}`;
+  } while (document.getElementById(name));
+  return name;
+}
+
+// The lines that a joint carries: where its force acts, which way, and how large it is.
+function resultant(contact, forces) {
+  const [nx, ny] = contact.normal;
+  const vectors = forces.map(([n, t]) => [n * nx + t * ny, n * ny - t * nx]);
+  const total = [sum(vectors.map((v) => v[0])), sum(vectors.map((v) => v[1]))];
+  const first = contact.points[0];
+  const last = contact.points[contact.points.length - 1];
+  const along = [last[0] - first[0], last[1] - first[1]];
+  const moment = sum(
+    contact.points.map((p, i) => (p[0] - first[0]) * vectors[i][1] - (p[1] - first[1]) * vectors[i][0]),
+  );
+  const across = along[0] * total[1] - along[1] * total[0];
+  const share = across ? Math.min(1, Math.max(0, moment / across)) : 0.5;
+  return {
+    between: contact.between,
+    point: [first[0] + share * along[0], first[1] + share * along[1]],
+    total,
+    size: Math.hypot(...total),
+  };
+}
+
+// Where a block is after a share of its motion: it turns about its centre of rotation by its angle,
+// so it keeps its size.
+function displacement([vx, vy, turning], factor) {
+  const [dx, dy, angle] = [vx * factor, vy * factor, turning * factor];
+  const small = Math.abs(angle) < 1e-9;
+  const sine = small ? 1 : Math.sin(angle) / angle;
+  const rest = small ? 0 : (1 - Math.cos(angle)) / angle;
+  return { x: sine * dx - rest * dy, y: rest * dx + sine * dy, angle };
+}
+
+class Viewer {
+  constructor(element, data, options) {
+    this.data = data;
+    this.options = options;
+    this.name = freeName();
+    this.parts = new Map(data.parts.map((part) => [part.id, part]));
+    this.order = data.parts.map((part) => part.id);
+    this.last = data.steps;
+    this.noun = data.noun === "block" ? "Block" : "Stone";
+    const [x0, , x1, y1] = data.box;
+    this.k = WIDTH / Math.max(x1 - x0, 1e-9);
+    this.x = (x) => (x - x0) * this.k;
+    this.y = (y) => (y1 - y) * this.k;
+    this.height = this.y(data.box[1]);
+    this.state = {
+      step: Math.min(this.last, options.step ?? this.last),
+      selected: null,
+      forces: "none",
+      forceScale: 1,
+      mechanism: "none",
+      amplitude: 1,
+      contacts: false,
+      kinds: false,
+      patterns: true,
+      ids: false,
+      index: "",
+      theme: "auto",
+    };
+    this.timer = null;
+    this.frame = null;
+    this.labels = new Map();
+    this.still = window.matchMedia("(prefers-reduced-motion: reduce)");
+    this.build(element);
+    this.show(this.state.step, { quiet: true });
+  }
+
+  handle() {
+    const viewer = this;
+    return {
+      root: this.root,
+      show: (step) => this.show(step),
+      select: (id) => this.select(id),
+      get step() {
+        return viewer.state.step;
+      },
+      destroy: () => this.destroy(),
+    };
+  }
+
+  destroy() {
+    this.pause();
+    this.stopSwing();
+    this.sizes.disconnect();
+    document.removeEventListener("keydown", this.pageKey);
+    this.root.remove();
+  }
+
+  // --- building ---------------------------------------------------------------------------------
+
+  build(element) {
+    const { data, options } = this;
+    this.card = make("aside", { class: "ds-card", "aria-label": `${this.noun} card` });
+    this.said = make("p", { class: "ds-said", "aria-live": "polite", role: "status" });
+    this.note = make("p", { class: "ds-note" });
+    this.legend = make("ul", { class: "ds-legend", "aria-label": "Legend" });
+    const left = make("div", { class: "ds-left" }, this.buildStage(), this.last ? this.buildTransport() : null, this.said);
+    const tools = make("div", { class: "ds-tools" }, this.legend, this.buildControls(), this.note);
+    const chart = this.last && options.chart !== false ? this.buildChart() : null;
+    this.root = make(
+      "section",
+      { class: "ds-view", id: this.name, "aria-label": data.title, "data-theme": "auto" },
+      options.css ? make("style", {}, options.css) : null,
+      this.buildTop(),
+      make("div", { class: "ds-main" }, left, this.card, tools, chart),
+      options.metrics === false ? null : this.buildMetrics(),
+      options.about === false ? null : this.buildAbout(),
+    );
+    this.root.addEventListener("keydown", (event) => this.key(event));
+    this.pageKey = (event) => {
+      if (options.pageKeys && event.target === document.body && /^Arrow(Left|Right)$/.test(event.key)) this.key(event);
+    };
+    document.addEventListener("keydown", this.pageKey);
+    element.append(this.root);
+    this.sizes = new ResizeObserver(() => this.resize());
+    this.sizes.observe(this.stage);
+  }
+
+  buildTop() {
+    const { data, options } = this;
+    this.themeButton = make("button", { type: "button", class: "ds-theme" }, "Theme: auto");
+    this.themeButton.addEventListener("click", () => this.nextTheme());
+    const title = options.title === false ? null : make("h2", { class: "ds-title" }, data.title);
+    const summary = options.title === false ? null : make("p", { class: "ds-summary" }, data.summary);
+    return make("div", { class: "ds-top" }, make("div", {}, title, summary), this.themeButton);
+  }
+
+  buildStage() {
+    const { data } = this;
+    this.defs = draw("defs", {});
+    for (const [name, d] of Object.entries(PATTERNS)) {
+      const attributes = { id: `${this.name}-${name}`, width: 12, height: 12, patternUnits: "userSpaceOnUse" };
+      this.defs.append(draw("pattern", attributes, draw("path", { d, class: name === "dots" ? "ds-dots" : "ds-lines" })));
+    }
+    const ground = this.y(0);
+    const back = draw("g", { "aria-hidden": "true" });
+    if (this.last) {
+      const [wide, high] = data.size;
+      const frame = { x: this.x(0), y: this.y(high), width: wide * this.k, height: high * this.k };
+      back.append(draw("rect", { class: "ds-frame", ...frame }));
+    }
+    back.append(draw("line", { class: "ds-ground", x1: -14, x2: WIDTH + 14, y1: ground, y2: ground }));
+    this.layers = {};
+    // Numbers lie over the thrust, which goes through the middle of the stones.
+    for (const name of ["parts", "before", "thrust", "numbers", "contacts", "forces"]) {
+      const hidden = name === "parts" ? null : "true";
+      this.layers[name] = draw("g", { class: `ds-${name}`, "aria-hidden": hidden });
+    }
+    this.groups = new Map(data.parts.map((part) => [part.id, this.buildPart(part)]));
+    this.layers.parts.append(...this.groups.values());
+    this.layers.numbers.append(...[...this.labels.values()].map((one) => one.label));
+    this.svg = draw("svg", { role: "group", "aria-label": `${data.title}. ${data.summary}` }, this.defs, back, ...Object.values(this.layers));
+    const keys = this.last ? "Left and right arrows go through the steps, space plays, up and down go from stone to stone." : "Arrows go from one to the next.";
+    this.stage = make("div", { class: "ds-stage", tabindex: 0, role: "group", "aria-label": `Drawing of the wall. ${keys}` }, this.svg);
+    return this.stage;
+  }
+
+  buildPart(part) {
+    const d = pathOf(part.points, this.x, this.y);
+    const group = draw(
+      "g",
+      { class: `ds-part ds-${part.kind}`, "data-id": part.id, "data-step": part.step, role: "button", tabindex: -1, "aria-label": this.nameOf(part) },
+      draw("path", { class: "ds-shape", d, fill: part.colour, "fill-rule": "evenodd" }),
+    );
+    if (part.pattern in PATTERNS) {
+      const ink = { class: `ds-pattern ${part.text_colour === "#000000" ? "ds-dark" : "ds-bright"}` };
+      group.append(draw("path", { ...ink, d, fill: `url(#${this.name}-${part.pattern})`, "fill-rule": "evenodd" }));
+    }
+    if (part.number !== null) {
+      const at = { x: this.x(part.centroid[0]).toFixed(1), y: this.y(part.centroid[1]).toFixed(1) };
+      const halo = part.text_colour === "#000000" ? "ds-on-light" : "ds-on-dark";
+      const label = draw("text", { ...at, class: `ds-number ${halo}`, fill: part.text_colour, "aria-hidden": "true" });
+      const [x0, y0, x1, y1] = bounds(part.points);
+      this.labels.set(part.id, { label, part, high: this.k * (y1 - y0), wide: (this.k * (x1 - x0)) / 0.62 });
+    }
+    const choose = () => this.select(part.id);
+    group.addEventListener("click", choose);
+    group.addEventListener("focus", choose);
+    group.addEventListener("keydown", (event) => {
+      if (event.key === "Enter" || event.key === " ") {
+        event.preventDefault();
+        event.stopPropagation();
+        choose();
+      }
+    });
+    return group;
+  }
+
+  buildTransport() {
+    const button = (name, label, sign, action) => {
+      const made = make("button", { type: "button", class: `ds-${name}`, "aria-label": label, title: label }, sign);
+      made.addEventListener("click", action);
+      return made;
+    };
+    const to = (step) => () => {
+      this.pause();
+      this.show(step());
+    };
+    this.playButton = button("play", "Play", "Play", () => this.toggle());
+    this.playButton.removeAttribute("aria-label");
+    this.playButton.removeAttribute("title");
+    this.slider = make("input", { type: "range", class: "ds-slider", min: 0, max: this.last, step: 1, value: this.last, "aria-label": "Step of construction" });
+    this.slider.addEventListener("input", () => {
+      this.pause();
+      this.show(Number(this.slider.value));
+    });
+    this.counter = make("output", { class: "ds-counter" });
+    return make(
+      "div",
+      { class: "ds-transport", role: "group", "aria-label": "Steps" },
+      button("first", "First step", "|◀", to(() => 0)),
+      button("previous", "One step back", "◀", to(() => this.state.step - 1)),
+      this.playButton,
+      button("next", "One step forward", "▶", to(() => this.state.step + 1)),
+      button("last", "Last step", "▶|", to(() => this.last)),
+      this.slider,
+      this.counter,
+    );
+  }
+
+  buildControls() {
+    const { data } = this;
+    const cases = { none: "none" };
+    const present = new Set(data.contacts.flatMap((contact) => Object.keys(contact.forces)));
+    if (present.has("self")) cases.self = "own weight";
+    if (present.has("left")) cases.left = "left";
+    if (present.has("right")) cases.right = "right";
+    const sides = { none: "none" };
+    for (const side of ["left", "right"]) if (data.mechanisms[side]?.velocity) sides[side] = side;
+    this.forceScale = this.range("Scale", "ds-force-scale", 0.2, 3, 0.1, 1, (value) => {
+      this.state.forceScale = value;
+      this.drawForces();
+    });
+    this.amplitude = this.range("Amplitude", "ds-amplitude", 0, 2, 0.02, 1, (value) => {
+      this.stopSwing();
+      this.state.amplitude = value;
+      this.move(value);
+    });
+    this.swingButton = make("button", { type: "button", class: "ds-animate", "aria-pressed": "false" }, "Animate");
+    this.swingButton.addEventListener("click", () => this.swing());
+    this.moving = make("span", { class: "ds-sub", hidden: true }, this.amplitude.label, this.swingButton);
+    this.pushing = make("span", { class: "ds-sub", hidden: true }, this.forceScale.label);
+    const many = Object.keys(cases).length > 1;
+    const fails = Object.keys(sides).length > 1;
+    const zoom = this.range("Zoom", "ds-zoom", 1, 4, 0.25, 1, (value) => this.zoom(value));
+    return make(
+      "div",
+      { class: "ds-controls" },
+      fails ? this.choice("Mechanism", "mechanism", sides, this.moving) : null,
+      many ? this.choice("Forces", "forces", cases, this.pushing) : null,
+      make(
+        "fieldset",
+        { class: "ds-choice" },
+        make("legend", {}, "Show"),
+        data.contacts.length ? this.check("Contacts", "contacts") : null,
+        fails ? this.check("What joints do", "kinds") : null,
+        this.data.parts.some((part) => part.cluster !== null) ? this.check("Patterns", "patterns") : null,
+        this.last ? this.check("Ids, not steps", "ids") : null,
+        zoom.label,
+      ),
+    );
+  }
+
+  range(label, name, min, max, step, value, change) {
+    const input = make("input", { type: "range", class: name, min, max, step, value });
+    input.addEventListener("input", () => change(Number(input.value)));
+    return { input, label: make("label", { class: "ds-range" }, `${label} `, input) };
+  }
+
+  check(label, name) {
+    const input = make("input", { type: "checkbox", class: `ds-${name}-on`, checked: this.state[name] });
+    input.addEventListener("change", () => {
+      this.state[name] = input.checked;
+      this.root.classList.toggle("ds-plain", !this.state.patterns);
+      this.perPx = null;
+      this.update();
+    });
+    return make("label", { class: "ds-check" }, input, ` ${label}`);
+  }
+
+  choice(label, name, values, extra) {
+    const box = make("fieldset", { class: `ds-choice ds-choose-${name}` }, make("legend", {}, label));
+    for (const [value, words] of Object.entries(values)) {
+      const input = make("input", { type: "radio", name: `${this.name}-${name}`, value, checked: value === "none" });
+      input.addEventListener("change", () => {
+        this.state[name] = value;
+        this.stopSwing();
+        if (value !== "none" && this.state.step !== this.last) {
+          this.pause();
+          this.show(this.last);
+        }
+        this.update();
+      });
+      box.append(make("label", { class: "ds-check" }, input, ` ${words}`));
+    }
+    box.append(extra);
+    return box;
+  }
+
+  buildMetrics() {
+    const cards = this.data.metrics.map((metric) =>
+      make(
+        "div",
+        { class: "ds-metric" },
+        make("h3", {}, metric.name, metric.symbol ? make("span", { class: "ds-symbol" }, ` · ${metric.symbol}`) : null),
+        make("p", { class: "ds-value" }, metric.value),
+        metric.better ? make("p", { class: "ds-better" }, `${metric.better === "higher" ? "▲" : "▼"} ${metric.better} is better`) : null,
+        make("p", { class: "ds-sentence" }, metric.sentence),
+        metric.masons ? make("p", { class: "ds-masons" }, `Masons: ${metric.masons}.`) : null,
+      ),
+    );
+    return make("section", { class: "ds-metrics", "aria-label": "Results" }, ...cards);
+  }
+
+  buildAbout() {
+    const { data } = this;
+    const pairs = (rows) =>
+      make("table", {}, make("tbody", {}, rows.map(([name, value]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, String(value))))));
+    const list = (words) => make("ul", {}, words.map((one) => make("li", {}, one)));
+    const box = make("details", { class: "ds-about" }, make("summary", {}, "What it was made from, settings, assumptions"));
+    box.addEventListener("toggle", () => {
+      if (!box.open || box.children.length > 1) return;
+      box.append(pairs(data.inputs));
+      if (data.notices.length) box.append(make("h3", {}, "Notices"), list(data.notices.map((n) => `${n.code} ${n.message} ${n.cure}`)));
+      if (data.timings.length) box.append(make("h3", {}, "Time"), pairs(data.timings.map(([name, s]) => [name, `${text(s, 2)} s`])));
+      box.append(make("h3", {}, "Assumptions"), list(data.assumptions));
+      box.append(make("h3", {}, "Settings"), pairs(data.settings));
+    });
+    return box;
+  }
+
+  // --- steps ------------------------------------------------------------------------------------
+
+  show(step, { quiet = false } = {}) {
+    const { state, data } = this;
+    state.step = Math.max(0, Math.min(this.last, Math.round(step)));
+    const now = this.last ? data.parts.find((part) => part.step === state.step) : null;
+    for (const part of data.parts) {
+      const group = this.groups.get(part.id);
+      for (const one of this.drawnOf(part)) one.classList.toggle("ds-later", part.step !== null && part.step > state.step);
+      group.classList.toggle("ds-now", part === now && state.step !== this.last);
+    }
+    if (this.slider) {
+      this.slider.value = state.step;
+      this.slider.setAttribute("aria-valuetext", this.sayStep(now));
+      this.counter.textContent = `${state.step} / ${this.last}`;
+    }
+    this.said.textContent = this.last ? this.sayStep(now) : data.summary;
+    this.select(now ? now.id : this.last ? null : (state.selected ?? null), { quiet: true });
+    this.update();
+    this.markChart();
+    if (!quiet) this.options.onStep?.(state.step);
+  }
+
+  sayStep(part) {
+    if (!part) return "Nothing is placed yet.";
+    const { alpha_left: left, alpha_right: right } = part;
+    const strength = left === null && right === null ? "" : ` Load multipliers then: left ${text(left)}, right ${text(right)}.`;
+    return `Step ${part.step} of ${this.last}: ${part.words}${strength}`;
+  }
+
+  toggle() {
+    if (this.timer !== null) {
+      this.pause();
+      return;
+    }
+    if (!this.last) return;
+    this.said.setAttribute("aria-live", "off");
+    this.playButton.textContent = "Pause";
+    if (this.state.step >= this.last) this.show(0);
+    this.timer = window.setInterval(() => {
+      this.show(this.state.step + 1);
+      if (this.state.step >= this.last) this.pause();
+    }, this.options.stepMs ?? STEP_MS);
+  }
+
+  pause() {
+    if (this.timer === null) return;
+    window.clearInterval(this.timer);
+    this.timer = null;
+    this.said.setAttribute("aria-live", "polite");
+    this.playButton.textContent = "Play";
+  }
+
+  key(event) {
+    if (event.altKey || event.ctrlKey || event.metaKey || event.defaultPrevented) return;
+    const target = event.composedPath()[0];
+    if (target.closest?.("input, select, textarea, [contenteditable]")) return;
+    if (event.key === " " && target.closest?.("button, summary, a")) return;
+    const { step } = this.state;
+    const steps = { ArrowLeft: step - 1, ArrowRight: step + 1, Home: 0, End: this.last };
+    const along = { ArrowUp: -1, ArrowDown: 1, ...(this.last ? {} : { ArrowLeft: -1, ArrowRight: 1 }) };
+    if (event.key in along) this.walk(along[event.key]);
+    else if (event.key in steps) {
+      this.pause();
+      this.show(steps[event.key]);
+    } else if (event.key === " ") this.toggle();
+    else return;
+    event.preventDefault();
+  }
+
+  walk(by) {
+    const seen = this.order.filter((id) => !this.groups.get(id).classList.contains("ds-later"));
+    if (!seen.length) return;
+    const at = seen.indexOf(this.state.selected);
+    const next = at < 0 ? (by > 0 ? 0 : seen.length - 1) : (at + by + seen.length) % seen.length;
+    this.groups.get(seen[next]).focus();
+  }
+
+  // --- what is drawn over the stones --------------------------------------------------------------
+
+  get finished() {
+    return this.state.step === this.last;
+  }
+
+  get mechanism() {
+    const { mechanism } = this.state;
+    return mechanism !== "none" && this.finished ? this.data.mechanisms[mechanism] : null;
+  }
+
+  update() {
+    const { state } = this;
+    this.root.classList.toggle("ds-fails", this.mechanism !== null);
+    this.root.classList.toggle("ds-pushed", state.forces !== "none" && this.finished);
+    this.moving.hidden = state.mechanism === "none";
+    this.pushing.hidden = state.forces === "none";
+    this.swingButton.disabled = this.still.matches;
+    this.swingButton.title = this.still.matches ? "Your system asks for less motion" : "";
+    this.frameView();
+    this.drawBefore();
+    this.drawContacts();
+    this.drawForces();
+    this.move(state.amplitude);
+    this.explain();
+  }
+
+  frameView() {
+    const [, , x1, y1] = this.data.box;
+    const reach = Math.max(y1 - this.data.box[1], 0.2 * (x1 - this.data.box[0])) * this.k * LARGEST_MOVE;
+    const pad = this.mechanism ? reach : 0;
+    const foot = this.finished && this.state.forces !== "none" ? 0.8 * reach : 0;
+    const [left, top] = [-16 - pad, -12 - pad];
+    const box = [left, top, WIDTH + 32 + 2 * pad, this.height + 26 + pad + foot].map((value) => value.toFixed(1));
+    this.svg.setAttribute("viewBox", box.join(" "));
+    this.resize();
+  }
+
+  resize() {
+    const box = this.svg.viewBox.baseVal;
+    const wide = this.svg.clientWidth || this.svg.getBoundingClientRect().width;
+    const perPx = box && box.width && wide ? box.width / wide : 1.4;
+    if (perPx === this.perPx) return;
+    this.perPx = perPx;
+    this.root.style.setProperty("--ds-px", perPx.toFixed(4));
+    for (const { label, part, high, wide } of this.labels.values()) {
+      label.textContent = String(this.state.ids ? part.id : part.number);
+      const room = Math.min(high, wide / label.textContent.length);
+      label.setAttribute("font-size", Math.min(0.6 * room, 15 * perPx).toFixed(1));
+    }
+    if (this.chart) this.drawChart();
+  }
+
+  zoom(value) {
+    this.svg.style.width = `${100 * value}%`;
+    this.svg.style.maxHeight = value > 1 ? "none" : "";
+    this.resize();
+    const group = this.groups.get(this.state.selected);
+    if (value > 1 && group) group.scrollIntoView({ block: "nearest", inline: "center" });
+  }
+
+  move(amplitude) {
+    const failing = this.mechanism;
+    for (const part of this.data.parts) {
+      const velocity = failing?.velocity?.[part.id];
+      for (const one of this.drawnOf(part)) one.classList.toggle("ds-still", failing !== null && !velocity);
+      this.carry(part, velocity, failing, amplitude);
+    }
+    // A joint goes with the block that its normal points into.
+    for (const joint of this.layers.contacts.children) {
+      const way = this.groups.get(Number(joint.dataset.block))?.getAttribute("transform");
+      if (way) joint.setAttribute("transform", way);
+      else joint.removeAttribute("transform");
+    }
+  }
+
+  drawnOf(part) {
+    return [this.groups.get(part.id), this.labels.get(part.id)?.label].filter(Boolean);
+  }
+
+  carry(part, velocity, failing, amplitude) {
+    const drawn = this.drawnOf(part);
+    if (!velocity) drawn.forEach((one) => one.removeAttribute("transform"));
+    else {
+      const { x, y, angle } = displacement(velocity, amplitude * failing.scale);
+      const [cx, cy] = [this.x(part.centroid[0]), this.y(part.centroid[1])];
+      const shift = `translate(${(x * this.k).toFixed(3)} ${(-y * this.k).toFixed(3)})`;
+      const way = `${shift} rotate(${((-angle * 180) / Math.PI).toFixed(4)} ${cx.toFixed(3)} ${cy.toFixed(3)})`;
+      drawn.forEach((one) => one.setAttribute("transform", way));
+    }
+  }
+
+  swing() {
+    if (this.frame !== null) {
+      this.stopSwing();
+      return;
+    }
+    if (this.still.matches || !this.mechanism) return;
+    this.swingButton.setAttribute("aria-pressed", "true");
+    this.swingButton.textContent = "Stop";
+    const begin = performance.now();
+    const tick = (now) => {
+      const share = (1 - Math.cos((2 * Math.PI * (now - begin)) / SWING_MS)) / 2;
+      this.move(this.state.amplitude * share);
+      this.frame = window.requestAnimationFrame(tick);
+    };
+    this.frame = window.requestAnimationFrame(tick);
+  }
+
+  stopSwing() {
+    if (this.frame === null) return;
+    window.cancelAnimationFrame(this.frame);
+    this.frame = null;
+    this.swingButton.setAttribute("aria-pressed", "false");
+    this.swingButton.textContent = "Animate";
+    this.move(this.state.amplitude);
+  }
+
+  drawBefore() {
+    const moved = this.mechanism?.velocity ?? {};
+    const shapes = this.data.parts.filter((part) => part.id in moved);
+    this.layers.before.replaceChildren(...shapes.map((part) => draw("path", { d: pathOf(part.points, this.x, this.y) })));
+  }
+
+  get kindSide() {
+    const { state, data } = this;
+    if (state.mechanism !== "none") return state.mechanism;
+    const known = ["left", "right"].filter((side) => data.mechanisms[side]?.velocity);
+    const alpha = (side) => data.mechanisms[side].alpha ?? -1;
+    return known.sort((a, b) => alpha(a) - alpha(b))[0];
+  }
+
+  drawContacts() {
+    const { state } = this;
+    const shown = [];
+    const seen = (id) => id === 0 || !this.groups.get(id)?.classList.contains("ds-later");
+    const kinds = state.kinds && this.finished;
+    for (const contact of state.contacts || kinds ? this.data.contacts : []) {
+      if (!contact.between.every(seen)) continue;
+      const joint = draw("g", { "data-block": contact.between[0] });
+      shown.push(joint);
+      const points = contact.points.map(([x, y]) => [this.x(x), this.y(y)]);
+      const [first, last] = [points[0], points[points.length - 1]];
+      if (state.contacts) joint.append(draw("line", { class: "ds-joint", x1: first[0].toFixed(1), y1: first[1].toFixed(1), x2: last[0].toFixed(1), y2: last[1].toFixed(1) }));
+      points.forEach(([x, y], at) => {
+        if (!kinds) joint.append(this.mark("dot", x, y));
+        else joint.append(this.mark(KINDS[contact.kinds[this.kindSide]?.[at] ?? "closed"].mark, x, y));
+      });
+    }
+    this.layers.contacts.replaceChildren(...shown);
+  }
+
+  mark(name, x, y) {
+    const [cx, cy] = [x.toFixed(1), y.toFixed(1)];
+    const paths = {
+      dot: "M-2 0a2 2 0 1 0 4 0a2 2 0 1 0 -4 0",
+      ring: "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0",
+      triangle: "M0 -5.5L5 3.5H-5Z",
+      square: "M-4 -4H4V4H-4Z",
+    };
+    return draw("g", { transform: `translate(${cx} ${cy})` }, draw("path", { class: `ds-mark ds-mark-${name}`, d: paths[name] }));
+  }
+
+  drawForces() {
+    const { state, data } = this;
+    const lines = [];
+    const thrust = [];
+    this.largest = 0;
+    if (state.forces !== "none" && this.finished) {
+      const acting = data.contacts.filter((c) => c.forces[state.forces]).map((c) => resultant(c, c.forces[state.forces]));
+      this.largest = Math.max(0, ...acting.map((one) => one.size));
+      const tall = Math.max(this.height, 0.2 * WIDTH);
+      for (const one of acting) {
+        if (one.size < 1e-6 * this.largest) continue;
+        const [x, y] = [this.x(one.point[0]), this.y(one.point[1])];
+        const half = (0.5 * state.forceScale * LONGEST_FORCE * tall) / this.largest;
+        const [dx, dy] = [one.total[0] * half, -one.total[1] * half];
+        lines.push(draw("line", { x1: (x - dx).toFixed(1), y1: (y - dy).toFixed(1), x2: (x + dx).toFixed(1), y2: (y + dy).toFixed(1) }));
+        const centres = one.between.filter((id) => id !== 0).map((id) => this.parts.get(id)?.centroid).filter(Boolean);
+        const way = centres.map(([cx, cy]) => `${this.x(cx).toFixed(1)},${this.y(cy).toFixed(1)}`);
+        way.splice(1, 0, `${x.toFixed(1)},${y.toFixed(1)}`);
+        const wide = (WIDEST_THRUST * one.size) / this.largest;
+        thrust.push(draw("polyline", { points: way.join(" "), "stroke-width": wide.toFixed(2) }));
+      }
+    }
+    this.layers.forces.replaceChildren(...lines);
+    this.layers.thrust.replaceChildren(...thrust);
+  }
+
+  explain() {
+    const { state, data } = this;
+    const rows = [];
+    if (this.finished && state.forces !== "none" && this.largest > 0) {
+      rows.push(["force", `force at a joint, the largest ${text(100 * this.largest, 1)} % of the wall's weight`], ["thrust", "thrust, as wide as the force"]);
+    }
+    if (state.contacts) rows.push(["joint", "contact"]);
+    if (this.finished && state.kinds) for (const kind of Object.values(KINDS)) rows.push([kind.mark, kind.words]);
+    this.legend.replaceChildren(
+      ...rows.map(([mark, words]) => make("li", {}, this.sample(mark), ` ${words}`)),
+    );
+    const said = [];
+    const overlays = state.forces !== "none" || state.mechanism !== "none" || state.kinds;
+    if (overlays && !this.finished) said.push("Forces and mechanisms are those of the finished wall.");
+    if (this.mechanism) {
+      const { alpha, words } = this.mechanism;
+      const push = alpha === null ? "" : `Load to the ${state.mechanism}, load multiplier ${text(alpha)}. `;
+      said.push(`${push}${words}${this.last ? " (Stones by their ids.)" : ""}`);
+    } else if (this.finished && state.kinds) said.push(`Joints in the mechanism to the ${this.kindSide}.`);
+    if (this.finished && state.forces !== "none") said.push(data.forces_words);
+    this.note.textContent = said.join(" ");
+  }
+
+  sample(mark) {
+    const inside = {
+      force: () => draw("g", { class: "ds-forces" }, draw("line", { x1: 3, y1: 10, x2: 19, y2: 4 })),
+      thrust: () => draw("g", { class: "ds-thrust" }, draw("polyline", { points: "2,7 20,7", "stroke-width": 6 })),
+      joint: () => draw("g", { class: "ds-contacts" }, draw("line", { class: "ds-joint", x1: 3, y1: 7, x2: 19, y2: 7 })),
+    };
+    const shape = mark in inside ? inside[mark]() : draw("g", { class: "ds-contacts" }, this.mark(mark, 11, 7));
+    return draw("svg", { class: "ds-sample", viewBox: "0 0 22 14", "aria-hidden": "true" }, shape);
+  }
+
+  // --- the stone card -----------------------------------------------------------------------------
+
+  nameOf(part) {
+    const step = part.step === null ? "" : `, step ${part.step}`;
+    return `${part.kind === "wedge" ? "Wedge" : this.noun} ${part.id}${step}`;
+  }
+
+  select(id, { quiet = false } = {}) {
+    const before = this.groups.get(this.state.selected);
+    before?.classList.remove("ds-selected");
+    before?.setAttribute("tabindex", "-1");
+    before?.removeAttribute("aria-pressed");
+    const part = this.parts.get(id) ?? null;
+    this.state.selected = part ? part.id : null;
+    const group = part ? this.groups.get(part.id) : null;
+    group?.classList.add("ds-selected");
+    group?.setAttribute("tabindex", "0");
+    group?.setAttribute("aria-pressed", "true");
+    this.card.replaceChildren(...(part ? this.cardOf(part) : this.emptyCard()));
+    if (!quiet && part) this.said.textContent = part.step === null ? `${this.nameOf(part)}.` : this.sayStep(part);
+  }
+
+  emptyCard() {
+    const words = this.last ? "Choose a stone in the drawing, or go to a step." : `Choose a ${this.noun.toLowerCase()} in the drawing.`;
+    return [make("p", { class: "ds-hint" }, words)];
+  }
+
+  cardOf(part) {
+    const { unit } = this.data;
+    const digits = unit === "m" ? 3 : 1;
+    const wedge = part.kind === "wedge";
+    const under = part.step === null ? "" : `step ${part.step} of ${this.last}`;
+    const cluster = part.cluster === null ? "" : `cluster ${part.cluster}`;
+    const rows = [];
+    if (part.angle_deg !== null && !wedge) rows.push(["How to turn it", this.turnWords(part.angle_deg)]);
+    const [x, y] = part.centroid.map((value) => text(value, digits));
+    rows.push([wedge ? "Around" : "Centroid", `${x} ${unit} from the left end, ${y} ${unit} above the ground`]);
+    rows.push(["Size", `${text(part.size[0], digits)} × ${text(part.size[1], digits)} ${unit}`]);
+    if (part.side) rows.push(["Placed from", `the ${part.side}`]);
+    if (part.under !== null) rows.push(["Under", this.links([part.under])]);
+    if (part.wedges.length) rows.push(["Wedges under it", this.links(part.wedges)]);
+    rows.push(...this.touching(part));
+    const { alpha_left: left, alpha_right: right } = part;
+    if (left !== null || right !== null) rows.push(["α then", `left ${text(left)}, right ${text(right)}`]);
+    return [
+      make("h3", { class: "ds-name" }, make("span", { class: "ds-big" }, part.step === null ? String(part.id) : `${part.step}`), ` ${wedge ? "Wedge" : this.noun} ${part.id}`),
+      make("p", { class: "ds-which" }, [under, cluster].filter(Boolean).join(" · ")),
+      this.figure(part),
+      make("dl", {}, rows.map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)))),
+      this.indexTable(part),
+    ].filter(Boolean);
+  }
+
+  turnWords(degrees) {
+    const angle = ((((degrees + 180) % 360) + 360) % 360) - 180;
+    if (Math.abs(angle) < 0.05) return "not at all: as it lies";
+    return `${Math.abs(angle).toFixed(1)}° ${angle > 0 ? "counter-clockwise\u00a0↺" : "clockwise\u00a0↻"}`;
+  }
+
+  touching(part) {
+    if (part.step === null) return [["Touches", this.links(part.neighbours)]];
+    const placed = (id) => id === 0 || (this.parts.get(id)?.step ?? Infinity) < part.step;
+    const now = part.neighbours.filter(placed);
+    const later = part.neighbours.filter((id) => !placed(id));
+    const rows = [["Touches", now.length ? this.links(now) : "nothing yet"]];
+    if (later.length) rows.push(["Later also", this.links(later)]);
+    return rows;
+  }
+
+  links(ids) {
+    return ids.map((id) => {
+      if (id === 0) return make("span", { class: "ds-link" }, "the ground");
+      const part = this.parts.get(id);
+      if (!part) return make("span", { class: "ds-link" }, String(id));
+      const step = part.step === null ? "" : ` (step ${part.step})`;
+      const button = make("button", { type: "button", class: "ds-link" }, `${part.kind === "wedge" ? "wedge " : ""}${id}${step}`);
+      button.addEventListener("click", () => {
+        if (part.step !== null && part.step > this.state.step) {
+          this.pause();
+          this.show(part.step);
+        }
+        this.select(part.id);
+        this.groups.get(part.id).focus();
+      });
+      return button;
+    });
+  }
+
+  indexTable(part) {
+    const names = Object.keys(part.indices);
+    if (!names.length) return null;
+    const row = (name) =>
+      make("tr", {}, make("th", { scope: "row", title: this.data.index_meanings[name] }, name), make("td", {}, text(part.indices[name])), make("td", { class: "ds-meaning" }, this.data.index_meanings[name] ?? ""));
+    return make("details", { class: "ds-indices" }, make("summary", {}, "Indices of this step"), make("table", {}, make("tbody", {}, names.map(row))));
+  }
+
+  // The stone as it lies in the source image and as it stands in the wall, at one scale.
+  figure(part) {
+    const placed = part.points;
+    const outline = part.source ? [part.source] : placed;
+    const [a, b] = [bounds(outline), bounds(placed)];
+    const size = Math.max(a[2] - a[0], a[3] - a[1], 1e-9);
+    const perUnit = part.source ? Math.max(...part.size, 1e-9) / size : 1;
+    const reach = Math.max((a[2] - a[0]) * perUnit, (a[3] - a[1]) * perUnit, b[2] - b[0], b[3] - b[1]);
+    const k = 112 / reach;
+    const middle = 8 + 0.5 * Math.max(34, (a[3] - a[1]) * perUnit * k, (b[3] - b[1]) * k);
+    const below = 2 * middle + 8;
+    const panel = (loops, box, scale, left, label, crop, angle = null) => {
+      const [mx, my] = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
+      const x = (value) => left + 64 + (value - mx) * scale;
+      const y = (value) => middle - (value - my) * scale;
+      const shape = draw("path", { class: crop ? "ds-over" : "ds-alone", d: pathOf(loops, x, y), fill: crop ? "none" : part.colour, "fill-rule": "evenodd" });
+      const caption = draw("text", { x: left + 64, y: below, class: "ds-caption" }, label);
+      // An inner svg cuts off what of the photograph is beside its field.
+      const field = { x: left, y: 0, width: 128, height: below - 12, viewBox: `${left} 0 128 ${below - 12}` };
+      const photo = crop ? draw("svg", field, this.photo(part, crop, x, y, scale, angle)) : null;
+      return [photo, shape, caption].filter(Boolean);
+    };
+    const crop = part.crop && String(part.crop.data).startsWith("data:image/") ? part.crop : null;
+    const frameOf = (wide) => `0 0 ${wide} ${(below + 6).toFixed(1)}`;
+    const words = part.angle_deg === null || part.kind === "wedge" ? this.nameOf(part) : `${this.nameOf(part)}: turn it ${this.turnWords(part.angle_deg)}`;
+    if (!part.source) {
+      const only = panel(placed, b, k, 0, part.kind === "wedge" ? "to find or to cut" : "", null);
+      return draw("svg", { class: "ds-figure ds-one", viewBox: frameOf(128), role: "img", "aria-label": words }, ...only);
+    }
+    return draw(
+      "svg",
+      { class: "ds-figure", viewBox: frameOf(316), role: "img", "aria-label": words },
+      ...panel(outline, a, k * perUnit, 0, "as it lies", crop),
+      ...this.arc(part.angle_deg, middle),
+      ...panel(placed, b, k, 188, "as it stands", crop, part.angle_deg),
+    );
+  }
+
+  // The photograph where the stone lies, or with an angle turned with it to where it stands.
+  photo(part, crop, x, y, scale, angle) {
+    const [x0, y0, x1, y1] = crop.box;
+    const known = part.source;
+    const placed = part.points[0];
+    let place;
+    if (angle === null) place = { x: x(x0), y: y(y1), width: (x1 - x0) * scale, height: (y1 - y0) * scale };
+    else {
+      const from = [sum(known.map((p) => p[0])) / known.length, sum(known.map((p) => p[1])) / known.length];
+      const to = [sum(placed.map((p) => p[0])) / placed.length, sum(placed.map((p) => p[1])) / placed.length];
+      const box = bounds([known]);
+      const own = Math.max(box[2] - box[0], box[3] - box[1]);
+      const unit = (scale * Math.max(...part.size)) / own;
+      const [cx, cy] = [x(to[0]), y(to[1])];
+      place = { x: cx + (x0 - from[0]) * unit, y: cy - (y1 - from[1]) * unit, width: (x1 - x0) * unit, height: (y1 - y0) * unit, transform: `rotate(${-angle} ${cx} ${cy})` };
+    }
+    return draw("image", { ...place, href: crop.data, preserveAspectRatio: "none" });
+  }
+
+  // A dial: from upright by the angle, with the way round.
+  arc(degrees, cy) {
+    const angle = ((((degrees + 180) % 360) + 360) % 360) - 180;
+    const [cx, r] = [158, 17];
+    if (Math.abs(angle) < 0.05) return [draw("path", { class: "ds-arc", d: `M${cx - 14} ${cy}H${cx + 14}m-6 -5l6 5l-6 5` })];
+    const words = draw("text", { class: "ds-caption", x: cx, y: 2 * cy + 8 }, `${Math.abs(angle).toFixed(0)}° ${angle > 0 ? "↺" : "↻"}`);
+    const at = (turn) => [cx + r * Math.sin(turn), cy - r * Math.cos(turn)];
+    const radians = (-angle * Math.PI) / 180;
+    const [ex, ey] = at(radians);
+    const hand = (x, y) => draw("line", { class: "ds-dial", x1: cx, y1: cy, x2: x.toFixed(1), y2: y.toFixed(1) });
+    const hands = [hand(cx, cy - r), hand(ex, ey), words];
+    // Too short for a head of an arrow: the hands and the words say it.
+    if (Math.abs(angle) < 30) return hands;
+    const back = at(radians - Math.sign(radians) * 0.4);
+    const way = Math.atan2(ey - back[1], ex - back[0]);
+    const wing = (turn) => `${(ex - 8 * Math.cos(way + turn)).toFixed(1)} ${(ey - 8 * Math.sin(way + turn)).toFixed(1)}`;
+    const round = `A${r} ${r} 0 0 ${angle > 0 ? 0 : 1} ${ex.toFixed(1)} ${ey.toFixed(1)}`;
+    return [
+      ...hands,
+      draw("path", { class: "ds-arc", d: `M${cx} ${cy - r}${round}` }),
+      draw("path", { class: "ds-arc", d: `M${wing(0.45)}L${ex.toFixed(1)} ${ey.toFixed(1)}L${wing(-0.45)}` }),
+    ];
+  }
+
+  // --- the chart ----------------------------------------------------------------------------------
+
+  buildChart() {
+    const names = Object.keys(this.data.index_meanings);
+    const pick = make("select", { class: "ds-index" }, make("option", { value: "" }, "none"), names.map((name) => make("option", { value: name }, name)));
+    pick.addEventListener("change", () => {
+      this.state.index = pick.value;
+      this.drawChart();
+    });
+    this.chart = draw("svg", { class: "ds-chart", role: "img" });
+    this.chart.addEventListener("click", (event) => {
+      const box = this.chart.getBoundingClientRect();
+      this.pause();
+      this.show(this.stepAt(event.clientX - box.left));
+    });
+    this.keyOfChart = make("ul", { class: "ds-legend" });
+    const table = make("details", { class: "ds-numbers" }, make("summary", {}, "The same as a table"));
+    table.addEventListener("toggle", () => {
+      if (table.open && table.children.length === 1) table.append(this.chartTable(names));
+    });
+    return make(
+      "section",
+      { class: "ds-over-steps", "aria-label": "Load multipliers and indices over the steps" },
+      make("div", { class: "ds-chart-head" }, make("h3", {}, "Load multipliers over the steps"), make("label", {}, "with index ", pick)),
+      this.chart,
+      this.keyOfChart,
+      table,
+    );
+  }
+
+  series() {
+    const { data, state } = this;
+    const of = (value) => data.parts.map((part) => [part.step, value(part)]).filter((pair) => typeof pair[1] === "number");
+    const made = [
+      { name: "α left", kind: "left", points: of((part) => part.alpha_left) },
+      { name: "α right", kind: "right", points: of((part) => part.alpha_right) },
+    ];
+    if (state.index) made.push({ name: state.index, kind: "index", points: of((part) => part.indices[state.index]) });
+    return made;
+  }
+
+  drawChart() {
+    const wide = Math.max(260, this.chart.clientWidth || 640);
+    const [high, left, right, top, bottom] = [190, 40, 10, 10, 34];
+    const series = this.series();
+    const values = series.flatMap((one) => one.points.map((p) => p[1]));
+    const most = Math.max(0.1, ...values);
+    const least = Math.min(0, ...values);
+    const tick = [0.05, 0.1, 0.2, 0.5, 1, 2, 5].find((size) => (most - least) / size <= 6) ?? 10;
+    const [low, up] = [Math.floor(least / tick + 1e-9) * tick, Math.ceil(most / tick - 1e-9) * tick];
+    this.stepX = (step) => left + ((wide - left - right) * (step - 1)) / Math.max(1, this.last - 1);
+    this.stepAt = (x) => 1 + Math.round(((x - left) * Math.max(1, this.last - 1)) / (wide - left - right));
+    const y = (value) => top + ((high - top - bottom) * (up - value)) / (up - low);
+    const shapes = [];
+    for (let value = low; value <= up + tick / 2; value += tick) {
+      shapes.push(draw("line", { class: "ds-grid", x1: left, x2: wide - right, y1: y(value), y2: y(value) }));
+      shapes.push(draw("text", { class: "ds-tick ds-end", x: left - 6, y: y(value) + 4 }, text(value, tick < 0.1 ? 2 : 1)));
+    }
+    const every = [1, 2, 5, 10, 20, 50, 100, 200, 500].find((size) => this.last / size <= wide / 45) ?? 1000;
+    for (let step = every === 1 ? 1 : every; step <= this.last; step += every) {
+      shapes.push(draw("text", { class: "ds-tick ds-middle", x: this.stepX(step), y: high - 18 }, String(step)));
+    }
+    shapes.push(draw("text", { class: "ds-tick ds-middle", x: (left + wide - right) / 2, y: high - 3 }, "step"));
+    this.nowLine = draw("line", { class: "ds-now-line", y1: top, y2: high - bottom });
+    shapes.push(this.nowLine);
+    for (const one of series) {
+      const points = one.points.map(([step, value]) => `${this.stepX(step).toFixed(1)},${y(value).toFixed(1)}`).join(" ");
+      shapes.push(draw("polyline", { class: `ds-line ds-line-${one.kind}`, points }));
+    }
+    this.chart.setAttribute("viewBox", `0 0 ${wide} ${high}`);
+    this.chart.style.height = `${high}px`;
+    const ends = series.map((one) => `${one.name} ends at ${text(one.points[one.points.length - 1]?.[1])}`);
+    this.chart.setAttribute("aria-label", `Line chart over ${this.last} steps: ${ends.join(", ")}. The table below has all numbers.`);
+    this.chart.replaceChildren(...shapes);
+    const lines = series.map((one) => make("li", {}, draw("svg", { class: "ds-sample", viewBox: "0 0 22 14", "aria-hidden": "true" }, draw("polyline", { class: `ds-line ds-line-${one.kind}`, points: "1,7 21,7" })), ` ${one.name}`));
+    this.keyOfChart.replaceChildren(...lines);
+    this.markChart();
+  }
+
+  markChart() {
+    if (!this.nowLine) return;
+    const x = this.stepX(Math.max(1, this.state.step));
+    this.nowLine.setAttribute("x1", x);
+    this.nowLine.setAttribute("x2", x);
+    this.nowLine.classList.toggle("ds-later", this.state.step === 0);
+  }
+
+  chartTable(names) {
+    const head = ["Step", "Part", "α left", "α right", ...names];
+    const row = (part) =>
+      make(
+        "tr",
+        {},
+        make("th", { scope: "row" }, String(part.step)),
+        make("td", {}, `${part.kind} ${part.id}`),
+        make("td", {}, text(part.alpha_left)),
+        make("td", {}, text(part.alpha_right)),
+        names.map((name) => make("td", {}, text(part.indices[name]))),
+      );
+    return make(
+      "div",
+      { class: "ds-scroll", tabindex: 0, role: "region", "aria-label": "Numbers over the steps" },
+      make("table", {}, make("thead", {}, make("tr", {}, head.map((name) => make("th", { scope: "col" }, name)))), make("tbody", {}, this.data.parts.map(row))),
+    );
+  }
+
+  // --- theme --------------------------------------------------------------------------------------
+
+  nextTheme() {
+    const themes = ["auto", "dark", "light"];
+    this.state.theme = themes[(themes.indexOf(this.state.theme) + 1) % themes.length];
+    this.root.dataset.theme = this.state.theme;
+    this.themeButton.textContent = `Theme: ${this.state.theme}`;
+    this.options.onTheme?.(this.state.theme);
+  }
+}

@@ -1,0 +1,40 @@
+"""Small walls that were planned, for the tests of the viewer."""
+
+import hashlib
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+import drystone as ds
+from drystone.cli.choice import write_built
+from drystone.search.plan_wall import PlanResult
+
+WALL_PX = (130.0, 50.0)
+
+
+def result(method: str = "best", px_per_m: float | None = None) -> PlanResult:
+    """Plan nine of ten stones: "best" has outlines, "paper" pixels and a wedge."""
+    return _planned(method, px_per_m)
+
+
+@cache
+def _planned(method: str, px_per_m: float | None) -> PlanResult:
+    rubble = ds.generate.RubbleSettings(
+        count=10, width_px=130, height_px=50, courses=3, area_ratio=0.86
+    )
+    stones = ds.generate.rubble_stones(rubble, np.random.default_rng(4))
+    settings = ds.method_settings(method).updated({"search": {"budget": 1}})
+    return ds.plan_wall(
+        stones, *WALL_PX, seed=1, method=method, settings=settings, px_per_m=px_per_m
+    )
+
+
+def written(folder: Path, method: str = "best", px_per_m: float | None = None) -> Path:
+    """Write the files of a plan as `drystone plan` does, without pictures."""
+    write_built(result(method, px_per_m), folder)
+    return folder
+
+
+def sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
