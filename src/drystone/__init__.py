@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from drystone import generate as generate
+    from drystone.assembly.read import read_assembly as read_assembly
     from drystone.errors import DrystoneError as DrystoneError
     from drystone.io.plan_json import read_plan as read_plan
     from drystone.io.plan_json import write_plan as write_plan
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from drystone.model.site import Site as Site
     from drystone.model.stone import Stone as Stone
     from drystone.model.stone import StoneSet as StoneSet
+    from drystone.planner.measured import MeasuredPose as MeasuredPose
+    from drystone.planner.observe import Observation as Observation
     from drystone.planner.planner import Planner as Planner
     from drystone.planner.settings import PlannerSettings as PlannerSettings
     from drystone.planner.settings import method_settings as method_settings
@@ -40,6 +43,7 @@ if TYPE_CHECKING:
 
 # Names are loaded on first use: `drystone --help` must not wait for NumPy and SciPy.
 _HOMES = {
+    "read_assembly": "drystone.assembly.read",
     "DrystoneError": "drystone.errors",
     "read_plan": "drystone.io.plan_json",
     "write_plan": "drystone.io.plan_json",
@@ -53,6 +57,8 @@ _HOMES = {
     "view": "drystone.report.notebook",
     "PlanResult": "drystone.search.plan_wall",
     "plan_wall": "drystone.search.plan_wall",
+    "MeasuredPose": "drystone.planner.measured",
+    "Observation": "drystone.planner.observe",
     "Planner": "drystone.planner.planner",
     "PlannerSettings": "drystone.planner.settings",
     "method_settings": "drystone.planner.settings",

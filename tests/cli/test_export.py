@@ -5,7 +5,9 @@ import json
 import shutil
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
+import ezdxf
 import pytest
 
 from drystone.export.formats import FORMATS
@@ -160,3 +162,51 @@ def test_no_two_formats_write_the_same_file() -> None:
     ]
     assert len(set(named)) == len(named)
     assert not {"plan.json", "blocks.json", "wall.png", "report.html"} & set(named)
+
+
+def test_nothing_is_written_when_the_wall_is_not_in_the_projectors_picture(
+    run: Run, plan: Path, tmp_path: Path
+) -> None:
+    scale = ("--px-per-m", "100", "--projector", "640x480@1000")
+    ran = run("export", plan, "--to", "svg", "projector", *scale, "-o", tmp_path / "new")
+    assert (ran.code, "E187" in ran.err) == (2, True)
+    assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize(("name", "package", "code"), [
+    ("dxf", "ezdxf", "E185"), ("mp4", "cv2", "E186"),
+])  # fmt: skip
+def test_nothing_is_written_when_what_writes_a_drawing_or_film_is_missing(
+    run: Run, plan: Path, monkeypatch: pytest.MonkeyPatch, name: str, package: str, code: str
+) -> None:
+    monkeypatch.setitem(sys.modules, package, None)
+    monkeypatch.setattr(shutil, "which", lambda _: None)
+    before = tree(plan.parent)
+    ran = run("export", plan, "--to", "csv", name)
+    assert (ran.code, code in ran.err) == (2, True)
+    assert tree(plan.parent) == before
+
+
+def test_nothing_is_written_when_the_photograph_cannot_be_used(run: Run, plan: Path) -> None:
+    (plan.parent / "photo.png").write_bytes(b"no picture")
+    before = tree(plan.parent)
+    ran = run("export", plan, "--to", "csv", "pdf")
+    assert (ran.code, "E189" in ran.err) == (3, True)
+    assert tree(plan.parent) == before
+
+
+@pytest.mark.parametrize("name", ["nowhere", "report.html", "wall.png"])
+def test_what_is_no_plan_is_said_to_be_none(run: Run, plan: Path, name: str) -> None:
+    ran = run("export", plan.parent / name, "--to", "csv")
+    assert (ran.code, "E132" in ran.err, "or its folder" in ran.err) == (3, True, True)
+
+
+def test_a_title_of_any_letters_makes_files_that_can_be_read(run: Run, plan: Path) -> None:
+    title = "<b>\n\x01 $x_1$ \N{CJK UNIFIED IDEOGRAPH-6F22}"
+    ran = run("export", plan, "--to", "svg", "dxf", "png", "pdf", "--title", title)
+    assert (ran.code, ran.err) == (0, "")
+    read = ElementTree.parse(plan.parent / "wall.svg").getroot()
+    said = "<b>   $x_1$ \N{CJK UNIFIED IDEOGRAPH-6F22}"
+    assert read.findtext("{http://www.w3.org/2000/svg}title") == said
+    texts = ezdxf.readfile(plan.parent / "wall.dxf").modelspace().query("TEXT")
+    assert said in [text.dxf.text for text in texts]

@@ -3,12 +3,16 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from drystone.model.frames3d import Pose3d, metres_of, photo_pose, wall_pose
 from drystone.planner.build import Build, Candidate
 
 
 @dataclass(frozen=True, eq=False)
 class Step:
     """One chosen action, as :meth:`drystone.planner.planner.Planner.steps` yields it.
+
+    Poses are in metres (:mod:`drystone.model.frames3d`); without a scale of the site they raise
+    UsageError (E131).
 
     Parameters
     ----------
@@ -26,6 +30,55 @@ class Step:
     action: Candidate
     build: Build
     candidates: int
+
+    @property
+    def stone_id(self) -> int:
+        """Id of the stone."""
+        return self.action.stone_id
+
+    @property
+    def pose3d(self) -> Pose3d:
+        """Where the stone goes in the wall: :meth:`place_pose` in the plane of the front face.
+
+        A robot that holds stones in the middle of a wall of some thickness asks
+        :meth:`place_pose` for it.
+        """
+        return self.place_pose()
+
+    def place_pose(self, thickness_m: float = 0.0) -> Pose3d:
+        """Return where the centroid of the stone goes in the wall (frame W), and how it is turned.
+
+        Parameters
+        ----------
+        thickness_m : float
+            Of the wall; the centroid is half of it behind the front face.
+
+        Raises
+        ------
+        UsageError
+            E131: the site has no scale.
+        """
+        site, placement = self.build.wall.site, self.action.stabilised.placement
+        x, y = placement.centroid(site.height_px)
+        metres = metres_of(1.0 / site.scale, site.px_per_m)
+        return wall_pose(x * metres, y * metres, thickness_m, placement.posed.angle_deg)
+
+    def pick_pose(self, thickness_m: float = 0.0) -> Pose3d:
+        """Return where the stone lies in the picture that it was read from (frame P).
+
+        Parameters
+        ----------
+        thickness_m : float
+            Of the stone; its centroid is half of it above the ground.
+
+        Raises
+        ------
+        UsageError
+            E131: the site has no scale.
+        """
+        x, y = self.action.stabilised.placement.posed.stone.centroid
+        metres = metres_of(1.0, self.build.wall.site.px_per_m)
+        return photo_pose(x * metres, y * metres, thickness_m)
 
 
 @dataclass(frozen=True)

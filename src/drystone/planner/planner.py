@@ -1,7 +1,8 @@
 """The stone stacking algorithm (Algorithm 1)."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Executor
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from drystone.planner.attempt import Attempt
 from drystone.planner.build import Build, Candidate
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.events import Callbacks, Step, Stopped
+from drystone.planner.observe import Measurement, Observation, observed, without
 from drystone.planner.profile import Profile
 from drystone.planner.replay import judged
 from drystone.planner.settings import PlannerSettings
@@ -85,7 +87,8 @@ class Planner:
         """Place stone after stone (Algorithm 1), yielding each step as it is decided.
 
         After the last step :attr:`stopped` says why construction ended.  Leaving the loop early
-        keeps what is built; calling `steps` again goes on from there.
+        keeps what is built; calling `steps` again goes on from there.  Between two steps the wall
+        may be measured (:meth:`observe`).
         """
         self.stopped = None
         attempt = self._attempt()
@@ -101,9 +104,10 @@ class Planner:
             self.build = self._added(self.build, action)  # lines 18-22
             step = Step(len(self.build.actions), action, self.build, attempt.candidates)
             self.profile.end_step(step.number - 1, step.candidates)
-            attempt, failures = self._attempt(), 0
             self.callbacks.on_step(step)
             yield step
+            # After it: the wall may have been measured meanwhile.
+            attempt, failures = self._attempt(), 0
         self._count_solves(attempt)
         self.profile.end_without_action(attempt.candidates)
         self.stopped = stopped
@@ -183,6 +187,61 @@ class Planner:
         for group in wall.groups:
             build = self._added(build, judged(build, group, course_heights_px, evaluator))
         self.build = build
+
+    def observe(self, measured: Measurement, *, lost: Iterable[int] = ()) -> Observation:
+        """Go on from the wall as it was really built.
+
+        Stones are put where they were measured, in their order of placement.  Measured poses are
+        never exact: a stone that would overlap others, or float, is brought apart from them and
+        lowered until it rests, from where it was measured; one that was planned on wedges gets
+        a wedge that fits there.  A stone that is where it was planned stays as it is; when all
+        are, nothing changes.
+
+        Parameters
+        ----------
+        measured : mapping of int to MeasuredPose, or (h, w) integer array
+            Where every stone in the wall is (:mod:`drystone.planner.measured`): stones that are
+            missing are free again, others than planned are taken over.
+        lost : iterable of int
+            Stones that cannot be used any more: broken, or out of reach.
+
+        Returns
+        -------
+        observation : Observation
+            How far the wall is from the plan, and whether it stands.
+
+        Raises
+        ------
+        InputError
+            E195: there is no such stone; E196: the picture is none of the wall; E197: a pose is
+            not in the wall, or a stone is seen in part only; E198: a stone overlaps others and
+            has no room nearby.  Nothing has changed then.
+        UsageError
+            E199: a stone is lost and in the wall.
+
+        Examples
+        --------
+        >>> import drystone as ds
+        >>> from drystone.planner.measured import MeasuredPose
+        >>> bricks = ds.generate.BrickSettings(count=3, height_px=10, aspect=2)
+        >>> stones = ds.generate.brick_stones(bricks, np.random.default_rng(1))
+        >>> planner = ds.Planner(stones, ds.Site(60, 10))
+        >>> step = next(planner.steps())
+        >>> x, y = step.action.stabilised.placement.centroid(10)
+        >>> seen = planner.observe({step.stone_id: MeasuredPose(x + 1.0, y, 0.0)})
+        >>> seen.largest_px, seen.stands
+        (1.0, True)
+        """
+        lost = tuple(lost)
+        build, observation = observed(
+            self._empty(), self.build, measured, lost, self.workshop, self.settings
+        )
+        if lost:
+            self.workshop, self.settings = without(lost, self.workshop, self.settings)
+            ban, pin = self.settings.ban, self.settings.pin
+            self._weighted = replace(self._weighted, ban=ban, pin=pin)
+        self.build = build
+        return observation
 
 
 def _all_placed(left: int, banned: int) -> str:

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from drystone.experiments.packing import load_packer
 from drystone.experiments.public.compare import comparison
-from drystone.experiments.public.methods import BenchMethod, method_named
+from drystone.experiments.public.methods import STRIP_SECONDS, BenchMethod, method_named
 from drystone.experiments.public.pairs import pair_tables
 from drystone.experiments.public.results import SHAKE, Result, Results
 from drystone.experiments.public.shaken import pga_of
@@ -16,7 +17,7 @@ from drystone.experiments.public.suites import PublicWall, walls_of
 from drystone.experiments.runs.failures import absent_data
 from drystone.experiments.runs.outcome import Outcome
 from drystone.experiments.runs.runner import Runner, Work, one_by_one
-from drystone.experiments.runs.spec import RunSpec
+from drystone.experiments.runs.spec import STRIPS, RunSpec
 from drystone.experiments.runs.store import RunStore
 from drystone.experiments.table import Table
 from drystone.physics.table import load_engine
@@ -113,7 +114,7 @@ def run_public(settings: PublicSettings) -> tuple[Table, ...]:
     ------
     UsageError
         E138: no wall has the name that is asked for; E146, E123: there is no such method or
-        setting.
+        setting; E305: the yardstick needs spyrrow, which is not installed.
     InputError
         E100: all walls need published stones, which are not there; E401: the store is damaged.
     """
@@ -131,14 +132,34 @@ def run_public(settings: PublicSettings) -> tuple[Table, ...]:
         for method in methods
     ]
     results = _done(tasks, settings)
-    first, *others = (*comparison(results), *pair_tables(results))
-    return (replace(first, notes=(*first.notes, *_left_out(asked, walls))), *others)
+    first, *others = (*comparison(results), *pair_tables(_planned(results)))
+    notes = (*first.notes, *_yardstick(results), *_left_out(asked, walls))
+    return (replace(first, notes=notes), *others)
+
+
+def _planned(results: Results) -> Results:
+    """Leave out the yardstick, which builds no walls to be compared."""
+    return Results(tuple(result for result in results.all if result.method != STRIPS))
+
+
+def _yardstick(results: Results) -> tuple[str, ...]:
+    """Say what the yardstick is, where there is one."""
+    if STRIPS not in results.methods:
+        return ()
+    return (
+        f"{STRIPS} is a yardstick, in no pairs and no ranking: all stones packed into a strip as "
+        f"high as the wall, by quarter turns, {STRIP_SECONDS} s each, without gravity, order or "
+        "support. Its F_SF is their area over that of the strip, or over that of the wall where "
+        "the strip is shorter; it has no other figures. What it finds depends on the machine.",
+    )
 
 
 def _done(tasks: Sequence[Task], settings: PublicSettings) -> Results:
     """Do the runs, keep them, and shake the walls if that is asked for."""
     if settings.shake:
         load_engine()  # what is missing is said before an hour of planning
+    if any(method.name == STRIPS for _, method, _ in tasks):
+        load_packer()
     store = None if settings.store is None else BenchStore(settings.store)
     kept = {} if store is None else {run.run_key: run for run in store.runs()}
     specs = [spec for _, _, spec in tasks]
@@ -171,6 +192,9 @@ def _shaken(
     """Return the results with their amplitudes; each is kept at once, as it takes long."""
     results = []
     for number, (spec, outcome, result) in enumerate(runs, 1):
+        if spec.method == STRIPS:
+            results.append(_with_score(result, None))
+            continue
         before = kept.get(outcome.key)
         if before is not None and before.shaken != NOT_SHAKEN:
             results.append(_with_score(result, before.pga_g))

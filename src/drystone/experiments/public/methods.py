@@ -8,15 +8,19 @@ from typing import Any
 from drystone.errors import UsageError
 from drystone.experiments.public.suites import PublicWall
 from drystone.experiments.runs.source import Scalar, generated
-from drystone.experiments.runs.spec import RunSpec
+from drystone.experiments.runs.spec import STRIPS, RunSpec
 from drystone.selection.policies.registry import BUILT_IN, GROUP, PAPER, RULES, rule_of
 
 BEST = "best"
+
+STRIP_SECONDS = 3
+"""For each strip of the yardstick."""
 
 ABOUT = {
     PAPER: "the paper's method as it is (Algorithm 2)",
     **dict.fromkeys(BUILT_IN, "the paper's method, with this policy choosing the stones"),
     BEST: "one pass of the default method, on pixels: no search",
+    STRIPS: "no policy but a yardstick, F_SF alone: strips packed without gravity (extra `bench`)",
 }
 """What each does; docs/policies.md explains the policies."""
 
@@ -75,6 +79,9 @@ def method_named(name: str, changes: Changes = ()) -> BenchMethod:
     >>> method_named("lowest", (("sampling", "full"),)).changes
     (('selection_rule', 'lowest'), ('sampling', 'full'))
     """
+    if name == STRIPS:
+        # No setting of a planner means anything to it.
+        return BenchMethod(STRIPS, STRIPS, (("seconds", STRIP_SECONDS),))
     if name == BEST:
         own: Changes = (("geometry", "raster"), ("search.budget", 1))
         found = BenchMethod(name, "best", _merged(own, changes))

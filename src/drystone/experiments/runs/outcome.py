@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from drystone.experiments.runs.spec import RunSpec
+from drystone.experiments.runs.spec import STRIPS, RunSpec
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.plan import Plan, StoneStep, WedgeStep
 from drystone.model.stone import StoneSet
@@ -96,6 +96,10 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
     >>> execute(spec, None).figures["placed"]
     6
     """
+    if spec.method == STRIPS:
+        from drystone.experiments.runs.strips import packed  # noqa: PLC0415 - it needs this module
+
+        return packed(spec, data)
     stones = spec.source.stones(data) if stones is None else stones
     settings = spec.settings()
     result = plan_wall(

@@ -9,6 +9,9 @@ from typing import Any
 from drystone.experiments.runs.source import Scalar, StoneSource
 from drystone.planner.settings import PlannerSettings, method_settings
 
+STRIPS = "spyrrow"
+"""Method of runs that are no walls (:mod:`drystone.experiments.runs.strips`)."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class RunSpec:
@@ -23,7 +26,7 @@ class RunSpec:
     scale : float
         Working resolution over source resolution.
     method : str
-        Of the planner.
+        Of the planner, or :data:`STRIPS`.
     changes : tuple of (str, value)
         Settings that replace the method's, by names such as ``"placement.beta"``
         (docs/settings.md).

@@ -1,0 +1,294 @@
+"""Stones put where they were measured: brought apart, and lowered until they rest."""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import islice
+from operator import itemgetter
+
+import numpy as np
+
+from drystone.kernels.crossings import crosses_any
+from drystone.kernels.polygons import Points, on_grid
+from drystone.model.placement import Placement, Settled, Side
+from drystone.model.pose import PosedStone
+from drystone.model.stone import Stone
+from drystone.model.wall import Group
+from drystone.planner.build import Build, Candidate
+from drystone.planner.dropping import wedge_limits
+from drystone.planner.evaluate import Evaluator
+from drystone.planner.measured import Place
+from drystone.planner.replay import judged, stands
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.settled import settled_in
+from drystone.planner.workshop import Workshop
+from drystone.poses import wrap_deg
+from drystone.settle.rest import Repose, Scene, Turned, come_to_rest, lay, placed_outline
+from drystone.settle.wedged import wedged
+from drystone.stabilise.stabilise import Stabilised, WedgeStock, stabilise
+
+ENOUGH_PX = 1.5
+"""A stone that rests so near to where it was measured, source px, is looked for no further."""
+
+LIKE = 0.4
+"""Places whose coordinates, source px and degrees, are in the same steps of this are alike."""
+
+WEDGED = 6
+"""So many of the places where it is let go are tried with wedges."""
+
+JUDGED = 24
+"""So many places near the measured one are judged at most."""
+
+AWAY_PX = (0.5, 1.0, 2.0, 4.0, 8.0)
+"""So far from the measured place, source px, a stone is let go where it overlaps others."""
+
+AROUND = ((0.0, 1.0), (-0.7, 0.7), (0.7, 0.7), (-1.0, 0.0), (1.0, 0.0))
+"""Directions of these."""
+
+REACH = 0.25
+"""So far, over its size, a stone may come to rest from where it was measured."""
+
+ROOM = 3
+"""So many working px a stone that is pixels is moved at most before it is stabilised."""
+
+SAME_ANGLE_DEG = 2.0
+"""Stones that are pixels may have the planned angle instead of one that is so near."""
+
+
+Rested = tuple[Repose, Points | None]
+"""Where a stone rests, and the wedge that holds it there."""
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """A stone that is to be put where it was measured.
+
+    Parameters
+    ----------
+    stone : Stone
+        The stone.
+    place : Place
+        Where it was measured.
+    side : {"left", "right"}
+        The end of the wall from which it was placed.
+    planned : Group or None
+        How it was planned: with wedges it gets one again.
+    """
+
+    stone: Stone
+    place: Place
+    side: Side
+    planned: Group | None
+
+    @property
+    def on_wedges(self) -> bool:
+        """Whether it was planned on wedges."""
+        return self.planned is not None and bool(self.planned.wedges)
+
+    def moved_px(self, x_px: float, y_px: float, angle_deg: float) -> float:
+        """Return how far the rim of the stone is from where it was measured, about."""
+        place = self.place
+        turned = math.radians(abs(wrap_deg(angle_deg - place.angle_deg)))
+        shift = math.hypot(x_px - place.x_px, y_px - place.y_px)
+        return shift + 0.5 * turned * math.sqrt(self.stone.area_px)
+
+    @property
+    def reach_px(self) -> float:
+        """How far that may be."""
+        return REACH * math.sqrt(self.stone.area_px)
+
+    def marked(self, stabilised: Stabilised) -> Stabilised:
+        """Return a place of the stone that says when it is not turned as planned."""
+        placement = stabilised.placement
+        if self.planned is None:
+            return stabilised
+        before = self.planned.placement
+        turned = before.posed.angle_deg != placement.posed.angle_deg
+        moves = max(before.rotation_moves, placement.rotation_moves, int(turned))
+        return replace(stabilised, placement=replace(placement, rotation_moves=moves))
+
+
+def put_as_measured(
+    build: Build,
+    one: Measured,
+    workshop: Workshop,
+    settings: PlannerSettings,
+    course_heights_px: Mapping[int, float],
+) -> Candidate | None:
+    """Return the action that puts a stone where it was measured, or close by.
+
+    Of the places where it rests, by itself or on a wedge, the nearest is taken after which the
+    wall stands; if there is none, the nearest at which it overlaps nothing.
+
+    Parameters
+    ----------
+    build : Build
+        What is below and beside it.
+    one : Measured
+        The stone.
+    workshop : Workshop
+        Stones and site.
+    settings : PlannerSettings
+        All parameters.
+    course_heights_px : mapping of int to float
+        For stones that began a course: the height that Eq. 8 compared with.
+
+    Returns
+    -------
+    action : Candidate or None
+        None when it overlaps others wherever it is moved to.
+    """
+    options = _on_outlines if build.wall.outlines is not None else _on_pixels
+    evaluator = Evaluator(settings, workshop.stock)
+    fallback: Candidate | None = None
+    for found in islice(options(build, one, workshop, settings), JUDGED):
+        group = Group(found.placement, found.wedges)
+        candidate = judged(build, group, course_heights_px, evaluator)
+        if stands(candidate):
+            return candidate
+        fallback = fallback or candidate
+    return fallback
+
+
+def _on_outlines(
+    build: Build, one: Measured, workshop: Workshop, settings: PlannerSettings
+) -> Iterator[Stabilised]:
+    """List places where an outline rests, the nearest first, and one where it need not."""
+    wall, settle = build.wall, settings.settle
+    assert wall.outlines is not None  # noqa: S101 - its caller knows
+    scene = Scene.of(wall.outlines.polygons, wall.site.extent_px[0], one.side, settings.mu)
+    turned = workshop.outlines.hung(one.stone, one.place.angle_deg, one.side).turned
+    limits = wedge_limits(settings, workshop.stock, wall.site.scale)
+    starts = _starts(turned, one.place, scene, settle.clearance_px)
+
+    def held(start: tuple[float, float]) -> Rested | None:
+        found = wedged(turned, scene, start, settle, limits)
+        return None if found is None else (found.repose, found.wedge)
+
+    def laid(start: tuple[float, float]) -> Rested | None:
+        found = lay(turned, scene, start, settle)
+        return None if found is None else (found, None)
+
+    def settled(start: tuple[float, float]) -> Rested | None:
+        found = come_to_rest(turned, scene, start, settle)
+        return None if found is None else (found, None)
+
+    first = (held if one.on_wedges else laid)(starts[0])
+    if first is not None and _moved(one, first) <= ENOUGH_PX:
+        yield from _taken_in(build, one, workshop, *first)
+    tried = [way(start) for way in (laid, settled) for start in starts]
+    tried += [held(start) for start in starts[:WEDGED]]
+    rested = [found for found in tried if found is not None]
+    for found in _different(sorted(rested, key=partial(_moved, one))):
+        if _moved(one, found) <= one.reach_px:
+            yield from _taken_in(build, one, workshop, *found)
+    for start in starts:
+        if not crosses_any(turned.corners + np.array(start), scene.polygons):
+            yield from _taken_in(build, one, workshop, _as_it_is(turned, scene, start), None)
+            return
+
+
+def _different(rested: Iterable[Rested]) -> Iterator[Rested]:
+    """Leave out places that are as good as one before: a stone rests there or does not."""
+    seen: set[tuple[int, int, int, bool]] = set()
+    for found in rested:
+        at, angle_deg = found[0].settled, found[0].angle_deg
+        place = round(at.x_px / LIKE), round(at.y_px / LIKE), round(angle_deg / LIKE)
+        key = (*place, found[1] is None)
+        if key not in seen:
+            seen.add(key)
+            yield found
+
+
+def _taken_in(
+    build: Build, one: Measured, workshop: Workshop, repose: Repose, wedge: Points | None
+) -> Iterator[Stabilised]:
+    """Give a stone with the pixels that it fills, unless it fills none."""
+    number = workshop.next_wedge(build)
+    found = settled_in(build.wall, one.stone, one.side, repose, wedge, wedge_id=number)
+    if found is not None:
+        yield one.marked(found)
+
+
+def _starts(
+    turned: Turned, place: Place, scene: Scene, clearance_px: float
+) -> list[tuple[float, float]]:
+    """Return where a stone is let go, in the view: within the wall, nearest first."""
+    low, high = turned.corners.min(axis=0), turned.corners.max(axis=0)
+    x = place.x_px if scene.side == "left" else scene.width_px - place.x_px
+    least_x, most_x = clearance_px - float(low[0]), scene.width_px - clearance_px - float(high[0])
+    least_y = clearance_px - float(low[1])
+    moves = [(0.0, 0.0)] + [(away * dx, away * dy) for away in AWAY_PX for dx, dy in AROUND]
+    inside = (
+        (min(max(x + dx, least_x), max(least_x, most_x)), max(place.y_px + dy, least_y))
+        for dx, dy in moves
+    )
+    return list(dict.fromkeys(inside))
+
+
+def _moved(one: Measured, rested: Rested) -> float:
+    found = rested[0]
+    return one.moved_px(found.settled.x_px, found.settled.y_px, found.angle_deg)
+
+
+def _as_it_is(turned: Turned, scene: Scene, start: tuple[float, float]) -> Repose:
+    """Return a stone where it was let go, which does not rest there."""
+    x = start[0] if scene.side == "left" else scene.width_px - start[0]
+    x, y = on_grid(np.array([x, start[1]])).tolist()
+    corners = placed_outline(turned.outline, turned.angle_deg, x, y)
+    return Repose(Settled(x, y, corners), turned.angle_deg, turned=False, margin=-1.0)
+
+
+def _on_pixels(
+    build: Build, one: Measured, workshop: Workshop, settings: PlannerSettings
+) -> Iterator[Stabilised]:
+    """List places of a stone that is pixels, the nearest first."""
+    book, occupied = workshop.book, build.wall.occupied
+    stock = WedgeStock(workshop.next_wedge(build), workshop.stock.mean_height_px)
+    poses = [book.pose(one.stone, one.place.angle_deg)]
+    if one.planned is not None:
+        angle = one.planned.placement.posed.angle_deg
+        if abs(wrap_deg(angle - one.place.angle_deg)) <= SAME_ANGLE_DEG:
+            poses.append(book.pose(one.stone, angle))
+    spots = [spot for posed in poses for spot in _spots(build, posed, one.place)]
+    found = []
+    for _, posed, row, col in sorted(spots, key=itemgetter(0)):
+        trial = posed, row, col
+        there = stabilise(occupied, trial, one.side, book, stock, settings.stabilise)
+        if there is not None:
+            moved = _moved_on_pixels(one, there.placement, build)
+            found.append((moved, there))
+    allowed = max(one.reach_px, (ROOM + 2) / build.wall.site.scale)
+    for moved, there in sorted(found, key=itemgetter(0)):
+        if moved <= allowed:
+            yield one.marked(there)
+    for _, posed, row, col in spots[:1]:
+        yield one.marked(Stabilised(Placement(posed, row, col, one.side)))
+
+
+Spot = tuple[float, PosedStone, int, int]
+"""How far it is from the measured place, working px; the stone, and the corner of its mask."""
+
+
+def _spots(build: Build, posed: PosedStone, place: Place) -> list[Spot]:
+    """Return where a stone has room near a place, the nearest first."""
+    site, occupied = build.wall.site, build.wall.occupied
+    left = place.x_px * site.scale - posed.anchor[0]
+    top = site.height_px - (place.y_px * site.scale - posed.anchor[1]) - posed.height_px
+    found = []
+    for row in range(round(top) - ROOM, round(top) + ROOM + 1):
+        for col in range(round(left) - ROOM, round(left) + ROOM + 1):
+            inside = row >= 0 and col >= 0 and row + posed.height_px <= site.height_px
+            if not inside or col + posed.width_px > site.width_px:
+                continue
+            window = occupied[row : row + posed.height_px, col : col + posed.width_px]
+            if not (window & posed.mask).any():
+                found.append((float(np.hypot(row - top, col - left)), posed, row, col))
+    return sorted(found, key=itemgetter(0))
+
+
+def _moved_on_pixels(one: Measured, placement: Placement, build: Build) -> float:
+    site = build.wall.site
+    x, y = placement.centroid(site.height_px)
+    return one.moved_px(x / site.scale, y / site.scale, placement.posed.angle_deg)

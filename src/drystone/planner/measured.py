@@ -1,0 +1,292 @@
+"""Where the stones of a wall are, as it was measured: by poses, or by a picture of ids."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.errors import InputError
+from drystone.kernels.coverage import coverage
+from drystone.kernels.polygons import Points
+from drystone.kernels.raster import Mask, turn
+from drystone.model.site import Site, working_px
+from drystone.model.stone import StoneSet
+from drystone.model.wall import Labels, Wall
+from drystone.poses import wrap_deg
+
+SEEN = (0.6, 1.5)
+"""A stone of which less than this share is in the picture, or more, is not measured by it."""
+
+SHARPER = 0.8
+"""A stone is turned otherwise than planned when that explains the picture so much better."""
+
+FIRST_STEP, LAST_STEP = 0.5, 0.02
+"""Of the search for the best overlap: px of the picture, and as far at the rim of the stone."""
+
+COARSE_DEG = 10.0
+
+SAME = 0.15
+"""Pixels in a picture that are not where they were planned, over those at the rim of the stone:
+with fewer it is where it was planned, as far as the picture can tell."""
+
+
+Pose = tuple[float, float, float]
+"""x, y in px of a picture, y up, and an angle in degrees."""
+
+
+@dataclass(frozen=True)
+class MeasuredPose:
+    """Where a stone is, in the numbers of a plan (:class:`drystone.model.plan.StoneStep`).
+
+    Parameters
+    ----------
+    x, y : float
+        Its centroid in the wall frame, from the left end and from the ground: metres when the
+        site has a scale, otherwise source px.
+    angle_deg : float
+        Counter-clockwise from the source image.
+    """
+
+    x: float
+    y: float
+    angle_deg: float
+
+
+@dataclass(frozen=True)
+class Place:
+    """The same in source px.
+
+    Parameters
+    ----------
+    x_px, y_px : float
+        Centroid, source px.
+    angle_deg : float
+        In [-180, 180).
+    as_planned : bool
+        The picture shows the stone where it was planned.
+    """
+
+    x_px: float
+    y_px: float
+    angle_deg: float
+    as_planned: bool = False
+
+
+def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Place]:
+    """Return measured poses in source px.
+
+    Raises
+    ------
+    InputError
+        E197: a pose is no number, or its centroid is outside of the wall.
+    """
+    px = site.px_per_m or 1.0
+    width, height = site.extent_px
+    found = {}
+    for stone_id, pose in poses.items():
+        x, y = pose.x * px, pose.y * px
+        # What is no number compares with nothing.
+        inside = 0.0 <= x <= width and 0.0 <= y <= height
+        if not inside or not math.isfinite(pose.angle_deg):
+            raise InputError(
+                "E197",
+                f"stone {stone_id} is measured at ({pose.x:g}, {pose.y:g}), "
+                f"{pose.angle_deg:g} degrees, which is not in the wall of "
+                f"{width / px:g} x {height / px:g} {'m' if site.px_per_m else 'source px'}.",
+                where="observe",
+                cure="Leave out what has fallen; poses are of the wall frame, from its left end "
+                "and the ground.",
+            )
+        found[stone_id] = Place(x, y, wrap_deg(pose.angle_deg))
+    return found
+
+
+def places_in(labels: NDArray[np.integer], wall: Wall, stones: StoneSet) -> dict[int, Place]:
+    """Return where the stones of a picture of ids are.
+
+    Each stone is matched with its outline: its centroid is that of its pixels, its angle the one
+    at which the outline covers them best, and both are refined together until the squared
+    difference of pixels and coverage is least.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        Ids, 0 for nothing, row 0 at the top: of the whole wall, at the working or the source
+        resolution of the site.  Ids of the wedges of `wall` are not looked at.
+    wall : Wall
+        As it was planned.
+    stones : StoneSet
+        All stones.
+
+    Raises
+    ------
+    InputError
+        E196: the picture is none, or of another size; E195: an id is none of a stone; E197: much
+        of a stone is not to be seen, or more than there is of it.
+    """
+    scale = _scale_of(np.asarray(labels), wall.site)
+    planned = {p.stone_id: p for p in wall.placements}
+    ids = set(np.unique(labels).tolist()) - {0} - {wedge.id for wedge in wall.wedges}
+    require_known(ids, stones)
+    expected = _expected(wall, scale)
+    found = {}
+    for stone_id in sorted(ids):
+        seen = np.asarray(labels == stone_id)
+        stone = stones.by_id(stone_id)
+        _require_seen(stone_id, int(seen.sum()), stone.area_px * scale**2)
+        placement = planned.get(stone_id)
+        if placement is None:
+            found[stone_id] = fitted(seen, stone.outline, scale, None)
+            continue
+        x, y = placement.centroid(wall.site.height_px)
+        there = Place(x / wall.site.scale, y / wall.site.scale, placement.posed.angle_deg, True)
+        if _rim_share(seen, np.asarray(expected == stone_id)) <= SAME:
+            found[stone_id] = there
+        else:
+            found[stone_id] = fitted(seen, stone.outline, scale, there.angle_deg)
+    return found
+
+
+def require_known(ids: Iterable[int], stones: StoneSet) -> None:
+    """Raise InputError (E195) for ids that are of no stone."""
+    unknown = sorted(set(ids) - {stone.id for stone in stones})
+    if unknown:
+        raise InputError(
+            "E195",
+            f"there is no stone {', '.join(map(str, unknown))} among the {len(stones)} stones.",
+            where="observe",
+            cure="Measure stones by the ids that they were read with; 0 is the background.",
+        )
+
+
+def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None) -> Place:
+    """Return the pose at which an outline covers the pixels of a stone best.
+
+    Parameters
+    ----------
+    seen : (h, w) bool array
+        The pixels, row 0 at the top.
+    outline : (n, 2) float array
+        About the centroid, source px.
+    scale : float
+        Of the picture over the source.
+    planned_deg : float or None
+        The angle to begin with.  All others are tried as well, but one that is far from it is
+        taken only if it is clearly better: some stones look the same upside down.
+    """
+    rows, cols = np.nonzero(seen)
+    x, y = float(cols.mean()) + 0.5, len(seen) - float(rows.mean()) - 0.5
+    shape = np.asarray(outline * scale)
+    reach = float(np.hypot(*shape.T).max())
+
+    def misfit(pose: Pose) -> float:
+        return _misfit(seen, len(rows), shape, pose)
+
+    angles = np.arange(0.0, 360.0, COARSE_DEG).tolist()
+    coarse = min(angles, key=lambda angle: misfit((x, y, angle)))
+    if planned_deg is None:
+        best = _refined(misfit, (x, y, coarse), reach)
+    else:
+        best = _refined(misfit, (x, y, planned_deg), reach)
+        if abs(wrap_deg(coarse - planned_deg)) > COARSE_DEG:
+            other = _refined(misfit, (x, y, coarse), reach)
+            best = other if other[0] < SHARPER * best[0] else best
+    _, (x, y, angle) = best
+    return Place(x / scale, y / scale, wrap_deg(angle))
+
+
+def _refined(misfit: Callable[[Pose], float], pose: Pose, reach: float) -> tuple[float, Pose]:
+    """Go down from a pose along x, y and the angle, with steps that get shorter."""
+    least = misfit(pose)
+    step = 8.0 * FIRST_STEP
+    while step > LAST_STEP:
+        sizes = (min(step, FIRST_STEP), min(step, FIRST_STEP), math.degrees(step / reach))
+        better = False
+        for axis, size in enumerate(sizes):
+            for signed in (size, -size):
+                moved = list(pose)
+                moved[axis] += signed
+                there = (moved[0], moved[1], moved[2])
+                value = misfit(there)
+                if value < least:
+                    least, pose, better = value, there, True
+                    break
+        if not better:
+            step /= 2.0
+    return least, pose
+
+
+def _misfit(seen: Mask, count: int, shape: Points, pose: Pose) -> float:
+    """Return the sum of squares of what an outline covers of each pixel, less what is seen."""
+    corners = turn(shape, pose[2])
+    corners[:, 0] += pose[0]
+    corners[:, 1] += pose[1]
+    shares, left, bottom = coverage(corners)
+    height, width = shares.shape
+    top = len(seen) - bottom - height
+    rows = slice(max(top, 0), max(min(top + height, len(seen)), 0))
+    cols = slice(max(left, 0), max(min(left + width, seen.shape[1]), 0))
+    there = shares[rows.start - top : rows.stop - top, cols.start - left : cols.stop - left]
+    both = float(there[seen[rows, cols]].sum())
+    return count + float((shares * shares).sum()) - 2.0 * both
+
+
+def _scale_of(labels: NDArray[np.integer], site: Site) -> float:
+    """Return the resolution of a picture of the wall over that of the source (E196)."""
+    width, height = site.extent_px
+    sizes = {
+        (working_px(height, 1.0), working_px(width, 1.0)): 1.0,
+        (site.height_px, site.width_px): site.scale,
+    }
+    if labels.ndim == 2 and np.issubdtype(labels.dtype, np.integer) and labels.shape in sizes:
+        return sizes[labels.shape]
+    said = " or ".join(f"{h} rows x {w} columns" for h, w in dict.fromkeys(sizes))
+    raise InputError(
+        "E196",
+        f"an array of {' x '.join(map(str, labels.shape))} {labels.dtype} is no picture of the ids "
+        f"of the wall.",
+        where="observe",
+        cure=f"Give whole numbers, {said}: the whole wall at the source or working resolution, "
+        "row 0 at the top.",
+    )
+
+
+def _expected(wall: Wall, scale: float) -> Labels:
+    """Return the picture of the wall as it was planned, at a resolution."""
+    site = wall.site
+    if scale == site.scale:
+        return wall.labels
+    width, height = site.extent_px
+    labels = np.zeros((working_px(height, scale), working_px(width, scale)), np.uint32)
+    for placement in wall.placements:
+        x, y = placement.centroid(site.height_px)
+        corners = turn(placement.posed.stone.outline, placement.posed.angle_deg)
+        corners += np.array([x, y]) / site.scale
+        shares, left, bottom = coverage(corners * scale)
+        rows, cols = np.nonzero(shares >= 0.5)
+        rows, cols = rows + len(labels) - bottom - len(shares), cols + left
+        inside = (rows >= 0) & (rows < len(labels)) & (cols >= 0) & (cols < labels.shape[1])
+        labels[rows[inside], cols[inside]] = placement.stone_id
+    return labels
+
+
+def _rim_share(seen: Mask, expected: Mask) -> float:
+    """Return how many pixels differ, over how many are at the rim of what was expected."""
+    padded = np.pad(expected, 1)
+    inner = padded[:-2, 1:-1] & padded[2:, 1:-1] & padded[1:-1, :-2] & padded[1:-1, 2:]
+    rim = int((expected & ~inner).sum())
+    return int((seen ^ expected).sum()) / max(rim, 1)
+
+
+def _require_seen(stone_id: int, seen_px: int, area_px: float) -> None:
+    share = seen_px / area_px
+    if SEEN[0] <= share <= SEEN[1]:
+        return
+    raise InputError(
+        "E197",
+        f"stone {stone_id} has {100 * share:.0f} % of its area in the picture.",
+        where="observe",
+        cure="Give a picture of all of it, or set its pixels to 0 when it has fallen.",
+    )

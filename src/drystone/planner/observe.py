@@ -1,0 +1,297 @@
+"""Going on from the wall as it was really built (Johns et al. 2020 plan on the fly so)."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.errors import InputError, Notice, UsageError
+from drystone.model.placement import Placement
+from drystone.model.site import Site
+from drystone.planner.as_measured import Measured, put_as_measured
+from drystone.planner.build import Build
+from drystone.planner.measured import (
+    MeasuredPose,
+    Place,
+    places_in,
+    places_of,
+    require_known,
+)
+from drystone.planner.replay import replayed, stands
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.workshop import Workshop
+from drystone.poses import wrap_deg
+
+Measurement: TypeAlias = Mapping[int, MeasuredPose] | NDArray[np.integer]
+"""Poses by the ids of stones, or a picture of ids (:func:`drystone.planner.measured.places_in`)."""
+
+SAME_PX, SAME_DEG = 0.01, 0.01
+"""A measured pose that is no further from the planned one is the planned one."""
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """How far a stone is from where it was planned.
+
+    Parameters
+    ----------
+    stone_id : int
+        The stone.
+    dx, dy : float
+        Measured less planned, in units of the plan: metres when the site has a scale, otherwise
+        source px.
+    shift_px : float
+        The length of that, source px.
+    angle_deg : float
+        Measured less planned, counter-clockwise, in [-180, 180).
+    moved_px, turned_deg : float
+        From where it was measured to where the planner has it now, source px and degrees: what it
+        took to bring outlines apart and to make the stone rest.
+    """
+
+    stone_id: int
+    dx: float
+    dy: float
+    shift_px: float
+    angle_deg: float
+    moved_px: float
+    turned_deg: float
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What was found when a wall was measured.
+
+    Parameters
+    ----------
+    poses : dict of int to MeasuredPose
+        Of every stone in the wall, as measured: those of a picture are estimates.
+    deviations : tuple of Deviation
+        Of the stones that were planned, in the order of placement; empty when there are none.
+    free : tuple of int
+        Stones that were in the wall and are no longer: they may be placed again.
+    lost : tuple of int
+        Stones that will not be used.
+    added : tuple of int
+        Stones in the wall that were not planned there.
+    stands : bool
+        Whether the wall stands after every stone, as the planner judges it.
+    notices : tuple of Notice
+        W124: the stones after which it does not.
+    """
+
+    poses: Mapping[int, MeasuredPose]
+    deviations: tuple[Deviation, ...]
+    free: tuple[int, ...]
+    lost: tuple[int, ...]
+    added: tuple[int, ...]
+    stands: bool
+    notices: tuple[Notice, ...] = ()
+
+    @property
+    def largest_px(self) -> float:
+        """Largest deviation, source px; 0 without stones."""
+        return max((one.shift_px for one in self.deviations), default=0.0)
+
+    @property
+    def largest_deg(self) -> float:
+        """Largest turn, degrees, positive; 0 without stones."""
+        return max((abs(one.angle_deg) for one in self.deviations), default=0.0)
+
+    @property
+    def largest_moved_px(self) -> float:
+        """Farthest that a stone was moved from where it was measured, source px."""
+        return max((one.moved_px for one in self.deviations), default=0.0)
+
+
+def observed(
+    start: Build,
+    build: Build,
+    measured: Measurement,
+    lost: Iterable[int],
+    workshop: Workshop,
+    settings: PlannerSettings,
+) -> tuple[Build, Observation]:
+    """Return the state of construction of a wall as it was measured.
+
+    Parameters
+    ----------
+    start : Build
+        Nothing is built.
+    build : Build
+        What was planned so far.
+    measured : mapping of int to MeasuredPose, or (h, w) integer array
+        Where every stone in the wall is.
+    lost : iterable of int
+        Stones that cannot be used any more.
+    workshop : Workshop
+        Stones and site.
+    settings : PlannerSettings
+        All parameters.
+
+    Returns
+    -------
+    build : Build
+        The very one that was given when nothing was measured elsewhere.
+    observation : Observation
+        What was found.
+
+    Raises
+    ------
+    InputError
+        E195, E196, E197: see :mod:`drystone.planner.measured`; E198: a stone overlaps others
+        wherever it is moved to.
+    UsageError
+        E199: a stone is lost and in the wall.
+    """
+    places = _places(build, measured, workshop)
+    missing = _lost(lost, places, workshop)
+    groups = {group.placement.stone_id: group for group in build.wall.groups}
+    order = [i for i in groups if i in places]
+    added = sorted(set(places) - set(groups), key=lambda i: (places[i].y_px, i))
+    now = build
+    if added or len(order) < len(groups) or not all(places[i].as_planned for i in order):
+        now = _built(start, build, [*order, *added], places, workshop, settings)
+    unsteady = tuple(action.stone_id for action in now.actions if not stands(action))
+    observation = Observation(
+        poses={i: _pose(places[i], workshop.site) for i in (*order, *added)},
+        deviations=_deviations(build, now, places),
+        free=tuple(i for i in groups if i not in places and i not in missing),
+        lost=missing,
+        added=tuple(added),
+        stands=not unsteady,
+        notices=_notices(unsteady),
+    )
+    return now, observation
+
+
+def without(
+    lost: Iterable[int], workshop: Workshop, settings: PlannerSettings
+) -> tuple[Workshop, PlannerSettings]:
+    """Return workshop and settings in which some stones are banned."""
+    gone = set(lost)
+    fitting = tuple(i for i in workshop.fitting if i not in gone)
+    poses = (workshop.initial(i) for i in workshop.fitting if i in gone)
+    ban = tuple(sorted(gone.union(settings.ban)))
+    pin = tuple(i for i in settings.pin if i not in gone)
+    return (
+        replace(workshop, fitting=fitting, sides=workshop.sides.without(poses)),
+        replace(settings, ban=ban, pin=pin),
+    )
+
+
+def _places(build: Build, measured: Measurement, workshop: Workshop) -> dict[int, Place]:
+    """Return where the stones are; those that are where they were planned are marked."""
+    if not isinstance(measured, Mapping):
+        return places_in(measured, build.wall, workshop.stones)
+    require_known(measured, workshop.stones)
+    places = places_of(measured, workshop.site)
+    for placement in build.wall.placements:
+        place = places.get(placement.stone_id)
+        if place is not None:
+            dx, dy, angle = _less(place, placement, workshop.site)
+            same = np.hypot(dx, dy) <= SAME_PX and abs(angle) <= SAME_DEG
+            places[placement.stone_id] = replace(place, as_planned=bool(same))
+    return places
+
+
+def _lost(lost: Iterable[int], places: Mapping[int, Place], workshop: Workshop) -> tuple[int, ...]:
+    """Return the stones that are lost; E195 for those that there are not, E199 in the wall."""
+    missing = tuple(sorted(set(lost)))
+    require_known(missing, workshop.stones)
+    both = [i for i in missing if i in places]
+    if both:
+        raise UsageError(
+            "E199",
+            f"stones {', '.join(map(str, both))} are lost, and measured in the wall.",
+            where="observe",
+            cure="Leave them out of one of the two.",
+        )
+    return missing
+
+
+def _built(
+    start: Build,
+    before: Build,
+    order: Iterable[int],
+    places: Mapping[int, Place],
+    workshop: Workshop,
+    settings: PlannerSettings,
+) -> Build:
+    """Build the wall again, stone by stone, each where it was measured."""
+    keep = settings.search.budget > 1
+    groups = {group.placement.stone_id: group for group in before.wall.groups}
+    heights = {
+        action.stone_id: action.course_height_px
+        for action in before.actions
+        if action.course_height_px is not None
+    }
+    build = start
+    for stone_id in order:
+        planned, place = groups.get(stone_id), places[stone_id]
+        if planned is not None and place.as_planned:
+            again = replayed(build, [planned], heights, workshop, settings, keep=keep)
+            if not again.left_out:
+                build = again.build
+                continue
+        side = "left" if planned is None else planned.placement.side
+        one = Measured(workshop.stones.by_id(stone_id), place, side, planned)
+        action = put_as_measured(build, one, workshop, settings, heights)
+        if action is None:
+            raise _no_room(one)
+        build = build.add(action, keep=keep)
+    return build
+
+
+def _no_room(one: Measured) -> InputError:
+    place = one.place
+    return InputError(
+        "E198",
+        f"stone {one.stone.id}, measured at ({place.x_px:.1f}, {place.y_px:.1f}) source px, "
+        f"{place.angle_deg:.1f} degrees, overlaps others, and there is no room near it.",
+        where="observe",
+        cure="Measure again; poses that are this far off are of another stone or frame.",
+    )
+
+
+def _deviations(planned: Build, now: Build, places: Mapping[int, Place]) -> tuple[Deviation, ...]:
+    site = planned.wall.site
+    here = {placement.stone_id: placement for placement in now.wall.placements}
+    found = []
+    for placement in planned.wall.placements:
+        stone_id = placement.stone_id
+        if stone_id not in places:
+            continue
+        dx, dy, angle = _less(places[stone_id], placement, site)
+        mx, my, turned = _less(places[stone_id], here[stone_id], site)
+        px, shift, moved = site.px_per_m or 1.0, float(np.hypot(dx, dy)), float(np.hypot(mx, my))
+        found.append(Deviation(stone_id, dx / px, dy / px, shift, angle, moved, 0.0 - turned))
+    return tuple(found)
+
+
+def _less(place: Place, placement: Placement, site: Site) -> tuple[float, float, float]:
+    """Return a place less that of a placement: x, y in source px, and the angle."""
+    x, y = placement.centroid(site.height_px)
+    angle = wrap_deg(place.angle_deg - placement.posed.angle_deg)
+    return place.x_px - x / site.scale, place.y_px - y / site.scale, angle
+
+
+def _pose(place: Place, site: Site) -> MeasuredPose:
+    px = site.px_per_m or 1.0
+    return MeasuredPose(place.x_px / px, place.y_px / px, place.angle_deg)
+
+
+def _notices(unsteady: tuple[int, ...]) -> tuple[Notice, ...]:
+    if not unsteady:
+        return ()
+    named = ", ".join(map(str, unsteady))
+    return (
+        Notice(
+            "W124",
+            f"as measured, the wall does not stand after stones {named}.",
+            "Measure again, or take down the first of them and what lies on it: nothing is "
+            "planned on a wall that does not stand.",
+        ),
+    )

@@ -1,0 +1,57 @@
+"""The walk-throughs of examples/ run as they are written, with small stone sets."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+# A minute together on a machine that does nothing else; some machines do.
+pytestmark = pytest.mark.timeout(900)
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def run(script: str, tmp_path: Path) -> str:
+    """Run a script where nothing of the checkout is in the way; return what it prints."""
+    ran = subprocess.run(  # noqa: S603 - a script of this repository
+        [sys.executable, str(EXAMPLES / script)],
+        cwd=tmp_path,
+        env=os.environ | {"TMPDIR": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert list(tmp_path.iterdir()) == []
+    return ran.stdout
+
+
+def test_robot(tmp_path: Path) -> None:
+    said = run("robot.py", tmp_path)
+    assert "drystone: Read 10 stones (largest 30.0 x 11.0 cm" in said
+    assert "wrote out/plan.json report.html wall.png" in said
+    assert "build.gif" in said
+    for written in ("assembly.compas.json", "scene.yaml", "wall.obj", "urdf/"):
+        assert written in said
+    assert '"drystone-poses/' in said
+    loop = said.split("# the live loop")[1].split("live loop in Python")[0]
+    assert loop.count("  stands\n") >= 7
+    assert "does not stand" not in loop
+    assert "broke: planned on without it" in loop
+    assert "--ban 5 -o without/" in said
+
+
+def test_researcher(tmp_path: Path) -> None:
+    for extra in ("spyrrow", "pyarrow", "gymnasium"):
+        pytest.importorskip(extra, reason="an extra that the script is about")
+    said = run("researcher.py", tmp_path)
+    assert "mine: policy of public suites: a policy of another package that is installed" in said
+    assert "spyrrow is a yardstick" in said
+    for name in ("paper", "random", "filter", "spyrrow", "mine"):
+        assert f"\n   bricks 2:1  {name}" in said
+    for kept in ("bench.sqlite", "runs.csv", "runs.parquet"):
+        assert kept in said
+    assert "stones, F_SF " in said
+    assert "actions, return " in said

@@ -1,0 +1,465 @@
+"""Planning goes on from the wall as it was measured, with noise or without."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+import shapely
+from numpy.typing import NDArray
+from shapely import affinity
+
+from drystone.errors import InputError, UsageError
+from drystone.generate import RubbleSettings, rubble_stones
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.planner.assemble import Frame
+from drystone.planner.events import Step, Stopped
+from drystone.planner.measured import MeasuredPose, fitted
+from drystone.planner.observe import Measurement, Observation
+from drystone.planner.planner import Planner
+from drystone.planner.replay import stands
+from drystone.planner.settings import PlannerSettings
+from drystone.search.plan_wall import finish as finish_plan
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.settled import model_of_outlines
+from drystone.statics.limit import lateral_resistance
+from drystone.verify.check import check_plan
+from tests.planner.scenes import blocks, finish, greedy, same
+
+PX_PER_M, SCALE = 200.0, 0.5
+SITE = Site.from_source(250.0, 95.0, SCALE, PX_PER_M)
+FAST = {"orientations": "sf"}
+EXACT, RASTER = greedy(FAST), greedy({"geometry": "raster", **FAST})
+BOTH = pytest.mark.parametrize("settings", [EXACT, RASTER], ids=["exact", "raster"])
+PICTURES = pytest.mark.parametrize("scale", [1.0, SCALE], ids=["source", "working"])
+
+Pose = tuple[float, float, float]
+"""x and y of the centroid, source px, and the angle in degrees."""
+
+
+def rubble(seed: int = 1, count: int = 10) -> StoneSet:
+    size = RubbleSettings(count=count, width_px=240, height_px=90, courses=3)
+    return rubble_stones(size, np.random.default_rng(seed))
+
+
+def planner(settings: PlannerSettings, count: int = 6) -> Planner:
+    return Planner(rubble(count=count), SITE, seed=1, settings=settings)
+
+
+def planned(one: Planner) -> dict[int, Pose]:
+    """Where the planner has its stones."""
+    poses = {}
+    for placement in one.build.wall.placements:
+        x, y = placement.centroid(SITE.height_px)
+        poses[placement.stone_id] = x / SCALE, y / SCALE, placement.posed.angle_deg
+    return poses
+
+
+def in_metres(poses: Mapping[int, Pose]) -> dict[int, MeasuredPose]:
+    return {i: MeasuredPose(x / PX_PER_M, y / PX_PER_M, a) for i, (x, y, a) in poses.items()}
+
+
+def picture(poses: Mapping[int, Pose], stones: StoneSet, scale: float) -> NDArray[np.uint16]:
+    """Draw the stones as a camera sees them: a pixel is of the stone at its centre (shapely)."""
+    height, width = round(95.0 * scale), round(250.0 * scale)
+    if scale == SCALE:
+        height, width = SITE.height_px, SITE.width_px
+    rows, cols = np.mgrid[0:height, 0:width]
+    centres = shapely.points(cols + 0.5, height - rows - 0.5)
+    labels = np.zeros((height, width), np.uint16)
+    for stone_id, (x, y, angle) in poses.items():
+        outline = shapely.Polygon(stones.by_id(stone_id).outline)
+        turned = affinity.rotate(outline, angle, origin=(0, 0))
+        there = affinity.affine_transform(turned, [scale, 0, 0, scale, x * scale, y * scale])
+        labels[shapely.contains(there, centres) & (labels == 0)] = stone_id
+    return labels
+
+
+def turns(one: float, other: float) -> float:
+    return abs((one - other + 180.0) % 360.0 - 180.0)
+
+
+@dataclass
+class Robot:
+    """Puts stones down a little off, and never touches them again."""
+
+    noise: float
+    rng: np.random.Generator
+    built: dict[int, Pose] = field(default_factory=dict)
+
+    def place(self, step: Step) -> None:
+        pose, rng = step.pose3d, self.rng
+        angle = step.action.stabilised.placement.posed.angle_deg
+        # A stone that is put down lies on others, not in them: it ends up somewhat higher.
+        self.built[step.stone_id] = (
+            pose.x_m * PX_PER_M + rng.normal(0.0, self.noise),
+            pose.z_m * PX_PER_M + abs(rng.normal(0.0, self.noise)),
+            angle + rng.normal(0.0, self.noise),
+        )
+
+
+def live(one: Planner, robot: Robot, scale: float | None) -> Iterator[Observation]:
+    """Plan, place, measure."""
+    for step in one.steps():
+        robot.place(step)
+        seen: Measurement = in_metres(robot.built)
+        if scale is not None:
+            seen = picture(robot.built, one.workshop.stones, scale)
+        yield one.observe(seen)
+
+
+def check_wall(one: Planner) -> None:
+    """No overlaps by shapely, and the whole wall stands by a limit analysis of its own."""
+    wall, settle = one.build.wall, one.settings.settle
+    if wall.outlines is None:
+        counted = sum(int(p.posed.mask.sum()) for p in wall.placements)
+        counted += sum(wedge.area_px for wedge in wall.wedges)
+        assert int((wall.labels > 0).sum()) == counted
+        model = model_from_labels(wall.labels, one.settings.mu).model
+    else:
+        polygons = [shapely.Polygon(corners) for _, corners in wall.outlines.blocks]
+        for i, polygon in enumerate(polygons):
+            assert polygon.bounds[1] >= -1e-9
+            for other in polygons[:i]:
+                assert polygon.intersection(other).area < 1e-9
+        model = model_of_outlines(wall.outlines, one.settings.mu, settle.contact_px)
+    assert lateral_resistance(model).stable
+    assert all(stands(action) for action in one.build.actions)
+
+
+def found_wrong(one: Planner) -> set[str]:
+    """What the checker says of the wall, which it builds again from the poses alone."""
+    provenance = {"version": "0", "method": "custom", "seed": 1, "settings": one.settings.as_dict()}
+    stopped = one.stopped or Stopped("interrupted", "asked for")
+    plan = finish_plan(one, Frame(250.0, 95.0, SITE), stopped, provenance, 0.0).plan
+    return {problem.code for problem in check_plan(plan, one.workshop.stones).problems}
+
+
+@BOTH
+def test_a_wall_that_is_built_off_its_plan_goes_on_from_where_it_is(
+    settings: PlannerSettings,
+) -> None:
+    one, robot = planner(settings, 14), Robot(1.0, np.random.default_rng(5))
+    seen = list(live(one, robot, None))
+    assert len(seen) == len(robot.built) == len(one.build.actions) >= 10
+    assert all(observation.stands for observation in seen)
+    assert 1.0 < max(observation.largest_px for observation in seen) < 5.0
+    check_wall(one)
+    # Stones that are pixels have angles that nothing but measuring gives them.
+    assert found_wrong(one) == ({"E235"} if settings is RASTER else set())
+    for stone_id, (x, y, angle) in planned(one).items():
+        true = robot.built[stone_id]
+        # Brought apart, lowered, and on pixels put onto them.
+        assert np.hypot(x - true[0], y - true[1]) < 5.0
+        assert turns(angle, true[2]) < 4.0
+
+
+@BOTH
+@PICTURES
+def test_pictures_do_as_well(settings: PlannerSettings, scale: float) -> None:
+    one, robot = planner(settings), Robot(0.7, np.random.default_rng(2))
+    seen = list(live(one, robot, scale))
+    assert len(robot.built) == len(one.build.actions) >= 5
+    assert all(observation.stands for observation in seen)
+    check_wall(one)
+    for stone_id, pose in seen[-1].poses.items():
+        x, y, angle = robot.built[stone_id]
+        # Stones that were measured one in another hide some pixels.
+        assert np.hypot(pose.x * PX_PER_M - x, pose.y * PX_PER_M - y) * scale < 0.8
+        assert turns(pose.angle_deg, angle) < 2.0
+
+
+@BOTH
+@pytest.mark.parametrize("scale", [None, 1.0, SCALE], ids=["poses", "source", "working"])
+def test_a_wall_that_is_built_as_planned_changes_nothing(
+    settings: PlannerSettings, scale: float | None
+) -> None:
+    one = planner(settings)
+    for _ in one.steps():
+        before = one.build
+        seen: Measurement = in_metres(planned(one))
+        if scale == SCALE:
+            seen = one.build.wall.labels
+        elif scale is not None:
+            seen = picture(planned(one), one.workshop.stones, scale)
+        found = one.observe(seen)
+        assert one.build is before
+        assert (found.largest_px, found.largest_deg, found.largest_moved_px) == (0, 0, 0) or (
+            scale is None and found.largest_px < 1e-9
+        )
+        assert found.stands
+        assert (found.free, found.lost, found.added, found.notices) == ((), (), (), ())
+    assert same(one, finish(planner(settings)))
+
+
+@PICTURES
+def test_a_stone_alone_is_measured_to_a_third_of_a_pixel_and_a_degree(scale: float) -> None:
+    rng, stones = np.random.default_rng(3), rubble()
+    errors = []
+    for stone in stones:
+        for _ in range(2):
+            true = (125.0 + rng.uniform(-3, 3), 47.0 + rng.uniform(-3, 3), rng.uniform(-180, 180))
+            labels = picture({stone.id: true}, stones, scale)
+            place = fitted(labels == stone.id, stone.outline, scale, true[2] + rng.normal(0, 5))
+            errors.append(
+                (
+                    np.hypot(place.x_px - true[0], place.y_px - true[1]) * scale,
+                    turns(place.angle_deg, true[2]),
+                )
+            )
+    px, degrees = np.array(errors).T
+    assert px.max() < 0.3
+    assert degrees.max() < 1.0
+
+
+def test_a_stone_is_found_whichever_way_it_is_turned() -> None:
+    shape = np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 12.0], [20.0, 16.0], [0.0, 30.0]])
+    shape = shape - shapely.get_coordinates(shapely.Polygon(shape).centroid)
+    rows, cols = np.mgrid[0:80, 0:80]
+    for angle in (-170.0, -60.0, 0.0, 95.0, 180.0):
+        there = affinity.rotate(shapely.Polygon(shape), angle, origin=(0, 0))
+        there = affinity.translate(there, 41.3, 37.8)
+        seen = shapely.contains(there, shapely.points(cols + 0.5, 80 - rows - 0.5))
+        place = fitted(seen, shape, 1.0, None)
+        assert turns(place.angle_deg, angle) < 1.0
+        # Straight edges along rows and columns tell where they are to half a pixel.
+        assert np.hypot(place.x_px - 41.3, place.y_px - 37.8) < (0.5 if angle % 90 == 0 else 0.3)
+
+
+@BOTH
+def test_stones_that_have_fallen_are_free_again(settings: PlannerSettings) -> None:
+    one = planner(settings)
+    steps = one.steps()
+    for _ in range(4):
+        next(steps)
+    poses = planned(one)
+    *left, fallen = poses
+    found = one.observe({i: in_metres(poses)[i] for i in left})
+    assert found.free == (fallen,)
+    assert [action.stone_id for action in one.build.actions] == left
+    assert planned(one) == {i: poses[i] for i in left}
+    finish(one)
+    assert fallen in planned(one)
+    check_wall(one)
+
+
+@BOTH
+def test_lost_stones_are_used_no_more(settings: PlannerSettings) -> None:
+    one = planner(settings.updated({"pin": [3]}))
+    steps = one.steps()
+    next(steps)
+    gone = next(steps).stone_id
+    other = next(i for i in one.workshop.fitting if i not in planned(one))
+    kept = {i: pose for i, pose in in_metres(planned(one)).items() if i != gone}
+    found = one.observe(kept, lost=(gone, other, 3) if 3 not in kept else (gone, other))
+    assert found.free == ()
+    assert {gone, other} <= set(found.lost)
+    finish(one)
+    assert not {gone, other} & set(planned(one))
+    assert {gone, other} <= set(one.settings.ban)
+    assert 3 not in one.settings.pin or 3 in kept
+    check_wall(one)
+
+
+@BOTH
+def test_a_stone_that_was_put_there_by_hand_is_part_of_the_wall(settings: PlannerSettings) -> None:
+    one = planner(settings)
+    next(one.steps())
+    poses, stones = planned(one), one.workshop.stones
+    (first,) = poses
+    other = min(set(one.workshop.fitting) - {first}, key=lambda i: stones.by_id(i).area_px)
+    left, low = -stones.by_id(other).outline.min(axis=0)
+    right = float(stones.by_id(other).outline[:, 0].max())
+    x = left + 2.0 if poses[first][0] > 125.0 else 248.0 - right
+    found = one.observe(in_metres(poses | {other: (x, low + 0.3, 0.0)}))
+    assert found.added == (other,)
+    assert other in planned(one)
+    finish(one)
+    assert other in planned(one)
+    check_wall(one)
+
+
+@BOTH
+def test_deviations_are_measured_less_planned(settings: PlannerSettings) -> None:
+    one = planner(settings)
+    step = next(one.steps())
+    x, y, angle = planned(one)[step.stone_id]
+    aside = 1.0 if x < 125.0 else -1.0  # inwards: the wall ends there
+    seen = one.observe(in_metres({step.stone_id: (x + aside, y + 0.5, angle - 0.4)}))
+    (deviation,) = seen.deviations
+    assert (deviation.dx, deviation.dy) == pytest.approx((0.005 * aside, 0.0025))
+    assert deviation.angle_deg == pytest.approx(-0.4)
+    assert deviation.shift_px == pytest.approx(np.hypot(1.0, 0.5)) == seen.largest_px
+    assert seen.largest_deg == pytest.approx(0.4)
+    now = planned(one)[step.stone_id]
+    moved = np.hypot(now[0] - x - aside, now[1] - y - 0.5)
+    assert (deviation.moved_px, seen.largest_moved_px) == pytest.approx((moved, moved))
+    assert deviation.turned_deg == pytest.approx((now[2] - angle + 0.4 + 180) % 360 - 180)
+    if settings is EXACT:
+        # A stone alone on the ground: it goes down again, and nowhere else.
+        assert now[0] == pytest.approx(x + aside, abs=0.3)
+        assert now[1] < y + 0.5
+
+
+def test_wedges_in_a_picture_are_no_stones() -> None:
+    wedges = greedy(
+        {
+            "selection_rule": "algorithm2",
+            "stabilise": {
+                "method": "wedge", "min_wedge_px": 1, "margin": 0.3, "max_wedge_height": 0.9,
+            },
+            "two_sided": False,
+        }
+    )  # fmt: skip
+    size = RubbleSettings(count=5, width_px=90, height_px=30, courses=2)
+    stones = rubble_stones(size, np.random.default_rng(1))
+    site = Site.from_source(84.0, 34.0, SCALE)
+    one = finish(Planner(stones, site, seed=3, settings=wedges))
+    assert one.build.wall.wedges
+    before = one.build
+    found = one.observe(one.build.wall.labels)
+    assert set(found.poses) == {placement.stone_id for placement in before.wall.placements}
+    assert one.build is before
+    # A pixel of the source to the right, with all that it lies on: wedges are cut again.
+    poses = {}
+    for placement in before.wall.placements:
+        x, y = placement.centroid(site.height_px)
+        shifted = MeasuredPose(x / SCALE + 1.0, y / SCALE, placement.posed.angle_deg)
+        poses[placement.stone_id] = shifted
+    found = one.observe(poses)
+    assert found.stands
+    assert one.build.wall.wedges
+    assert max(turn.moved_px for turn in found.deviations) < 2.0
+    ids = [wedge.id for wedge in one.build.wall.wedges]
+    assert ids == list(range(min(ids), min(ids) + len(ids)))
+
+
+@pytest.mark.parametrize(
+    ("change", "code"),
+    [
+        ({99: MeasuredPose(0.5, 0.1, 0.0)}, "E195"),
+        ({1: MeasuredPose(1.3, 0.1, 0.0)}, "E197"),
+        ({1: MeasuredPose(0.5, float("nan"), 0.0)}, "E197"),
+        ({1: MeasuredPose(0.5, 0.1, float("inf"))}, "E197"),
+    ],
+)
+def test_poses_that_make_no_sense_are_refused(change: dict[int, MeasuredPose], code: str) -> None:
+    one = planner(EXACT)
+    next(one.steps())
+    before = one.build
+    with pytest.raises(InputError) as raised:
+        one.observe(in_metres(planned(one)) | change)
+    assert raised.value.code == code
+    assert one.build is before
+
+
+def test_pictures_that_make_no_sense_are_refused() -> None:
+    one = planner(EXACT)
+    (step,) = [next(one.steps())]
+    labels = picture(planned(one), one.workshop.stones, 1.0)
+    half = np.where(np.arange(250) < planned(one)[step.stone_id][0], labels, 0)
+    unknown = np.where(labels > 0, 99, 0)
+    bad = {
+        "E196": [labels[:-1], labels * 1.0, labels[None]],
+        "E197": [half],
+        "E195": [unknown],
+    }
+    for code, pictures in bad.items():
+        for array in pictures:
+            with pytest.raises(InputError) as raised:
+                one.observe(array)
+            assert raised.value.code == code
+
+
+def test_two_stones_in_the_same_place_are_refused() -> None:
+    one = planner(EXACT)
+    steps = one.steps()
+    next(steps)
+    next(steps)
+    first, second = planned(one)
+    poses = in_metres(planned(one))
+    with pytest.raises(InputError) as raised:
+        one.observe({first: poses[first], second: poses[first]})
+    assert raised.value.code == "E198"
+    with pytest.raises(UsageError) as lost:
+        one.observe(poses, lost=[first])
+    assert lost.value.code == "E199"
+
+
+def test_a_wall_that_cannot_stand_is_said_to() -> None:
+    one = planner(EXACT)
+    finish(one)
+    poses = in_metres(planned(one))
+    # All but the one on top are gone: it hangs in the air, and nothing is near that it falls on.
+    top = max(poses, key=lambda i: poses[i].y)
+    found = one.observe({top: poses[top]})
+    assert not found.stands
+    assert [notice.code for notice in found.notices] == ["W124"]
+    assert str(top) in found.notices[0].message
+
+
+def test_poses_of_steps_are_in_metres() -> None:
+    one = planner(RASTER)
+    step = next(one.steps())
+    ((x, y, angle),) = planned(one).values()
+    assert (step.pose3d.x_m, step.pose3d.y_m, step.pose3d.z_m) == (
+        pytest.approx(x / PX_PER_M), 0.0, pytest.approx(y / PX_PER_M),
+    )  # fmt: skip
+    # Counter-clockwise as seen from the front, in a frame whose y goes away from the viewer.
+    radians = np.radians(angle)
+    assert step.pose3d.xaxis == pytest.approx((np.cos(radians), 0.0, np.sin(radians)))
+    assert step.place_pose(0.3).y_m == pytest.approx(0.15)
+    centroid = one.workshop.stones.by_id(step.stone_id).centroid
+    pick = step.pick_pose(0.3)
+    assert (pick.x_m * PX_PER_M, pick.y_m * PX_PER_M) == pytest.approx(centroid)
+    assert pick.z_m == pytest.approx(0.15)
+
+
+def test_poses_need_a_scale() -> None:
+    one = Planner(rubble(), Site.from_source(250.0, 95.0, SCALE), settings=RASTER)
+    step = next(one.steps())
+    for asked in (lambda: step.pose3d, step.place_pose, step.pick_pose):
+        with pytest.raises(UsageError) as raised:
+            asked()
+        assert raised.value.code == "E131"
+        for way in ("--px-per-m", "--ruler", "markers"):
+            assert way in str(raised.value)
+
+
+def test_the_nearest_place_where_the_wall_stands_is_taken() -> None:
+    # A beam on a post.  A block as heavy as the beam tips it where its centroid is further from
+    # the middle than the post is wide: 1800 (d - 15) > 1800 * 15.
+    stones = blocks({1: (30, 60), 2: (120, 15), 3: (30, 60)})
+    one = Planner(stones, Site(200, 140), settings=greedy())
+    post, beam = MeasuredPose(100.0, 30.0, 0.0), MeasuredPose(100.0, 67.5, 0.0)
+    seen = one.observe({1: post, 2: beam, 3: MeasuredPose(133.0, 105.0, 0.0)})
+    assert seen.added == (1, 2, 3)
+    assert seen.stands
+    x = _block(one, 3)[0]
+    assert 120.0 < x < 130.0
+    # Much further out there is no such place near it.
+    far = one.observe({1: post, 2: beam, 3: MeasuredPose(150.0, 105.0, 0.0)})
+    assert not far.stands
+    assert "stones 3." in far.notices[0].message
+    assert _block(one, 3)[0] == pytest.approx(150.0, abs=0.5)
+
+
+def _block(one: Planner, stone_id: int) -> Pose:
+    """Where a block is, on a site without a scale."""
+    (placement,) = (p for p in one.build.wall.placements if p.stone_id == stone_id)
+    return *placement.centroid(one.workshop.site.height_px), placement.posed.angle_deg
+
+
+def test_a_stone_is_turned_otherwise_than_planned_only_if_it_looks_so() -> None:
+    rows, cols = np.mgrid[0:80, 0:80]
+    centres = shapely.points(cols + 0.5, 80 - rows - 0.5)
+    wedge = np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 6.0], [0.0, 26.0]])
+    brick = np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 20.0], [0.0, 20.0]])
+    for shape, planned_deg, found_deg in ((wedge, -100.0, 33.0), (brick, -145.0, -147.0)):
+        about = shape - shapely.get_coordinates(shapely.Polygon(shape).centroid)
+        there = affinity.rotate(shapely.Polygon(about), 33.0, origin=(0, 0))
+        there = affinity.translate(there, 40.2, 39.7)
+        # A brick upside down is the same picture: it is as it was planned.
+        place = fitted(shapely.contains(there, centres), about, 1.0, planned_deg)
+        assert turns(place.angle_deg, found_deg) < 1.0
