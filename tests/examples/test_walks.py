@@ -55,3 +55,15 @@ def test_researcher(tmp_path: Path) -> None:
         assert kept in said
     assert "stones, F_SF " in said
     assert "actions, return " in said
+
+
+def test_engineer(tmp_path: Path) -> None:
+    said = run("engineer.py", tmp_path)
+    first, closed = said.split("$ drystone analyse")[1:3]
+    assert "W305" in first
+    assert "does not stand" in first
+    assert "own weight           stands" in closed
+    assert "m wide" in closed
+    assert "analysis/report.html to look around in" in closed
+    assert "scatter" in said
+    assert "point loads" in said
