@@ -13,7 +13,7 @@ from drystone.export import pdf
 from drystone.export.settings import ExportSettings
 from drystone.export.sheet_lists import drawn_factor, in_photo_order
 from drystone.export.sheet_rows import Rows
-from drystone.export.sheet_wall import DRAWING_MM, paper_scale
+from drystone.export.sheet_wall import DRAWING_MM, Scale, paper_scale
 from drystone.io.plan_json import write_plan
 from tests.export.drawn_walls import assembly, photo_colour, photograph
 
@@ -101,7 +101,7 @@ def test_every_stone_is_said_with_what_to_do(wall, words) -> None:
     lines = "\n".join(words[1:3])
     for part in wall.stones:
         assert f"stone {part.id}" in lines
-    for said in ("turn left 97°", "turn right 45°", "upside down", "as it lies",
+    for said in ("turn left 97°", "turn right 45°", "half round", "as it lies",
                  "wedge 2: 150 \N{MULTIPLICATION SIGN} 30 mm, under",
                  "on the ground, right of 1"):  # fmt: skip
         assert said in lines
@@ -181,3 +181,23 @@ def test_equal_plans_give_equal_bytes(tmp_path) -> None:
     first = pdf.write(wall, tmp_path, ExportSettings())[0].read_bytes()
     assert pdf.write(wall, tmp_path, ExportSettings())[0].read_bytes() == first
     assert b"CreationDate" not in first
+
+
+@pytest.mark.parametrize("px_per_m", [200.0, None])
+def test_no_words_of_the_first_page_lie_over_others_or_the_wall(px_per_m) -> None:
+    # As high as its frame may be, with a title that is much too long.
+    wall = assembly(columns=6, rows=5, px_per_m=px_per_m)
+    width, height = wall.size
+    scale = Scale(None, min(DRAWING_MM[0] / width, DRAWING_MM[1] / height))
+    settings = ExportSettings(title=300 * "W", paper_scale=1000.0 / scale.mm_per_unit)
+    page = pdf.sheet(wall, settings)[0]
+    frame = next(patch for patch in page.ax.patches if patch.get_gid() == "frame")
+    inside, paper = frame.get_window_extent(), page.ax.get_window_extent()
+    # Numbers of steps alone have a halo, and stand in the frame.
+    words = [text for text in page.ax.texts if text.get_text() and not text.get_path_effects()]
+    boxes = [text.get_window_extent() for text in words]
+    assert len(words) > 20
+    for text, box in zip(words, boxes, strict=True):
+        assert paper.x0 < box.x0 < box.x1 < paper.x1, text.get_text()
+        assert not box.overlaps(inside), text.get_text()
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])

@@ -1,6 +1,7 @@
 """wall-numbered.png."""
 
 import numpy as np
+import pytest
 from PIL import Image
 
 from drystone.export import png
@@ -37,3 +38,12 @@ def test_numbers_of_wedges_are_above_the_ground() -> None:
 def test_equal_walls_give_equal_bytes(tmp_path) -> None:
     first = png.write(assembly(), tmp_path, ExportSettings())[0].read_bytes()
     assert png.write(assembly(), tmp_path, ExportSettings())[0].read_bytes() == first
+
+
+def test_a_long_title_makes_no_wide_picture(tmp_path) -> None:
+    wall, sizes = assembly(columns=6), []
+    for title in ("A wall", 300 * "W", "$x_1"):
+        (path,) = png.write(wall, tmp_path, ExportSettings(title=title))
+        with Image.open(path) as image:
+            sizes.append(image.size)
+    assert sizes[1] == pytest.approx(sizes[0], rel=0.02)

@@ -16,7 +16,7 @@ from drystone.export.sheet_words import (
     wedge_place,
     wedge_words,
 )
-from drystone.statics.model import GROUND, RigidBlockModel
+from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from tests.export.drawn_walls import assembly
 
 
@@ -33,8 +33,8 @@ def part(wall, step):
 @pytest.mark.parametrize(("angle_deg", "words"), [
     (0.0, "as it lies"), (-2.4, "as it lies"), (362.0, "as it lies"), (3.0, "turn left 3°"),
     (97.4, "turn left 97°"), (-97.4, "turn right 97°"), (262.6, "turn right 97°"),
-    (180.0, "upside down"), (-178.0, "upside down"), (177.0, "turn left 177°"),
-    (-540.0, "upside down"),
+    (180.0, "half round"), (-178.0, "half round"), (177.0, "turn left 177°"),
+    (-540.0, "half round"),
 ])  # fmt: skip
 def test_turns_are_the_short_way_round(angle_deg, words) -> None:
     assert turn_words(angle_deg) == words
@@ -94,3 +94,19 @@ def test_it_does_not_matter_which_part_of_a_pair_an_interface_names_first(wall) 
     model = RigidBlockModel(wall.model.blocks, turned + ground)
     for part in wall.parts:
         assert beside(replace(wall, model=model), part) == beside(wall, part)
+
+
+def test_stones_side_by_side_that_meet_at_a_corner_are_not_upon_each_other(wall) -> None:
+    left, right = part(wall, 3), part(wall, 4)
+    normal = {True: (0.8, 0.6), False: (-0.8, -0.6)}
+    for first in (True, False):
+        pair = (right.id, left.id) if first else (left.id, right.id)
+        corner = Interface(*pair, np.array([[0.6, 0.15]]), normal[first])
+        meeting = replace(wall, model=RigidBlockModel(wall.model.blocks, (corner,)))
+        found = beside(meeting, right)
+        assert (found.on, found.right_of) == ((), (left.step,))
+    # A stone that a contact of the same slope carries over its width is on it.
+    above = part(wall, 6)
+    slope = Interface(above.id, left.id, np.array([[0.4, 0.15]]), (0.8, 0.6))
+    carried = replace(wall, model=RigidBlockModel(wall.model.blocks, (slope,)))
+    assert beside(carried, above).on == (left.step,)

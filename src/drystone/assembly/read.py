@@ -51,16 +51,10 @@ def read_assembly(
     """
     path = Path(path)
     folder = path if path.is_dir() else path.parent
-    wall = read_wall(path)
-    if wall.plan is None:
-        raise InputError(
-            "E132", "this is no plan.", where=str(path), cure="Give the plan.json of a plan."
-        )
-    plan = wall.plan
+    plan, polygons, model = _read(path)
     scale = _scale(plan, px_per_m, path)
     unit: Literal["px", "m"] = "px" if scale is None else "m"
     factor = 1.0 / scale if scale is not None and plan.length_unit == "px" else 1.0
-    polygons, model = _shapes(wall, plan)
     model = scaled(model, factor)
     parts = tuple(
         _part(step, polygons[step.stone if isinstance(step, StoneStep) else step.id], factor)
@@ -120,6 +114,17 @@ def outer_loop(loops: Sequence[Points]) -> Points:
     pieces = shapely.get_parts(shapely.make_valid(polygon))
     whole = shapely.Polygon(max(pieces, key=lambda piece: float(piece.area)).exterior)
     return np.array(shapely.orient_polygons(whole).exterior.coords)[:-1]
+
+
+def _read(path: Path) -> tuple[Plan, Mapping[int, Points], RigidBlockModel]:
+    # Pictures are not even looked at: what would be said of them is not about plans.
+    wall = read_wall(path) if path.is_dir() or path.suffix.lower() == ".json" else None
+    if wall is None or wall.plan is None:
+        raise InputError(
+            "E132", "this is no plan.", where=str(path),
+            cure="Give the plan.json of a plan, or its folder.",
+        )  # fmt: skip
+    return wall.plan, *_shapes(wall, wall.plan)
 
 
 def _scale(plan: Plan, px_per_m: float | None, path: Path) -> float | None:

@@ -16,6 +16,7 @@ import numpy as np
 
 from drystone.assembly.parts import Assembly, Part
 from drystone.errors import UsageError
+from drystone.export.lettering import one_line
 from drystone.export.overlays import DIRECTIONS, failed_outlines, says, thrust
 from drystone.export.settings import ExportSettings
 from drystone.io.atomic import write_atomically
@@ -40,7 +41,8 @@ _SHOWN = {"SITE", "STONES", "WEDGES", "NUMBERS"}
 
 
 def files(assembly: Assembly, settings: ExportSettings) -> tuple[str, ...]:  # noqa: ARG001
-    """Return the names that will be written."""
+    """Return the names that will be written; E185 when ezdxf is not installed."""
+    _load_ezdxf()
     return (NAME,)
 
 
@@ -121,7 +123,7 @@ def _draw_site(space: Any, assembly: Assembly, title: str) -> None:
         else "Not to scale: the unit is 1 px of the source image"
     )  # fmt: skip
     lines = [
-        title or str(plan.source.get("path") or "dry-stone wall"),
+        one_line(title or str(plan.source.get("path") or "dry-stone wall")),
         f"{unit}. x from the left end, y from the ground.",
         f"drystone {plan.version}, seed {plan.seed}. Numbers are steps of construction.",
     ]

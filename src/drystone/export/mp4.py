@@ -43,7 +43,9 @@ class _Shots:
 
 
 def files(assembly: Assembly, settings: ExportSettings) -> tuple[str, ...]:  # noqa: ARG001
-    """Return the names that will be written."""
+    """Return the names that will be written; E186 when there is nothing that writes films."""
+    if shutil.which("ffmpeg") is None:
+        _load_cv2()
     return (NAME,)
 
 

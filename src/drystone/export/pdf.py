@@ -25,7 +25,8 @@ _TRUETYPE: dict[Any, int] = {"pdf.fonttype": 42, "pdf.compression": 6}
 
 
 def files(assembly: Assembly, settings: ExportSettings) -> tuple[str, ...]:  # noqa: ARG001
-    """Return the names that will be written."""
+    """Return the names that will be written; E189 when the photograph cannot be used."""
+    read_photo(assembly)
     return (NAME,)
 
 
@@ -51,7 +52,8 @@ def sheet(assembly: Assembly, settings: ExportSettings) -> list[Page]:
         *Rows(assembly, read_photo(assembly)).pages(),
         *list_pages(assembly),
     ]
-    foot = f"{title}   plan {plan_sha256(assembly)[:16]}"
+    # What tells plans apart is first: a long title is cut.
+    foot = f"plan {plan_sha256(assembly)[:16]}   {title}"
     for number, page in enumerate(pages, 1):
         page.foot(foot, number, len(pages))
     return pages

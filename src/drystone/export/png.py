@@ -8,6 +8,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
 from drystone.assembly.parts import Assembly, Part
+from drystone.export.lettering import drawable, fitted
 from drystone.export.settings import ExportSettings
 from drystone.kernels.polygons import Points
 from drystone.plotting.canvas import draw_block, draw_ground, fit_axes, write_number
@@ -16,6 +17,7 @@ from drystone.plotting.palette import GREY, PLAIN_COLOUR, WEDGE_COLOUR
 
 NAME = "wall-numbered.png"
 DPI = 200
+TITLE_PT = 9.0
 
 WEDGE_OFFSETS_PT = ((10.0, 9.0), (-10.0, 9.0), (10.0, -9.0), (-10.0, -9.0))
 """Where the number of a wedge may be, from its middle."""
@@ -43,7 +45,7 @@ def plot_numbered(assembly: Assembly, ax: Axes | None = None, *, title: str = ""
     ax : Axes, optional
         Where to draw; None makes a figure.
     title : str
-        Written above.
+        Written above; what is wider than the wall is cut.
 
     Returns
     -------
@@ -61,7 +63,9 @@ def plot_numbered(assembly: Assembly, ax: Axes | None = None, *, title: str = ""
     draw_parts(ax, assembly)
     ax.set_xlabel(assembly.unit, fontsize=7, labelpad=1)
     if title:
-        ax.set_title(title, fontsize=9, loc="left", pad=4)
+        room = ax.get_window_extent().width * 72.0 / ax.figure.dpi
+        said = fitted(drawable(title), TITLE_PT, room)
+        ax.set_title(said, fontsize=TITLE_PT, loc="left", pad=4, parse_math=False)
     return ax
 
 

@@ -90,8 +90,16 @@ class Projection:
         )
 
 
-def files(assembly: Assembly, settings: ExportSettings) -> tuple[str, ...]:  # noqa: ARG001
-    """Return the names that will be written: step 0 shows what the projector is aligned by."""
+def files(assembly: Assembly, settings: ExportSettings) -> tuple[str, ...]:
+    """Return the names that will be written: step 0 shows what the projector is aligned by.
+
+    Raises
+    ------
+    UsageError
+        E131 without a scale; E187 when the wall is not in the picture of the projector.
+    """
+    assembly.require_scale("what a projector shows")
+    Projection(assembly, settings).require_room()
     return tuple(f"{FOLDER}/step_{step:03d}.png" for step in _numbers(assembly))
 
 

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, FancyArrowPatch, Polygon, Rectangle
 from numpy.typing import ArrayLike, NDArray
 
+from drystone.export.lettering import drawable, fitted
 from drystone.plotting.palette import GREY, OUTLINE_COLOUR
 
 MM_PER_INCH = 25.4
@@ -16,6 +17,9 @@ PT_PER_MM = 72.0 / MM_PER_INCH
 A4_MM = (210.0, 297.0)
 EDGE_MM = 12.0
 """Of paper that printers do not print on, and a hole punch."""
+
+PAGE_NUMBER_MM = 30.0
+"""Room for it at the right end of the foot."""
 
 SMALL_PT, PLAIN_PT, LARGE_PT = 7.0, 8.5, 12.0
 
@@ -59,7 +63,13 @@ class Page:
         return self.height - EDGE_MM
 
     def write(self, x: float, y: float, text: str, size: float = PLAIN_PT, **style: Any) -> None:
-        """Write a line of text, its left end on the base line unless `ha` and `va` differ."""
+        """Write a line of text, its left end on the base line unless `ha` and `va` differ.
+
+        With `room`, in mm, what is wider is cut.
+        """
+        text, room = drawable(text), style.pop("room", None)
+        if room is not None:
+            text = fitted(text, size, room * PT_PER_MM, bold=style.get("weight") == "bold")
         chosen = {"ha": "left", "va": "baseline", "color": OUTLINE_COLOUR, **style}
         # What users call things is text, also with dollar signs in it.
         self.ax.text(x, y, text, size=size, parse_math=False, **chosen)
@@ -142,7 +152,10 @@ class Page:
     def foot(self, left: str, number: int, count: int) -> None:
         """Write what the page belongs to and its number."""
         self.line([(EDGE_MM, EDGE_MM - 1.5), (self.right, EDGE_MM - 1.5)], color=GREY)
-        self.write(EDGE_MM, EDGE_MM - 5.0, left, SMALL_PT, color="#555555")
+        self.write(
+            EDGE_MM, EDGE_MM - 5.0, left, SMALL_PT, color="#555555",
+            room=self.right - EDGE_MM - PAGE_NUMBER_MM,
+        )  # fmt: skip
         self.write(
             self.right, EDGE_MM - 5.0, f"page {number} of {count}", SMALL_PT, ha="right",
             color="#555555",

@@ -13,8 +13,11 @@ from drystone.plotting.palette import GREY, WEDGE_COLOUR
 
 USUAL_SCALES = (1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 250.0, 500.0, 1000.0)
 
-DRAWING_MM = (297.0 - 2 * EDGE_MM - 18.0, 118.0)
-"""Room for the wall itself on the first page; beside it are dimension lines."""
+DRAWING_MM = (297.0 - 2 * EDGE_MM - 18.0, 110.0)
+"""Room for the wall itself on the first page; beside it are dimension lines, above it words."""
+
+SCALE_MM = 60.0
+"""Room for the scale at the right end of the head."""
 
 BLOCK_MM = 33.0
 """Height of the title block."""
@@ -75,7 +78,8 @@ def first_page(assembly: Assembly, settings: ExportSettings, title: str) -> Page
     width, height = (side * scale.mm_per_unit for side in assembly.size)
     left = (page.width - width) / 2 + 5.0
     bottom = EDGE_MM + BLOCK_MM + 24.0 + (DRAWING_MM[1] - height) / 2
-    page.write(EDGE_MM, page.top - 6.0, title, 18.0, weight="bold")
+    page.write(EDGE_MM, page.top - 6.0, title, 18.0, weight="bold",
+               room=page.right - EDGE_MM - SCALE_MM)  # fmt: skip
     page.write(
         EDGE_MM, page.top - 12.5,
         "Numbers are steps, in the order of building: set each stone, then push in its wedges.",
@@ -122,7 +126,7 @@ def _title_block(page: Page, assembly: Assembly, settings: ExportSettings, scale
     source = str(plan.source.get("path") or "not from a file")
     on_paper = scale.words if scale.denominator is None else f"{scale.words} on A4"
     rows = [
-        [("Title", settings.title or source), ("Stones", _short(source, 34)),
+        [("Title", settings.title or source), ("Stones", source),
          ("Date", ""), ("Built by", "")],
         [("Wall", f"{size} {assembly.unit}"), ("Scale", on_paper),
          ("Stones set", f"{stones}, and {len(plan.unused)} left over"), ("Wedges", str(wedges))],
@@ -137,7 +141,7 @@ def _title_block(page: Page, assembly: Assembly, settings: ExportSettings, scale
             x = EDGE_MM + column * wide
             page.box(x, y, wide, high, linewidth=0.5)
             page.write(x + 1.5, y + high - 3.4, name, 6.5, color="#555555")
-            page.write(x + 1.5, y + 2.2, _short(value, 36), PLAIN_PT + 1)
+            page.write(x + 1.5, y + 2.2, value, PLAIN_PT + 1, room=wide - 3.0)
     _ruler(page, EDGE_MM + BLOCK_MM + 7.0, scale)
 
 
@@ -157,7 +161,3 @@ def _ruler(page: Page, y: float, scale: Scale) -> None:
             page.right, y - 0.5, "The size of a px is not known: all lengths are in px.",
             LARGE_PT - 2, ha="right", color=WEDGE_COLOUR,
         )  # fmt: skip
-
-
-def _short(text: str, longest: int) -> str:
-    return text if len(text) <= longest else text[: longest - 1] + "\N{HORIZONTAL ELLIPSIS}"

@@ -15,6 +15,9 @@ AS_IT_LIES_DEG = 2.5
 STEEP = 0.5
 """Share of a normal that is upright: what touches with more of it is below or above."""
 
+CORNER = 0.03
+"""Share of its width that a part has over another one when no more than corners of them meet."""
+
 
 def turn_words(angle_deg: float) -> str:
     """Say how to turn a stone.
@@ -27,13 +30,13 @@ def turn_words(angle_deg: float) -> str:
     Examples
     --------
     >>> turn_words(97.2), turn_words(-45.0), turn_words(359.5), turn_words(181.0)
-    ('turn left 97°', 'turn right 45°', 'as it lies', 'upside down')
+    ('turn left 97°', 'turn right 45°', 'as it lies', 'half round')
     """
     angle = shortest_turn(angle_deg)
     if abs(angle) < AS_IT_LIES_DEG:
         return "as it lies"
     if abs(angle) > 180.0 - AS_IT_LIES_DEG:
-        return "upside down"
+        return "half round"
     return f"turn {'left' if angle > 0 else 'right'} {abs(angle):.0f}\N{DEGREE SIGN}"
 
 
@@ -121,7 +124,8 @@ def beside(assembly: Assembly, part: Part) -> Beside:
     for other, push in sums.items():
         if other == GROUND:
             continue
-        neighbour, side = assembly.part(other), _side(push)
+        neighbour = assembly.part(other)
+        side = _side(push, upright=_shared_width(part, neighbour) > CORNER)
         # Nobody sets a stone by a wedge beside it.
         if neighbour.step < part.step and (side == "on" or neighbour.kind == "stone"):
             found[side].append(neighbour.step)
@@ -177,11 +181,17 @@ def wedge_place(assembly: Assembly, wedge: Part) -> str:
     return "middle" if share <= 2 / 3 else "right end"
 
 
-def _side(push: Points) -> str:
+def _shared_width(part: Part, other: Part) -> float:
+    """Return how much of the narrower of two parts is above or below the other one, 0 to 1."""
+    (a, b), (c, d) = ((one.corners[:, 0].min(), one.corners[:, 0].max()) for one in (part, other))
+    return float((min(b, d) - max(a, c)) / min(b - a, d - c))
+
+
+def _side(push: Points, *, upright: bool) -> str:
     x, y = push / max(float(np.hypot(*push)), 1e-300)
-    if y > STEEP:
+    if upright and y > STEEP:
         return "on"
-    if y < -STEEP:
+    if upright and y < -STEEP:
         return "under"
     return "right_of" if x > 0 else "left_of"
 

@@ -10,6 +10,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from drystone.assembly.parts import Assembly, Part
+from drystone.export.lettering import one_line
 from drystone.export.overlays import DIRECTIONS, Arrow, failed_outlines, says, thrust
 from drystone.export.settings import ExportSettings
 from drystone.io.atomic import write_atomically
@@ -63,7 +64,7 @@ class _Sheet:
             },
         )
         name = title or str(assembly.plan.source.get("path") or "dry-stone wall")
-        ET.SubElement(self.root, "title").text = name
+        ET.SubElement(self.root, "title").text = one_line(name)
         ET.SubElement(self.root, "desc").text = self._description()
         self._define()
         self._site(margin)

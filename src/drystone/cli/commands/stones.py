@@ -51,8 +51,14 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             ("image", f"{stones.source.width_px} x {stones.source.height_px} px"),
             *([] if px_per_m is None else [("scale", f"{px_per_m:g} px a metre")]),
             ("total area", _area(stones.total_area_px, px_per_m)),
-            ("median stone", f"{_size(*median, px_per_m)}, {statistics.median(areas):g} px²"),
-            ("largest stone", f"{largest.id}: {_size(*largest.mask.shape[::-1], px_per_m)}"),
+            (
+                "median stone",
+                f"{_size((median[0], median[1]), px_per_m)}, {statistics.median(areas):g} px²",
+            ),
+            (
+                "largest stone",
+                f"{largest.id}: {_size((largest.mask.shape[1], largest.mask.shape[0]), px_per_m)}",
+            ),
             ("clusters", str(max(clusters.values()))),
             *[("notice", str(notice)) for notice in stones.notices],
         ],
@@ -60,7 +66,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     return ExitCode.DONE
 
 
-def _size(width_px: float, height_px: float, px_per_m: float | None) -> str:
+def _size(size_px: tuple[float, float], px_per_m: float | None) -> str:
+    width_px, height_px = size_px
     px = f"{width_px:g} x {height_px:g} px"
     if px_per_m is None:
         return px
