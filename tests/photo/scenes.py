@@ -47,7 +47,7 @@ def photograph(
     family, across = BITS[dictionary]
     family = cv2.aruco.getPredefinedDictionary(family)
     width, height = size_px
-    shown = np.full((height, width), 105.0)
+    shown = np.full((height, width), light(105.0))
     to_ground = np.linalg.inv(to_photo)
     for marker_id, angle, x, y, side in placed:
         bits = cv2.aruco.generateImageMarker(family, marker_id, across) > 127
@@ -70,12 +70,19 @@ def photograph(
         inside = ((on_paper > 0) & (on_paper < across)).all(axis=1)
         column, row = np.floor(on_paper[inside]).astype(int).T
         value[inside] = np.where(bits[row, column], 225.0, 35.0)
+        value = light(value)
         blocks = value.reshape(high[1] - low[1], finer, high[0] - low[0], finer).mean(axis=(1, 3))
         part = shown[low[1] : high[1], low[0] : high[0]]
-        part[blocks != 105.0] = blocks[blocks != 105.0]
+        part[blocks != light(105.0)] = blocks[blocks != light(105.0)]
     shown = cv2.GaussianBlur(shown, (0, 0), blur_px)
+    shown = 255.0 * (1.055 * (shown / 255.0) ** (1 / 2.4) - 0.055)
     shown += np.random.default_rng(5).normal(0.0, noise, shown.shape)
     return np.repeat(np.clip(np.round(shown), 0, 255).astype(np.uint8)[..., None], 3, axis=2)
+
+
+def light(grey):
+    """Linear light of grey values of sRGB: what a lens blurs."""
+    return 255.0 * ((grey / 255.0 + 0.055) / 1.055) ** 2.4
 
 
 def distance_error_percent(view, to_photo, width_m, height_m):

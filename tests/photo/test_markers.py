@@ -61,7 +61,7 @@ def test_where_edges_cannot_be_measured_the_corners_are_taken(monkeypatch):
     assert [one.id for one in found] == [3, 11]
     for one, (_, *lies) in zip(found, PLACED, strict=True):
         true = apply(to_photo(), outline(*lies))
-        assert np.abs(one.corners_px - true).max() < 0.6
+        assert np.abs(one.corners_px - true).max() < 0.7
         assert one.corners_px.mean(axis=0) == pytest.approx(true.mean(axis=0), abs=0.1)
 
 

@@ -56,6 +56,19 @@ def test_easy_photographs_are_found_with_tight_outlines(changes):
     assert min(got.ious) > 0.9
 
 
+def test_photographs_repeat_and_their_truth_is_in_their_frame():
+    one, other = photograph(SMALL), photograph(SMALL)
+    assert one.jpeg == other.jpeg
+    assert np.array_equal(one.truth, other.truth)
+    assert photograph(replace(SMALL, seed=9)).jpeg != one.jpeg
+    shown = one.truth_in(np.eye(3), (SMALL.height_px, SMALL.width_px))
+    image = pixels(one).astype(float)
+    # The tarpaulin is blue, and no rock is.
+    blue = image[..., 2] > image[..., 0] + 40
+    assert blue[shown == 0].mean() > 0.97
+    assert blue[shown > 0].mean() < 0.03
+
+
 def test_a_disc_has_its_size_to_a_px():
     mask = disc((300, 400), 150.3, 200.6, 60)
     found = segment(drawn((mask, (170, 160, 150))))
@@ -68,12 +81,16 @@ def test_a_disc_has_its_size_to_a_px():
 
 
 def test_cast_shadows_are_not_added_to_stones():
-    level = replace(SMALL, shadow=0.5, sun_deg=45.0, ground="plywood", rocks=("limestone", "basalt"))
+    level = replace(
+        SMALL, shadow=0.5, sun_deg=45.0, ground="plywood", rocks=("limestone", "basalt")
+    )
     made = photograph(level)
     result = segment_photo(pixels(made))
     got = score(made, result)
     assert got.recall == 1.0
-    assert min(got.ious) > 0.9
+    # Shadows of half the stones' area would leave .67.
+    assert np.median(got.ious) > 0.96
+    assert min(got.ious) > 0.85
     assert result.found.shadow_level == pytest.approx(0.5, abs=0.06)
 
 
@@ -103,7 +120,7 @@ def test_touching_stones_are_cut_where_they_touch():
 
 def test_a_waist_is_doubted_with_its_place_and_width():
     rows, cols = np.indices((300, 400))
-    half = 28 + 14 * ((cols - 200) / 80) ** 2
+    half = 24 + 18 * ((cols - 200) / 80) ** 2
     stone = (np.abs(rows - 150) < half) & (np.abs(cols - 200) < 90)
     found = segment(drawn((stone, (180, 170, 150))))
     assert found.count == 1
@@ -111,7 +128,16 @@ def test_a_waist_is_doubted_with_its_place_and_width():
     assert doubt.stones == (1,)
     assert doubt.at_px == pytest.approx((200, 150), abs=8)
     assert "maybe two stones" in doubt.text
-    assert float(doubt.text.split(" cm wide")[0].split()[-1]) == pytest.approx(28, abs=3)
+    assert float(doubt.text.split(" cm wide")[0].split()[-1]) == pytest.approx(24, abs=3)
+
+
+def test_a_broad_contact_is_doubted():
+    rows, cols = np.indices((300, 400))
+    ell = (np.abs(rows - 150) < 80) & (np.abs(cols - 150) < 35)
+    ell |= (np.abs(rows - 200) < 30) & (cols >= 150) & (cols < 320)
+    found = segment(drawn((ell, (180, 170, 150))))
+    (doubt,) = [one for one in doubts_of(found) if one.code == "W175"]
+    assert "of its hull: maybe two stones" in doubt.text
 
 
 def test_convex_stones_are_never_cut():
@@ -163,7 +189,7 @@ def test_light_and_dark_ground_can_be_said():
 
 
 def test_small_and_unusual_stones_are_said():
-    stones = [(disc((300, 400), 70, 60 + 90 * k, 35), (170, 160, 150)) for k in range(4)]
+    stones = [(disc((300, 400), 70, 55 + 96 * k, 42), (170, 160, 150)) for k in range(4)]
     small = (disc((300, 400), 220, 100, 12), (170, 160, 150))
     speck = (disc((300, 400), 220, 250, 4), (170, 160, 150))
     found = segment(drawn(*stones, small, speck))
@@ -176,7 +202,7 @@ def test_small_and_unusual_stones_are_said():
 
 def test_low_contrast_is_said():
     faint = disc((300, 400), 150, 200, 60)
-    found = segment(drawn((faint, (60, 118, 186)), ground=(60, 110, 180), noise=0.5))
+    found = segment(drawn((faint, (66, 126, 190)), ground=(60, 110, 180), noise=0.5))
     assert "W178" in codes(found)
 
 

@@ -46,9 +46,11 @@ def draw_friction(folder: Path, model: RigidBlockModel, loads: Loads) -> tuple[A
     """Analyse the wall at usual coefficients of friction, and draw that."""
     from drystone.plotting import save  # noqa: PLC0415 - slow import
     from drystone.plotting.friction import plot_friction  # noqa: PLC0415
+    from drystone.report.content import TILTING  # noqa: PLC0415
 
     curve = friction_curve(model, loads)
-    save(plot_friction(curve, model.mu).figure, folder / FRICTION)
+    axes = plot_friction(curve, model.mu, slides_at_mu=loads.name == TILTING)
+    save(axes.figure, folder / FRICTION)
     return curve
 
 
@@ -70,7 +72,7 @@ def _draw_direction(files: list[Path], wall: Modelled, loads: Loads, result: Lim
         return
     falls = result.status is LimitStatus.UNSTABLE
     direction = None if falls else result.direction
-    load = "" if falls or loads.name.startswith("tilting table") else loads.name
+    load = "" if falls or loads.name.startswith("tilting table") else loads.name.split(" (")[0]
     moving = (wall.shapes, result.mechanism, direction, result.alpha)
     # The card names blocks by their ids.
     save(plot_mechanism(*moving, load=load, numbers=True).figure, mechanism)

@@ -1,7 +1,8 @@
 """The report of `drystone analyse`: the card, the wall to look around in, what friction changes."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Literal
 
 from drystone.assembly.read import scaled
 from drystone.cli.card import Card
@@ -52,16 +53,17 @@ def write_analysis(
         model,
         resistance,
         title="Limit analysis of a wall",
-        unit="px" if per_unit_m is None else "m",
+        unit=_unit(wall, per_unit_m),
         noun=wall.noun,
         wedges=wall.wedge_ids,
         cards=_cards(card),
         inputs=[
-            *card.rows(),
+            *_full_names(card.rows()),
             *_friction_rows(curve),
             ("cite", CITATION.format(version=card.version, sha256=card.sha256)),
         ],
         notices=wall.notices,
+        load_case=card.load_case,
     )
     return write_report(path, view, pictures=path.parent)
 
@@ -75,6 +77,23 @@ def in_metres(
         for region in wall_regions(shapes)
     }
     return outer, scaled(model, per_unit_m)
+
+
+def _unit(wall: Modelled, per_unit_m: float | None) -> Literal["px", "m", "units"]:
+    if per_unit_m is not None:
+        return "m"
+    return "units" if wall.noun == "block" else "px"
+
+
+def _full_names(rows: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    """Yield rows whose names say what they stand under, which the indents of the card do."""
+    above = ""
+    for name, value in rows:
+        if name.startswith(" "):
+            yield f"{above}, {name.strip()}", value
+        else:
+            above = name
+            yield name, value
 
 
 def _cards(card: Card) -> Iterator[content.Card]:

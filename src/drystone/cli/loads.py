@@ -44,6 +44,8 @@ def load_case(
         )
     for text in arguments.dead:
         loads = replace(loads, dead=loads.dead + point_load(model, *_parsed(text, "--dead")))
+    if arguments.dead:
+        loads = replace(loads, name=f"{loads.name}, dead forces ({' '.join(arguments.dead)})")
     return model, loads
 
 
@@ -79,7 +81,7 @@ def _points(model: RigidBlockModel, arguments: argparse.Namespace) -> Loads:
     live = weight(model) * 0.0
     for text in arguments.live:
         live = live + point_load(model, *_parsed(text, "--live"))
-    return Loads(weight(model), live, "point loads")
+    return Loads(weight(model), live, f"point loads ({' '.join(arguments.live)})")
 
 
 def _parsed(text: str, option: str) -> tuple[int, tuple[float, float], tuple[float, float]]:

@@ -19,6 +19,7 @@ SUITES = {
     "settling": ("milliseconds of a settling, and what becomes of proposals", "settlings"),
     "passes": ("single passes of best on outlines, medians over twenty seeds", "passes"),
     "search": ("methods that look for good walls, compared at equal CPU time", "search"),
+    "photos": ("stones found in ten rendered photographs, beside the truth", "photos"),
     "packing": ("strips packed without gravity beside planned walls (extra `bench`)", "packing"),
 }
 """What each one is about, and the module of this package whose `run` does it."""

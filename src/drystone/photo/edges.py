@@ -20,7 +20,7 @@ _ACROSS = np.linspace(-1.0, 1.0, 41)
 _REACHES_PX = (2.0, 10.0)
 """Least and largest reach: farther off, samples would be more than half a px apart."""
 
-_LEAST_CONTRAST = 20.0
+_LEAST_CONTRAST = 8.0
 
 
 def corners_by_edges(grey: NDArray[np.uint8], corners_px: Points, modules: int) -> Points | None:
@@ -72,7 +72,8 @@ def _edge(grey: NDArray[np.uint8], corners: Points, modules: int) -> tuple[Point
         cv2.INTER_LINEAR,
         borderMode=cv2.BORDER_REPLICATE,
     ).astype(np.float64)
-    offset = _offsets(seen)
+    # Lenses blur light, not the grey values of sRGB, in which black squares would seem smaller.
+    offset = _offsets(255.0 * ((seen / 255.0 + 0.055) / 1.055) ** 2.4)
     if offset is None:
         return None
     return _line(places + reach * offset[:, None] * outward)

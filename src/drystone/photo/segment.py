@@ -21,6 +21,10 @@ _FLOOR_SHARE = 2e-4
 """Share of the picture of the smallest stone."""
 
 
+_HORN = 0.12
+"""Half the thickness of ends that are no stone, over that of the stone."""
+
+
 @dataclass(frozen=True, eq=False)
 class Found:
     """Stones that were found in a photograph.
@@ -92,10 +96,11 @@ def segment(
     usable = ~papers if inside is None else inside & ~papers
     ground = fit_ground(image, usable, settings.ground)
     foreground = _unlike(ground, usable)
-    shadows = find_shadows(ground, foreground)
+    shadows = find_shadows(ground, foreground, usable)
     stone = _solid(foreground & ~shadows.mask, usable)
     stone = refine_outlines(ground.lab, stone, usable)
-    stone, beside = _without_papers(_solid(stone, usable), papers)
+    stone = _without_horns(_solid(stone, usable))
+    stone, beside = _without_papers(stone, papers)
     labels, necks = split_stones(stone, ground.lab, settings)
     return _sorted_out(labels, necks, _Context(ground, shadows, usable | papers, beside), settings)
 
@@ -123,6 +128,22 @@ def _solid(mask: Mask, usable: Mask) -> Mask:
     small = areas < 0.15 * sizes[owner]
     small[0] = False
     return np.asarray(mask | (small[holes] & usable))
+
+
+def _without_horns(stone: Mask) -> Mask:
+    """Take away thin ends, such as the rim of a shadow; corners stay."""
+    stone = stone.copy()
+    pieces, _ = ndimage.label(stone, np.ones((3, 3)))
+    for number, box in enumerate(ndimage.find_objects(pieces), start=1):
+        piece = np.pad(pieces[box] == number, 1)
+        depth = ndimage.distance_transform_edt(piece)
+        radius = _HORN * float(depth.max())
+        thick = ndimage.distance_transform_edt(depth <= radius) <= radius
+        thin, count = ndimage.label(piece & ~(thick | (depth > radius)), np.ones((3, 3)))
+        large = np.bincount(thin.ravel(), minlength=count + 1) > radius**2
+        large[0] = False
+        stone[box] &= ~large[thin][1:-1, 1:-1]
+    return stone
 
 
 def _without_papers(stone: Mask, papers: Mask) -> tuple[Mask, int]:

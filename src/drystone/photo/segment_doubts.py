@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from skimage.measure import regionprops
 
 from drystone.errors import Notice
 from drystone.photo.segment import Found, stones_at
@@ -15,6 +16,10 @@ LOW_CONTRAST = 8.0
 
 SURELY_TWO = 0.45
 """Necks narrower than this share of the stone are cut without a word."""
+
+
+HOLLOW = 0.87
+"""Share of its convex hull that a stone fills; less may be two stones with a broad contact."""
 
 
 @dataclass(frozen=True)
@@ -108,6 +113,8 @@ def doubts_of(
     settings = settings or SegmentSettings()
     at = {size.id: size.at_px for size in sizes}
     doubts = [*_necks(found, px_per_m)]
+    known = {stone for doubt in doubts for stone in doubt.stones}
+    doubts += [doubt for doubt in _hollow(found, at) if doubt.stones[0] not in known]
     doubts += [
         Doubt("W176", (), place, f"cut by the edge at {_place(place)}") for place in found.cut_px
     ]
@@ -147,13 +154,27 @@ def notices_of(found: Found, doubts: Iterable[Doubt]) -> tuple[Notice, ...]:
 
 
 _KINDS = {
-    "W175": ("necks", "Look at them in preview.png; draw or erase a line in stones.png."),
+    "W175": (
+        "necks and hollows",
+        "Look at them in preview.png; draw or erase a line in stones.png.",
+    ),
     "W176": ("left out", "Photograph whole stones, clear of markers."),
     "W177": ("a part may be shadow", "Look at preview.png; avoid hard light."),
     "W178": ("hardly differs from the ground", "Look at preview.png; take another ground."),
     "W179": ("unusual sizes", "Is it a stone, and is it one?  --min-area changes the limit."),
 }
 """What a code means, and the cure."""
+
+
+def _hollow(found: Found, at: dict[int, tuple[float, float]]) -> list[Doubt]:
+    doubts = []
+    for region in regionprops(found.labels):
+        share = float(region.solidity)
+        if share < HOLLOW:
+            stone = int(region.label)
+            text = f"stone {stone} at {_place(at[stone])} fills {100 * share:.0f} % of its hull"
+            doubts.append(Doubt("W175", (stone,), at[stone], f"{text}: maybe two stones"))
+    return doubts
 
 
 def _necks(found: Found, px_per_m: float | None) -> list[Doubt]:

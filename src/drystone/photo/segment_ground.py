@@ -81,7 +81,7 @@ def fit_ground(image: NDArray[np.uint8], usable: Mask, ground: Ground) -> Ground
     """
     light = linear_light(image)
     smooth = np.stack([ndimage.gaussian_filter(light[..., k], 1.0) for k in range(3)], axis=-1)
-    step = max(1, round(np.sqrt(usable.size / 60_000)))
+    step = max(1, round(np.sqrt(usable.size / 15_000)))
     coarse = np.stack(
         [ndimage.gaussian_filter(light[..., k], 2.0)[::step, ::step] for k in range(3)], axis=-1
     )
@@ -129,7 +129,10 @@ def _fit_light(light: Planes, usable: Mask, ground: Ground) -> NDArray[np.float6
     for order in _ORDERS:
         terms = (order + 1) * (order + 2) // 2
         field[:] = 0
-        field[:terms] = np.linalg.lstsq(basis[near][:, :terms], log[near], rcond=None)[0]
+        known_basis = basis[near][:, :terms]
+        # Few terms of one size: the normal equations are exact enough, and fast.
+        square = known_basis.T @ known_basis + 1e-9 * len(known_basis) * np.eye(terms)
+        field[:terms] = np.linalg.solve(square, known_basis.T @ log[near])
         expected = lab_of(np.exp(basis @ field))
         away = _away(lab - expected)
         known = away[near]

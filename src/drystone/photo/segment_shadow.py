@@ -18,10 +18,13 @@ WINDOW_PX = 9
 """Where the roughness of a surface is measured."""
 
 _LEAST_SHARE = 0.35
-"""Share of the stones that must have a shadow."""
+"""Share of the stones that must have a shadow, unless few agree well."""
 
 _AGREEMENT = 0.7
 """How well they must agree on its side, 0 to 1."""
+
+_FEW_AGREEMENT = 0.9
+"""The same of three stones or more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +49,7 @@ class Shadows:
     alike: Mask
 
 
-def find_shadows(ground: GroundModel, foreground: Mask) -> Shadows:
+def find_shadows(ground: GroundModel, foreground: Mask, usable: Mask) -> Shadows:
     """Tell shadows from stones.
 
     A px may be in a shadow when it has the colour of the ground with less light.  Such px are
@@ -59,21 +62,26 @@ def find_shadows(ground: GroundModel, foreground: Mask) -> Shadows:
         The evenly lit photograph.
     foreground : (h, w) bool array
         What is not ground.
+    usable : (h, w) bool array
+        What is ground, stone or shadow.
     """
     light = ground.log_light.mean(axis=-1)
-    about = ~foreground
+    # Faint shadows are not far from the colour of the ground, but tell where the light is.
+    noise = 1.48 * float(np.median(np.abs(light[~foreground & usable])))
+    foreground = foreground | (usable & (light < -(0.1 + 3 * noise)))
+    about = ~foreground & usable
     tinted = foreground & _tinted(ground, light, about)
     rough = _roughness(light)
     alike = tinted & (rough < 0.03 + 2.5 * float(np.median(rough[about])))
     none = Shadows(np.zeros_like(foreground), 1.0, None, alike)
     if alike.sum() < 50:
         return none
-    width = 0.08 + 2.5 * 1.48 * float(np.median(np.abs(light[about])))
+    width = 0.08 + 2.5 * noise
     level = _level(light[alike])
     near = np.abs(light - level)
-    body = ndimage.binary_opening(alike & (near < width), iterations=3)
+    body = ndimage.binary_opening(alike & (near < width), iterations=2)
     # Uneven light is known about, so a shadow may be a little lighter or darker in places.
-    about_level = ndimage.binary_opening(alike & (near < width + 0.12), iterations=3)
+    about_level = ndimage.binary_opening(alike & (near < width + 0.12), iterations=2)
     body = ndimage.binary_propagation(body & about_level, mask=about_level)
     around = _grown(body, WINDOW_PX + 3) & tinted & (light > level - width)
     sure = ndimage.binary_opening(foreground & ~around & ~body, iterations=3)
@@ -145,7 +153,10 @@ def _direction(core: Mask, sure: Mask) -> Vector | None:
     shaded = np.any(vectors, axis=1)
     total = np.sum(np.multiply(vectors, np.array(weights)[:, None]), axis=0)
     length, among = float(np.hypot(*total)), float(np.sum(weights, where=shaded))
-    if among < _LEAST_SHARE * sum(weights) or length < _AGREEMENT * among:
+    many = among >= _LEAST_SHARE * sum(weights) and length >= _AGREEMENT * among
+    # Faint shadows are seen beside some stones only, but then on the very same side.
+    few = np.count_nonzero(shaded) >= 3 and length >= _FEW_AGREEMENT * among
+    if not (many or few):
         return None
     return np.asarray(total / length)
 

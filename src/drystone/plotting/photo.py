@@ -73,7 +73,8 @@ def _draw_stone(ax: Axes, region: Region, in_doubt: bool) -> None:
         )
     )  # fmt: skip
     ax.text(
-        region.centroid[0], region.centroid[1], str(region.id), size=8, color="#ffffff", ha="center",
+        region.centroid[0], region.centroid[1], str(region.id), size=8, color="#ffffff",
+        ha="center",
         va="center_baseline", weight="bold", zorder=5,
         path_effects=[withStroke(linewidth=2.0, foreground="#000000")],
     )  # fmt: skip

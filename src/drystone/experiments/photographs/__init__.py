@@ -1,0 +1,1 @@
+"""Rendered photographs of stones laid out, with the truth about them."""
