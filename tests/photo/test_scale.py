@@ -62,7 +62,7 @@ def test_single_markers_measure_the_ground(side_px, limit, tilt_deg):
 
 
 @pytest.mark.parametrize("tilt_deg", [0.0, 30.0])
-@pytest.mark.parametrize(("side_px", "limit"), [(60, 0.2), (100, 0.1)])
+@pytest.mark.parametrize(("side_px", "limit"), [(60, 0.2), (100, 0.1), (200, 0.05)])
 def test_a_sheet_measures_the_ground(side_px, limit, tilt_deg):
     view, to_photo = view_of(side_px, tilt_deg, sheet_on_ground(), SHEET, (0.3, 0.4))
     assert distance_error_percent(view, to_photo, 0.25, 0.35) < limit

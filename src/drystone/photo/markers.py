@@ -9,6 +9,13 @@ from numpy.typing import NDArray
 from drystone.photo.dictionaries import DICTIONARIES, load_cv2, modules_across, opencv_dictionary
 from drystone.photo.edges import corners_by_edges
 
+SEARCHES = ((0.05, 0.03), (0.05, 0.02), (0.125, 0.03))
+"""How OpenCV looks for quadrangles: how near two may be, and how straight their sides must be.
+
+The edge of the paper is a quadrangle near to the marker's and may be taken for it, by one search
+here and by another one there; what any of them reads without a wrong square is a marker.
+"""
+
 
 @dataclass(frozen=True, eq=False)
 class FoundMarker:
@@ -66,23 +73,40 @@ def find_markers(image: NDArray[np.uint8], dictionary: str = "auto") -> tuple[Fo
 
 
 def _find(grey: NDArray[np.uint8], dictionary: str) -> tuple[FoundMarker, ...]:
-    aruco = load_cv2().aruco
-    parameters = aruco.DetectorParameters()
-    # Stones are many quadrangles: a pattern with a wrong square is no marker here.
-    parameters.errorCorrectionRate = 0.0
-    parameters.minMarkerPerimeterRate = min(0.03, 4 * 20.0 / max(grey.shape))
-    # The edge of the paper is a quadrangle near to the marker's, and would be taken for it.
-    parameters.minMarkerDistanceRate = 0.05
-    detector = aruco.ArucoDetector(opencv_dictionary(dictionary), parameters)
-    quads, ids, _ = detector.detectMarkers(grey)
-    if ids is None:
-        return ()
     across = modules_across(dictionary)
     found = [
-        FoundMarker(int(one), _refined(grey, quad.reshape(4, 2), across), dictionary)
-        for one, quad in zip(np.ravel(ids), quads, strict=True)
+        FoundMarker(one, _refined(grey, quad, across), dictionary)
+        for one, quad in _quads(grey, dictionary)
     ]
     return tuple(sorted(found, key=lambda marker: (marker.id, *marker.corners_px[0])))
+
+
+def _quads(grey: NDArray[np.uint8], dictionary: str) -> list[tuple[int, NDArray[Any]]]:
+    """Return ids and corners of the patterns that are there, each once."""
+    aruco = load_cv2().aruco
+    quads: list[tuple[int, NDArray[Any]]] = []
+    for distance, accuracy in SEARCHES:
+        parameters = aruco.DetectorParameters()
+        # Stones are many quadrangles: a pattern with a wrong square is no marker here.
+        parameters.errorCorrectionRate = 0.0
+        parameters.minMarkerPerimeterRate = min(0.03, 4 * 20.0 / max(grey.shape))
+        parameters.minMarkerDistanceRate = distance
+        parameters.polygonalApproxAccuracyRate = accuracy
+        detector = aruco.ArucoDetector(opencv_dictionary(dictionary), parameters)
+        corners, ids, _ = detector.detectMarkers(grey)
+        for one, quad in zip([] if ids is None else np.ravel(ids), corners, strict=True):
+            placed = int(one), quad.reshape(4, 2)
+            if not any(_same(placed, other) for other in quads):
+                quads.append(placed)
+    return quads
+
+
+def _same(one: tuple[int, NDArray[Any]], other: tuple[int, NDArray[Any]]) -> bool:
+    """Whether two finds are one marker: the same id, one lies over the other."""
+    if one[0] != other[0]:
+        return False
+    apart = np.hypot(*(one[1].mean(axis=0) - other[1].mean(axis=0)))
+    return bool(apart < 0.5 * np.hypot(*(other[1][0] - other[1][2])))
 
 
 def _refined(grey: NDArray[np.uint8], corners: NDArray[Any], across: int) -> NDArray[np.float64]:

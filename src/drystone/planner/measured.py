@@ -86,6 +86,11 @@ def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Place]
     width, height = site.extent_px
     found = {}
     for stone_id, pose in poses.items():
+        if not isinstance(pose, MeasuredPose):
+            raise InputError(
+                "E197", f"stone {stone_id} is measured at {pose!r}, which is no MeasuredPose.",
+                where="observe", cure="Give MeasuredPose(x, y, angle_deg) for each stone.",
+            )  # fmt: skip
         x, y = pose.x * px, pose.y * px
         # What is no number compares with nothing.
         inside = 0.0 <= x <= width and 0.0 <= y <= height
@@ -151,11 +156,15 @@ def places_in(labels: NDArray[np.integer], wall: Wall, stones: StoneSet) -> dict
 
 def require_known(ids: Iterable[int], stones: StoneSet) -> None:
     """Raise InputError (E195) for ids that are of no stone."""
-    unknown = sorted(set(ids) - {stone.id for stone in stones})
+    unknown = sorted(
+        set(ids) - {stone.id for stone in stones}, key=lambda i: (str(i), str(type(i)))
+    )
     if unknown:
+        # The keys of JSON are text: '5' is not 5.
+        named = ", ".join(repr(i) if isinstance(i, str) else str(i) for i in unknown)
         raise InputError(
             "E195",
-            f"there is no stone {', '.join(map(str, unknown))} among the {len(stones)} stones.",
+            f"there is no stone {named} among the {len(stones)} stones.",
             where="observe",
             cure="Measure stones by the ids that they were read with; 0 is the background.",
         )

@@ -199,8 +199,9 @@ def _places(build: Build, measured: Measurement, workshop: Workshop) -> dict[int
 
 def _lost(lost: Iterable[int], places: Mapping[int, Place], workshop: Workshop) -> tuple[int, ...]:
     """Return the stones that are lost; E195 for those that there are not, E199 in the wall."""
-    missing = tuple(sorted(set(lost)))
-    require_known(missing, workshop.stones)
+    gone = set(lost)
+    require_known(gone, workshop.stones)
+    missing = tuple(sorted(map(int, gone)))
     both = [i for i in missing if i in places]
     if both:
         raise UsageError(

@@ -200,7 +200,7 @@ class Planner:
         Parameters
         ----------
         measured : mapping of int to MeasuredPose, or (h, w) integer array
-            Where every stone in the wall is (:mod:`drystone.planner.measured`): stones that are
+            Where every stone in the wall is (``drystone.planner.measured``): stones that are
             missing are free again, others than planned are taken over.
         lost : iterable of int
             Stones that cannot be used any more: broken, or out of reach.
@@ -237,7 +237,7 @@ class Planner:
             self._empty(), self.build, measured, lost, self.workshop, self.settings
         )
         if lost:
-            self.workshop, self.settings = without(lost, self.workshop, self.settings)
+            self.workshop, self.settings = without(observation.lost, self.workshop, self.settings)
             ban, pin = self.settings.ban, self.settings.pin
             self._weighted = replace(self._weighted, ban=ban, pin=pin)
         self.build = build
