@@ -122,6 +122,26 @@ def test_loads(tower: Path, run: Run) -> None:
     assert alphas(*pull) == pytest.approx((2 / 3, 2 / 3))
 
 
+def test_the_report_says_which_loads(tower: Path, run: Run, tmp_path: Path) -> None:
+    loads = ("--load", "points", "--live", "1@0,3:1,0", "--dead", "1@0.5,4:0,-2")
+    said = run("analyse", tower, "--associative-only", *loads, "-o", tmp_path / "out").out
+    case = "point loads (1@0,3:1,0), dead forces (1@0.5,4:0,-2)"
+    assert case in said
+    report = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    shown = json.loads(report.split('type="application/json"')[1].split(">", 1)[1].split("<")[0])
+    assert dict(shown["inputs"])["load case"] == case
+    assert "load to the left, mechanism" in dict(shown["inputs"])
+    assert shown["unit"] == "units"
+    assert "tilting" not in report.split("<script", 1)[0]
+
+
+def test_a_dead_force_makes_no_tilt_to_fall_at(tower: Path, run: Run) -> None:
+    assert "tilted by" in run("analyse", tower, "--associative-only").out
+    said = run("analyse", tower, "--associative-only", "--dead", "1@0.5,4:0,-2").out
+    assert "tilting table, dead forces (1@0.5,4:0,-2)" in said
+    assert "tilted by" not in said
+
+
 def test_cases_that_are_ranges(tower: Path, bridge: Path, run: Run) -> None:
     report = run("analyse", bridge, "--json", "--settle", "2").json()
     assert report["alpha_least"] == pytest.approx(1 / 3)

@@ -1,5 +1,6 @@
 """What the shell gets to know: exit codes, and no traceback that was not asked for."""
 
+import io
 import os
 import subprocess
 import sys
@@ -7,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from drystone.cli import main
 from drystone.cli.commands import stones as command
 from drystone.errors import UsageError
 from tests.cli.conftest import Run
@@ -51,6 +53,17 @@ def test_a_bug_is_not_hidden(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(command, "run", fail)
     with pytest.raises(ZeroDivisionError):
         run("stones", "x.png")
+
+
+def test_names_are_printed_where_there_are_no_such_letters(
+    rubble: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    named = tmp_path / "Stäine 石.png"
+    named.write_bytes(rubble.read_bytes())
+    out = io.BytesIO()
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(out, encoding="cp1252"))
+    assert main(["stones", str(named)]) == 0
+    assert "Stäine \\u77f3.png".encode("cp1252") in out.getvalue()
 
 
 def test_a_reader_that_goes_away_is_no_error(rubble: Path) -> None:

@@ -4,6 +4,7 @@ import base64
 import io
 import json
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -130,6 +131,15 @@ def test_labelme_rectangles_circles_and_masks(tmp_path):
     assert "1 lines, 1 points" in stones.notices[0].message
 
 
+@pytest.mark.parametrize("kind", ["rectangle", "rotation"])
+def test_rectangles_of_four_corners_as_x_anylabeling_writes_them(tmp_path, kind):
+    corners = [[10, 30], [40, 10], [60, 40], [30, 60]]
+    shape = {"label": "a", "shape_type": kind, "direction": 5.7, "points": corners}
+    (stone,) = read_stones(written(tmp_path, labelme(shapes=[shape])))
+    assert stone.area_px == pytest.approx(30**2 + 20**2, rel=0.01)
+    assert stone.centroid == pytest.approx((35, HEIGHT - 35), abs=0.1)
+
+
 def test_labels_that_are_no_different_numbers_are_names(tmp_path):
     same = labelme()
     for shape in same["shapes"]:
@@ -185,6 +195,22 @@ def test_coco_says_what_has_no_outline(tmp_path):
     assert stones.notices[0].message.count("1 ") == 2
     assert "crowd" in stones.notices[0].message
     assert "annotations without an outline" in stones.notices[0].message
+
+
+@pytest.mark.parametrize("mixed", [False, True])
+def test_coco_masks_of_cvat_are_stones_though_marked_as_crowds(tmp_path, mixed):
+    found = {stone: runs(mask, packed=False) for stone, mask in masks().items()}
+    content = coco(found)
+    for annotation in content["annotations"]:
+        annotation["iscrowd"] = 1
+    if mixed:  # with a polygon, it is the attributes that tell
+        content["annotations"][0] |= {"iscrowd": 0, "segmentation": flat_polygons()[3]}
+        for annotation in content["annotations"]:
+            annotation["attributes"] = {"occluded": False}
+    stones = read_stones(written(tmp_path, content), settings=PIECES)
+    assert {stone.id for stone in stones} == set(STONES)
+    assert stones.by_id(5).area_px == masks()[5].sum()
+    assert "marked as crowds" in stones.notices[0].message
 
 
 def test_three_hundred_stones_of_a_photograph_are_read_in_seconds(tmp_path):
@@ -324,6 +350,24 @@ def test_geojson_in_px_of_an_image(tmp_path, name):
     assert stones.source.height_px == 168  # the lowest stone ends at y = 168
 
 
+def test_geojson_over_a_picture_in_a_gis_has_negative_y(tmp_path):
+    content = geojson()
+    for feature in content["features"]:
+        _flip(feature["geometry"]["coordinates"])
+    stones = read_stones(written(tmp_path, content), settings=PIECES)
+    assert compare(stones)[0] > 0.97  # centres on edges go the other way
+    assert "y runs up" in stones.notices[0].message
+
+
+def test_geojson_of_a_map_is_never_taken_for_a_picture(tmp_path):
+    crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}}
+    path = written(tmp_path, geojson(crs=crs))
+    with pytest.raises(InputError, match=r"E116.*a map.*--unit m"):
+        read_stones(path, settings=PIECES)
+    assert read_stones(path, settings=replace(PIECES, unit="m")).source.px_per_m
+    assert compare(read_stones(path, settings=replace(PIECES, unit="px"))) == EXACT
+
+
 def test_geojson_in_metres_has_y_up_and_a_scale(tmp_path):
     content = geojson(unit="m")
     for feature in content["features"]:
@@ -339,6 +383,14 @@ def test_geojson_in_metres_has_y_up_and_a_scale(tmp_path):
     assert area < 1e-3
     assert centroid < 0.01
     assert stones.by_id(3).area_px / 400.0**2 == pytest.approx(masks()[3].sum() / 400**2, rel=1e-3)
+
+
+def _flip(coordinates):
+    for part in coordinates:
+        if isinstance(part[0], list):
+            _flip(part)
+        else:
+            part[:] = [part[0], -part[1]]
 
 
 def _scale(coordinates):

@@ -70,6 +70,39 @@ def test_dxf_versions_and_binary(tmp_path, version, kind):
     close(compare(read_stones(path, settings=METRIC)))
 
 
+def test_dxf_names_are_in_the_code_page_of_the_drawing(tmp_path):
+    document = ezdxf.new("R2000", units=units.MM)
+    for i, layer in enumerate(("Stein ä", "Maß")):
+        corners = [(200 * i, 0), (200 * i + 100, 0), (200 * i + 100, 60)]
+        document.modelspace().add_lwpolyline(corners, close=True, dxfattribs={"layer": layer})
+    stones = read_stones(saved(document, tmp_path))
+    assert [stone.name for stone in stones] == ["Stein ä", "Maß"]
+
+
+def test_dxf_layers_that_are_off_do_not_count(tmp_path):
+    document = dxf()
+    side = 2.0 * WIDTH * MM
+    frame = [(-9, -9), (side, -9), (side, side), (-9, side)]
+    for number, name in enumerate(("off", "frozen", "seen")):
+        layer = document.layers.add(name)
+        if number < 2:
+            (layer.off, layer.freeze)[number]()
+        style = {"layer": name, "invisible": int(name == "seen")}
+        document.modelspace().add_lwpolyline(frame, close=True, dxfattribs=style)
+    stones = read_stones(saved(document, tmp_path), settings=METRIC)
+    close(compare(stones))
+    assert "3 entities that are hidden" in stones.notices[0].message
+
+
+@pytest.mark.parametrize("number", [99, -1])
+def test_dxf_of_a_unit_that_there_is_not(tmp_path, number):
+    document = dxf()
+    document.header["$INSUNITS"] = number
+    path = saved(document, tmp_path)
+    with pytest.raises(InputError, match=rf"E116 .*\$INSUNITS is {number}\)"):
+        read_stones(path, settings=METRIC)
+
+
 def test_dxf_without_a_unit_is_refused_unless_it_is_told(tmp_path):
     path = saved(dxf(0), tmp_path)
     with pytest.raises(InputError, match=r"E116.*does not say its unit.*--unit mm"):
@@ -266,6 +299,17 @@ def test_svg_shapes_by_closed_forms(tmp_path):
         assert kind in notice.message
 
 
+def test_svg_lengths_in_per_cent_and_mm_and_shapes_that_are_nothing(tmp_path):
+    body = """
+      <rect width="100%" height="100%" fill="white"/> <polygon points=""/> <path d="none"/>
+      <rect x="25%" y="10%" width="1in" height="25.4mm" transform="none"/>
+    """
+    (stone,) = kept(svg(body, "640", "400", "0 0 320 200"), tmp_path, ReadSettings())
+    # A user unit is 2 px here, and an inch is 96 user units.
+    assert (stone.left_px, stone.mask.shape) == (160, (192, 192))
+    assert stone.bottom_px == 400 - 40 - 192
+
+
 def test_svg_layer_of_stones_is_all_that_counts(tmp_path):
     body = f'<rect x="3" y="3" width="90" height="90"/><g id="STONES">{paths()}</g>'
     stones = kept(svg(body), tmp_path)
@@ -279,7 +323,9 @@ def test_svg_layer_of_stones_is_all_that_counts(tmp_path):
         ('<path id="a" d="M0 0 L5"/>', r"E114 .*the path 'a' cannot be used \(L has 1 numbers"),
         ('<use href="#nothing"/>', r"E114 .*'#nothing', which is not there"),
         ('<g id="a"><use href="#a"/></g>', r"E114 .*use each other too often or too deeply"),
-        ('<circle r="1mm"/>', r"E114 .*a circle cannot be used \(r in mm"),
+        ('<circle r="1%"/>', r"E114 .*a circle cannot be used \(r in %"),
+        ('<circle r="1em"/>', r"E114 .*a circle cannot be used \(r in em"),
+        ('<svg><rect width="9%" height="9%"/></svg>', r"E114 .*a rect .*width in %"),
         ('<polygon points="1 2 3"/>', r"E114 .*a polygon cannot be used"),
         ('<g transform="turn(3)"/>', r"E114 .*no transform"),
         ("<text>nothing</text>", r"E104 .*no stones in it.*1 text"),

@@ -76,6 +76,10 @@ def feature(geometry):
         (annotation({"size": [90000, 90000], "counts": [1]}), r"annotation 5.*90000 x 90000"),
         (annotation({"size": [3, 3], "counts": [0, 9]}), r"the image.*sizes differ: 3 x 3, 320 x"),
         (coco({}, annotations=[3]), r"annotations are no objects"),
+        (coco({}, categories=["stone"]), r"list of categories"),
+        (coco({}, categories={"1": "stone"}), r"list of categories"),
+        (coco({}, annotations=[{"image_id": [7]}]), r"list of images"),
+        (labelme(imageWidth=0), r"size of the image.*0 x"),
         ([{"segmentation": [[True, False], [True]]}], r"mask 1"),
         ([{"segmentation": None}], r"mask 1"),
         ([{"segmentation": runs(masks()[3])}, {"segmentation": {"size": [3, 3], "counts": [9]}}],
@@ -121,8 +125,26 @@ def test_no_stones(tmp_path):
 
 def test_stones_outside_the_image_are_none(tmp_path):
     far = shape(points=[[400, 400], [430, 400], [430, 430]])
-    with pytest.raises(InputError, match=r"E104"):
+    with pytest.raises(InputError, match=r"E104.*without a pixel, left out: stone 1 \(1\)"):
         read(tmp_path, far)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        shape(points=[[1, 1], [4e5, 1], [4e5, 4e5]]),
+        annotation([[1, 1, 4e5, 1, 4e5, 4e5]]),
+        [{"segmentation": [[1, 1, 4e5, 1, 4e5, 4e5]]}],
+    ],
+)
+def test_a_corner_far_away_does_not_fill_the_memory(tmp_path, content):
+    with pytest.raises(InputError, match=r"E110 stones.json: stone .* reaches over 399999 x"):
+        read(tmp_path, content)
+
+
+def test_names_can_be_written_and_printed(tmp_path):
+    (stone,) = read(tmp_path, shape(label="Stein \ud83e"))
+    assert stone.name.encode() == b"Stein ?"
 
 
 @pytest.mark.parametrize(

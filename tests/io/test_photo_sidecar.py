@@ -30,6 +30,7 @@ def test_json_of_another_kind_is_left_alone(tmp_path: Path) -> None:
     "text",
     [
         "{",
+        "[" * 100_000,
         '{"schema": "drystone-photo/1"}',
         '{"schema": "drystone-photo/1", "px_per_m": -1, "width_px": 1, "height_px": 1}',
         '{"schema": "drystone-photo/1", "px_per_m": "x", "width_px": 1, "height_px": 1}',

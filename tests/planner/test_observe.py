@@ -354,6 +354,24 @@ def test_poses_that_make_no_sense_are_refused(change: dict[int, MeasuredPose], c
     assert one.build is before
 
 
+def test_what_comes_out_of_json_is_refused_in_words() -> None:
+    one = planner(EXACT)
+    poses = in_metres({next(one.steps()).stone_id: (100.0, 20.0, 0.0)})
+    text: dict = {str(i): pose for i, pose in poses.items()}
+    with pytest.raises(InputError, match=r"E195 .*no stone '[0-9]+' among"):
+        one.observe(text)
+    bare: dict = dict.fromkeys(poses, (0.5, 0.1, 0.0))
+    with pytest.raises(InputError, match=r"E197 .*\(0.5, 0.1, 0.0\), which is no MeasuredPose"):
+        one.observe(bare)
+
+
+def test_lost_stones_may_come_as_an_array() -> None:
+    one = planner(EXACT)
+    seen = one.observe({}, lost=np.array([3, 1]))
+    assert repr(seen.lost) == "(1, 3)"
+    assert repr(one.settings.ban) == "(1, 3)"
+
+
 def test_pictures_that_make_no_sense_are_refused() -> None:
     one = planner(EXACT)
     (step,) = [next(one.steps())]

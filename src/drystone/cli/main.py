@@ -4,6 +4,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from io import TextIOWrapper
 
 from drystone.cli.parser import build_parser
 from drystone.errors import DrystoneError, ExitCode, InputError, UsageError
@@ -15,6 +16,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     0 done, 2 usage, 3 bad input, 4 wall incomplete, 5 a check failed, 130 interrupted.
     """
+    if isinstance(sys.stdout, TextIOWrapper):
+        # Names of stones are in any script, terminals and files on some systems are not.
+        sys.stdout.reconfigure(errors="backslashreplace")
     if os.environ.get(VARIABLE) and (wrong := fault()) is not None:
         error = UsageError(
             "E143",

@@ -34,7 +34,9 @@ def stone_set(found: Found, source: Source, settings: ReadSettings) -> StoneSet:
     patches, bits = without_specks(patches, limit_px)
     notices += [*specks, *holes, *pieces, *bits, *suspect_necks(patches)]
     if not patches:
-        why = " ".join(notice.message for notice in specks) or "all were skipped."
+        said = specks or (() if known else found.notices)
+        why = " ".join(notice.message for notice in said)
+        why = why or ("all were skipped." if known else "none has a pixel.")
         raise LabelImageError(
             "E104", f"no stones are left: {why}", where=found.where,
             cure="Check the picture, min_area_px and skip.",

@@ -84,7 +84,7 @@ def read_sidecar(labels: Path) -> PhotoSidecar | None:
             None if scale is None else float(scale),
             str(data.get("photo", "")),
         )
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise InputError(
             "E112",
             f"what it says of the photograph cannot be used ({error}).",

@@ -45,7 +45,9 @@ def stones_of(
     """
     file = read(data, where, settings)
     check_unit(file.unit_m, settings, where)
-    kept, wedges = without_wedges(file.stones)
+    # Half a character pair can be neither printed nor written.
+    named = tuple(replace(stone, name=_printable(stone.name)) for stone in file.stones)
+    kept, wedges = without_wedges(named)
     stones, renumbered = numbered(kept)
     drawn = rastered(replace(file, stones=stones), settings, where)
     notices = [*file.notices, *wedges, *renumbered, *drawn.notices]
@@ -59,6 +61,10 @@ def stones_of(
         px_per_m=drawn.px_per_m,
     )
     return stone_set(Found(drawn.patches, notices, where), source, settings)
+
+
+def _printable(name: str) -> str:
+    return name.encode("utf-8", "replace").decode()
 
 
 def check_unit(unit_m: float | None, settings: ReadSettings, where: str) -> None:

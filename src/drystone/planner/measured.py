@@ -154,7 +154,7 @@ def places_in(labels: NDArray[np.integer], wall: Wall, stones: StoneSet) -> dict
     return found
 
 
-def require_known(ids: Iterable[int], stones: StoneSet) -> None:
+def require_known(ids: Iterable[object], stones: StoneSet) -> None:
     """Raise InputError (E195) for ids that are of no stone."""
     unknown = sorted(
         set(ids) - {stone.id for stone in stones}, key=lambda i: (str(i), str(type(i)))

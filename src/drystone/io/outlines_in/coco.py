@@ -6,6 +6,7 @@ from pathlib import PurePath
 from typing import Any
 
 from drystone.errors import InputError, Notice
+from drystone.io.outlines_in.fill import check_reach
 from drystone.io.outlines_in.model import (
     Area,
     OutlinedStone,
@@ -41,15 +42,20 @@ def read_coco(content: Mapping[str, Any], where: str, settings: ReadSettings) ->
         E114 naming the annotation that cannot be used, E115 when the image is not told.
     """
     chosen, image = _chosen(content, where, settings.image)
-    categories = {c.get("id"): str(c.get("name", "")) for c in content.get("categories") or ()}
+    with entry(where, "the list of categories"):
+        categories = {c.get("id"): str(c.get("name", "")) for c in content.get("categories") or ()}
     shown = categories if len(categories) > 1 else {}
-    stones, sizes, aside = [], set(), Counter[str]()
+    stones, sizes, aside, masks_of_crowds = [], set(), Counter[str](), 0
+    only_crowds = all(map(_is_crowd, chosen))
     for number, found in enumerate(chosen):
         with entry(where, f"annotation {found.get('id', number)}"):
-            if found.get("iscrowd") and found.get("iscrowd") != "0":
-                aside["crowd regions (several stones as one)"] += 1
-                continue
             segmentation = found.get("segmentation")
+            if _is_crowd(found):
+                # CVAT (datumaro) calls every mask a crowd; the attributes are its own, too.
+                if not is_runs(segmentation) or not (only_crowds or "attributes" in found):
+                    aside["crowd regions (several stones as one)"] += 1
+                    continue
+                masks_of_crowds += 1
             if not segmentation:
                 aside["annotations without an outline"] += 1
                 continue
@@ -60,10 +66,18 @@ def read_coco(content: Mapping[str, Any], where: str, settings: ReadSettings) ->
             stones.append(OutlinedStone(number_in(found.get("id")), name, areas, masks))
     size = size_in(image, sizes, where)
     notices: list[Notice] = left_aside(aside)
+    if masks_of_crowds:
+        text = f"{masks_of_crowds} masks are marked as crowds, as CVAT marks all: a stone each."
+        notices.append(Notice("W119", text, "Skip the ids of those that are several stones."))
     if any(name in found for found in chosen for name in _OF_MODEL):
+        check_reach(stones, where, int(settings.max_image_mpx * 1e6))
         stones, nested = without_nested(stones, settings.skip)
         notices += nested
     return OutlineFile(tuple(stones), size_px=size, notices=tuple(notices))
+
+
+def _is_crowd(found: Mapping[str, Any]) -> bool:
+    return found.get("iscrowd") not in (None, 0, "0", "")
 
 
 def shape_of(segmentation: Any) -> tuple[tuple[Area, ...], tuple[PlacedMask, ...]]:
@@ -106,7 +120,7 @@ def _chosen(
             raise TypeError("annotations are no objects")
         known = {image.get("id"): image for image in images}
         names = {i: str(image.get("file_name", i)) for i, image in known.items()}
-    used = list(dict.fromkeys(found.get("image_id") for found in annotations))
+        used = list(dict.fromkeys(found.get("image_id") for found in annotations))
     if name:
         used = [i for i in known if name in (names[i], PurePath(names[i]).name, str(i))]
         if len(used) != 1:

@@ -46,7 +46,7 @@ def read_dxf(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
     """Read the closed outlines of the model space, also within block references.
 
     Where there is a layer of the name STONES, only its outlines are stones.  An outline in
-    another one is its hole.
+    another one is its hole.  What is hidden, or on a layer that is off or frozen, does not count.
 
     Raises
     ------
@@ -60,8 +60,10 @@ def read_dxf(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
     document = _document(ezdxf, data, where)
     unit_m = _unit(ezdxf, document, where, settings)
     entities = list(import_module("ezdxf.disassemble").recursive_decompose(document.modelspace()))
+    shown = [entity for entity in entities if not _is_hidden(entity, document)]
+    aside = Counter({"entities that are hidden, or on hidden layers": len(entities) - len(shown)})
+    entities = shown
     named = [e for e in entities if str(e.dxf.get("layer", "0")).upper() == _LAYER]
-    aside: Counter[str] = Counter()
     if named:
         others = {id(entity) for entity in entities} - {id(entity) for entity in named}
         aside["entities outside the layer STONES"] = len(others)
@@ -91,7 +93,7 @@ def _document(ezdxf: Any, data: bytes, where: str) -> Any:
             tagger = import_module("ezdxf.lldxf.tagger")
             drawing = import_module("ezdxf.document").Drawing
             return drawing.load(tagger.binary_tags_loader(data, errors="surrogateescape"))
-        return ezdxf.read(io.StringIO(data.decode("utf-8", "surrogateescape")))
+        return ezdxf.read(io.StringIO(_text(data)))
     except (ezdxf.DXFError, ValueError, TypeError, KeyError, IndexError, AttributeError) as error:
         raise InputError(
             "E106", f"the drawing is damaged or cut short ({error}).", where=where,
@@ -99,20 +101,40 @@ def _document(ezdxf: Any, data: bytes, where: str) -> Any:
         ) from error  # fmt: skip
 
 
+def _text(data: bytes) -> str:
+    """Decode a drawing: what is no UTF-8 is in the code page that it names (before R2007)."""
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        head = io.StringIO(data.decode("utf-8", "surrogateescape"))
+        page = import_module("ezdxf.filemanagement").dxf_stream_info(head).encoding
+        return data.decode(page, "surrogateescape")
+
+
 def _unit(ezdxf: Any, document: Any, where: str, settings: ReadSettings) -> float | None:
     units = import_module("ezdxf.units")
     number = int(document.header.get("$INSUNITS", 0))
-    if number:
+    if number in {int(known) for known in ezdxf.units.InsertUnits} - {0}:
         return float(units.conversion_factor(ezdxf.units.InsertUnits(number), units.M))
     if settings.unit:
         return METRES.get(settings.unit)
     raise InputError(
         "E116",
-        "the drawing does not say its unit ($INSUNITS is 0), so its stones could be of any size.",
+        f"the drawing does not say its unit ($INSUNITS is {number}), so its stones could be of "
+        "any size.",
         where=where,
         cure="Say it with --unit mm (or cm, m, in, ft, px; ReadSettings.unit), or set it in the "
         "CAD program.",
     )
+
+
+def _is_hidden(entity: Any, document: Any) -> bool:
+    layer = str(entity.dxf.get("layer", "0"))
+    if layer in document.layers:
+        found = document.layers.get(layer)
+        if found.is_off() or found.is_frozen():
+            return True
+    return bool(entity.dxf.get("invisible", 0))
 
 
 def _outline(entity: Any, where: str, aside: Counter[str]) -> Points | None:
@@ -191,5 +213,6 @@ def _file(
     notices = left_aside(aside, "Only closed outlines are read: join lines and arcs to polylines.")
     if len(found) < len(rings):
         text = f"{len(rings) - len(found)} outlines lie in others and are their holes."
-        notices.append(Notice("W119", text))
+        cure = "If they are stones in a frame, put them on a layer STONES, or hide the frame."
+        notices.append(Notice("W119", text, cure))
     return OutlineFile(stones, unit_m, y_up=True, notices=tuple(notices))

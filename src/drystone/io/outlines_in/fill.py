@@ -1,9 +1,12 @@
 """Areas to pixels: a pixel belongs to an area when its centre does."""
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.io.outlines_in.model import Area, PlacedMask
+from drystone.errors import InputError
+from drystone.io.outlines_in.model import Area, OutlinedStone, PlacedMask
 from drystone.kernels.polygons import Points
 
 
@@ -12,6 +15,22 @@ def box_of(area: Area) -> tuple[int, int, int, int]:
     points = np.concatenate(area.rings)
     (left, top), (right, bottom) = points.min(axis=0), points.max(axis=0)
     return int(np.floor(top)), int(np.ceil(bottom)), int(np.floor(left)), int(np.ceil(right))
+
+
+def check_reach(stones: Iterable[OutlinedStone], where: str, max_px: int) -> None:
+    """Refuse outlines, in px, that would fill the memory (E110), naming the stone."""
+    for stone in stones:
+        for area in stone.areas:
+            top, bottom, left, right = box_of(area)
+            if (right - left) * (bottom - top) > max_px:
+                raise InputError(
+                    "E110",
+                    f"stone {stone.name or stone.id} reaches over {right - left} x {bottom - top} "
+                    f"px; the limit is {max_px / 1e6:g} million.",
+                    where=where,
+                    cure="Is a corner of it far away from the picture? Correct it, or raise "
+                    "max_image_mpx.",
+                )
 
 
 def filled_area(area: Area) -> PlacedMask | None:

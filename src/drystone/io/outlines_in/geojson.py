@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from drystone.errors import InputError
+from drystone.errors import InputError, Notice
 from drystone.io.outlines_in.model import (
     METRES,
     Area,
@@ -36,18 +36,25 @@ def read_geojson(content: Mapping[str, Any], where: str, settings: ReadSettings)
 
     A foreign member ``unit`` of the file ("m", "mm" …), or the setting, makes it a drawing with y
     up; without one, or with "px", coordinates are px of an image with y down, as image tools
-    write them, unless its ``frame`` is that of a wall of drystone.  The id of a stone is the
-    ``id`` of its feature or of its properties, its name their ``name``.
+    write them, unless its ``frame`` is that of a wall of drystone, or all y are negative.  The id
+    of a stone is the ``id`` of its feature or of its properties, its name their ``name``.
 
     Raises
     ------
     InputError
-        E114 naming the feature that cannot be used, E116 for degrees of latitude.
+        E114 naming the feature that cannot be used, E116 for degrees of latitude, and for a map
+        projection without a unit.
     """
     if any(name in str(content.get("crs", "")) for name in _DEGREES):
         raise InputError(
             "E116", "its coordinates are degrees of latitude and longitude.", where=where,
             cure="Project it to metres, and give the file a member \"unit\": \"m\".",
+        )  # fmt: skip
+    if content.get("crs") and not settings.unit and "unit" not in content:
+        raise InputError(
+            "E116", "its coordinates are those of a map, and it does not say their unit.",
+            where=where, cure="Say it with --unit m (or ft; ReadSettings.unit), or px if they are "
+            "px of an image after all.",
         )  # fmt: skip
     unit = content.get("unit", "px")
     if unit not in (*METRES, "px"):
@@ -62,7 +69,18 @@ def read_geojson(content: Mapping[str, Any], where: str, settings: ReadSettings)
             stones += _stones(feature, aside)
     unit_m = METRES.get(unit if "unit" in content else settings.unit or "px")
     upwards = unit_m is not None or str(content.get("frame")).startswith("wall")
-    return OutlineFile(tuple(stones), unit_m, upwards, notices=tuple(left_aside(aside)))
+    notices = left_aside(aside)
+    if not upwards and _below(stones):
+        upwards = True
+        text = "all y are negative: y runs up, as GIS programs have it over a picture."
+        notices.append(Notice("W119", text))
+    return OutlineFile(tuple(stones), unit_m, upwards, notices=tuple(notices))
+
+
+def _below(stones: list[OutlinedStone]) -> bool:
+    """Tell whether all is below a picture's upper edge with y up, where y down has no pixel."""
+    rings = [ring for stone in stones for area in stone.areas for ring in area.rings]
+    return bool(rings) and all(ring[:, 1].max() <= 0.0 for ring in rings)
 
 
 def _features(content: Mapping[str, Any], where: str) -> Iterator[Mapping[str, Any]]:

@@ -70,12 +70,20 @@ def read_labelme(content: Mapping[str, Any], where: str, _: ReadSettings) -> Out
 def _size(content: Mapping[str, Any], where: str) -> tuple[int, int] | None:
     with entry(where, "the size of the image"):
         width, height = content.get("imageWidth"), content.get("imageHeight")
-        return None if width is None or height is None else (int(width), int(height))
+        if width is None or height is None:
+            return None
+        size = int(width), int(height)
+        if min(size) < 1:
+            raise ValueError(f"it is {width} x {height} px")
+        return size
 
 
 def _areas(shape: Mapping[str, Any]) -> tuple[tuple[Area, ...], tuple[PlacedMask, ...]] | None:
     kind, points = shape.get("shape_type") or "polygon", shape["points"]
-    if kind in {"polygon", "oriented_rectangle"}:
+    # X-AnyLabeling writes all four corners of a rectangle, also of one that is turned.
+    if kind in {"polygon", "oriented_rectangle", "rotation"} or (
+        kind == "rectangle" and len(points) == 4
+    ):
         return (Area((ring(points),)),), ()
     if kind == "rectangle":
         (x0, y0), (x1, y1) = points

@@ -7,7 +7,7 @@ import numpy as np
 
 from drystone.errors import InputError, LabelImageError, Notice
 from drystone.io.images import check_size
-from drystone.io.outlines_in.fill import trimmed
+from drystone.io.outlines_in.fill import check_reach, trimmed
 from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile, PlacedMask
 from drystone.io.outlines_in.nested import meeting_boxes, overlap, pixels_of
 from drystone.io.patches import Patch
@@ -86,6 +86,7 @@ def rastered(file: OutlineFile, settings: ReadSettings, where: str) -> Rastered:
             error.code, error.what, where=error.where,
             cure=f"{cure}a smaller px_per_m, or raise max_image_mpx.",
         ) from None  # fmt: skip
+    check_reach(stones, where, int(settings.max_image_mpx * 1e6))
     patches, lost, empty = [], [], []
     for stone in stones:
         placed = pixels_of(stone)

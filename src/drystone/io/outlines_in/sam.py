@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from drystone.io.outlines_in.coco import image_needed, shape_of, size_in
-from drystone.io.outlines_in.fill import trimmed
+from drystone.io.outlines_in.fill import check_reach, trimmed
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile, PlacedMask, entry
 from drystone.io.outlines_in.nested import without_nested
 from drystone.io.outlines_in.run_lengths import is_runs, size_of
@@ -53,6 +53,7 @@ def read_sam(content: list[Mapping[str, Any]], where: str, settings: ReadSetting
             if is_runs(segmentation):
                 sizes.add(size_of(segmentation))
             stones.append(OutlinedStone(number, "", areas, masks))
+    check_reach(stones, where, int(settings.max_image_mpx * 1e6))
     kept, notices = without_nested(stones, settings.skip)
     return OutlineFile(tuple(kept), size_px=size_in(None, sizes, where), notices=tuple(notices))
 

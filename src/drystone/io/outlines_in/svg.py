@@ -20,6 +20,7 @@ from drystone.io.outlines_in.model import (
     number_in,
 )
 from drystone.io.outlines_in.svg_shapes import (
+    PX_M,
     SHAPES,
     UNITS_M,
     Matrix,
@@ -52,6 +53,8 @@ class _Place:
     stones: bool = False
     name: str = ""
     depth: int = 0
+    inner: bool = False
+    """In a viewport of its own, of which per cents are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +94,7 @@ def read_svg(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
         raise damaged(where, f"its root element is {_tag(root)}, not svg")
     with entry(where, "the element svg"):
         to_page, unit_m, page = _page(root, settings)
-    walk = _Walk(root, where)
+    walk = _Walk(root, where, _view(root, to_page, page))
     shapes = list(walk.shapes(to_page))
     if any(shape.place.stones for shape in shapes):
         outside = [shape for shape in shapes if not shape.place.stones]
@@ -113,8 +116,10 @@ def read_svg(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
 class _Walk:
     """Through all that is drawn."""
 
-    def __init__(self, root: ET.Element, where: str) -> None:
-        self.root, self.where = root, where
+    def __init__(
+        self, root: ET.Element, where: str, view: tuple[float, float] | None = None
+    ) -> None:
+        self.root, self.where, self.view = root, where, view
         self.aside: Counter[str] = Counter()
         self.known = {e.get("id"): e for e in root.iter() if e.get("id")}
         self.count = 0
@@ -174,10 +179,11 @@ class _Walk:
             place.stones or (_LAYER in words and _tag(element) == "g"),
             name if _tag(element) not in {"g", "svg"} or number_in(name) else place.name,
             place.depth + 1,
+            place.inner or (_tag(element) in {"svg", "symbol"} and element is not self.root),
         )
 
     def _shape(self, element: ET.Element, kind: str, place: _Place) -> Iterator[_Shape]:
-        lines = lines_of(kind, element.attrib)
+        lines = lines_of(kind, element.attrib, None if place.inner else self.view)
         closed = [line.points for line in lines if line.closed and len(line.points) > 2]
         if len(closed) < len(lines):
             self.aside[f"open lines in {kind}"] += len(lines) - len(closed)
@@ -221,8 +227,18 @@ def _page(
         matrix[:2, 2] = np.array(middle) - scale * np.array(box[:2])
     elif physical:
         # User units are the px of CSS then.
-        matrix[0, 0] = matrix[1, 1] = 0.0254 / 96.0 / UNITS_M[sides[0][1]]
+        matrix[0, 0] = matrix[1, 1] = PX_M / UNITS_M[sides[0][1]]
     return matrix, unit_m, (size[0], size[1]) if size else None
+
+
+def _view(
+    root: ET.Element, to_page: Matrix, page: tuple[float, float] | None
+) -> tuple[float, float] | None:
+    """Return the width and height of the page in user units; None when they are not known."""
+    box = [float(word) for word in re.split(r"[\s,]+", root.get("viewBox", "").strip()) if word]
+    if box:
+        return box[2], box[3]
+    return None if page is None else (page[0] / to_page[0, 0], page[1] / to_page[1, 1])
 
 
 def _covers(shape: _Shape, page: tuple[float, float]) -> bool:

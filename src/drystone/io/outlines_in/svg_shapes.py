@@ -20,6 +20,8 @@ UNITS_M = {
     "mm": 0.001, "cm": 0.01, "q": 0.00025, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6,
 }  # fmt: skip
 """Metres in a unit of length."""
+PX_M = 0.0254 / 96.0
+"""Metres in a px of CSS, which a user unit is."""
 
 
 def length(text: str) -> tuple[float, str]:
@@ -45,6 +47,7 @@ def transform(text: str) -> Matrix:
     [[2.0, 0.0, 10.0], [0.0, 3.0, 0.0], [0.0, 0.0, 1.0]]
     """
     matrix, place = np.eye(3), 0
+    text = "" if text.strip() == "none" else text
     while place < len(text.rstrip()):
         found = _CALL.match(text, place)
         if found is None:
@@ -82,27 +85,43 @@ def moved(matrix: Matrix, points: Points) -> Points:
     return np.asarray(points @ matrix[:2, :2].T + matrix[:2, 2])
 
 
-def lines_of(kind: str, attributes: Mapping[str, str]) -> list[Subpath]:
-    """Return the lines of a shape in its own coordinates; ValueError when it cannot be used."""
+def lines_of(
+    kind: str, attributes: Mapping[str, str], view: tuple[float, float] | None = None
+) -> list[Subpath]:
+    """Return the lines of a shape in its own coordinates; ValueError when it cannot be used.
+
+    Parameters
+    ----------
+    kind : str
+        One of `SHAPES`.
+    attributes : mapping
+        Of its element.
+    view : (float, float), optional
+        Width and height that per cents are of, user units.
+    """
     if kind == "path":
-        return subpaths(attributes.get("d", ""))
+        data = attributes.get("d", "")
+        return [] if data.strip() == "none" else subpaths(data)
     if kind in {"polygon", "polyline"}:
-        numbers = [bounded(word) for word in re.split(r"[\s,]+", attributes["points"].strip())]
-        points = np.reshape(numbers, (-1, 2))
+        words = re.split(r"[\s,]+", attributes.get("points", "").strip())
+        points = np.reshape([bounded(word) for word in words if word], (-1, 2))
+        if not len(points):
+            return []
         closed = kind == "polygon" or bool((points[0] == points[-1]).all())
         return [Subpath(points, closed)]
     if kind == "rect":
-        return [Subpath(_rectangle(attributes), closed=True)]
-    rx, ry = (_number(attributes, "r" if kind == "circle" else name) for name in ("rx", "ry"))
+        return [Subpath(_rectangle(attributes, view), closed=True)]
+    rx, ry = (_number(attributes, "r" if kind == "circle" else n, view) for n in ("rx", "ry"))
     angles = np.arange(CORNERS_OF_CIRCLE) * (2.0 * math.pi / CORNERS_OF_CIRCLE)
     circle = np.column_stack([rx * np.cos(angles), ry * np.sin(angles)])
-    middle = np.array([_number(attributes, "cx"), _number(attributes, "cy")])
+    middle = np.array([_number(attributes, "cx", view), _number(attributes, "cy", view)])
     return [Subpath(circle + middle, closed=True)]
 
 
-def _rectangle(attributes: Mapping[str, str]) -> Points:
-    x, y, width, height = (_number(attributes, name) for name in ("x", "y", "width", "height"))
-    given = [_number(attributes, name) for name in ("rx", "ry") if name in attributes]
+def _rectangle(attributes: Mapping[str, str], view: tuple[float, float] | None) -> Points:
+    names = ("x", "y", "width", "height")
+    x, y, width, height = (_number(attributes, name, view) for name in names)
+    given = [_number(attributes, name, view) for name in ("rx", "ry") if name in attributes]
     # One radius counts for both.
     rx, ry = (min(given[0], width / 2), min(given[-1], height / 2)) if given else (0.0, 0.0)
     if rx <= 0.0 or ry <= 0.0:
@@ -119,8 +138,12 @@ def _rectangle(attributes: Mapping[str, str]) -> Points:
     return np.concatenate(corners)
 
 
-def _number(attributes: Mapping[str, str], name: str) -> float:
+def _number(attributes: Mapping[str, str], name: str, view: tuple[float, float] | None) -> float:
     value, unit = length(attributes.get(name, "0"))
+    if unit in UNITS_M:
+        return value * UNITS_M[unit] / PX_M
+    if unit == "%" and view is not None and name != "r":
+        return value / 100.0 * view[0 if name in {"x", "cx", "rx", "width"} else 1]
     if unit not in {"", "px"}:
-        raise ValueError(f"{name} in {unit or 'another unit'} is not read, only user units")
+        raise ValueError(f"{name} in {unit} is not read, only user units")
     return value
