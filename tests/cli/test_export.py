@@ -210,3 +210,13 @@ def test_a_title_of_any_letters_makes_files_that_can_be_read(run: Run, plan: Pat
     assert read.findtext("{http://www.w3.org/2000/svg}title") == said
     texts = ezdxf.readfile(plan.parent / "wall.dxf").modelspace().query("TEXT")
     assert said in [text.dxf.text for text in texts]
+
+
+def test_files_of_another_plan_in_a_folder_of_its_own_are_named(run: Run, plan: Path) -> None:
+    first = run("export", plan, "--to", "stl", "--px-per-m", "200")
+    assert "W180" not in first.err
+    (plan.parent / "stl" / "stone_999.stl").write_bytes(b"of an earlier plan")
+    again = run("export", plan, "--to", "stl", "--px-per-m", "200", "--overwrite")
+    assert again.code == 0
+    assert "W180 not of this plan: stl/stone_999.stl, in" in again.err
+    assert (plan.parent / "stl" / "stone_999.stl").exists()

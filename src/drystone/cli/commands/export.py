@@ -3,11 +3,12 @@
 import argparse
 import re
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from drystone.assembly.read import read_assembly
 from drystone.cli.output import make_folder, prepare_files, print_json
-from drystone.errors import ExitCode, UsageError
+from drystone.errors import ExitCode, Notice, UsageError
 from drystone.export.formats import FORMATS
 from drystone.export.settings import ExportSettings
 
@@ -45,6 +46,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     written: dict[str, list[str]] = {}
     for name, module in modules.items():
         written[name] = [str(file) for file in module.write(assembly, folder, settings)]
+    if (left := _left_over(folder, names)) is not None:
+        print(f"drystone: {left}", file=sys.stderr)
     if any(FORMATS[name].metric for name in asked) and arguments.thickness_m is None:
         said = f"no --thickness: parts are {assembly.thickness:.3g} m thick"
         print(f"drystone: {said}", file=sys.stderr)
@@ -71,6 +74,27 @@ def settings_from(arguments: argparse.Namespace) -> ExportSettings:
         projector_px=(int(found[1]), int(found[2])),
         projector_px_per_m=float(found[3]),
         seconds_per_step=arguments.seconds_per_step,
+    )
+
+
+def _left_over(folder: Path, names: Sequence[str]) -> Notice | None:
+    """Name what lies in folders of this export and is not of it (W180).
+
+    A projector shows all frames of its folder, those of an earlier wall with more steps as well.
+    """
+    places = {Path(name).parent for name in names} - {Path()}
+    found = {
+        file.relative_to(folder).as_posix()
+        for place in places
+        for file in (folder / place).iterdir()
+        if file.is_file()
+    }
+    others = sorted(found - set(names))
+    if not others:
+        return None
+    more = f" and {len(others) - 1} more" if len(others) > 1 else ""
+    return Notice(
+        "W180", f"not of this plan: {others[0]}{more}, in {folder}.", "Remove them if they are old."
     )
 
 
