@@ -142,6 +142,15 @@ def test_a_dead_force_makes_no_tilt_to_fall_at(tower: Path, run: Run) -> None:
     assert "tilted by" not in said
 
 
+def test_no_picture_of_an_earlier_wall_is_left(tower: Path, run: Run, tmp_path: Path) -> None:
+    asked = ("analyse", tower, "--associative-only", "-o", tmp_path / "out", "--overwrite")
+    assert run(*asked, "--scatter", "2").code == 0
+    assert (tmp_path / "out" / "scatter.png").is_file()
+    assert run(*asked, "--load", "gravity", "--dead", "1@0,3:.5,0").code == 0
+    left = {path.name for path in (tmp_path / "out").iterdir()}
+    assert not left & {"scatter.png", "friction.png", "report.html", "blocks.csv", "contacts.csv"}
+
+
 def test_cases_that_are_ranges(tower: Path, bridge: Path, run: Run) -> None:
     report = run("analyse", bridge, "--json", "--settle", "2").json()
     assert report["alpha_least"] == pytest.approx(1 / 3)

@@ -15,6 +15,7 @@ from PIL import Image, ImageDraw
 from drystone.report import view_of_result, view_of_wall, write_report
 from drystone.report.embedding import json_in_html, viewer_page, viewer_script, viewer_style
 from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 from tests.report.walls import result
 
@@ -567,8 +568,36 @@ def test_a_wall_that_was_not_planned_has_no_steps(visit):
     page.locator(".ds-stage").focus()
     page.keyboard.press("ArrowRight")
     assert page.locator(".ds-card .ds-name").inner_text().endswith("Stone 7")
+    # The image begins left of the wall, so x is not from the wall's end.
+    assert "x 15.0 px, 10.0 px above the ground" in page.locator(".ds-card").inner_text()
+    # Without steps, keys that go to steps are the page's.
+    page.keyboard.press("Home")
+    assert page.locator(".ds-said").inner_text() == "Stone 7."
     page.locator(".ds-choose-mechanism input[value=right]").check()
     assert page.locator(".ds-part[transform]").count() > 0
+
+
+@pytest.mark.parametrize("width", [390, 1200])
+def test_marks_of_joints_are_as_large_on_a_phone(visit, width):
+    model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [2, 0, 2, 1], [1, 1, 2, 1]]})
+    wall = {1: np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]])}
+    wall |= {2: wall[1] + [2, 0], 3: wall[1] + [1, 1]}
+    data = view_of_wall(wall, model, lateral_resistance(model, mechanism=True))
+    page = visit(viewer_page(data), viewport={"width": width, "height": 800})
+    page.locator(".ds-kinds-on").check()
+    high = page.locator(".ds-stage .ds-mark").first.evaluate(
+        "one => one.getBoundingClientRect().height"
+    )
+    assert 2.5 < high < 8
+
+
+def test_numbers_of_a_tall_wall_are_as_large_as_of_a_long_one(visit):
+    model = model_from_json({"blocks_xywh": [[0, 0, 1, 2], [0, 2, 1, 2]]})
+    wall = {1: np.array([[0.0, 0], [1, 0], [1, 2], [0, 2]])}
+    wall[2] = wall[1] + [0, 2]
+    page = visit(viewer_page(view_of_wall(wall, model, lateral_resistance(model))))
+    high = page.locator(".ds-number").first.evaluate("one => one.getBoundingClientRect().height")
+    assert 12 < high < 26
 
 
 def test_everything_has_a_name_for_screen_readers(page):

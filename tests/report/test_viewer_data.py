@@ -15,7 +15,7 @@ from drystone.assembly.read import read_assembly
 from drystone.io.published_sets import SETS
 from drystone.model.plan import StoneStep
 from drystone.plotting.palette import cluster_colour
-from drystone.report import view_of_assembly, view_of_result, view_of_wall
+from drystone.report import view_of_assembly, view_of_result, view_of_wall, write_report
 from drystone.report.content import Card
 from drystone.report.crops import LONGEST_PX, photo_crops
 from drystone.report.masons import WALLS, masons_wall, masons_words
@@ -228,6 +228,65 @@ def test_a_wall_that_falls_has_a_mechanism_without_a_load():
     assert all(contact["forces"] == {} for contact in shown["contacts"])
     values = {card["name"]: card["value"] for card in shown["metrics"]}
     assert values["Lateral resistance"] == "not defined"
+
+
+@pytest.mark.parametrize(
+    ("load_case", "said", "horizontal"),
+    [
+        ("tilting table", "Horizontal load to the left", True),
+        ("tilting table, tilted by 5°", "Load along the base to the left", True),
+        ("growing with height", "Horizontal load to the left", True),
+        ("point loads (1@0.5,2:1,0)", "Live load reversed", False),
+    ],
+)
+def test_only_a_tilting_table_is_called_one(load_case, said, horizontal):
+    model = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
+    wall = {1: np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]])}
+    resistance = lateral_resistance(model, mechanism=True)
+    shown = view_of_wall(wall, model, resistance, unit="units", load_case=load_case)
+    assert shown["mechanisms"]["left"]["load"] == said
+    plain = load_case == "tilting table"
+    assert any("as on a tilting table" in one for one in shown["assumptions"]) == plain
+    assert any(load_case in one for one in shown["assumptions"])
+    assert shown["dead_load"] == ("dead load" if "tilted" in load_case else "own weight")
+    assert f"under {shown['dead_load']} alone" in shown["forces_words"]
+    cards = {card["symbol"]: card["sentence"] for card in shown["metrics"]}
+    assert ("whole wall would slide" in cards["F_LR"]) == plain
+    assert (
+        "share of the wall's weight" in cards["\N{GREEK SMALL LETTER ALPHA} left"]
+    ) == horizontal
+
+
+def test_what_is_fixed_and_what_has_its_own_friction_is_said():
+    blocks = [
+        {"id": 1, "polygon": [[0, 0], [4, 0], [4, 1], [0, 1]], "fixed": True},
+        {"id": 2, "polygon": [[0, 1], [4, 1], [4, 3], [0, 3]], "held": ["turn"]},
+        {"id": 3, "polygon": [[0, 3], [4, 3], [4, 4], [0, 4]], "density": 2.4},
+    ]
+    wall = {block["id"]: np.array(block["polygon"], float) for block in blocks}
+    plain = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
+    owned = model_from_json({"blocks": blocks, "friction": [{"between": [2, 1], "mu": 0.4}]})
+    said = view_of_wall(wall, owned, lateral_resistance(owned, mechanism=True))["assumptions"]
+    assert said[-4:-2] == ["Fixed like the ground: 1.", "Held by guides: 2 (turn)."]
+    assert "densities" in said[-2]
+    assert "of their own" in said[-1]
+    one = {1: np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]])}
+    said = view_of_wall(one, plain, lateral_resistance(plain, mechanism=True))["assumptions"]
+    assert "tilting table" in said[-1]
+
+
+def test_a_wall_that_falls_is_not_said_to_be_pushed(tmp_path):
+    model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [1.5, 1, 4, 1]]})
+    wall = {1: np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]])}
+    wall[2] = wall[1] * [2, 1] + [1.5, 1]
+    resistance = lateral_resistance(model, mechanism=True)
+    view = view_of_wall(wall, model, resistance, noun="block", unit="units")
+    Image.new("RGB", (2, 2)).save(tmp_path / "mechanism_left.png")
+    path = write_report(tmp_path / "report.html", view, pictures=tmp_path)
+    page = path.read_text(encoding="utf-8")
+    assert "Horizontal load" not in page.split("<script", 1)[0]
+    assert "in units; 0 is the ground" in page
+    assert "<td>block</td>" in page
 
 
 def test_a_scaled_analysis_is_that_of_the_scaled_wall():

@@ -14,7 +14,7 @@ from drystone.statics.result import LimitResult, LimitStatus
 
 _DIRECTIONS = ("left", "right")
 
-FRICTION, REPORT = "friction.png", "report.html"
+FRICTION, REPORT, SCATTER = "friction.png", "report.html", "scatter.png"
 
 
 def prepare(folder: Path, arguments: argparse.Namespace) -> list[Path]:
@@ -24,7 +24,7 @@ def prepare(folder: Path, arguments: argparse.Namespace) -> list[Path]:
         names += [f"{kind}_{direction}.png" for kind in ("mechanism", "forces")]
         names.append(f"mechanism_{direction}.gif")
     paths = [folder / name for name in names]
-    others = [folder / name for name in (*TABLES, FRICTION, REPORT)]
+    others = [folder / name for name in (*TABLES, FRICTION, REPORT, SCATTER)]
     prepare_files([*paths, *others], overwrite=arguments.overwrite)
     for path in others:
         # One that an earlier run left would belong to another wall.

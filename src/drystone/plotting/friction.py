@@ -12,7 +12,11 @@ LEFT, RIGHT = CLUSTER_COLOURS[0], CLUSTER_COLOURS[1]
 
 
 def plot_friction(
-    curve: Sequence[AtFriction], mu: float | None = None, ax: Axes | None = None
+    curve: Sequence[AtFriction],
+    mu: float | None = None,
+    ax: Axes | None = None,
+    *,
+    slides_at_mu: bool = True,
 ) -> Axes:
     """Draw what a wall carries in both directions at several coefficients of friction.
 
@@ -24,11 +28,16 @@ def plot_friction(
         The coefficient of the analysis, marked.
     ax : Axes, optional
         Where to draw; None makes a figure.
+    slides_at_mu : bool
+        Whether the whole wall slides at a load multiplier of mu, as on a level tilting table;
+        that is drawn too.
     """
     if ax is None:
         ax = Figure(figsize=(4.2, 2.9), layout="constrained").add_subplot()
     mus = [at.mu for at in curve]
-    ax.plot(mus, mus, color=GREY, linestyle="dotted", linewidth=1.0, label="the whole wall slides")
+    if slides_at_mu:
+        words = "the whole wall slides"
+        ax.plot(mus, mus, color=GREY, linestyle="dotted", linewidth=1.0, label=words)
     for name, colour, marker in (("left", LEFT, "<"), ("right", RIGHT, ">")):
         values = [getattr(at, f"alpha_{name}") for at in curve]
         drawn = [float("nan") if value is None else value for value in values]

@@ -8,6 +8,7 @@ from typing import Any, Literal, Protocol
 
 from drystone.model.plan import Plan
 from drystone.settle.settings import SettleSettings
+from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 
 UNDEFINED = "not defined"
@@ -32,14 +33,20 @@ TOUCHING = {
     "raster": "Stones touch where their pixels have edges or corners in common; by their real "
     "outlines they may overlap, or not touch.",
 }
+TILTING = "tilting table"
+"""Name of the load case of a plan."""
+
+LIVE_LOAD = (
+    "The live load is horizontal, acts at the centroids and is the same share of every stone's "
+    "weight, as on a tilting table; the wall stands free on rigid ground."
+)
 ASSUMPTIONS = (
     "The wall is a flat section of unit thickness; what happens across it is not modelled.",
     "Stones are rigid and do not crush; their weight is in proportion to their area.",
     "Joints are dry: they carry pressure and friction, no tension.",
     "Friction follows Coulomb's law with an associative flow rule: joints that slide also open "
     "(dilatancy), so the load multipliers are in general an upper bound.",
-    "The live load is horizontal, acts at the centroids and is the same share of every stone's "
-    "weight, as on a tilting table; the wall stands free on rigid ground.",
+    LIVE_LOAD,
     "Joints are two pixels wide at the working resolution when F_AV and F_AH are measured.",
 )
 
@@ -145,6 +152,77 @@ def assumptions(plan: Plan) -> tuple[str, ...]:
     return (*ASSUMPTIONS, TOUCHING[geometry(plan)].format(contact_px=contact_px))
 
 
+def wall_assumptions(load_case: str = TILTING) -> tuple[str, ...]:
+    """Return what the analysis of a wall that was not planned rests on.
+
+    Parameters
+    ----------
+    load_case : str
+        Name of the loads, as in :class:`drystone.statics.loads.Loads`.
+
+    Examples
+    --------
+    >>> wall_assumptions("point loads")[-1]
+    'Load case: point loads. The wall stands free on rigid ground, but for what is fixed.'
+    """
+    load = LIVE_LOAD
+    if load_case != TILTING:
+        load = (
+            f"Load case: {load_case}. The wall stands free on rigid ground, but for what is fixed."
+        )
+    return (*ASSUMPTIONS[: ASSUMPTIONS.index(LIVE_LOAD)], load)
+
+
+def model_assumptions(model: RigidBlockModel) -> tuple[str, ...]:
+    """Return what only this model has: what holds blocks, densities, friction of single joints."""
+    said = []
+    fixed = [block.id for block in model.blocks if block.fixed]
+    if fixed:
+        said.append(f"Fixed like the ground: {', '.join(map(str, fixed))}.")
+    held = [f"{block.id} ({', '.join(block.held)})" for block in model.blocks if block.held]
+    if held:
+        said.append(f"Held by guides: {', '.join(held)}.")
+    if len({block.density for block in model.blocks if not block.fixed}) > 1:
+        said.append("Weights are areas times the densities of the block model.")
+    if any(face.mu is not None for face in model.interfaces):
+        said.append(
+            "Some joints have a coefficient of friction of their own, which they keep when mu "
+            "is varied."
+        )
+    return tuple(said)
+
+
+def load_words(load_case: str, side: str) -> str:
+    """Name the live load to one side.
+
+    Examples
+    --------
+    >>> load_words("tilting table", "left"), load_words("point loads", "left")
+    ('Horizontal load to the left', 'Live load reversed')
+    """
+    if is_horizontal(load_case):
+        along = "Load along the base" if ", tilted by " in load_case else "Horizontal load"
+        return f"{along} to the {side}"
+    return "Live load as given" if side == "right" else "Live load reversed"
+
+
+def dead_load(load_case: str) -> str:
+    """Name what acts always.
+
+    Examples
+    --------
+    >>> dead_load("growing with height"), dead_load("tilting table, tilted by 5°")
+    ('own weight', 'dead load')
+    """
+    more = ", tilted by " in load_case or ", dead forces " in load_case
+    return "dead load" if more else "own weight"
+
+
+def is_horizontal(load_case: str) -> bool:
+    """Say whether the live load of a case is sideways, and its sum alpha times the weight."""
+    return load_case.startswith((TILTING, "growing with height"))
+
+
 def summary(plan: Plan) -> str:
     """Return the result in one sentence."""
     placed, of = len(plan.stone_steps), len(plan.stone_steps) + len(plan.unused)
@@ -158,41 +236,56 @@ def cards(plan: Plan) -> tuple[Card, ...]:
     return (*strength_cards(plan.metrics), *_layout(plan))
 
 
-def strength_cards(metrics: Strength) -> tuple[Card, ...]:
-    """Return what is said of a wall's strength."""
+def strength_cards(metrics: Strength, load_case: str = TILTING) -> tuple[Card, ...]:
+    """Return what is said of a wall's strength under the loads of a case."""
     multiplier = "Load multiplier (adequacy factor) to the "
-    meaning = "A horizontal load of this share of the wall's weight, pushing to the {}, is the "
-    meaning += "most that it carries."
+    of_one = "At 1 the whole wall would slide on the ground before it comes apart."
+    if load_case != TILTING:
+        of_one = f"The load case is: {load_case}."
     return (
         Card(
             "F_LR",
             "Lateral resistance",
             number(metrics.F_LR),
             "higher",
-            "The smaller load multiplier over the coefficient of friction. At 1 the whole wall "
-            f"would slide on the ground before it comes apart.{_by_tolerance(metrics)}",
+            "The smaller load multiplier over the coefficient of friction. "
+            f"{of_one}{_by_tolerance(metrics)}",
         ),
         Card(
             f"{ALPHA} left",
             multiplier + "left",
             number(metrics.alpha_left),
             "higher",
-            meaning.format("left"),
+            _multiplier_means(load_case, "left"),
         ),
         Card(
             f"{ALPHA} right",
             multiplier + "right",
             number(metrics.alpha_right),
             "higher",
-            meaning.format("right"),
+            _multiplier_means(load_case, "right"),
         ),
         Card(
             "",
             "Weaker direction",
             weaker_direction(metrics),
             "",
-            "Where the wall fails first when it is pushed from the side.",
+            "Where the wall fails first when it is pushed from the side."
+            if is_horizontal(load_case)
+            else "Right is the live load as given, left is the live load reversed.",
         ),
+    )
+
+
+def _multiplier_means(load_case: str, side: str) -> str:
+    """Say what a load multiplier is a multiple of."""
+    words = load_words(load_case, side)
+    if not is_horizontal(load_case):
+        return f"{words}: so many times it is the most that the wall carries."
+    load = "load along the base" if words.startswith("Load") else "horizontal load"
+    return (
+        f"A {load} of this share of the wall's weight, pushing to the {side}, is the most that it "
+        "carries."
     )
 
 

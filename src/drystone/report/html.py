@@ -53,7 +53,7 @@ def write_report(path: str | Path, view: View, *, pictures: str | Path | None = 
             mechanisms={side: _embedded(folder, name) for side, name in MECHANISMS.items()},
             unused=content.unused_stones(view["unused"]),
             number=content.number,
-            digits=3 if view["unit"] == "m" else 1,
+            digits=1 if view["unit"] == "px" else 3,
         )
     )
     path.write_text(text, encoding="utf-8", newline="\n")

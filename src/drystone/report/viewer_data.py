@@ -1,6 +1,7 @@
 """A wall as plain JSON for the viewer: "drystone-view/1".
 
-Lengths are in ``unit``, x to the right from the wall's left end and y up from the ground.
+Lengths are in ``unit``, x to the right (from the left end of a plan, else as in the image or block
+model) and y up from the ground.
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -31,7 +32,7 @@ View = dict[str, Any]
 """See docs/viewer.md for its keys."""
 
 FORCES = (
-    "Forces at the limit loads are those of the analysis; those under own weight alone are one of "
+    "Forces at the limit loads are those of the analysis; those under {} alone are one of "
     "many possible states, mixed of both so that the loads from the side cancel."
 )
 
@@ -92,7 +93,7 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     resistance: LateralResistance,
     *,
     title: str = "Wall",
-    unit: Literal["px", "m"] = "px",
+    unit: Literal["px", "m", "units"] = "px",
     noun: Noun = "stone",
     wedges: Collection[int] = (),
     cards: Iterable[content.Card] = (),
@@ -100,7 +101,8 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     settings: Mapping[str, Any] | None = None,
     notices: Sequence[Notice] = (),
     timings: Mapping[str, float] | None = None,
-    assumptions: Sequence[str] = content.ASSUMPTIONS[:-1],
+    load_case: str = content.TILTING,
+    assumptions: Sequence[str] | None = None,
 ) -> View:
     """Show a wall that was not planned: its blocks have ids and no steps.
 
@@ -115,8 +117,8 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         Of the model, with mechanisms.
     title : str
         For people.
-    unit : {"px", "m"}
-        Of lengths.
+    unit : {"px", "m", "units"}
+        Of lengths; "units" are those of a block model that says no other.
     noun : {"stone", "block"}
         What a block is called.
     wedges : collection of int
@@ -129,8 +131,10 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         Every parameter of the analysis; tables in it become names with points.
     notices, timings
         As for :func:`view_of_assembly`.
-    assumptions : sequence of str
-        What the results rest on.
+    load_case : str
+        Name of the loads of the analysis.
+    assumptions : sequence of str, optional
+        What the results rest on; None says those of the load case.
 
     Returns
     -------
@@ -154,14 +158,22 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         "steps": 0,
         "parts": given_parts(regions, model, wedges, digits),
         "unused": [],
-        **_of_statics(statics, {region.id: region.centroid for region in regions}, digits),
+        **_of_statics(
+            statics, {region.id: region.centroid for region in regions}, digits, load_case
+        ),
         "index_meanings": {},
         "metrics": metrics(
-            (*content.strength_cards(content.Resisted.of(resistance)), *cards), None
+            (*content.strength_cards(content.Resisted.of(resistance), load_case), *cards), None
         ),
         "inputs": [list(pair) for pair in inputs],
         "settings": [list(pair) for pair in content.flat_settings(settings or {})],
-        **_end(notices, timings, assumptions),
+        **_end(
+            notices,
+            timings,
+            (*content.wall_assumptions(load_case), *content.model_assumptions(model))
+            if assumptions is None
+            else assumptions,
+        ),
     }
 
 
@@ -175,14 +187,22 @@ def _beginning(title: str, noun: Noun, unit: str) -> View:
 
 
 def _of_statics(
-    statics: Statics, centroids: Mapping[int, tuple[float, float]], digits: int
+    statics: Statics,
+    centroids: Mapping[int, tuple[float, float]],
+    digits: int,
+    load_case: str = content.TILTING,
 ) -> View:
     failures = statics.failures()
+    dead = content.dead_load(load_case)
     return {
         "mu": statics.model.mu,
         "contacts": contacts(statics, failures, digits + 1),
-        "mechanisms": mechanisms(statics, failures, centroids),
-        "forces_words": FORCES,
+        "mechanisms": {
+            side: {**found, "load": content.load_words(load_case, side)}
+            for side, found in mechanisms(statics, failures, centroids).items()
+        },
+        "dead_load": dead,
+        "forces_words": FORCES.format(dead),
     }
 
 

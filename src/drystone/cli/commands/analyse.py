@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         report = card.report()
         print_json(report if scatter is None else {**report, "scatter": scatter.report()})
     else:
-        title = f"{path}: {len(model.blocks)} blocks, {model.contact_count} contact points"
+        title = f"{path}: {_many(model)}, {model.contact_count} contact points"
         print_table(title, card.rows() + ([] if scatter is None else scatter.rows()))
     return _keep_failure(model, loads, folder) if resistance.failed else ExitCode.DONE
 
@@ -86,6 +86,10 @@ def _write_all(
     write_tables(folder, card.model, ends, per_unit_m)
     curve = draw_friction(folder, card.model, loads)
     write_analysis(folder / REPORT, wall, card, per_unit_m, curve)
+
+
+def _many(model: RigidBlockModel) -> str:
+    return f"{len(model.blocks)} block{'' if len(model.blocks) == 1 else 's'}"
 
 
 def _with_size(wall: Modelled, per_unit_m: float | None) -> Modelled:
@@ -172,7 +176,7 @@ def _print_range(wall: Modelled, arguments: argparse.Namespace, pictures: list[P
     if arguments.json:
         print_json(card.report())
     else:
-        print_table(f"{arguments.wall_path}: {len(model.blocks)} blocks", card.rows())
+        print_table(f"{arguments.wall_path}: {_many(model)}", card.rows())
     failed = any(end.status is LimitStatus.FAILED for end in ends)
     folder = pictures[0].parent if pictures else None
     return _keep_failure(model, loads, folder) if failed else ExitCode.DONE

@@ -63,8 +63,8 @@ def _steps(wall: GivenWall) -> dict[int, int]:
 def _print(report: CraftReport, arguments: argparse.Namespace) -> None:
     masonry = report.masonry
     wedges = len(set(masonry.wedge_ids))
-    also = f", {wedges} wedges" if wedges else ""
-    print(f"{arguments.wall_path}: {len(masonry.stones)} stones{also}")
+    also = f", {_many(wedges, 'wedge')}" if wedges else ""
+    print(f"{arguments.wall_path}: {_many(len(masonry.stones), 'stone')}{also}")
     width = max(len(rule.title) for rule in RULES.values())
     for finding in report.findings.values():
         rule = finding.rule
@@ -78,6 +78,10 @@ def _print(report: CraftReport, arguments: argparse.Namespace) -> None:
         if arguments.cases and left > 0:
             print(f"{'':<{width}}    and {left} more")
     print(UNSEEN)
+
+
+def _many(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 def _number(finding: Finding) -> str:

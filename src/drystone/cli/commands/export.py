@@ -3,7 +3,7 @@
 import argparse
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from drystone.assembly.read import read_assembly
@@ -54,10 +54,14 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if arguments.json:
         print_json({"files": written})
     else:
-        for name, files in written.items():
-            more = f" and {len(files) - 1} more" if len(files) > 1 else ""
-            print(f"{name}: {files[0]}{more}")
+        _print_files(written)
     return ExitCode.DONE
+
+
+def _print_files(written: Mapping[str, Sequence[str]]) -> None:
+    for name, files in written.items():
+        more = f" and {len(files) - 1} more" if len(files) > 1 else ""
+        print(f"{name}: {files[0]}{more}")
 
 
 def settings_from(arguments: argparse.Namespace) -> ExportSettings:

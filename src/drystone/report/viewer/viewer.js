@@ -323,7 +323,7 @@ class Viewer {
     const { data } = this;
     const cases = { none: "none" };
     const present = new Set(data.contacts.flatMap((contact) => Object.keys(contact.forces)));
-    if (present.has("self")) cases.self = "own weight";
+    if (present.has("self")) cases.self = data.dead_load;
     if (present.has("left")) cases.left = "left";
     if (present.has("right")) cases.right = "right";
     const sides = { none: "none" };
@@ -489,13 +489,13 @@ class Viewer {
     if (target.closest?.("input, select, textarea, [contenteditable]")) return;
     if (event.key === " " && target.closest?.("button, summary, a")) return;
     const { step } = this.state;
-    const steps = { ArrowLeft: step - 1, ArrowRight: step + 1, Home: 0, End: this.last };
+    const steps = this.last ? { ArrowLeft: step - 1, ArrowRight: step + 1, Home: 0, End: this.last } : {};
     const along = { ArrowUp: -1, ArrowDown: 1, ...(this.last ? {} : { ArrowLeft: -1, ArrowRight: 1 }) };
     if (event.key in along) this.walk(along[event.key]);
     else if (event.key in steps) {
       this.pause();
       this.show(steps[event.key]);
-    } else if (event.key === " ") this.toggle();
+    } else if (event.key === " " && this.last) this.toggle();
     else return;
     event.preventDefault();
   }
@@ -549,7 +549,9 @@ class Viewer {
   resize() {
     const box = this.svg.viewBox.baseVal;
     const wide = this.svg.clientWidth || this.svg.getBoundingClientRect().width;
-    const perPx = box && box.width && wide ? box.width / wide : 1.4;
+    // A wall higher than its place is drawn smaller than its place is wide.
+    const high = this.svg.clientHeight || this.svg.getBoundingClientRect().height;
+    const perPx = box && box.width && wide && high ? Math.max(box.width / wide, box.height / high) : 1.4;
     if (perPx === this.perPx) return;
     this.perPx = perPx;
     this.root.style.setProperty("--ds-px", perPx.toFixed(4));
@@ -713,7 +715,7 @@ class Viewer {
     if (overlays && !this.finished) said.push("Forces and mechanisms are those of the finished wall.");
     if (this.mechanism) {
       const { alpha, words } = this.mechanism;
-      const push = alpha === null ? "" : `Load to the ${state.mechanism}, load multiplier ${text(alpha)}. `;
+      const push = alpha === null ? "" : `${this.mechanism.load}, load multiplier ${text(alpha)}. `;
       said.push(`${push}${words}${this.last ? " (Stones by their ids.)" : ""}`);
     } else if (this.finished && state.kinds) said.push(`Joints in the mechanism to the ${this.kindSide}.`);
     if (this.finished && state.forces !== "none") said.push(data.forces_words);
@@ -759,14 +761,14 @@ class Viewer {
 
   cardOf(part) {
     const { unit } = this.data;
-    const digits = unit === "m" ? 3 : 1;
+    const digits = unit === "px" ? 1 : 3;
     const wedge = part.kind === "wedge";
     const under = part.step === null ? "" : `step ${part.step} of ${this.last}`;
     const cluster = part.cluster === null ? "" : `cluster ${part.cluster}`;
     const rows = [];
     if (part.angle_deg !== null && !wedge) rows.push(["How to turn it", this.turnWords(part.angle_deg)]);
     const [x, y] = part.centroid.map((value) => text(value, digits));
-    rows.push([wedge ? "Around" : "Centroid", `${x} ${unit} from the left end, ${y} ${unit} above the ground`]);
+    rows.push([wedge ? "Around" : "Centroid", this.last ? `${x} ${unit} from the left end, ${y} ${unit} above the ground` : `x ${x} ${unit}, ${y} ${unit} above the ground`]);
     rows.push(["Size", `${text(part.size[0], digits)} × ${text(part.size[1], digits)} ${unit}`]);
     if (part.side) rows.push(["Placed from", `the ${part.side}`]);
     if (part.under !== null) rows.push(["Under", this.links([part.under])]);
