@@ -1,6 +1,7 @@
 """All rules at once: walls of every kind, limits, and numbers without a scale."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
 
 from drystone.craft import RULES, CraftSettings, Limit, Masonry, look
+from drystone.craft.finding import Finding
 from drystone.errors import InputError, UsageError
 from drystone.io.walls import read_wall
 from tests.craft.walls import both, box, painted, running_bond, stack_bond
@@ -147,3 +149,10 @@ def test_the_foot_is_the_lowest_stone_of_a_picture():
     labels = painted(running_bond())
     lower = np.vstack([labels, np.zeros((40, labels.shape[1]), np.uint32)])
     assert look(Masonry.from_labels(labels)).report() == look(Masonry.from_labels(lower)).report()
+
+
+def test_one_course_is_said_in_the_singular() -> None:
+    finding = Finding(RULES["running_joints"], Limit(1, 2), 1.0, "good")
+    assert finding.amount == "1 course"
+    assert replace(finding, number=3.0).amount == "3 courses"
+    assert replace(finding, number=None).amount == ""

@@ -161,6 +161,16 @@ class Finding:
     figures: Mapping[str, float | None] = field(default_factory=dict)
     note: str = ""
 
+    @property
+    def amount(self) -> str:
+        """The number with its unit; empty when nothing was judged."""
+        if self.number is None:
+            return ""
+        unit = self.rule.unit
+        if unit.endswith("s") and self.number == 1.0:
+            unit = unit[:-1]
+        return f"{self.number:.3g}{unit if unit in ('', '°') else f' {unit}'}"
+
     def report(self, steps: Mapping[int, int]) -> dict[str, Any]:
         """Return it for JSON.
 

@@ -137,11 +137,10 @@ def _title(finding: Finding) -> str:
     said = f"{MARKS[finding.verdict]} {rule.title}: {finding.verdict}"
     if finding.number is None:
         return f"{said}. {finding.note}"
-    unit = f" {rule.unit}" if rule.unit not in ("", "°") else rule.unit
     sign = "≥" if rule.higher_is_better else "≤"
     limit = finding.limit
     limits = f"(good {sign} {limit.good:g}, fair {sign} {limit.fair:g})"
-    return f"{said}, {finding.number:.3g}{unit}   {limits}"
+    return f"{said}, {finding.amount}   {limits}"
 
 
 def _legend(masonry: Masonry) -> list[Patch | Line2D]:

@@ -90,10 +90,8 @@ def _number(finding: Finding) -> str:
         return finding.note
     rule, limit = finding.rule, finding.limit
     sign = ">=" if rule.higher_is_better else "<="
-    unit = f" {rule.unit}" if rule.unit not in ("", "°") else rule.unit
     return (
-        f"{finding.number:.3g}{unit} (good {sign} {limit.good:g}, fair {sign} {limit.fair:g}): "
-        f"{rule.meaning}"
+        f"{finding.amount} (good {sign} {limit.good:g}, fair {sign} {limit.fair:g}): {rule.meaning}"
     )
 
 
