@@ -427,7 +427,7 @@ def test_the_chart_marks_the_step_and_has_a_table(page):
     assert page.locator(".ds-chart .ds-line-index").count() == 1
     assert "LLC ends at" in chart.get_attribute("aria-label")
     page.get_by_text("The same as a table").click()
-    rows = page.locator(".ds-numbers tbody tr")
+    rows = page.locator(".ds-as-table tbody tr")
     assert rows.count() == shown()["steps"]
     assert rows.nth(0).inner_text().split("\t")[2] == f"{shown()['parts'][0]['alpha_left']:.3f}"
     box = chart.bounding_box()
@@ -485,6 +485,9 @@ def test_print_shows_the_whole_wall_and_no_controls(visit, tmp_path):
     assert "Dry-stone wall from" in text[0]
     assert "Lateral resistance" in text[0]
     assert any("Steps of construction" in one for one in text)
+    drawn = text[0].split("step by step")[1].split("Load multipliers")[0].split()
+    steps = {str(part["number"]) for part in shown()["parts"] if part["kind"] == "stone"}
+    assert steps <= set(drawn)  # the numbers on the stones
     image = np.asarray(document[0].render(scale=0.5).to_pil().convert("RGB"), int)
     assert (np.ptp(image, axis=2) > 60).mean() > 0.02  # the stones are printed in colour
     document.close()

@@ -925,7 +925,7 @@ class Viewer {
       this.show(this.stepAt(event.clientX - box.left));
     });
     this.keyOfChart = make("ul", { class: "ds-legend" });
-    const table = make("details", { class: "ds-numbers" }, make("summary", {}, "The same as a table"));
+    const table = make("details", { class: "ds-as-table" }, make("summary", {}, "The same as a table"));
     table.addEventListener("toggle", () => {
       if (table.open && table.children.length === 1) table.append(this.chartTable(names));
     });
