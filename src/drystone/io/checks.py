@@ -95,7 +95,8 @@ def check_not_lossy(ids: Census, brightness: NDArray[Any], where: str) -> None:
         f"JPEG is lossy: {len(ids.values)} values, {rare} of them on less than {RARE_PX} px, "
         f"so ids are lost.{guess}",
         where=where,
-        cure=f"{_CLEAN_EXPORT} A black-and-white mask can be read with mask=True.",
+        cure=f"{_CLEAN_EXPORT} A black-and-white mask can be read with mask=True. If it is a "
+        "photograph, find the stones in it with `drystone segment PHOTO`.",
     )
 
 
