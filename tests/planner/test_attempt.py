@@ -13,7 +13,7 @@ from drystone.planner.build import Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import RasterProposer, Trial
+from drystone.planner.proposing import RasterProposer, Spotted, Trial
 from drystone.planner.settings import PlannerSettings
 from drystone.statics.growing import GrowingAnalysis
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
@@ -27,12 +27,12 @@ class _Calls:
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.proposed: Counter[Key] = Counter()
         self.judged: Counter[Key] = Counter()
-        propose, judge = RasterProposer.propose, Evaluator.judge
+        spotted, judge = RasterProposer.spotted, Evaluator.judge
 
-        def propose_once(this: RasterProposer, trial: Trial) -> object:
+        def spotted_once(this: RasterProposer, trial: Trial) -> Spotted:
             posed = trial.poses[0]
             self.proposed[posed.stone.id, posed.angle_deg, trial.landscape.side] += 1
-            return propose(this, trial)
+            return spotted(this, trial)
 
         def judge_once(
             this: Evaluator, wall: Wall, analysis: GrowingAnalysis, proposal: Proposal
@@ -40,7 +40,7 @@ class _Calls:
             self.judged[proposal.stone_id, proposal.trial_angle_deg, proposal.side] += 1
             return judge(this, wall, analysis, proposal)
 
-        monkeypatch.setattr(RasterProposer, "propose", propose_once)
+        monkeypatch.setattr(RasterProposer, "spotted", spotted_once)
         monkeypatch.setattr(Evaluator, "judge", judge_once)
 
 
@@ -150,6 +150,6 @@ def test_a_stone_that_turns_out_of_reach_from_above_is_not_proposed(
     posed = planner.workshop.poses(1)[0]
     landscape = Landscape.of(planner.build.wall)
     trial = Trial((posed,), landscape, planner.workshop.rest(planner.build))
-    assert proposer.propose(trial) is not None
+    assert proposer.stabilised(proposer.spotted(trial)) is not None
     monkeypatch.setattr("drystone.planner.proposing.can_be_lowered", lambda *_: False)
-    assert proposer.propose(trial) is None
+    assert proposer.stabilised(proposer.spotted(trial)) is None

@@ -3,17 +3,19 @@
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 from drystone.model.landscape import Landscape
-from drystone.model.placement import Placement, Wedge
+from drystone.model.placement import Placement, Side, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall
-from drystone.planner.craft import action_craft
+from drystone.planner.craft import action_craft, place_cost
+from drystone.planner.pose_costs import pose_cost
 from drystone.planner.stock import Rest, Stock
 from drystone.poses import PoseBook
-from drystone.selection.scored import Craft
+from drystone.selection.scored import Craft, ScoreSettings, craft_cost
 from drystone.stabilise.stabilise import Stabilised
 from tests.naive import planner as naive
 from tests.strategies import posed_on_walls, repeatable
@@ -130,3 +132,21 @@ def test_the_void_is_what_is_free_below(scene: tuple[Wall, PosedStone, int, int]
     craft = action_craft(Landscape.of(wall), Stabilised(placement), STOCK, rest)
     expected = naive.free_area_under(wall.occupied.tolist(), [(r, c) for c, r in lowest.items()])
     assert craft.void == pytest.approx(expected / STOCK.mean_area_px)
+
+
+@repeatable(60)
+@given(posed_on_walls(), st.sampled_from(["left", "right"]))
+def test_place_and_pose_cost_what_the_action_costs_but_for_step_and_joint(
+    scene: tuple[Wall, PosedStone, int, int], side: Side
+) -> None:
+    wall, posed, row, col = scene
+    rest = Rest(np.arange(wall.site.height_px + 1), np.arange(wall.site.width_px + 1) // 2)
+    score = ScoreSettings(thickness=1.5)
+    landscape = Landscape.of(wall, side)
+    craft = action_craft(landscape, Stabilised(Placement(posed, row, col, side)), STOCK, rest)
+    assert min(craft.step, craft.joint) >= 0
+    place = row, landscape.view_col(posed, col)
+    quick = place_cost(landscape, landscape.view(posed), place, STOCK, rest, score)
+    known = quick + pose_cost(posed, STOCK, score)
+    others = score.step * craft.step + score.joint * craft.joint
+    assert known + others == pytest.approx(craft_cost(craft, score), abs=1e-9)

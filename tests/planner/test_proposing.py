@@ -1,12 +1,15 @@
 """Proposals on pixels, and what both proposers promise."""
 
+import math
+
 import numpy as np
 import pytest
 
 from drystone.model.landscape import Landscape
+from drystone.planner.build import Proposal
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import RasterProposer, Trial, one_by_one
+from drystone.planner.proposing import Key, RasterProposer, Spotted, Trial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
 from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
@@ -24,36 +27,96 @@ def test_one_by_one_keeps_the_order() -> None:
     assert one_by_one(lambda x: -x, [3, 1, 2]) == [-3, -1, -2]
 
 
-def test_on_pixels_all_proposals_come_at_once_and_none_is_made_twice(
+class _Watched:
+    """Trials of a step on pixels, and which of them were placed and stabilised."""
+
+    def __init__(
+        self, monkeypatch: pytest.MonkeyPatch, rule: str, count: int = 8, built: int = 2
+    ) -> None:
+        settings = greedy({"geometry": "raster", "selection_rule": rule})
+        planner = Planner(rubble(count=count), RUBBLE_SITE, settings=settings)
+        next(step for step in planner.steps() if step.number == built)
+        workshop, build = planner.workshop, planner.build
+        self.proposer = RasterProposer(workshop, settings, build, Profile())
+        self.analysed = settings.score.analysed
+        rest, view = workshop.rest(build), Landscape.of(build.wall)
+        self.trials = [
+            Trial((posed,), view, rest)
+            for stone_id in workshop.remaining(build)
+            for posed in workshop.poses(stone_id)
+        ]
+        self.placed: list[Key] = []
+        self.stable: list[Key] = []
+        spotted, stabilised = RasterProposer.spotted, RasterProposer.stabilised
+
+        def watched_spotted(this: RasterProposer, trial: Trial) -> Spotted:
+            self.placed.append(trial.key)
+            return spotted(this, trial)
+
+        def watched_stabilised(this: RasterProposer, one: Spotted) -> Proposal | None:
+            self.stable.append(one.trial.key)
+            return stabilised(this, one)
+
+        monkeypatch.setattr(RasterProposer, "spotted", watched_spotted)
+        monkeypatch.setattr(RasterProposer, "stabilised", watched_stabilised)
+
+
+def test_for_algorithm_2_all_proposals_come_at_once_and_none_is_made_twice(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    settings = greedy({"geometry": "raster"})
-    planner = Planner(rubble(), RUBBLE_SITE, settings=settings)
-    next(step for step in planner.steps() if step.number == 2)
-    workshop, build = planner.workshop, planner.build
-    asked = []
-    propose = RasterProposer.propose
-
-    def watched(this: RasterProposer, trial: Trial) -> object:
-        asked.append(trial.key)
-        return propose(this, trial)
-
-    monkeypatch.setattr(RasterProposer, "propose", watched)
-    proposer = RasterProposer(workshop, settings, build, Profile())
-    rest, view = workshop.rest(build), Landscape.of(build.wall)
-    trials = [
-        Trial((posed,), view, rest)
-        for stone_id in workshop.remaining(build)
-        for posed in workshop.poses(stone_id)
-    ]
+    step = _Watched(monkeypatch, "algorithm2")
+    proposer, trials = step.proposer, step.trials
     (some,) = proposer.proposals(trials[4:8], one_by_one)
     (found,) = proposer.proposals(trials, one_by_one)
-    assert sorted(asked) == sorted(trial.key for trial in trials)
+    every = sorted(trial.key for trial in trials)
+    assert sorted(step.placed) == sorted(step.stable) == every
     assert proposer.tried == len(trials)
     keys = [(p.stone_id, p.trial_angle_deg) for p in found]
     assert keys == [trial.key[:2] for trial in trials if trial.key[:2] in set(keys)]
     assert len(keys) > 4
     assert set(some) <= set(found)
+
+
+@pytest.mark.parametrize("built", [2, 5, 9])
+def test_by_cost_the_cheapest_come_first_and_the_others_only_when_asked_for(
+    built: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    step = _Watched(monkeypatch, "score", count=30, built=built)
+    batches = step.proposer.proposals(step.trials, one_by_one)
+    first = next(batches)
+    assert len(step.stable) < 0.7 * len(step.trials)
+    later = [proposal for batch in batches for proposal in batch]
+    assert sorted(step.placed) == sorted(trial.key for trial in step.trials)
+    assert len(step.stable) == len(set(step.stable))
+    costs = sorted(proposal.cost for proposal in first)
+    unturned = [
+        proposal.cost
+        for proposal in later
+        if not (proposal.stabilised.placement.rotation_moves or proposal.stabilised.wedges)
+    ]
+    # None that stays where it was placed is cheaper than those that selection analyses first.
+    assert len(unturned) > 8
+    assert min(unturned) >= costs[step.analysed - 1]
+    (again, *rest) = step.proposer.proposals(step.trials, one_by_one)
+    assert again == first
+    assert [proposal for batch in rest for proposal in batch] == later
+
+
+def test_a_promise_is_the_least_that_a_stone_costs_where_it_stays(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    step = _Watched(monkeypatch, "score", count=30, built=6)
+    stays = 0
+    for trial in step.trials:
+        spotted = step.proposer.spotted(trial)
+        proposal = step.proposer.stabilised(spotted)
+        assert (spotted.promise == math.inf) == (not spotted.spots)
+        if proposal is not None:
+            stabilised = proposal.stabilised
+            if not (stabilised.placement.rotation_moves or stabilised.wedges):
+                assert spotted.promise <= proposal.cost + 1e-9
+                stays += 1
+    assert stays > 10
 
 
 @pytest.mark.parametrize("geometry", ["raster", "exact"])

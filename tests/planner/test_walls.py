@@ -85,7 +85,7 @@ def _scene(
 
 def _proposed(planner: Planner, build: Build, stone_id: int) -> Proposal | None:
     proposer = RasterProposer(planner.workshop, planner.settings, build, Profile())
-    return proposer.propose(_trial(planner, stone_id))
+    return proposer.stabilised(proposer.spotted(_trial(planner, stone_id)))
 
 
 def _judged(evaluator: Evaluator, build: Build, proposal: Proposal) -> Candidate:

@@ -1,12 +1,15 @@
 """The craft terms of an action (see :mod:`drystone.selection.scored`)."""
 
+import math
+
 from drystone.indices.interlocking import interlocking_width_ratio
 from drystone.indices.inward_slope import inward_slope, is_boundary
 from drystone.indices.neighbour_height import left_neighbour
 from drystone.kernels.columns import free_below, free_beside
 from drystone.model.landscape import Landscape, view_box
+from drystone.model.pose import PosedStone
 from drystone.planner.stock import Rest, Stock
-from drystone.selection.scored import Craft
+from drystone.selection.scored import Craft, ScoreSettings
 from drystone.stabilise.stabilise import Stabilised
 
 
@@ -51,4 +54,51 @@ def action_craft(landscape: Landscape, stabilised: Stabilised, stock: Stock, res
         joint=1.0 - third,
         area=posed.area_px / stock.mean_area_px,
         thickness=min(posed.width_px, posed.height_px) / stock.mean_height_px,
+    )
+
+
+def place_cost(
+    landscape: Landscape,
+    posed: PosedStone,
+    place: tuple[int, int],
+    stock: Stock,
+    rest: Rest,
+    score: ScoreSettings,
+) -> float:
+    """Return the weighted craft costs of a place that are quickly found, before stabilising.
+
+    They are those of :func:`action_craft` but for what the pose itself costs, the step to the
+    neighbour and the joint, none of which is below 0: a stone that stays there by itself costs
+    at least this and its pose.
+
+    Parameters
+    ----------
+    landscape : Landscape
+        Before the action, seen from the side from which the stone is placed.
+    posed : PosedStone
+        The stone in the same view.
+    place : (int, int)
+        Row and column of the top-left corner of its mask.
+    stock : Stock
+        Mean sizes of the stones.
+    rest : Rest
+        What the stones that are left could fill.
+    score : ScoreSettings
+        Weights.
+    """
+    row, col = place
+    under = int(free_below(landscape.occupied, posed.bottom, row, col).sum())
+    left, right_width = free_beside(landscape.occupied, posed.mask, row, col)
+    bottom = landscape.height_px - row - posed.height_px
+    slot = int(rest.width_px[right_width]) * posed.height_px
+    headroom = int(rest.height_px[row]) * posed.width_px
+    mean_area = stock.mean_area_px
+    return math.fsum(
+        [
+            score.height * (bottom + posed.anchor[1]) / stock.mean_height_px,
+            score.void * under / mean_area,
+            score.gap * min(1.0, left / mean_area),
+            score.slot * slot / mean_area,
+            score.headroom * headroom / mean_area,
+        ]
     )

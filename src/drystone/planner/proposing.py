@@ -1,5 +1,6 @@
 """Trial placement and stabilisation of candidates (Algorithm 1, lines 8-15)."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -7,16 +8,22 @@ from typing import Any, Protocol
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Side
 from drystone.model.pose import PosedStone
-from drystone.placement.best import best_spots
+from drystone.placement.best import Spot, best_spots
 from drystone.placement.feasible import can_be_lowered
 from drystone.planner.build import Build, Proposal
-from drystone.planner.craft import action_craft
+from drystone.planner.craft import action_craft, place_cost
 from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest
 from drystone.planner.workshop import Workshop
 from drystone.selection.scored import PIN_BONUS, craft_cost
 from drystone.stabilise.stabilise import Stabilised
+
+TOGETHER = 16
+"""So many trials are stabilised before it is looked whether these are enough."""
+
+SPARE = 2
+"""So many times the proposals that selection analyses are found: some walls do not stand."""
 
 Key = tuple[int, float, Side]
 """A trial: stone, angle of its first pose, side."""
@@ -89,8 +96,31 @@ class Proposer(Protocol):
         ...
 
 
+@dataclass(frozen=True, eq=False)
+class Spotted:
+    """Where the stone of a trial could be put, before it is made stable.
+
+    Parameters
+    ----------
+    trial : Trial
+        One stone and side.
+    spots : tuple of Spot
+        The best places by the placement rule, best first.
+    promise : float
+        Where selection goes by cost: what the best of them costs at least, while the stone need
+        not be turned there; infinite when there is none.
+    """
+
+    trial: Trial
+    spots: tuple[Spot, ...]
+    promise: float = 0.0
+
+
 class RasterProposer:
     """Stones are their pixels at the working resolution.
+
+    Where selection goes by cost, the stones that promise most are stabilised first, and the others
+    only when enough of those are not cheaper than what is promised; Algorithm 2 compares all.
 
     Parameters
     ----------
@@ -111,34 +141,78 @@ class RasterProposer:
         self._settings = settings
         self._build = build
         self._profile = profile
+        self._spotted: dict[Key, Spotted] = {}
         self._proposed: dict[Key, Proposal | None] = {}
 
     @property
     def tried(self) -> int:
         """See :class:`Proposer`."""
-        return len(self._proposed)
+        return len(self._spotted)
 
     def proposals(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Proposal]]:
-        """See :class:`Proposer`; all come at once, in the order of the trials."""
-        new = [trial for trial in trials if trial.key not in self._proposed]
-        found = apply(self.propose, new)
-        self._proposed.update(zip([trial.key for trial in new], found, strict=True))
-        mine = (self._proposed[trial.key] for trial in trials)
-        yield [proposal for proposal in mine if proposal is not None]
+        """See :class:`Proposer`."""
+        new = [trial for trial in trials if trial.key not in self._spotted]
+        found = apply(self.spotted, new)
+        self._spotted.update(zip([trial.key for trial in new], found, strict=True))
+        mine = [self._spotted[trial.key] for trial in trials]
+        if self._settings.selection_rule == "score":
+            yield from self._by_promise(mine, apply)
+        else:
+            yield self._all(mine, apply)
 
-    def propose(self, trial: Trial) -> Proposal | None:
+    def _by_promise(self, spotted: Sequence[Spotted], apply: Apply) -> Iterator[list[Proposal]]:
+        """List the cheapest proposals, then the next ones, and so on."""
+        order = sorted(
+            (one for one in spotted if one.spots),
+            key=lambda one: (round(one.promise, 12), one.trial.key),
+        )
+        wanted, batch = SPARE * self._settings.score.analysed, []
+        for start in range(0, len(order), TOGETHER):
+            batch += self._all(order[start : start + TOGETHER], apply)
+            later = order[start + TOGETHER : start + TOGETHER + 1]
+            promised = later[0].promise if later else math.inf
+            if sum(proposal.cost <= promised for proposal in batch) >= wanted or not later:
+                yield batch
+                batch = []
+
+    def _all(self, spotted: Sequence[Spotted], apply: Apply) -> list[Proposal]:
+        """Make the stones of some trials stable; of each that can be, return the best placement."""
+        new = [one for one in spotted if one.trial.key not in self._proposed]
+        found = apply(self.stabilised, new)
+        self._proposed.update(zip([one.trial.key for one in new], found, strict=True))
+        mine = (self._proposed[one.trial.key] for one in spotted)
+        return [proposal for proposal in mine if proposal is not None]
+
+    def spotted(self, trial: Trial) -> Spotted:
+        """Return where the stone of a trial could be put, and what that promises."""
+        landscape, settings = trial.landscape, self._settings
+        with self._profile.part("placement"):
+            views = [landscape.view(posed) for posed in trial.poses]
+            spots = best_spots(landscape, views, settings.placement)
+        if settings.selection_rule != "score" or not spots:
+            return Spotted(trial, tuple(spots), math.inf)
+        assert trial.rest is not None  # noqa: S101 - the attempt gives it then
+        with self._profile.part("indices"):
+            constants = self._workshop.costs.of(trial.poses, settings.score)
+            stock, rest, score = self._workshop.stock, trial.rest, settings.score
+            costs = [
+                constants[spot.pose]
+                + place_cost(landscape, views[spot.pose], spot.at, stock, rest, score)
+                for spot in spots
+            ]
+        return Spotted(trial, tuple(spots), float(min(costs)))
+
+    def stabilised(self, spotted: Spotted) -> Proposal | None:
         """Return the best stable placement of a stone; None when there is none (lines 8-15).
 
         Of the best positions by the placement rule, the first at which the stone can be made
         stable is taken; with `tries` = 1 that is the paper's single trial.  With `compare` = True
         all of them are stabilised, and the one of the least craft cost is taken.
         """
-        landscape, build = trial.landscape, self._build
-        with self._profile.part("placement"):
-            views = [landscape.view(posed) for posed in trial.poses]
-            spots = best_spots(landscape, views, self._settings.placement)
+        trial, build = spotted.trial, self._build
+        landscape = trial.landscape
         best: Proposal | None = None
-        for spot in spots:
+        for spot in spotted.spots:
             posed = trial.poses[spot.pose]
             with self._profile.part("stabilisation"):
                 stabilised = self._workshop.memory.stabilise(

@@ -9,6 +9,7 @@ are analysed, and the lateral resistance counts as one more term.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from operator import attrgetter
 
 PIN_BONUS = 2.0
 """Bonus of an action that places a pinned stone: so it goes in early where it fits about as well as
@@ -96,15 +97,15 @@ class ScoreSettings:
             raise ValueError("analysed must be positive")
 
 
+_costs = attrgetter(*(one.name for one in fields(Craft) if one.name not in ("area", "thickness")))
+"""Gives the costs of an action, or their weights, which have the same names."""
+
+
 def craft_cost(craft: Craft, settings: ScoreSettings) -> float:
     """Return the weighted cost of an action, lower is better; large stones earn a bonus."""
-    terms = [
-        getattr(settings, field.name) * getattr(craft, field.name)
-        for field in fields(Craft)
-        if field.name not in ("area", "thickness")
-    ]
-    bonus = [settings.area * craft.area, settings.thickness * craft.thickness]
-    return math.fsum([*terms, *(-one for one in bonus)])
+    costs = [weight * cost for weight, cost in zip(_costs(settings), _costs(craft), strict=True)]
+    bonus = settings.area * craft.area, settings.thickness * craft.thickness
+    return math.fsum([*costs, -bonus[0], -bonus[1]])
 
 
 def cheapest_first(costs: Sequence[float], keys: Sequence[tuple[float, ...]]) -> list[int]:
