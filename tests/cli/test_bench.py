@@ -59,9 +59,23 @@ def test_searches_go_by_time_seeds_and_names(run: Run) -> None:
     assert ran.code == 0
     assert ran.out.startswith("Best walls after 0.01 s of CPU time, medians of 1 seeds")
     assert [line.split(":")[0] for line in ran.err.splitlines()] == [
-        "bricks, raster, restarts, seed 0",
-        "bricks, raster, search, seed 0",
+        "bricks, raster, restarts, seed 0, 0.01 s",
+        "bricks, raster, search, seed 0, 0.01 s",
     ]
+
+
+def test_searches_are_kept_and_not_done_again(run: Run, tmp_path: Path) -> None:
+    table = tmp_path / "runs.csv"
+    options = (
+        "bench", "search", "--quick", "--seconds", ".01", ".02", "--seeds", "1", "--only",
+        "bricks, r", "--policy", "restarts", "--runs", table,
+    )  # fmt: skip
+    first, again = run(*options), run(*options)
+    assert (first.code, again.code) == (0, 0)
+    assert first.out == again.out
+    assert (len(first.err.splitlines()), again.err) == (2, "")
+    table.write_text("stones", encoding="utf-8")
+    assert "E148" in run(*options).err
 
 
 @pytest.mark.parametrize(
@@ -71,6 +85,10 @@ def test_searches_go_by_time_seeds_and_names(run: Run) -> None:
         ("exact", "--seeds", "2"),
         ("statics", "--only", "R"),
         ("packing", "--seeds", "2"),
+        ("packing", "--runs", "runs.csv"),
+        ("bricks", "--runs", "runs.csv"),
+        ("shear", "--jobs", "2"),
+        ("search", "--policy", "annealing"),
         ("search", "--only", "Q"),
         ("search", "--seconds", "0"),
     ],

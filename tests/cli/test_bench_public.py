@@ -78,7 +78,7 @@ def test_a_store_has_a_history(run: Run, tmp_path: Path) -> None:
     [
         (("statics", "--policy", "random"), "--policy"),
         (("statics", "--store", "x"), "--store"),
-        (("search", "--jobs", "2"), "--jobs"),
+        (("exact", "--jobs", "2"), "--jobs"),
         (("walls", "--shake"), "--shake"),
         (("bricks", "--seconds", "2"), "--seconds"),
         (("bricks", "--again"), "--again"),

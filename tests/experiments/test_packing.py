@@ -51,7 +51,7 @@ def test_the_packer_gets_every_stone_once_as_it_lies_first():
 def test_strips_stand_beside_walls(monkeypatch):
     packer, said = Packer(), []
     monkeypatch.setattr(packing, "load_packer", lambda: packer)
-    (table,) = packing.run(BenchSettings(quick=True, seconds=0.3, say=said.append))
+    (table,) = packing.run(BenchSettings(quick=True, seconds=(0.3,), say=said.append))
     (row,) = table.rows
     density = 108 * 36 / (200 * 36)
     assert row[:6] == ("bricks", 36, 200.0, density, 200.0, density)

@@ -9,7 +9,14 @@ import pytest
 from drystone.errors import UsageError
 from drystone.experiments import exact_walls, search
 from drystone.experiments.masons import masons_row, masons_walls
-from drystone.experiments.search import FIGURES, Compared, Result, second_of
+from drystone.experiments.search import Compared
+from drystone.experiments.search_results import (
+    FIGURES,
+    Result,
+    Run,
+    append_results,
+    second_of,
+)
 from drystone.experiments.search_targets import UNSEEN, SearchTarget, chosen, search_targets
 from drystone.experiments.table import BenchSettings
 from drystone.metrics.measure import measure_labels
@@ -29,7 +36,7 @@ def result(walls=1, **figures):
 @pytest.fixture(scope="module")
 def quick():
     said: list[str] = []
-    settings = BenchSettings(quick=True, seconds=0.02, seeds=1, say=said.append)
+    settings = BenchSettings(quick=True, seconds=(0.02,), seeds=1, say=said.append)
     return search.run(settings), said
 
 
@@ -50,7 +57,7 @@ def test_bricks_fill_their_wall_by_every_method(quick):
         assert row["2nd F_AV"] > row["F_AV"] > 0
         assert row["walls"] >= 1
     assert len(said) == 6
-    assert said[2].startswith("bricks, exact, search, seed 0: 9 of 9 stones, F_SF 1, F_AV ")
+    assert said[2].startswith("bricks, exact, search, seed 0, 0.02 s: 9 of 9 stones, F_SF 1, F_AV ")
 
 
 def test_methods_are_compared_with_the_search(quick):
@@ -127,9 +134,36 @@ def test_a_wall_of_outlines_is_looked_at_on_its_outlines():
 
 
 def test_the_effort_is_what_is_asked_for():
-    assert search._effort(BenchSettings()) == (search.SECONDS, search.SEEDS)
-    assert search._effort(BenchSettings(quick=True)) == (search.QUICK_SECONDS, search.QUICK_SEEDS)
-    assert search._effort(BenchSettings(quick=True, seconds=7.5, seeds=3)) == (7.5, 3)
+    assert search._effort(BenchSettings()) == ((search.SECONDS,), range(search.SEEDS))
+    quick = BenchSettings(quick=True)
+    assert search._effort(quick) == ((search.QUICK_SECONDS,), range(search.QUICK_SEEDS))
+    asked = BenchSettings(quick=True, seconds=(7.5, 2.0, 7.5), seed=4, seeds=3)
+    assert search._effort(asked) == ((2.0, 7.5), range(4, 7))
+
+
+def test_each_time_has_its_tables_of_the_methods_that_were_asked_for(tmp_path):
+    times, kept = (1.0, 2.0), tmp_path / "runs.csv"
+    runs = {
+        Run("bricks, raster", "search", seed, seconds): result(merit=10 * seconds + seed)
+        for seed in (3, 4, 5)
+        for seconds in times
+    }
+    append_results(kept, runs.items())
+    asked = BenchSettings(
+        quick=True, seconds=times, seed=3, seeds=3, only=("bricks, r",), policies=("search",),
+        runs=kept,
+    )  # fmt: skip
+    *tables, masons = search.run(asked)
+    assert [table.title.split(",")[0] for table in tables] == [
+        "Best walls after 1 s of CPU time",
+        "What the search has more after 1 s",
+        "Best walls after 2 s of CPU time",
+        "What the search has more after 2 s",
+    ]
+    for table, merit in ((tables[0], 14.0), (tables[2], 24.0)):
+        (row,) = table.records()
+        assert (row["wall"], row["method"], row["merit"]) == ("bricks, raster", "search", merit)
+    assert tables[1].rows == tables[3].rows == masons.rows == ()
 
 
 def test_targets_are_published_stones_on_both_geometries_and_unseen_sets():

@@ -10,7 +10,14 @@ import pytest
 from drystone.experiments import search_ways
 from drystone.experiments.exact_walls import Target, one_pass
 from drystone.experiments.search_targets import SearchTarget
-from drystone.experiments.search_ways import BETWEEN_SEEDS, State, Way, looked_for, ways_of
+from drystone.experiments.search_ways import (
+    BETWEEN_SEEDS,
+    State,
+    Way,
+    looked_at_times,
+    looked_for,
+    ways_of,
+)
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.search.plan_wall import plan_wall
 
@@ -83,10 +90,10 @@ def test_the_time_is_counted_from_the_start():
             yield State(number, lambda number=number: number)  # type: ignore[misc, return-value]
 
     way = Way("by hand", states)
-    looked = looked_for(way, STONES, WALLS["exact"], 5, 1, clock_of(10, 14.9, 15, 15.1, 15.2))
+    looked = looked_for(way, STONES, WALLS["exact"], 5, 1, clock_of(10, 14.9, 15, 15.1))
     assert (looked.found, looked.walls) == (3, 3)
     assert asked == [1, 2, 3]  # the third was begun in time, and finished after it
-    assert looked.seconds == pytest.approx(5.2)
+    assert looked.seconds == pytest.approx(5.1)
 
 
 class Fake:
@@ -146,3 +153,25 @@ def test_wedges_go_into_walls_that_are_nearly_the_best(worth, monkeypatch):
 def test_ways_that_do_the_same_on_pixels_are_left_out():
     assert [way.name for way in ways_of(WALLS["exact"])] == list(WAYS)
     assert [way.name for way in ways_of(WALLS["raster"])] == ["restarts", "search"]
+
+
+def test_of_earlier_times_what_was_finished_by_then_counts():
+    walls = [State(n, lambda n=n: n) for n in range(1, 6)]
+    way = Way("five walls", lambda *_: iter(walls))
+    # Started at 10; the walls are finished at 14, 15, 17, 17.5 and 21.
+    clock = clock_of(10, 14, 15, 17, 17.5, 21)
+    found = looked_at_times(way, STONES, WALLS["exact"], (2, 6, 7, 10), 1, clock)
+    # Nothing was there after 2 s, so it is the first wall, when it is finished.
+    assert [(one.found, one.walls, one.seconds) for one in found] == [
+        (1, 1, 4), (2, 2, 5), (3, 3, 7), (5, 5, 11)
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["restarts", "search"])
+def test_what_is_asked_on_the_way_changes_nothing(name):
+    asked = looked_at_times(WAYS[name], STONES, WALLS["exact"], (2, 4, 9), 1, ticking())
+    alone = looked_for(WAYS[name], STONES, WALLS["exact"], 9, 1, ticking())
+    assert [one.walls for one in asked] == sorted(one.walls for one in asked)
+    assert (asked[-1].walls, asked[-1].seconds) == (alone.walls, alone.seconds)
+    assert asked[-1].found.merit == alone.found.merit
+    assert asked[0].walls < alone.walls

@@ -5,7 +5,7 @@ import argparse
 from drystone.cli.numbers import positive, whole_from
 
 PUBLIC_OPTIONS = ("policy", "settings", "jobs", "dask", "store", "again", "history", "shake")
-"""For public suites alone."""
+"""For public suites, and what other suites say that they go by."""
 
 
 def add_bench(command: argparse.ArgumentParser) -> None:
@@ -22,8 +22,9 @@ def add_bench(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument("--quick", action="store_true", help="a smaller version")
     command.add_argument(
-        "--seconds", type=positive, metavar="S", help="of each search (search, packing)"
-    )
+        "--seconds", type=positive, nargs="+", action="extend", default=[], metavar="S",
+        help="of each search (search, packing); several: what it has come to after each (search)",
+    )  # fmt: skip
     command.add_argument(
         "--seeds", type=whole_from(1), metavar="N",
         help="how many, from --seed on (search, public suites: 5 unless given)",
@@ -32,24 +33,30 @@ def add_bench(command: argparse.ArgumentParser) -> None:
         "--only", action="append", default=[], metavar="NAME",
         help="walls whose names begin so; may be repeated (search, packing, public suites)",
     )  # fmt: skip
+    command.add_argument(
+        "--runs", metavar="FILE.csv",
+        help="add every search to a table; those that it holds are not done again (search)",
+    )  # fmt: skip
     command.add_argument("--json", action="store_true", help="print as JSON")
     command.add_argument("--markdown", action="store_true", help="print as Markdown")
     _public(command)
 
 
 def _public(command: argparse.ArgumentParser) -> None:
-    """Add the options that public suites alone go by."""
+    """Add the options of public suites."""
     group = command.add_argument_group("public suites (docs/benchmark.md)")
     group.add_argument(
         "--policy", nargs="+", action="extend", default=[], metavar="NAME",
-        help="methods that build every wall (default: paper random); see --list",
+        help="methods that build every wall (default: paper random); see --list; for search those "
+        "that are compared",
     )  # fmt: skip
     group.add_argument(
         "--settings", metavar="FILE.toml", help="parameters that are replaced for all methods"
     )
     group.add_argument(
-        "--jobs", type=whole_from(1), metavar="N", help="processes; never the results"
-    )
+        "--jobs", type=whole_from(1), metavar="N",
+        help="processes; never the results (search too: the time of each is its own)",
+    )  # fmt: skip
     group.add_argument(
         "--dask", metavar="ADDRESS", help="of the scheduler of a Dask cluster that does the runs"
     )

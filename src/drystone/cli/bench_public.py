@@ -125,6 +125,7 @@ def _draw(medians: Sequence[Medians], folder: Path) -> None:
 def _refuse_useless(arguments: argparse.Namespace) -> None:
     useless = {
         "--seconds": (arguments.seconds, "Public suites build one wall a seed: use --seeds."),
+        "--runs": (arguments.runs, "Public suites keep their runs in a --store."),
         "-o": (arguments.output, "Public suites draw nothing but a --history."),
         "--again": (
             arguments.again and arguments.store is None,

@@ -31,7 +31,8 @@ COLUMNS = (
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Pack the stones of every wall, and plan it in the same time."""
     packer = load_packer()
-    seconds = round(settings.seconds or (1 if settings.quick else SECONDS)) or 1
+    usual = 1 if settings.quick else SECONDS
+    seconds = max(1, round(settings.seconds[-1] if settings.seconds else usual))
     rows = []
     for target in chosen(QUICK if settings.quick else MASONS, settings):
         stones = target.stones(settings)

@@ -1,7 +1,7 @@
 """Ways to look for a good wall, held to the same CPU time."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from drystone.experiments.exact_walls import one_pass
@@ -171,9 +171,22 @@ def looked_for(
     seed: int,
     clock: Clock = time.process_time,
 ) -> Looked:
-    """Look for a good wall until the time is used up.
+    """Look for a good wall until the time is used up; see :func:`looked_at_times`."""
+    return looked_at_times(way, stones, target, (seconds,), seed, clock)[0]
 
-    The last wall is the one that is begun before the end and finished after it.
+
+def looked_at_times(
+    way: Way,
+    stones: StoneSet,
+    target: SearchTarget,
+    times: Sequence[float],
+    seed: int,
+    clock: Clock = time.process_time,
+) -> list[Looked]:
+    """Look for a good wall, and say what was the best after several times.
+
+    The last wall is the one that is begun before the end and finished after it; of the earlier
+    times what was finished by then counts, though never less than the first wall.
 
     Parameters
     ----------
@@ -183,15 +196,15 @@ def looked_for(
         To build with.
     target : SearchTarget
         What is to be built.
-    seconds : float
-        CPU time of this process, from the stones to the best wall.
+    times : sequence of float
+        CPU times of this process from the stones on, rising, s; the last ends it.
     seed : int
         Of all that is drawn.
     clock : callable
         Gives the time that is used up, s.
     """
     started = clock()
-    end = started + seconds
+    end = started + times[-1]
     # Another budget for every seed, so that nothing is left over from a search of another seed.
     settings = one_pass(target.geometry, ENDLESS + seed)
     width, height = target.target.size(stones)
@@ -199,8 +212,17 @@ def looked_for(
     first = Planner(stones, site, seed=seed, settings=settings)
     for _ in first.steps():
         pass
+    reached: list[tuple[State, float]] = []
+    before: tuple[State, float] | None = None
     for state in way.states(first, end, clock):
-        last = state
-        if clock() > end:
+        now = state, clock()
+        while len(reached) < len(times) - 1 and now[1] > started + times[len(reached)]:
+            reached.append(before or now)
+        before = now
+        if now[1] > end:
             break
-    return Looked(last.best(), last.walls, possible_filling(first.workshop), clock() - started)
+    assert before is not None  # noqa: S101 - the first wall is there
+    reached += [before] * (len(times) - len(reached))
+    # Packed walls are built again only now, in nobody's time.
+    possible = possible_filling(first.workshop)
+    return [Looked(state.best(), state.walls, possible, at - started) for state, at in reached]

@@ -24,7 +24,10 @@ SUITES = {
 }
 """What each one is about, and the module of this package whose `run` does it."""
 
-SEARCHES = {"search": ("seconds", "seeds", "only"), "packing": ("seconds", "only")}
+SEARCHES = {
+    "search": ("seconds", "seeds", "only", "policy", "jobs", "runs"),
+    "packing": ("seconds", "only"),
+}
 """Those that search, and what can be asked of them."""
 
 

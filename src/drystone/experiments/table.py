@@ -75,12 +75,18 @@ class BenchSettings:
         Of all random choices.
     quick : bool
         A smaller version, for tests.
-    seconds : float or None
-        Time of each search, for suites of searches; None for theirs.
+    seconds : tuple of float
+        Times of each search, for suites of searches; empty for theirs.
     seeds : int or None
         How many seeds they search with, from `seed` on; None for theirs.
     only : tuple of str
         How the names of walls begin that are searched; empty for all.
+    policies : tuple of str
+        Names of the ways to search that are compared; empty for all.
+    jobs : int
+        How many searches run side by side, each in a process of its own.
+    runs : Path or None
+        Table to which every search is added, and of which none is done again; None keeps nothing.
     say : callable
         Told of every result of a long suite as it comes.
     """
@@ -89,9 +95,12 @@ class BenchSettings:
     output: Path | None = None
     seed: int = 0
     quick: bool = False
-    seconds: float | None = None
+    seconds: tuple[float, ...] = ()
     seeds: int | None = None
     only: tuple[str, ...] = ()
+    policies: tuple[str, ...] = ()
+    jobs: int = 1
+    runs: Path | None = None
     say: Callable[[str], None] = lambda _: None
 
 

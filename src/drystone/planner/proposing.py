@@ -113,14 +113,14 @@ class Spotted:
 
     trial: Trial
     spots: tuple[Spot, ...]
-    promise: float = 0.0
+    promise: float
 
 
 class RasterProposer:
     """Stones are their pixels at the working resolution.
 
-    Where selection goes by cost, the stones that promise most are stabilised first, and the others
-    only when enough of those are not cheaper than what is promised; Algorithm 2 compares all.
+    Where selection goes by cost, the stones that promise to be cheapest are stabilised first, and
+    others only while they promise less than enough of those cost; Algorithm 2 compares all.
 
     Parameters
     ----------

@@ -76,10 +76,10 @@ def _tables(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table]
 
 def _settings(arguments: argparse.Namespace, suite: str) -> BenchSettings:
     """Return what a suite is run with; E138 for options that it does not go by."""
-    for name in ("seconds", "seeds", "only", *PUBLIC_OPTIONS):
+    for name in ("seconds", "seeds", "only", "runs", *PUBLIC_OPTIONS):
         if getattr(arguments, name) and name not in SEARCHES.get(suite, ()):
             known = [other for other, names in SEARCHES.items() if name in names]
-            if name != "seconds":
+            if name not in ("seconds", "runs"):
                 known.append("the public suites")
             raise UsageError(
                 "E138",
@@ -95,9 +95,12 @@ def _settings(arguments: argparse.Namespace, suite: str) -> BenchSettings:
         output=output,
         seed=arguments.seed,
         quick=arguments.quick,
-        seconds=arguments.seconds,
+        seconds=tuple(arguments.seconds),
         seeds=arguments.seeds,
         only=tuple(arguments.only),
+        policies=tuple(arguments.policy),
+        jobs=arguments.jobs or 1,
+        runs=None if arguments.runs is None else Path(arguments.runs),
         say=say,
     )
 
