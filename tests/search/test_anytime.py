@@ -11,14 +11,13 @@ from drystone.generate.polygon import PolygonSettings, polygon_stones
 from drystone.model.site import Site
 from drystone.planner.events import Callbacks, Incumbent
 from drystone.planner.planner import Planner
-from drystone.search import anytime
 from drystone.search.anytime import Progress, searching
 from drystone.search.chain import in_cycle
 from drystone.search.found import Found
 from drystone.search.packed import Packed, found_again
 from drystone.search.plan_wall import plan_wall, run_to_end
 from drystone.search.processes import processes
-from drystone.search.work import PackedLink, planned_first
+from drystone.search.work import planned_first
 from drystone.verify.check import check_plan
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble
 
@@ -100,32 +99,6 @@ def test_what_was_built_in_time_counts_even_where_a_chain_was_cut_off(ticks: int
     assert again.walls == timed[-1].walls
     assert same(again.best, timed[-1].best)
     assert again.solves == timed[-1].solves
-
-
-@pytest.mark.parametrize(("share_every", "shared"), [(2, 4), (3, 2), (4, 2), (6, 1), (9, 0)])
-def test_chains_hear_of_each_other_in_every_round_and_share_their_best_seldom(
-    share_every: int, shared: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Two chains of eight walls each, two in a round."""
-    calls = {"knowing": 0, "shared": 0}
-    knowing, sharing = anytime._knowing, anytime._shared
-
-    def counted_knowing(links: list[PackedLink]) -> list[PackedLink]:
-        calls["knowing"] += 1
-        return knowing(links)
-
-    def counted_sharing(links: list[PackedLink]) -> list[PackedLink]:
-        calls["shared"] += 1
-        return sharing(links)
-
-    monkeypatch.setattr(anytime, "ROUND", 2)
-    monkeypatch.setattr(anytime, "_knowing", counted_knowing)
-    monkeypatch.setattr(anytime, "_shared", counted_sharing)
-    changes = {"budget": 3 + 16, **SMALL, "share_every": share_every}
-    settings = greedy({"search": changes})
-    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
-    assert searched(planner)[-1].walls == 3 + 16
-    assert calls == {"knowing": 4, "shared": shared}
 
 
 def test_processes_change_nothing() -> None:

@@ -6,18 +6,7 @@ import pytest
 
 from drystone.planner.solves import Solves
 from drystone.search.course_plan import CoursePlan
-from drystone.search.first_walls import (
-    BATCH,
-    FEW,
-    NEAR,
-    RARE,
-    SHARE,
-    STALE,
-    batches,
-    planned_share,
-    stale,
-    starts,
-)
+from drystone.search.first_walls import BATCH, SHARE, STALE, batches, planned_share, stale
 from drystone.search.found import Courses
 from drystone.search.packed import Packed
 
@@ -41,25 +30,12 @@ def test_nothing_is_known_of_a_single_wall(geometry: str) -> None:
     assert planned_share([wall(1.0, planned=False)], geometry) == SHARE[geometry]
 
 
-def test_a_kind_that_stays_behind_gets_a_small_share() -> None:
-    """Merits .1 apart, so the best of some more is expected about .2 above the mean."""
-    level = [wall(1.0 + 0.1 * (k % 3), planned=k % 2 > 0) for k in range(12)]
-    assert planned_share(level, "exact") == SHARE["exact"]
-    for planned, share in ((True, RARE), (False, 1.0 - RARE)):
-        ahead = [wall(2.0 + 0.1 * (k % 3), planned=not planned) for k in range(6)]
-        behind = [wall(1.0 + 0.1 * (k % 3), planned=planned) for k in range(6)]
-        assert planned_share([*ahead, *behind], "exact") == share
-        assert planned_share([*behind, *ahead], "raster") == share
-        # Of too few nothing is known, however bad they are.
-        assert planned_share([*ahead, *behind[: FEW - 1]], "exact") == SHARE["exact"]
-
-
-def test_a_kind_that_differs_more_is_tried_for_longer() -> None:
-    ahead = [wall(2.0 + 0.1 * (k % 3), planned=False) for k in range(6)]
-    alike = [wall(1.0 + 0.1 * (k % 3), planned=True) for k in range(6)]
-    different = [wall(0.5 + 0.6 * (k % 3), planned=True) for k in range(6)]
-    assert planned_share([*ahead, *alike], "exact") == RARE
-    assert planned_share([*ahead, *different], "exact") == SHARE["exact"]
+def test_the_share_follows_the_better_half() -> None:
+    planned_win = [wall(k, planned=k >= 4) for k in range(8)]
+    greedy_win = [wall(k, planned=k < 4) for k in range(8)]
+    assert planned_share(planned_win, "exact") == (4 + 1) / 6
+    assert planned_share(greedy_win, "exact") == 1 / 6
+    assert planned_share(planned_win[::-1], "exact") == planned_share(planned_win, "exact")
 
 
 def test_first_walls_end_when_they_beat_none_that_was_not_planned() -> None:
@@ -70,31 +46,3 @@ def test_first_walls_end_when_they_beat_none_that_was_not_planned() -> None:
     assert not stale(level[:-1])
     assert not stale([*level, wall(2.0, planned=False)])
     assert not stale([*level, wall(2.0, planned=True), *level[1:]])
-
-
-@pytest.mark.parametrize(("behind", "ends"), [(0.9 * NEAR, False), (1.1 * NEAR, True)])
-def test_first_walls_do_not_end_while_planned_ones_may_win(behind: float, ends: bool) -> None:
-    best = wall(1.0, planned=False)
-    planned = [wall(1.0 - behind, planned=True)] * STALE
-    assert stale([best, *planned]) is ends
-    # Nor while too few of them are known.
-    others = [wall(0.0, planned=False)] * STALE
-    assert stale([best, *others, *planned[: FEW - 1]]) is False
-    assert stale([best, *others, *planned[:FEW]]) is ends
-
-
-def test_chains_begin_with_the_best_of_both_kinds() -> None:
-    found = [wall(1.0 - k * 0.1 * NEAR, planned=k < 5) for k in range(12)]
-    # Of the ten that are near the best, five are planned.
-    begun = starts(found, 4)
-    assert begun == [found[0], found[5], found[1], found[6]]
-    assert starts(found[::-1], 4) == begun
-    others = [replace(one, courses=None) for one in found]
-    assert starts(others, 4) == others[:4]
-
-
-def test_what_is_far_from_the_best_begins_no_chain_while_there_are_others() -> None:
-    planned = [wall(1.0 - k * 0.1, planned=True) for k in range(6)]
-    far = [wall(0.95 - NEAR, planned=False)]
-    assert starts([*far, *planned], 4) == planned[:4]
-    assert starts([*far, planned[0]], 4) == [planned[0], far[0], planned[0], planned[0]]

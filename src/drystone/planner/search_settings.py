@@ -56,7 +56,7 @@ class SearchSettings:
     chains : int
         How many walls are improved side by side, each from its own.
     share_every : int
-        Walls of each chain after which the one that is furthest behind goes on from the best.
+        Walls after which each chain that is behind may go on from the best.
     largest : float
         Largest share of the stones that is chosen to be taken down; what rests on them goes too.
     spread : float
@@ -78,7 +78,7 @@ class SearchSettings:
     budget: int = 1
     passes: int = 24
     chains: int = 4
-    share_every: int = 32
+    share_every: int = 8
     largest: float = 0.3
     spread: float = 0.5
     polish: float = 0.2

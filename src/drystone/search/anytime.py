@@ -17,16 +17,13 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.archive import archived
-from drystone.search.first_walls import batches, planned_share, stale, starts
+from drystone.search.first_walls import batches, planned_share, stale
 from drystone.search.found import Found
 from drystone.search.operators import Credits
 from drystone.search.packed import Packed
 from drystone.search.work import Job, PackedLink, more_links, one_pass
 
 Result = TypeVar("Result")
-
-ROUND = 8
-"""Walls that each chain builds before the next has its turn, and before they hear of each other."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,9 +99,9 @@ def searching(
             kept = archived(kept, [wall])
             yield Progress(len(found), _best(found), _all_solves(found), kept)
     links = _links(found, search.chains)
-    walls, before, shared = len(found), _all_solves(found), 0
+    walls, before = len(found), _all_solves(found)
     while walls < search.budget:
-        counts = _shares(search.budget - walls, search.chains, min(ROUND, search.share_every))
+        counts = _shares(search.budget - walls, search.chains, search.share_every)
         tasks = [(job, link, count) for link, count in zip(links, counts, strict=True) if count]
         for k, link in enumerate(_mapped(executor, more_links, tasks)):
             if link is None:
@@ -117,9 +114,7 @@ def searching(
             yield Progress(walls, best, before + _all_solves(links), kept)
             if built < counts[k]:
                 return  # it became too late; what later chains have built is not in the budget
-        links = _knowing(links)
-        if links[0].done - shared >= search.share_every:
-            links, shared = _shared(links), links[0].done
+        links = _shared(_knowing(links))
 
 
 def _best(walls: Sequence[Packed]) -> Packed:
@@ -131,11 +126,11 @@ def _all_solves(walls: Sequence[Packed] | Sequence[PackedLink]) -> Solves:
     return sum((wall.solves for wall in walls), Solves())
 
 
-def _links(found: Sequence[Packed], count: int) -> list[PackedLink]:
-    """Begin chains from the best walls."""
-    return [
-        PackedLink(k, 0, start, start, Solves()) for k, start in enumerate(starts(found, count))
-    ]
+def _links(found: Sequence[Packed], chains: int) -> list[PackedLink]:
+    """Begin a chain from each of the best walls; from the best again where there are too few."""
+    order = sorted(range(len(found)), key=lambda k: (-found[k].merit, k))
+    starts = [found[order[k] if k < len(order) else order[0]] for k in range(chains)]
+    return [PackedLink(k, 0, start, start, Solves()) for k, start in enumerate(starts)]
 
 
 def _shares(left: int, chains: int, each: int) -> list[int]:
