@@ -1,16 +1,18 @@
 """Runs of searches: none is done twice, however many processes there are."""
 
 from dataclasses import replace
+from multiprocessing import active_children
 from pathlib import Path
 
 import pytest
 
-from drystone.errors import UsageError
+from drystone.errors import DrystoneError, UsageError
 from drystone.experiments import search_runs
 from drystone.experiments.exact_walls import QUICK
 from drystone.experiments.search_results import FIGURES, Result, Run, read_results
 from drystone.experiments.search_runs import Task, chosen_ways, searched
 from drystone.experiments.search_targets import SearchTarget
+from drystone.experiments.search_ways import WAYS, Way
 from drystone.experiments.table import BenchSettings
 
 TARGET = SearchTarget(QUICK[0], "raster")
@@ -71,6 +73,20 @@ def test_processes_do_what_one_does(tmp_path: Path) -> None:
     assert {run: r.seconds for run, r in two.items()} == {
         run: r.seconds for run, r in read_results(tmp_path / "runs.csv").items()
     }
+
+
+def test_a_process_that_dies_is_told_and_what_ended_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # In another process this is nobody's method, so that it dies of it.
+    unknown = Way("unknown", WAYS[0].states)
+    monkeypatch.setattr(search_runs, "chosen_ways", lambda *_: (WAYS[0], unknown))
+    settings = replace(ONE_WAY, runs=tmp_path / "runs.csv", jobs=2)
+    with pytest.raises(DrystoneError, match="E402") as caught:
+        searched([(TARGET, STONES)], [1], (1e-6,), settings)
+    assert caught.value.where == "bricks, raster, unknown, seed 1"
+    assert {run.way for run in read_results(tmp_path / "runs.csv")} <= {"restarts"}
+    assert not active_children()
 
 
 def test_ways_are_chosen_by_name() -> None:

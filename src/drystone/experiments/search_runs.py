@@ -1,12 +1,16 @@
 """Runs of the suite "search": one method, one wall and one seed each, side by side if asked."""
 
+import signal
+from collections import deque
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from multiprocessing import get_context
+from multiprocessing.connection import wait
 from pathlib import Path
+from typing import Any
 
 from drystone.errors import UsageError
+from drystone.experiments.runs.failures import died
 from drystone.experiments.search_results import Result, Run, append_results, read_results
 from drystone.experiments.search_targets import SearchTarget, search_targets
 from drystone.experiments.search_ways import WAYS, Way, looked_at_times, ways_of
@@ -68,6 +72,8 @@ def searched(
     ------
     UsageError
         E138: a method that there is not; E148: see :func:`read_results`.
+    DrystoneError
+        E402: a process died.
     """
     known = {} if settings.runs is None else read_results(settings.runs)
     tasks = [
@@ -118,13 +124,42 @@ def _done(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, list[Result]
         yield from ((task, do(task)) for task in tasks)
         return
     # A new process for each: what one search remembers takes no time from another.
-    executor = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), max_tasks_per_child=1)
+    context, waiting = get_context("spawn"), deque(tasks)
+    busy: dict[Any, tuple[Task, Any]] = {}
     try:
-        futures = {executor.submit(do, task): task for task in tasks}
-        for future in as_completed(futures):
-            yield futures[future], future.result()
+        while waiting or busy:
+            while waiting and len(busy) < jobs:
+                task = waiting.popleft()
+                here, there = context.Pipe(duplex=False)
+                process = context.Process(target=_send_back, args=(task, there), daemon=True)
+                process.start()
+                there.close()
+                busy[here] = task, process
+            for ready in wait(list(busy)):
+                task, process = busy[ready]
+                results = _received(ready, task)
+                del busy[ready]
+                process.join()
+                yield task, results
     finally:
-        executor.shutdown(cancel_futures=True)
+        for _, process in busy.values():  # a search that is interrupted would go on
+            process.kill()
+            process.join()
+
+
+def _send_back(task: Task, there: Any) -> None:
+    """Do a task in a process of its own, which leaves interrupts to the one that asks."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    there.send(do(task))
+
+
+def _received(here: Any, task: Task) -> list[Result]:
+    """Return what a process has sent; E402 when it died before."""
+    try:
+        results: list[Result] = here.recv()
+    except EOFError as error:
+        raise died(f"{task.wall}, {task.way}, seed {task.seed}", "process") from error
+    return results
 
 
 def do(task: Task) -> list[Result]:

@@ -6,13 +6,13 @@ from drystone.errors import DrystoneError, InputError
 from drystone.experiments.runs.spec import RunSpec
 
 
-def died(spec: RunSpec, who: str) -> DrystoneError:
+def died(spec: RunSpec | str, who: str) -> DrystoneError:
     """Return E402: who did a run died at it.
 
     Parameters
     ----------
-    spec : RunSpec
-        The run.
+    spec : RunSpec or str
+        The run, or what it is called.
     who : str
         What did it, without an article.
     """
