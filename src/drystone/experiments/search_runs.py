@@ -1,16 +1,11 @@
 """Runs of the suite "search": one method, one wall and one seed each, side by side if asked."""
 
-import signal
-from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from multiprocessing import get_context
-from multiprocessing.connection import wait
 from pathlib import Path
-from typing import Any
 
 from drystone.errors import UsageError
-from drystone.experiments.runs.failures import died
+from drystone.experiments.runs.processes import crew
 from drystone.experiments.search_results import Result, Run, append_results, read_results
 from drystone.experiments.search_targets import SearchTarget, search_targets
 from drystone.experiments.search_ways import WAYS, Way, looked_at_times, ways_of
@@ -48,6 +43,9 @@ class Task:
         """What its results are called."""
         return [Run(self.wall, self.way, self.seed, seconds) for seconds in self.times]
 
+    def __str__(self) -> str:
+        return f"{self.wall}, {self.way}, seed {self.seed}"
+
 
 def searched(
     walls: Sequence[tuple[SearchTarget, StoneSet]],
@@ -73,7 +71,7 @@ def searched(
     UsageError
         E138: a method that there is not; E148: see :func:`read_results`.
     DrystoneError
-        E402: a process died.
+        E402: a process died; what the others were doing is done and kept.
     """
     known = {} if settings.runs is None else read_results(settings.runs)
     tasks = [
@@ -121,45 +119,15 @@ def chosen_ways(target: SearchTarget, names: Sequence[str]) -> tuple[Way, ...]:
 def _done(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, list[Result]]]:
     """Do tasks, and give their results as they come."""
     if jobs == 1:
-        yield from ((task, do(task)) for task in tasks)
+        yield from map(_with_results, tasks)
         return
-    # A new process for each: what one search remembers takes no time from another.
-    context, waiting = get_context("spawn"), deque(tasks)
-    busy: dict[Any, tuple[Task, Any]] = {}
-    try:
-        while waiting or busy:
-            while waiting and len(busy) < jobs:
-                task = waiting.popleft()
-                here, there = context.Pipe(duplex=False)
-                process = context.Process(target=_send_back, args=(task, there), daemon=True)
-                process.start()
-                there.close()
-                busy[here] = task, process
-            for ready in wait(list(busy)):
-                task, process = busy[ready]
-                results = _received(ready, task)
-                del busy[ready]
-                process.join()
-                yield task, results
-    finally:
-        for _, process in busy.values():  # a search that is interrupted would go on
-            process.kill()
-            process.join()
+    with crew(jobs, fresh=True) as processes:
+        yield from processes.work(_with_results, tasks)
 
 
-def _send_back(task: Task, there: Any) -> None:
-    """Do a task in a process of its own, which leaves interrupts to the one that asks."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    there.send(do(task))
-
-
-def _received(here: Any, task: Task) -> list[Result]:
-    """Return what a process has sent; E402 when it died before."""
-    try:
-        results: list[Result] = here.recv()
-    except EOFError as error:
-        raise died(f"{task.wall}, {task.way}, seed {task.seed}", "process") from error
-    return results
+def _with_results(task: Task) -> tuple[Task, list[Result]]:
+    """Do a task, and say which it was."""
+    return task, do(task)
 
 
 def do(task: Task) -> list[Result]:

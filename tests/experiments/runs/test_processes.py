@@ -1,6 +1,7 @@
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from pathlib import Path
@@ -10,7 +11,7 @@ import pytest
 
 from drystone.errors import DrystoneError
 from drystone.experiments.runs import processes as module
-from drystone.experiments.runs.processes import ONE_THREAD, processes_at_work
+from drystone.experiments.runs.processes import ONE_THREAD, crew, processes_at_work
 from drystone.experiments.runs.runner import Runner, one_by_one
 from drystone.experiments.runs.store import RunStore
 from tests.experiments.runs.bricks import NOT_SIX, deadly, endless, kept, run
@@ -51,9 +52,8 @@ def test_one_process_is_this_one() -> None:
 
 @pytest.mark.usefixtures("interruptible")
 def test_deaths_and_interrupts_lose_nothing_that_ended(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path,
 ) -> None:
-    monkeypatch.setenv(ONE_THREAD[0], "2")
     store = RunStore(tmp_path)
     with processes_at_work(2) as work:
         runner = Runner(store, work=work)
@@ -61,8 +61,6 @@ def test_deaths_and_interrupts_lose_nothing_that_ended(
             runner.run([run(1), deadly(2)])
         assert (caught.value.code, caught.value.where) == ("E402", str(deadly(2)))
         assert [kept(store, spec) for spec in (run(1), deadly(2))] == [True, False]
-        for process in work.__self__.free:
-            assert [process.submit(os.getenv, name).result() for name in ONE_THREAD] == ["1"] * 4
         # Another process is in the place of the dead one.
         assert len(runner.run([run(1), run(3), run(4), run(5)])) == 4
         with pytest.raises(KeyboardInterrupt):
@@ -95,3 +93,31 @@ def test_what_ended_is_given_before_an_interrupt(monkeypatch: pytest.MonkeyPatch
         assert keys == {spec.key for spec in (run(1), run(2), run(3))}
         # All processes are there for the next runs.
         assert len(list(work([run(k) for k in range(5, 9)], None))) == 4
+
+
+@pytest.mark.parametrize("fresh", [False, True])
+def test_processes_have_one_thread_and_are_used_again_or_not(
+    monkeypatch: pytest.MonkeyPatch, fresh: bool
+) -> None:
+    monkeypatch.setenv(ONE_THREAD[0], "2")
+    with crew(2, fresh=fresh) as processes:
+        assert list(processes.work(os.getenv, ONE_THREAD)) == ["1"] * 4
+        ids = set(processes.work(pid, range(4)))
+    assert os.getpid() not in ids
+    assert len(ids) == (4 if fresh else 2)
+    assert not [one for one in ids if alive(one)]
+
+
+def pid(_: int) -> int:
+    """Return the number of this process, late enough for another to begin as well."""
+    time.sleep(0.2)
+    return os.getpid()
+
+
+def alive(process: int) -> bool:
+    """Return True when there is a process of this number."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    return True
