@@ -48,7 +48,7 @@ def clock_of(*times: float) -> search_ways.Clock:
         ("restarts with wedges", "exact", 3, 4),
         ("search", "exact", 8, 4),
         ("search", "raster", 8, 4),
-        ("without courses", "exact", 8, 7),
+        ("without courses", "exact", 8, 6),
     ],
 )
 def test_what_is_begun_in_time_counts(name, geometry, seconds, walls):

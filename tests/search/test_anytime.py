@@ -12,7 +12,7 @@ from drystone.model.site import Site
 from drystone.planner.events import Callbacks, Incumbent
 from drystone.planner.planner import Planner
 from drystone.search.anytime import Progress, searching
-from drystone.search.chain import in_cycle
+from drystone.search.chain import in_cycle, wedged
 from drystone.search.found import Found
 from drystone.search.packed import Packed, found_again
 from drystone.search.plan_wall import plan_wall, run_to_end
@@ -64,6 +64,18 @@ def test_walls_get_better_and_are_complete(geometry: str) -> None:
     assert again.merit == best.merit
 
 
+def test_the_first_wall_is_wedged_as_the_others_are() -> None:
+    planner = first(2, seed=8)
+    start = Found.of(planner)
+    better = wedged(start, planner.workshop, planner.settings)
+    assert better.merit > start.merit
+    found = searched(planner)
+    assert [p.walls for p in found] == [1, 2]
+    # Nothing that the budget 1 does not repeat.
+    assert found[0].best.merit == start.merit
+    assert found[1].best.merit == better.merit
+
+
 def test_a_part_of_a_search_is_a_search_with_a_smaller_budget() -> None:
     """What the clock cut off, the budget that is recorded repeats."""
     whole = searched(first(12))
@@ -93,8 +105,9 @@ def test_what_was_built_in_time_counts_even_where_a_chain_was_cut_off(ticks: int
             seconds=float(ticks), clock=Ticks(),
         )
     )  # fmt: skip
-    # The clock is looked at once at the start, then once for every wall, and once when it is late.
-    assert timed[-1].walls == ticks + 1
+    # The clock is looked at once at the start and once before wedges are put into the first wall,
+    # then once for every wall, and once when it is late.
+    assert timed[-1].walls == ticks
     again = searched(first(timed[-1].walls))[-1]
     assert again.walls == timed[-1].walls
     assert same(again.best, timed[-1].best)

@@ -73,12 +73,12 @@ def _bricks(rng: Generator) -> StoneSet:
 
 
 UNSEEN = (
-    Target("Fourier, 45", _fixed(_fourier, 9101), 574, 200, 0.6),
-    Target("polygons 20 %, 40", _fixed(_polygons(0.2), 9102), 1462, 400, 0.3),
-    Target("polygons 60 %, 40", _fixed(_polygons(0.6), 9103), 1449, 400, 0.25),
-    Target("rubble, 60", _fixed(_rubble_60, 9104), 990, 300, 0.5),
-    Target("rubble, 120", _fixed(_rubble_120, 9105), 1437, 450, 0.45),
-    Target("bricks, 48", _fixed(_bricks, 9106), 550, 144, 0.6),
+    Target("Fourier, 45", _fixed(_fourier, 9201), 577, 200, 0.6),
+    Target("polygons 20 %, 40", _fixed(_polygons(0.2), 9202), 1462, 400, 0.3),
+    Target("polygons 60 %, 40", _fixed(_polygons(0.6), 9203), 1462, 400, 0.25),
+    Target("rubble, 60", _fixed(_rubble_60, 9204), 990, 300, 0.5),
+    Target("rubble, 120", _fixed(_rubble_120, 9205), 1437, 450, 0.45),
+    Target("bricks, 48", _fixed(_bricks, 9206), 550, 144, 0.6),
 )
 """Sets that no setting was tuned on, drawn anew after the last change of the search; walls of their
 area over .8."""

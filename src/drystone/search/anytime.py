@@ -17,6 +17,7 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.archive import archived
+from drystone.search.chain import wedged
 from drystone.search.first_walls import batches, planned_share, stale
 from drystone.search.found import Found
 from drystone.search.operators import Credits
@@ -85,9 +86,12 @@ def searching(
     tools = pickle.dumps((workshop.stones, workshop.site, settings))
     job = Job(tools, seed, clock() + seconds, clock)
     search, start = settings.search, Packed.of(first)
-    found = [start]
+    yield Progress(1, start, start.solves, archived((), [start]))
+    if search.budget == 1 or job.late():
+        return
+    # Told together with the wall after it: the budget that repeats the search counts walls.
+    found = [Packed.of(wedged(first, workshop, settings))]
     kept = archived((), found)
-    yield Progress(1, start, start.solves, kept)
     for batch in batches(min(search.passes, search.budget)):
         if stale(found):
             break
