@@ -89,7 +89,8 @@ def searching(
     yield Progress(1, start, start.solves, archived((), [start]))
     if search.budget == 1 or job.late():
         return
-    # Told together with the wall after it: the budget that repeats the search counts walls.
+    # Its wedges are told of with the next wall: a search that ends before that is repeated by the
+    # budget 1, which is the wall without them.
     found = [Packed.of(wedged(first, workshop, settings))]
     kept = archived((), found)
     for batch in batches(min(search.passes, search.budget)):

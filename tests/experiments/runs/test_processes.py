@@ -1,7 +1,6 @@
 import os
 import signal
 import threading
-import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from pathlib import Path
@@ -51,9 +50,7 @@ def test_one_process_is_this_one() -> None:
 
 
 @pytest.mark.usefixtures("interruptible")
-def test_deaths_and_interrupts_lose_nothing_that_ended(
-    tmp_path: Path,
-) -> None:
+def test_deaths_and_interrupts_lose_nothing_that_ended(tmp_path: Path) -> None:
     store = RunStore(tmp_path)
     with processes_at_work(2) as work:
         runner = Runner(store, work=work)
@@ -109,8 +106,7 @@ def test_processes_have_one_thread_and_are_used_again_or_not(
 
 
 def pid(_: int) -> int:
-    """Return the number of this process, late enough for another to begin as well."""
-    time.sleep(0.2)
+    """Return the number of this process."""
     return os.getpid()
 
 
