@@ -115,7 +115,7 @@ def _planning(command: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--policy", metavar="NAME",
         help="who chooses the stones of a single pass: paper, random, lowest, scalarised, filter, "
-        "towers, or one that is installed (docs/policies.md)",
+        "towers, learned, or one that is installed (docs/policies.md)",
     )  # fmt: skip
     group.add_argument("--sampling", choices=["variant", "uniform", "twofold", "full"])
     group.add_argument("--placement", choices=["snug", "eq12", "lowest"])

@@ -56,7 +56,7 @@ class SearchSettings:
     chains : int
         How many walls are improved side by side, each from its own.
     share_every : int
-        Walls after which each chain that is behind may go on from the best.
+        Walls of each chain after which the one that is furthest behind goes on from the best.
     largest : float
         Largest share of the stones that is chosen to be taken down; what rests on them goes too.
     spread : float
