@@ -14,6 +14,7 @@ from drystone.experiments.runs.failures import died
 from drystone.experiments.runs.outcome import Outcome, execute
 from drystone.experiments.runs.runner import Work, one_by_one
 from drystone.experiments.runs.spec import RunSpec
+from drystone.search.processes import MUCH_MEMORY
 
 ONE_THREAD = (
     "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS",
@@ -138,7 +139,8 @@ def _process() -> Process:
     """Return an executor of one process, which starts when it has something to do."""
     from loky import ProcessPoolExecutor  # noqa: PLC0415 - not needed to work in this process
 
-    return ProcessPoolExecutor(1, initializer=_left_alone, env=dict.fromkeys(ONE_THREAD, "1"))
+    env = {**dict.fromkeys(ONE_THREAD, "1"), **MUCH_MEMORY}
+    return ProcessPoolExecutor(1, initializer=_left_alone, env=env)
 
 
 def _left_alone() -> None:
