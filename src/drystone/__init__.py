@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from drystone.planner.settings import PlannerSettings as PlannerSettings
     from drystone.planner.settings import method_settings as method_settings
     from drystone.report.notebook import view as view
-    from drystone.search.plan_wall import PlanResult as PlanResult
+    from drystone.search.plan_result import PlanResult as PlanResult
     from drystone.search.plan_wall import plan_wall as plan_wall
     from drystone.statics.contacts.blocks import model_from_labels as model_from_labels
     from drystone.statics.contacts.given import model_from_json as model_from_json
@@ -55,7 +55,7 @@ _HOMES = {
     "Stone": "drystone.model.stone",
     "StoneSet": "drystone.model.stone",
     "view": "drystone.report.notebook",
-    "PlanResult": "drystone.search.plan_wall",
+    "PlanResult": "drystone.search.plan_result",
     "plan_wall": "drystone.search.plan_wall",
     "MeasuredPose": "drystone.planner.measured",
     "Observation": "drystone.planner.observe",

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from drystone.io.plan_json import read_plan
-from drystone.search.plan_wall import PlanResult
+from drystone.search.plan_result import PlanResult
 from tests.cli.conftest import EXACT, WALL, Run
 
 SEARCH = ("--wall", "100x36", "--scale", "1", "--budget", "9", "--seed", "4")

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -23,8 +24,8 @@ FILES = {
 }  # fmt: skip
 
 SUMMARY = [
-    "plan", "status", "stopped", "placed", "stones", "unused", "wedges", "F_SF", "F_SF_bound",
-    "F_AV", "F_AH", "F_LR", "F_LR_half", "F_LR_double", "T_LEVEL", "E_FLUSH",
+    "plan", "status", "stopped", "shortfall", "placed", "stones", "unused", "wedges", "F_SF",
+    "F_SF_bound", "F_AV", "F_AH", "F_LR", "F_LR_half", "F_LR_double", "T_LEVEL", "E_FLUSH",
     "alpha_left", "alpha_right", "wedge_area", "working_scale", "seconds",
 ]  # fmt: skip
 
@@ -102,6 +103,7 @@ def test_too_few_stones_for_a_wall_return_4(bricks: Path, tmp_path: Path, run: R
     assert ran.code == 4
     summary = ran.json()
     assert (summary["status"], summary["placed"]) == ("incomplete", 6)
+    assert re.match(r"the top is at 0\.\d{3} of the wall's height", summary["shortfall"])
     assert run("check", tmp_path, "--stones", bricks).code == 0
 
 
@@ -300,7 +302,7 @@ def test_profile_says_where_the_time_went(rubble: Path, tmp_path: Path, run: Run
     told = run("plan", rubble, *WALL, "--profile", "--json", "-o", tmp_path / "json")
     profile = told.json()["profile"]
     assert list(profile) == [
-        "seconds", "parts", "steps", "candidates", "longest_step", "jobs", "kernels",
+        "seconds", "parts", "steps", "candidates", "solved_anew", "longest_step", "jobs", "kernels",
     ]  # fmt: skip
     parts = profile["parts"]
     assert list(parts) == [*PARTS, "other"]

@@ -13,7 +13,7 @@ from drystone.assembly.read import read_assembly
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.io.blocks_json import write_blocks
 from drystone.io.wall_image import write_wall_image
-from drystone.search.plan_wall import PlanResult
+from drystone.search.plan_result import PlanResult
 
 PX_PER_M = 137.0
 

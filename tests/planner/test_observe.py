@@ -20,7 +20,7 @@ from drystone.planner.observe import Measurement, Observation
 from drystone.planner.planner import Planner
 from drystone.planner.replay import stands
 from drystone.planner.settings import PlannerSettings
-from drystone.search.plan_wall import finish as finish_plan
+from drystone.search.plan_result import finish as finish_plan
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.limit import lateral_resistance

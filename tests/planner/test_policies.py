@@ -18,7 +18,8 @@ from drystone.model.stone import StoneSet
 from drystone.planner.attempt import Attempt
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings, method_settings
-from drystone.search.plan_wall import PlanResult, plan_wall
+from drystone.search.plan_result import PlanResult
+from drystone.search.plan_wall import plan_wall
 from drystone.selection.policies import registry
 from drystone.selection.policies.registry import BUILT_IN, GROUP
 from drystone.selection.policy import Offer

@@ -8,7 +8,8 @@ import pytest
 from drystone.generate import FourierSettings, fourier_stones
 from drystone.io.read_stones import read_stones
 from drystone.model.stone import StoneSet
-from drystone.search.plan_wall import PlanResult, plan_wall
+from drystone.search.plan_result import PlanResult
+from drystone.search.plan_wall import plan_wall
 from drystone.verify import check_plan
 
 

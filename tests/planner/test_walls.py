@@ -19,7 +19,8 @@ from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import RasterProposer, Trial
 from drystone.planner.settings import PlannerSettings
-from drystone.search.plan_wall import mean_top, plan_wall, working_scale
+from drystone.search.plan_result import mean_top
+from drystone.search.plan_wall import plan_wall, working_scale
 from drystone.verify import check_plan
 from tests.planner.scenes import blocks, bricks, greedy, rubble, stones_of_masks
 
@@ -214,10 +215,13 @@ def test_what_is_incomplete() -> None:
     result = plan_wall(bricks(3), 60, 20, scale=1.0, method="paper")
     assert (result.status, result.message) == ("incomplete", "all stones placed")
     assert mean_top(result.wall) == pytest.approx(0.5)
+    assert result.shortfall == (
+        "the top is at 0.500 of the wall's height on average, less than 0.9"
+    )
     # A wall that is as high as wanted is complete though it has gaps.
     tall = plan_wall(blocks({1: (58, 20)}), 60, 20, scale=1.0, method="paper")
     assert tall.metrics.F_SF < 0.99
-    assert (tall.status, tall.success) == ("complete", True)
+    assert (tall.status, tall.success, tall.shortfall) == ("complete", True, "")
 
 
 def test_the_working_resolution() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 import drystone as ds
 from drystone.cli.choice import write_built
-from drystone.search.plan_wall import PlanResult
+from drystone.search.plan_result import PlanResult
 
 WALL_PX = (130.0, 50.0)
 

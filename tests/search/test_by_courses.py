@@ -19,7 +19,7 @@ from drystone.search.by_courses import newly_planned, relaid, replanned
 from drystone.search.chain import recreated
 from drystone.search.found import Found
 from drystone.search.packed import Packed, found_again
-from drystone.search.plan_wall import finish
+from drystone.search.plan_result import finish
 from drystone.statics.grown import Grown
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify.check import check_plan

@@ -72,6 +72,7 @@ def test_a_full_wall_is_incomplete_without_a_pinned_stone() -> None:
     assert plan_wall(large, 60, 20, scale=1.0, settings=without).status == "complete"
     result = plan_wall(large, 60, 20, scale=1.0, settings=pinned)
     assert (result.status, result.metrics.F_SF) == ("incomplete", 1.0)
+    assert result.shortfall == "stones that are pinned are missing"
     assert [notice.code for notice in result.notices] == ["W120"]
     planner = finish(Planner(large, Site(60, 20), settings=pinned))
     found = Found.of(planner)

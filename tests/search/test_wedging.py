@@ -24,7 +24,7 @@ from drystone.planner.planner import Planner
 from drystone.planner.replay import Replayed, replayed
 from drystone.planner.solves import Solves
 from drystone.search import wedging
-from drystone.search.plan_wall import finish as finished
+from drystone.search.plan_result import finish as finished
 from drystone.search.wedge_draft import Draft
 from drystone.search.wedging import wedged_up
 from drystone.settle.placing import settled_placement

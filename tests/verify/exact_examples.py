@@ -12,7 +12,7 @@ from drystone.planner.assemble import Frame
 from drystone.planner.events import Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
-from drystone.search.plan_wall import finish
+from drystone.search.plan_result import finish
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import placed_outline
 from drystone.stabilise.settings import StabiliseSettings

@@ -13,7 +13,8 @@ from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.io.read_stones import read_stones
 from drystone.model.plan import Plan, PlanMetrics
 from drystone.planner.settings import method_settings
-from drystone.search.plan_wall import PlanResult, plan_wall
+from drystone.search.plan_result import PlanResult
+from drystone.search.plan_wall import plan_wall
 from drystone.verify.check import check_plan
 from drystone.verify.exact_replay import PENETRATION_PX
 from drystone.verify.overlap import SPACING_PX

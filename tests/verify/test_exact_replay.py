@@ -16,7 +16,8 @@ from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.settings import method_settings
-from drystone.search.plan_wall import PlanResult, plan_wall
+from drystone.search.plan_result import PlanResult
+from drystone.search.plan_wall import plan_wall
 from drystone.settle.settings import SettleSettings
 from drystone.verify.check import check_plan
 from drystone.verify.exact_replay import ExactCanvas, leaves

@@ -7,7 +7,7 @@ import numpy as np
 
 from drystone.errors import Notice
 from drystone.model.stone import StoneSet
-from drystone.search.plan_wall import PlanResult
+from drystone.search.plan_result import PlanResult
 
 WRITTEN = (
     "plan.json", "report.html", "wall.png", "wall.tif", "picture.png", "mechanism_left.png",

@@ -9,7 +9,7 @@ from drystone.cli.output import make_folder, number
 from drystone.io.blocks_json import write_blocks
 from drystone.io.plan_json import write_plan
 from drystone.io.wall_image import write_wall_image
-from drystone.search.plan_wall import PlanResult
+from drystone.search.plan_result import PlanResult
 
 FOLDER, PICTURE = "pareto", "pareto.png"
 WRITTEN = ("plan.json", "settings.toml", "blocks.json", "wall.png", "wall.tif")

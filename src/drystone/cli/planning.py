@@ -28,7 +28,8 @@ from drystone.io.plan_json import read_plan
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.planner.settings import PlannerSettings, method_settings
-from drystone.search.plan_wall import PlanResult, plan_wall, working_scale
+from drystone.search.plan_result import PlanResult
+from drystone.search.plan_wall import plan_wall, working_scale
 from drystone.verify.replay import rebuild_wall
 
 _EXIT = {
@@ -190,6 +191,7 @@ def _summary(result: PlanResult, folder: Path) -> dict[str, Any]:
         "plan": str(folder / "plan.json"),
         "status": result.status,
         "stopped": result.message,
+        "shortfall": result.shortfall,
         "placed": len(result.plan.stone_steps),
         "stones": len(result.plan.stone_steps) + len(result.plan.unused),
         "unused": list(result.plan.unused),
@@ -231,7 +233,7 @@ def _print_summary(result: PlanResult, folder: Path) -> None:
     placed, left = len(plan.stone_steps), len(plan.unused)
     unused = f", unused: {', '.join(map(str, plan.unused))}" if left else ""
     print_table(
-        f"{result.status}: {result.message}",
+        f"{result.status}: {'; '.join(filter(None, (result.message, result.shortfall)))}",
         [
             ("stones", f"{placed} of {placed + left} placed{unused}"),
             ("F_SF", f"{number(metrics.F_SF)} of at most {_bound(result)}"),

@@ -5,7 +5,7 @@ from typing import Any
 from drystone.cli.output import print_table
 from drystone.kernels.backend import describe
 from drystone.planner.profile import PARTS
-from drystone.search.plan_wall import PlanResult
+from drystone.search.plan_result import PlanResult
 
 
 def profile_summary(result: PlanResult, jobs: int) -> dict[str, Any]:
@@ -23,6 +23,7 @@ def profile_summary(result: PlanResult, jobs: int) -> dict[str, Any]:
         "parts": parts,
         "steps": len(profile.steps),
         "candidates": profile.candidates,
+        "solved_anew": result.solves.cold,
         "longest_step": max((step.seconds for step in profile.steps), default=0.0),
         "jobs": jobs,
         "kernels": describe(),
@@ -40,6 +41,7 @@ def print_profile(summary: dict[str, Any]) -> None:
     rows += [
         ("steps", f"{summary['steps']}, the longest {1000 * summary['longest_step']:.1f} ms"),
         ("candidates", str(summary["candidates"])),
+        ("solved anew", f"{summary['solved_anew']}, as the first answer had no certificate"),
         ("kernels", summary["kernels"]),
         ("threads", "1" if threads == 1 else f"{threads}; parts are summed over them"),
     ]

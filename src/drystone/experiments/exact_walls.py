@@ -14,7 +14,8 @@ from drystone.io.read_stones import read_stones
 from drystone.kernels.polygons import Points
 from drystone.model.stone import StoneSet
 from drystone.planner.settings import PlannerSettings, method_settings
-from drystone.search.plan_wall import PlanResult, plan_wall
+from drystone.search.plan_result import PlanResult
+from drystone.search.plan_wall import plan_wall
 from drystone.verify.outlines import Group, plan_polygons
 
 Geometry = str

@@ -13,7 +13,7 @@ from drystone.model.plan import StoneStep
 from drystone.plotting.outlines import wall_outlines
 from drystone.report.view_statics import scaled_resistance
 from drystone.report.viewer_data import View, view_of_assembly
-from drystone.search.plan_wall import PlanResult
+from drystone.search.plan_result import PlanResult
 
 
 def assembly_of_result(result: PlanResult, photo: Path | None = None) -> Assembly:

@@ -7,7 +7,7 @@ from drystone.assembly.read import read_assembly
 from drystone.report.embedding import viewer_frame, viewer_page
 from drystone.report.from_result import view_of_result
 from drystone.report.viewer_data import View, view_of_assembly
-from drystone.search.plan_wall import PlanResult
+from drystone.search.plan_result import PlanResult
 
 
 @dataclass(frozen=True)

@@ -60,17 +60,9 @@ def _lost(*, lost: bool) -> Iterator[Notice]:
 
 
 def _solves(planner: Planner) -> Iterator[Notice]:
-    cure = "Please report this with the stones and the settings."
     if planner.failed_solves:
         yield Notice(
             "W303",
             f"the solver gave up on {planner.failed_solves} candidates, which were passed over.",
-            cure,
-        )
-    if planner.cold_solves:
-        yield Notice(
-            "W303",
-            f"the solver had no certificate for {planner.cold_solves} candidates at first, which "
-            "were solved again from the start.",
-            cure,
+            "Please report this with the stones and the settings.",
         )

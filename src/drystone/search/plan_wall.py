@@ -6,106 +6,31 @@ from collections.abc import Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext
-from dataclasses import dataclass, field, replace
-from importlib import import_module
+from dataclasses import replace
 from importlib.metadata import version
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from drystone.errors import Notice, UsageError
-from drystone.metrics.level import top_profile
-from drystone.model.plan import Plan, PlanMetrics
+from drystone.errors import UsageError
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
-from drystone.planner.assemble import Frame, assemble_plan, plan_metrics
-from drystone.planner.build import Build
+from drystone.planner.assemble import Frame
 from drystone.planner.events import Callbacks, Incumbent, Stopped
 from drystone.planner.planner import Planner
-from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.planner.solves import Solves
 from drystone.search.anytime import Progress, searching
 from drystone.search.found import Found
-from drystone.search.goal import usable_area_px
-from drystone.search.notices import missing_stones, planning_notices
+from drystone.search.notices import planning_notices
 from drystone.search.packed import Packed, found_again
+from drystone.search.plan_result import PlanResult, finish
 from drystone.search.processes import processes
 from drystone.search.warm_start import begin_with
-from drystone.statics.contacts.settled import model_of_outlines
-from drystone.statics.limit import lateral_resistance
-from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LateralResistance
 
 TYPICAL_STONE_PX = 40
 """Longer side of the median stone at the resolution that is chosen when none is given."""
-
-FILLED = 0.99
-"""Filling from which a plan is complete whatever its top (DESIGN 2)."""
-
-FILLED_TOP = 0.9
-"""A plan is incomplete when its mean top stays below this share of the wall's height."""
-
-
-@dataclass(frozen=True, eq=False)
-class PlanResult:
-    """What planning gave.
-
-    Parameters
-    ----------
-    success : bool
-        True unless the wall is incomplete or planning was interrupted.
-    status : {"complete", "incomplete", "interrupted"}
-        Incomplete: filling below .99 and a mean top below .9 of the height, or without a stone
-        that is pinned.
-    message : str
-        Why construction ended.
-    plan : Plan
-        The plan.
-    metrics : PlanMetrics
-        The plan's figures of merit.
-    wall : Wall
-        The wall at the working resolution.
-    model : RigidBlockModel
-        Its blocks and contacts, in working px; in source px when the geometry is exact.
-    resistance : LateralResistance
-        With both mechanisms.
-    clusters : dict of int to int
-        Cluster of each stone.
-    seconds : float
-        From the stones to the last step.
-    F_SF_bound : float
-        What F_SF can be at most: the area of the stones that may be used over that of the wall,
-        or 1.
-    notices : tuple of Notice
-        W120 when pinned stones are missing, W121 when stones of the wall that was begun with are
-        not used; W303 when the solver gave up on some candidates, which were then passed over,
-        and when it had to solve some from the start, which costs time alone.
-    profile : Profile
-        Where the time went.
-    choice : tuple of PlanResult
-        When they were asked for: walls of the search that none beats in every figure of merit,
-        that of most merit first.
-    """
-
-    success: bool
-    status: str
-    message: str
-    plan: Plan
-    metrics: PlanMetrics
-    wall: Wall
-    model: RigidBlockModel
-    resistance: LateralResistance
-    clusters: dict[int, int]
-    seconds: float
-    F_SF_bound: float
-    notices: tuple[Notice, ...] = ()
-    profile: Profile = field(default_factory=Profile)
-    choice: "tuple[PlanResult, ...]" = ()
-
-    def _repr_html_(self) -> str:
-        # By name, as the package itself loads its rooms: the report lies above the search.
-        return str(import_module("drystone.report.notebook").frame_of_result(self))
 
 
 def working_scale(stones: StoneSet) -> float:
@@ -222,6 +147,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     return replace(
         result,
         notices=planning_notices(first, ended.planner, left_out, lost=ended.lost),
+        solves=Solves(first.failed_solves, first.cold_solves),
         choice=tuple(finish(one, frame, why, provenance, took) for one, why in others),
     )
 
@@ -335,58 +261,3 @@ def _incumbent(progress: Progress) -> Incumbent:
         figures.F_AV,
         figures.F_AH,
     )
-
-
-def finish(
-    planner: Planner,
-    frame: Frame,
-    stopped: Stopped,
-    provenance: Mapping[str, Any],
-    seconds: float,
-) -> PlanResult:
-    """Judge what a planner has built and write the plan."""
-    build = planner.build
-    resistance = lateral_resistance(build.model, mechanism=True)
-    metrics = plan_metrics(
-        build, frame, resistance, resistance_by_tolerance(build, planner.settings)
-    )
-    plan = assemble_plan(planner.workshop, frame, build, stopped, metrics, provenance)
-    status = "complete"
-    if stopped.reason == "interrupted":
-        status = "interrupted"
-    elif missing_stones(planner) or (metrics.F_SF < FILLED and mean_top(build.wall) < FILLED_TOP):
-        status = "incomplete"
-    return PlanResult(
-        success=status == "complete",
-        status=status,
-        message=stopped.text,
-        plan=plan,
-        metrics=metrics,
-        wall=build.wall,
-        model=build.model,
-        resistance=resistance,
-        clusters=planner.workshop.clusters,
-        seconds=seconds,
-        F_SF_bound=min(1.0, usable_area_px(planner.workshop) / (frame.width * frame.height)),
-        profile=planner.profile,
-    )
-
-
-def resistance_by_tolerance(
-    build: Build, settings: PlannerSettings
-) -> tuple[float | None, float | None]:
-    """Return F_LR at half and at twice the contact tolerance; None for a wall of pixels."""
-    outlines = build.wall.outlines
-    if outlines is None:
-        return None, None
-    models = [
-        model_of_outlines(outlines, settings.mu, share * settings.settle.contact_px)
-        for share in (0.5, 2.0)
-    ]
-    half, double = (lateral_resistance(model).value for model in models)
-    return half, double
-
-
-def mean_top(wall: Wall) -> float:
-    """Return the mean height of the wall's top over its columns, as a share of its height."""
-    return float(np.mean(top_profile(wall.labels))) / wall.site.height_px

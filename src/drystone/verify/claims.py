@@ -13,7 +13,7 @@ from drystone.planner.evaluate import action_indices
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
 from drystone.poses import PoseBook, orientation_step_deg
-from drystone.search.plan_wall import resistance_by_tolerance
+from drystone.search.plan_result import resistance_by_tolerance
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel

@@ -224,7 +224,7 @@ def test_a_cluster_without_workers() -> None:
     with (
         distributed.LocalCluster(n_workers=0, processes=False, **QUIET) as cluster,
         pytest.raises(UsageError) as caught,
-        cluster_at_work(cluster.scheduler_address, patience_s=0.3),
+        cluster_at_work(cluster.scheduler_address, patience_s=2.0),
     ):
         pass
     assert caught.value.code == "E404"
