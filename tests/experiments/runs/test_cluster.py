@@ -132,7 +132,7 @@ def test_a_cluster_that_goes_away(thread: Any, tmp_path: Path) -> None:
         thread.close()
 
     with (
-        cluster_at_work(thread.scheduler_address, patience_s=0.5) as work,
+        cluster_at_work(thread.scheduler_address, patience_s=2.0) as work,
         pytest.raises(DrystoneError) as caught,
     ):
         Runner(store, work=work, say=end).run(specs)
