@@ -22,7 +22,7 @@ def interrupted(rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.Monk
         patch.setattr(Callbacks, "on_step", interrupt)
         ran = run("plan", rubble, *WALL, "--seed", 1, "-o", folder)
     assert ran.code == 130
-    assert ran.out.startswith("interrupted: interrupted")
+    assert ran.out.startswith("interrupted: --resume goes on from here")
     return folder
 
 

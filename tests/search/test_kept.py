@@ -87,10 +87,13 @@ def test_in_a_given_order_the_last_stones_are_built_again() -> None:
     count = len(planner.build.actions)
     most = round(settings.search.largest * count)
     before = [action.stone_id for action in planner.build.actions]
+    walls = set()
     for _ in range(8):
         again = recreated(found, planner.workshop, planner.settings, rng)
         after = [action.stone_id for action in again.build.actions]
         assert after[: count - most] == before[: count - most]
+        walls.add(again.build.wall.labels.tobytes())
+    assert walls - {planner.build.wall.labels.tobytes()}
 
 
 def test_a_missing_pinned_stone_makes_a_wall_incomplete() -> None:

@@ -228,12 +228,18 @@ def _bound(result: PlanResult) -> str:
     return f"{number(bound)} ({'a full wall' if bound == 1.0 else 'area of the stones'})"
 
 
+def _how_it_ended(result: PlanResult) -> str:
+    if result.status == "interrupted":
+        return "interrupted: --resume goes on from here"
+    return f"{result.status}: {'; '.join(filter(None, (result.message, result.shortfall)))}"
+
+
 def _print_summary(result: PlanResult, folder: Path) -> None:
     plan, metrics = result.plan, result.metrics
     placed, left = len(plan.stone_steps), len(plan.unused)
     unused = f", unused: {', '.join(map(str, plan.unused))}" if left else ""
     print_table(
-        f"{result.status}: {'; '.join(filter(None, (result.message, result.shortfall)))}",
+        _how_it_ended(result),
         [
             ("stones", f"{placed} of {placed + left} placed{unused}"),
             ("F_SF", f"{number(metrics.F_SF)} of at most {_bound(result)}"),

@@ -87,13 +87,14 @@ class Stopped:
 
     Parameters
     ----------
-    reason : {"filled", "stones", "failures", "interrupted"}
-        Design goal reached, all stones placed, too many failures in a row, or stopped by the user.
+    reason : {"filled", "stones", "failures", "search", "interrupted"}
+        Design goal reached, all stones placed, too many failures in a row, left so by a search, or
+        stopped by the user.
     text : str
         The same in words.
     """
 
-    reason: Literal["filled", "stones", "failures", "interrupted"]
+    reason: Literal["filled", "stones", "failures", "search", "interrupted"]
     text: str
 
 

@@ -112,6 +112,11 @@ class Planner:
         self.profile.end_without_action(attempt.candidates)
         self.stopped = stopped
 
+    @property
+    def finished(self) -> Stopped | None:
+        """Why there is nothing to place any more; None where it has to be tried."""
+        return self._why_stop(0, set())
+
     def _choose(
         self, attempt: Attempt, rng: np.random.Generator, aside: set[int]
     ) -> Candidate | None:

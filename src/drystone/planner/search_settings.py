@@ -66,7 +66,7 @@ class SearchSettings:
         Share of the walls of a chain of planned walls that are made by taking down a part of its
         best wall, before anything is known of what helps.
     wedges : int
-        How many wedges may be put into the gaps of a wall of outlines,
+        How many wedges may be added in the gaps of a wall of outlines each time,
     wedge_below : float
         when its merit is at most so much below the best of its chain.
     warm, cold : float

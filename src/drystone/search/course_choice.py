@@ -35,7 +35,7 @@ def choosing(task: Task, pinned: Collection[int]) -> Task:
     task : Task
         A wall to be planned, as if its stones were about enough for it.
     pinned : collection of int
-        Ids of stones that are left out last of all.
+        Ids of stones that cost ten times as much when they are left out.
     """
     return _with_pinned(_of_plenty(task), pinned)
 

@@ -42,7 +42,6 @@ def quarters_of(
     size_px: tuple[float, float],
     column_px: float,
     tolerance_px: float,
-    banned: Collection[tuple[int, float]],
     book: PoseBook,
 ) -> Quarters | None:
     """Turn stones by quarters; None when none fits into the wall.
@@ -57,22 +56,15 @@ def quarters_of(
         Width of a column of the profiles, source px.
     tolerance_px : float
         Of outlines.
-    banned : collection of (int, float)
-        Stone ids and angles that must not be used.
     book : PoseBook
         Knows the initial angles.
     """
-    barred = set(banned)
     fitting: list[Stone] = []
     angles: list[tuple[float, ...]] = []
     corners: list[Points] = []
     for stone in stones:
         outline = stone.outline_within(tolerance_px)
-        turned = {
-            angle: turn(outline, angle)
-            for angle in book.angles(stone, "quarter")
-            if (stone.id, angle) not in barred
-        }
+        turned = {angle: turn(outline, angle) for angle in book.angles(stone, "quarter")}
         possible = [angle for angle, points in turned.items() if fits(points, size_px)]
         if possible:
             fitting.append(stone)

@@ -20,8 +20,6 @@ from drystone.search.course_poses import Quarters, quarters_of
 from drystone.search.course_settings import CourseSettings
 from drystone.search.laid_courses import LaidCourses, ground_of
 
-Pose = tuple[int, float]
-
 
 @dataclass(frozen=True, eq=False)
 class Task:
@@ -45,14 +43,13 @@ class Task:
     unit_px: float
 
 
-def task_of(  # noqa: PLR0913 - the wall, its stones and how
+def task_of(
     stones: Collection[Stone],
     size_px: tuple[float, float],
     cell_px: float,
     tolerance_px: float,
     settings: CourseSettings,
     *,
-    banned: Collection[Pose] = (),
     laid: LaidCourses | None = None,
     book: PoseBook | None = None,
 ) -> Task | None:
@@ -63,7 +60,7 @@ def task_of(  # noqa: PLR0913 - the wall, its stones and how
     """
     column_px = 0.5 * cell_px
     unit_px = column_px / COLUMN_UNITS
-    quarters = quarters_of(stones, size_px, column_px, tolerance_px, banned, book or PoseBook())
+    quarters = quarters_of(stones, size_px, column_px, tolerance_px, book or PoseBook())
     if quarters is None:
         return None
     ground = ground_of(laid, size_px, column_px)

@@ -26,7 +26,7 @@ from drystone.poses import PoseBook
 from drystone.search.course_choice import choosing, taken
 from drystone.search.course_plan import CoursePlan, PlannedStone
 from drystone.search.course_settings import CourseSettings
-from drystone.search.course_task import Pose, Task, task_of
+from drystone.search.course_task import Task, task_of
 from drystone.search.laid_courses import LaidCourses
 
 LOOKED_AT = 2
@@ -42,7 +42,6 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
     settings: CourseSettings,
     seed: int,
     *,
-    banned: Collection[Pose] = (),
     laid: LaidCourses | None = None,
     book: PoseBook | None = None,
     pinned: Collection[int] = (),
@@ -63,14 +62,12 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
         What a plan costs, and how long it is looked for.
     seed : int
         Equal seeds give equal plans.
-    banned : collection of (int, float)
-        Stone ids and angles of poses that must not be used.
     laid : LaidCourses, optional
         What the courses are laid on; the bare ground when left out.
     book : PoseBook, optional
         Remembers the initial angles of stones.
     pinned : collection of int
-        Ids of stones that are left out last of all.
+        Ids of stones that cost ten times as much when they are left out.
 
     Returns
     -------
@@ -78,9 +75,7 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
         None when no stone fits into the wall.
     """
     size = (width_px, height_px)
-    task = task_of(
-        stones, size, cell_px, tolerance_px, settings, banned=banned, laid=laid, book=book
-    )
+    task = task_of(stones, size, cell_px, tolerance_px, settings, laid=laid, book=book)
     return None if task is None else planned_anew(task, settings, seed, pinned)
 
 
@@ -96,7 +91,6 @@ def replan_courses(  # noqa: PLR0913 - as above
     settings: CourseSettings,
     seed: int,
     laid: LaidCourses,
-    banned: Collection[Pose] = (),
     book: PoseBook | None = None,
     pinned: Collection[int] = (),
 ) -> CoursePlan | None:
@@ -110,7 +104,7 @@ def replan_courses(  # noqa: PLR0913 - as above
         So many of its courses stay as they are.
     stones : collection of Stone
         Those that are not laid yet.
-    width_px, height_px, cell_px, tolerance_px, settings, seed, banned, book, pinned
+    width_px, height_px, cell_px, tolerance_px, settings, seed, book, pinned
         As for :func:`plan_courses`.
     laid : LaidCourses
         What is there.
@@ -122,9 +116,7 @@ def replan_courses(  # noqa: PLR0913 - as above
         stone fits.
     """
     size = (width_px, height_px)
-    task = task_of(
-        stones, size, cell_px, tolerance_px, settings, banned=banned, laid=laid, book=book
-    )
+    task = task_of(stones, size, cell_px, tolerance_px, settings, laid=laid, book=book)
     return None if task is None else planned_again(task, plan, keep, settings, seed, pinned)
 
 

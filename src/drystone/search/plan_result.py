@@ -65,8 +65,8 @@ class PlanResult:
         What F_SF can be at most: the area of the stones that may be used over that of the wall,
         or 1.
     notices : tuple of Notice
-        W120 when pinned stones are missing, W121 when stones of the wall that was begun with are
-        not used; W303 when the solver gave up on some candidates, which were then passed over.
+        W120 when pinned stones are missing, W121 when stones of the wall that was begun with were
+        taken out; W303 when the solver gave up on some candidates, which were then passed over.
     profile : Profile
         Where the time went.
     solves : Solves

@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext
@@ -22,12 +22,15 @@ from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.planner.solves import Solves
 from drystone.search.anytime import Progress, searching
+from drystone.search.archive import archived
+from drystone.search.ending import as_found, insisted, with_the_rest
 from drystone.search.found import Found
 from drystone.search.notices import planning_notices
-from drystone.search.packed import Packed, found_again
+from drystone.search.packed import Packed
 from drystone.search.plan_result import PlanResult, finish
 from drystone.search.processes import processes
 from drystone.search.warm_start import begin_with
+from drystone.search.work import forget
 
 TYPICAL_STONE_PX = 40
 """Longer side of the median stone at the resolution that is chosen when none is given."""
@@ -90,7 +93,8 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     callbacks : Callbacks, optional
         Told of every step of the first wall, and of the best wall of a search.
     built, course_heights_px : Wall and mapping, optional
-        What is built already, to go on from (:meth:`Planner.restore`).
+        What is built already, to go on from (:meth:`Planner.restore`): where an interrupted plan
+        was.  A search may take it down again, so for real stones give a budget of 1.
     begin : Wall, optional
         A wall of the same stones, size, resolution and geometry, to begin with as far as its
         stones may be used and stand (:func:`drystone.search.warm_start.begin_with`).
@@ -142,14 +146,28 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         "seed": seed,
         "settings": used.as_dict(),
     }
-    result = finish(ended.planner, frame, ended.stopped, provenance, took)
-    others = [_ended(first, wall) for wall in ended.kept] if choice else []
+
+    def finished(planner: Planner, stopped: Stopped) -> PlanResult:
+        return finish(planner, frame, stopped, provenance, took)
+
+    best = insisted(lambda: finished(ended.planner, ended.stopped))
     return replace(
-        result,
+        best,
         notices=planning_notices(first, ended.planner, left_out, lost=ended.lost),
         solves=Solves(first.failed_solves, first.cold_solves),
-        choice=tuple(finish(one, frame, why, provenance, took) for one, why in others),
+        choice=(best, *_others(first, ended.kept[1:], finished)) if choice and ended.kept else (),
     )
+
+
+def _others(
+    first: Planner, kept: Sequence[Packed], finished: Callable[[Planner, Stopped], PlanResult]
+) -> Iterator[PlanResult]:
+    """Finish other walls to choose from; an interrupt leaves out those of least merit."""
+    try:
+        for wall in kept:
+            yield finished(*as_found(first, wall))
+    except KeyboardInterrupt:
+        pass
 
 
 class Ended(NamedTuple):
@@ -164,7 +182,7 @@ class Ended(NamedTuple):
     walls : int
         How many walls were built: the budget that repeats it.
     kept : tuple of Packed
-        Walls that none beats in every figure of merit; none of a single pass.
+        Walls that none beats in every figure of merit, the best first; none of a single pass.
     lost : bool
         A process of the search died, and it ended there.
     """
@@ -225,27 +243,14 @@ def run_to_end(
         pass  # every wall of a search is complete
     except BrokenProcessPool:
         lost = True
+    finally:
+        forget()
     if best is None:
         return Ended(planner, planner.stopped, 1, (), lost)
-    return Ended(*_ended(planner, best), walls, kept, lost)
-
-
-def _ended(planner: Planner, best: Packed) -> tuple[Planner, Stopped]:
-    """Return a planner with the best wall, and why nothing more can be placed there."""
-    workshop, settings = planner.workshop, planner.settings
-    last = Planner(
-        workshop.stones,
-        workshop.site,
-        seed=planner.seed,
-        settings=settings,
-        workshop=workshop,
-        profile=planner.profile,
-    )
-    last.build = found_again(best, workshop, settings).build
-    for _ in last.steps():
-        pass
-    assert last.stopped is not None  # noqa: S101 - steps() ended by itself
-    return last, last.stopped
+    last, stopped = with_the_rest(planner, best)
+    if len(last.build.actions) > len(best.groups):
+        kept = archived(kept, [Packed.of(Found.of(last))])
+    return Ended(last, stopped, walls, kept, lost)
 
 
 def _incumbent(progress: Progress) -> Incumbent:

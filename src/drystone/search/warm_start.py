@@ -24,7 +24,7 @@ def begin_with(
     Returns
     -------
     left_out : tuple of int
-        Ids of the stones of the wall that are not used: banned, out of their turn in a given
+        Ids of the stones of the wall that were taken out: banned, out of their turn in a given
         order, or not standing with these settings, as when what carried them is left out.
     """
     workshop, settings = planner.workshop, planner.settings

@@ -115,6 +115,11 @@ def more_links(job: Job, link: PackedLink, count: int) -> PackedLink | None:
     )
 
 
+def forget() -> None:
+    """Let go of what this process has prepared."""
+    _opened.cache_clear()
+
+
 @lru_cache(maxsize=1)
 def _opened(tools: bytes) -> tuple[Workshop, PlannerSettings]:
     """Prepare what the tasks of a search share, once in each process."""

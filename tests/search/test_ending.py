@@ -1,0 +1,130 @@
+"""How a search ends: its best wall with what still finds a place, and the others as found."""
+
+import math
+from dataclasses import replace
+from itertools import permutations
+
+import numpy as np
+import pytest
+
+from drystone import generate
+from drystone.planner.events import Callbacks, Step, Stopped
+from drystone.planner.planner import Planner
+from drystone.planner.settings import method_settings
+from drystone.search.ending import as_found, insisted, with_the_rest
+from drystone.search.found import Found
+from drystone.search.packed import Packed
+from drystone.search.plan_result import PlanResult
+from drystone.search.plan_wall import plan_wall
+from drystone.search.work import _opened
+from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
+
+
+@pytest.fixture
+def planner() -> Planner:
+    """One that has built a whole wall."""
+    planner = Planner(rubble(), RUBBLE_SITE, seed=1, settings=greedy({"search": {"budget": 2}}))
+    for _ in planner.steps():
+        pass
+    return planner
+
+
+def half_of(planner: Planner) -> Packed:
+    """A wall on which there is room."""
+    half = Planner(rubble(), RUBBLE_SITE, settings=planner.settings)
+    half.build = planner.build.states()[len(planner.build.actions) // 2]
+    return Packed.of(Found.of(half))
+
+
+def ids(planner: Planner) -> list[int]:
+    return [action.stone_id for action in planner.build.actions]
+
+
+def test_stones_that_find_a_place_stay_where_that_is_better(planner: Planner) -> None:
+    half = half_of(planner)
+    before = [group.stone_id for group in half.groups]
+    whole, stopped = with_the_rest(planner, half)
+    assert ids(whole)[: len(before)] == before
+    assert len(ids(whole)) > len(before)
+    assert stopped == whole.stopped
+    left, why = with_the_rest(planner, replace(half, merit=math.inf))
+    assert ids(left) == before
+    assert why == Stopped("search", "no stone that is left makes the wall better")
+
+
+def test_a_wall_to_choose_is_as_it_was_found(planner: Planner) -> None:
+    half = half_of(planner)
+    found, why = as_found(planner, half)
+    assert ids(found) == [group.stone_id for group in half.groups]
+    assert why.reason == "search"
+    stones = len(planner.build.actions)
+    filled = planner.settings.updated({"stop": {"filling": 0.1}})
+    full = Planner(rubble(), RUBBLE_SITE, settings=filled)
+    assert as_found(full, half)[1] == Stopped("filled", "filling above 0.1")
+    assert stones > len(half.groups)
+
+
+def test_an_interrupt_at_the_end_loses_nothing(
+    planner: Planner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    half = half_of(planner)
+
+    def interrupt(_: Callbacks, __: Step) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Callbacks, "on_step", interrupt)
+    found, why = with_the_rest(planner, half)
+    assert ids(found) == [group.stone_id for group in half.groups]
+    assert why.reason == "search"
+    calls: list[int] = []
+
+    def once() -> int:
+        calls.append(1)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        return len(calls)
+
+    assert insisted(once) == 2
+
+
+def test_an_interrupt_while_others_are_finished_keeps_the_best(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    settings = greedy({"search": {"budget": 4, "passes": 4, "chains": 2, "share_every": 2}})
+    whole = plan_wall(rubble(), 100, 36, scale=1.0, seed=1, settings=settings, choice=True)
+    assert len(whole.choice) > 1
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("drystone.search.plan_wall.as_found", interrupted)
+    result = plan_wall(rubble(), 100, 36, scale=1.0, seed=1, settings=settings, choice=True)
+    assert result.plan == whole.plan
+    assert [one.plan for one in result.choice] == [whole.plan]
+
+
+def score(result: PlanResult) -> tuple[float, ...]:
+    m = result.metrics
+    return (m.F_SF, m.F_AV or 0.0, -(m.F_AH or 0.0), m.F_LR or 0.0)
+
+
+def test_none_of_the_walls_to_choose_is_better_than_another() -> None:
+    """With the weights of the settings stones find a place that had none by those of a pass."""
+    settings = generate.RubbleSettings(count=12)
+    stones = generate.rubble_stones(settings, np.random.default_rng(21))
+    area = sum(stone.area_px for stone in stones)
+    width = (area * 1.6) ** 0.5 * 1.3
+    search = {"budget": 5, "passes": 5, "chains": 2, "share_every": 2}
+    few = method_settings("best").updated({"skip_too_large": True, "search": search})
+    result = plan_wall(
+        stones, round(width), round(area * 1.25 / width), seed=21, settings=few, choice=True
+    )
+    assert len(result.choice) > 1
+    assert result.choice[0].plan == result.plan
+    for one, other in permutations(result.choice, 2):
+        assert not all(a >= b for a, b in zip(score(one), score(other), strict=True))
+
+
+def test_nothing_is_kept_in_memory(planner: Planner) -> None:
+    plan_wall(rubble(), 100, 36, scale=1.0, settings=planner.settings)
+    assert _opened.cache_info().currsize == 0
