@@ -3,6 +3,7 @@
 import csv
 import hashlib
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from drystone.experiments.walls_of_ferris import WALLS
 from drystone.io.wall_image import write_labels
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.saved_program import load_program
-from tests.cli.conftest import Run
+from tests.cli.conftest import EXACT, Run
 from tests.statics.walls import coursed
 
 
@@ -144,7 +145,7 @@ def test_a_dead_force_makes_no_tilt_to_fall_at(tower: Path, run: Run) -> None:
 
 def test_no_picture_of_an_earlier_wall_is_left(tower: Path, run: Run, tmp_path: Path) -> None:
     asked = ("analyse", tower, "--associative-only", "-o", tmp_path / "out", "--overwrite")
-    assert run(*asked, "--scatter", "2").code == 0
+    assert run(*asked, "--scatter", "2", "--mu", ".4:.8").code == 0
     assert (tmp_path / "out" / "scatter.png").is_file()
     assert run(*asked, "--load", "gravity", "--dead", "1@0,3:.5,0").code == 0
     left = {path.name for path in (tmp_path / "out").iterdir()}
@@ -160,6 +161,19 @@ def test_cases_that_are_ranges(tower: Path, bridge: Path, run: Run) -> None:
     assert (light["alpha_greatest"], light["status_greatest"]) == (None, "unbounded")
 
 
+def test_a_multiplier_of_nothing_has_no_sign(
+    tower: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = analyse.load_range
+
+    def just_below(*given, **named):
+        ends = found(*given, **named)
+        return replace(ends, least=replace(ends.least, alpha=-1e-17))
+
+    monkeypatch.setattr(analyse, "load_range", just_below)
+    assert "least alpha     alpha = 0.0000  load" in run("analyse", tower, "--load", "gravity").out
+
+
 @pytest.mark.parametrize(
     ("options", "code"),
     [
@@ -173,7 +187,7 @@ def test_cases_that_are_ranges(tower: Path, bridge: Path, run: Run) -> None:
         (["--close-gaps", "3"], "E138"),
         (["--contacts", "outlines"], "E138"),
         (["--scatter", "0"], "E138"),
-        (["--scatter", "9", "--tilt", "3"], "E138"),
+        (["--scatter", "9", "--tilt", "3", "--mu", ".4:.8"], "E138"),
         (["--mu", ".4:.8", "--load", "height"], "E138"),
         (["--live", "1@0,0:1,0"], "E138"),
         (["--settle", "1", "--load", "height"], "E138"),
@@ -268,6 +282,40 @@ def test_scatter_is_the_same_for_any_number_of_jobs(tmp_path: Path, run: Run) ->
     ran = run("analyse", tmp_path / "wall.png", *options[:4], "-o", tmp_path / "out")
     assert "12 walls, seed 0, mu 0.4 to 0.8" in ran.out
     assert (tmp_path / "out" / "scatter.png").exists()
+
+
+@pytest.mark.parametrize("also", [(), ("--mu", ".5"), ("--outline-noise", "0")])
+def test_a_scatter_of_equal_walls_is_refused(tower: Path, run: Run, also: tuple[str, ...]) -> None:
+    ran = run("analyse", tower, "--scatter", "10", *also)
+    assert ran.code == 2
+    assert "E138 --scatter" in ran.err
+    assert all(
+        name in ran.err for name in ("--mu LOW:HIGH", "--outline-noise", "--placement-noise")
+    )
+
+
+def test_noise_is_told_with_its_unit(tmp_path: Path, tower: Path, run: Run) -> None:
+    write_labels(coursed(3, 3, 60), tmp_path / "wall.png")
+    noise = ("--scatter", "2", "--outline-noise", ".2", "--placement-noise", ".02")
+    drawn = run("analyse", tmp_path / "wall.png", "--associative-only", *noise)
+    assert "outlines +- 0.2 px, placement +- 0.02 px" in drawn.out
+    given = run("analyse", tower, "--associative-only", *noise)
+    assert "outlines +- 0.2 lengths of the block model" in given.out
+
+
+def test_noise_of_a_plan_in_metres_is_in_px_of_its_source(
+    rubble: Path, settled: Path, tmp_path: Path, run: Run
+) -> None:
+    """The model of such a plan is in metres."""
+    wall = ("--wall", "1mx.36m", "--px-per-m", "100", *EXACT[2:], "--seed", "1")
+    assert run("plan", rubble, *wall, "-o", tmp_path / "metres").code in (0, 4)
+    asked = ("--associative-only", "--scatter", "8", "--placement-noise", "2")
+    found = []
+    for folder in (settled, tmp_path / "metres"):
+        assert "placement +- 2 px" in run("analyse", folder, *asked).out
+        found.append(run("analyse", folder, *asked, "--json").json()["scatter"]["alpha_left"])
+    assert found[1] == pytest.approx(found[0], rel=1e-3)
+    assert max(found[0]) - min(found[0]) > 0.01
 
 
 def test_a_failed_solve_is_saved_for_a_report(

@@ -30,6 +30,14 @@ def test_a_suite_is_printed_and_has_a_folder_for_pictures(tmp_path: Path, run: R
     assert "E129" in run("bench", "shear", "--quick", "-o", __file__).err
 
 
+def test_a_suite_without_pictures_makes_no_folder_for_them(tmp_path: Path, run: Run) -> None:
+    ran = run("bench", "photos", "--quick", "-o", tmp_path / "new")
+    assert ran.code == 2
+    assert "E138 -o: the suite 'photos' draws no pictures." in ran.err
+    assert "growth and shear" in ran.err
+    assert not (tmp_path / "new").exists()
+
+
 def test_walls_say_that_data_is_missing(tmp_path: Path, run: Run) -> None:
     for options in ((), ("--data", tmp_path), ("--data", tmp_path / "none")):
         ran = run("bench", "walls", *options)

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Run
+from tests.experiments.runs.bricks import picture
 
 BRICKS = ("bench", "--suite", "bricks", "--quick", "--seeds", "1", "--policy", "paper", "random")
 
@@ -102,6 +103,19 @@ def test_a_policy_that_is_none(run: Run) -> None:
     said = run("bench", "bricks", "--policy", "nobody").err
     assert "E146" in said
     assert "best" in said
+
+
+@pytest.mark.parametrize("suite", ["masons", "walls"])
+def test_other_stones_in_the_place_of_the_masons(suite: str, run: Run, tmp_path: Path) -> None:
+    data, store = tmp_path / "data", tmp_path / "store"
+    picture(data / "almeida" / "PR.png")
+    kept = ("--store", store) if suite == "masons" else ()
+    ran = run("bench", suite, "--quick", "--data", data, *kept)
+    assert ran.code == 3
+    assert f"E160 {data / 'almeida' / 'PR.png'}" in ran.err
+    assert "drystone fetch almeida" in ran.err
+    assert ran.out == ""
+    assert not [path for path in store.rglob("*") if path.is_file()]
 
 
 def test_masons_need_their_stones(run: Run, tmp_path: Path) -> None:

@@ -61,6 +61,16 @@ def is_picture(path: Path) -> bool:
     return picture.ndim == 3 and bool(picture[..., :3].std() > 0.01)
 
 
+def test_a_plan_is_checked_from_its_own_folder(
+    plan_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (plan_copy / "rubble.png").rename(plan_copy.parent / "rubble.png")
+    (plan_copy / "deeper").mkdir()
+    for here, given in ((".", "."), (".", "plan.json"), ("deeper", "..")):
+        monkeypatch.chdir(plan_copy / here)
+        assert run("check", given).code == 0
+
+
 def test_a_wall_that_stands(plan_copy: Path, run: Run) -> None:
     pytest.importorskip("pymunk", reason=NO_ENGINE)
     report = run("check", plan_copy, "--physics", "--json").json()

@@ -176,6 +176,36 @@ def test_measure(tmp_path: Path, run: Run) -> None:
     assert "measured at 30 x 50 px" in run("measure", tower).out
 
 
+def test_measure_can_follow_its_own_cure(tmp_path: Path, run: Run) -> None:
+    labels = np.full((60, 60), 255, np.uint16)
+    labels[20:40, 10:50] = 3
+    labels[40:58, 10:50] = 4
+    write_labels(labels, tmp_path / "white.png")
+    ran = run("measure", tmp_path / "white.png")
+    assert ran.code == 3
+    assert "E105" in ran.err
+    assert "Set those pixels to 0, or use --background 255 " in ran.err
+    given = (tmp_path / "white.png", "--background", "255", "--json")
+    assert run("measure", *given).json()["stones"] == 2
+    assert run("analyse", *given).json()["blocks"] == 2
+    assert run("craft", *given).json()["stones"] == 2
+
+
+def test_a_plan_has_no_background(finished: Path, run: Run) -> None:
+    ran = run("measure", finished, "--background", "255")
+    assert ran.code == 2
+    assert "E118" in ran.err
+
+
+def test_measure_warns_of_a_mask(tmp_path: Path, run: Run) -> None:
+    mask = np.zeros((40, 60), np.uint16)
+    mask[5:40, 5:25] = mask[10:40, 30:55] = 255
+    write_labels(mask, tmp_path / "mask.png")
+    told = [run(name, tmp_path / "mask.png").err for name in ("analyse", "measure", "craft")]
+    assert all("W304 700 pixels of stone 255 lie apart" in err for err in told)
+    assert "W304" not in run("measure", _tower(tmp_path / "tower.png")).err
+
+
 def test_measure_draws_and_never_over_a_file(finished: Path, tmp_path: Path, run: Run) -> None:
     assert run("measure", finished, "-o", tmp_path).code == 0
     assert {path.name for path in tmp_path.iterdir()} == {"paths_F_AV.png", "paths_F_AH.png"}

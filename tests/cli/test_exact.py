@@ -177,7 +177,9 @@ def test_a_wedge_in_another_place_is_not_that_of_the_plan(settled_copy: Path, ru
     assert "has its stones in other places" in run("analyse", settled_copy).err
 
 
-def test_files_of_an_earlier_plan_do_not_stay(settled_copy: Path, rubble: Path, run: Run) -> None:
+def test_files_of_an_earlier_plan_do_not_stay(
+    settled_copy: Path, rubble: Path, tmp_path: Path, run: Run
+) -> None:
     again = ("-o", settled_copy, "--overwrite", "--seed", 1)
     assert run("plan", rubble, *EXACT, "--geometry", "raster", *again).code in (0, 4)
     assert {path.name for path in settled_copy.iterdir()} == FILES | {"rubble.png"}
@@ -185,9 +187,11 @@ def test_files_of_an_earlier_plan_do_not_stay(settled_copy: Path, rubble: Path, 
     assert on_pixels["F_LR"] == pytest.approx(read_plan(settled_copy).metrics.F_LR)
     assert run("plan", rubble, *EXACT, *again).code in (0, 4)
     assert {path.name for path in settled_copy.iterdir()} == FILES | {BLOCKS, "rubble.png"}
-    # A wall without stones has no mechanism to draw, and no film.
-    small = ("--wall", "15x8", "--scale", "1", "--budget", "1", "--skip-too-large")
-    assert run("plan", rubble, *small, *again).code == 4
+    # A wall without stones, none of which rests firmly enough, has no mechanism to draw, and no
+    # film.
+    firm = tmp_path / "firm.toml"
+    firm.write_text("[settle]\nmargin = 1000.0\n", encoding="utf-8")
+    assert run("plan", rubble, *EXACT, "--settings", firm, *again).code == 4
     left = {path.name for path in settled_copy.iterdir()}
     gone = {"mechanism_left.png", "mechanism_right.png", "build.gif"}
     assert left == (FILES | {BLOCKS, "rubble.png"}) - gone

@@ -16,7 +16,8 @@ from drystone.errors import UsageError
         ("1.4mx0.4m", 200.0, (280.0, 80.0)),
         ("140cmx40cm", 200.0, (280.0, 80.0)),
         ("1400mmx.4m", 200.0, (280.0, 80.0)),
-        ("1.4mx80", 200.0, (280.0, 80.0)),
+        ("5pxx3.5px", None, (5.0, 3.5)),
+        ("8x8", 200.0, (8.0, 8.0)),
     ],
 )
 def test_sizes(text: str, px_per_m: float | None, size: tuple[float, float]) -> None:
@@ -33,7 +34,25 @@ def test_what_is_no_size(text: str) -> None:
     assert caught.value.where == "--wall"
 
 
-@pytest.mark.parametrize("text", ["1.4mx0.4m", "280x40cm"])
+@pytest.mark.parametrize("px_per_m", [None, 200.0])
+@pytest.mark.parametrize(("text", "cure"), [("1.4x0.4", "1.4mx0.4m"), ("12x2", "12mx2m")])
+def test_metres_without_their_unit_are_asked_about(
+    text: str, cure: str, px_per_m: float | None
+) -> None:
+    with pytest.raises(UsageError, match="has no unit") as caught:
+        parse_wall(text, px_per_m)
+    assert caught.value.code == "E127"
+    assert cure in caught.value.cure
+
+
+@pytest.mark.parametrize("text", ["1.4mx0.4", "280x80m", "280x40cm", "280pxx400mm"])
+def test_px_beside_metres_are_refused(text: str) -> None:
+    with pytest.raises(UsageError, match="px one way") as caught:
+        parse_wall(text, 200.0)
+    assert caught.value.code == "E127"
+
+
+@pytest.mark.parametrize("text", ["1.4mx0.4m", "280mmx40cm"])
 def test_metres_need_a_scale(text: str) -> None:
     with pytest.raises(UsageError) as caught:
         parse_wall(text, None)

@@ -2,6 +2,8 @@ import numpy as np
 import pypdfium2
 import pytest
 
+from drystone.cli.commands.segment import scale_from
+from drystone.cli.parser import build_parser
 from drystone.photo.layout import parse_layout
 from drystone.photo.markers import find_markers
 from drystone.photo.scale import scale_and_view
@@ -100,6 +102,26 @@ def test_two_sheets_have_other_markers(run, tmp_path):
     path = tmp_path / "sheets.pdf"
     assert run("markers", "-o", path, "--count", 8, "--ids", 4).code == 0
     assert [one.id for one in find_markers(rendered(path, 1)[0])] == [8, 9, 10, 11]
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ([], "--aruco A4:50mm"),
+        (["--ids", 4, "--size", "60mm"], "--aruco A4:60mm --marker-ids 4 5 6 7"),
+        (["--count", 8], "--aruco A4:50mm --marker-ids 0 1 2 3 4 5 6 7"),
+        (["--single", "--ids", 5], "--aruco 120mm"),
+    ],
+)
+def test_the_options_that_are_said_find_the_markers(run, tmp_path, options, said):
+    path = tmp_path / "sheet.pdf"
+    ran = run("markers", "-o", path, *options)
+    assert ran.out.splitlines()[-1] == f"Print at 100 %. Stones are then looked for with {said}"
+    told = run("markers", "-o", path, "--overwrite", "--json", *options).json()
+    assert told["options"] == said.split()
+    named = build_parser().parse_args(["segment", "photo.jpg", "-o", "out", *told["options"]])
+    layout = scale_from(named)
+    assert all(layout.lists(one) for one in told["ids"])
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,15 @@
 """Every method option gives a plan that holds."""
 
+import argparse
 from pathlib import Path
 
 import pytest
+import tomli_w
 
+from drystone.cli.parser import build_parser
+from drystone.cli.settings import recorded_method, settings_from
 from drystone.io.plan_json import read_plan
+from drystone.planner.settings import METHODS
 from tests.cli.conftest import WALL, Run
 
 
@@ -76,6 +81,97 @@ def test_wrong_values(
     assert ran.code == 2
     assert code in ran.err
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--mu", "-1"], "E123 --mu: mu must be positive. Change mu."),
+        (
+            ["--ban", "2", "3", "--pin", "3"],
+            "E123 --ban and --pin: ban and pin name the same stones: 3. Change ban or pin.",
+        ),
+        (["--orientations", "north"], "E122 --orientations: 'north' is no set of orientations."),
+    ],
+)
+def test_wrong_values_are_blamed_on_their_option(
+    options: list[str], said: str, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    ran = run("plan", rubble, *WALL, *options, "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert said in ran.err
+
+
+@pytest.mark.parametrize(
+    ("text", "where", "said"),
+    [
+        ("mu = -1.0", "", "E123 {}: mu must be positive. Change mu."),
+        ("wonder = 1", "", "E123 {}: there is no setting 'wonder'."),
+        ("[stop]\nfilling = 2.0", " [stop]", "E123 {}: filling must be in (0, 1]"),
+        ("[stop]\nfailures = 'five'", "", "E123 {}: stop.failures = 'five' has the wrong type."),
+        ("orientations = 'north'", "", "E122 {}: 'north' is no set of orientations."),
+    ],
+)
+def test_wrong_values_of_a_file_are_blamed_on_the_file(
+    text: str, where: str, said: str, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    toml = tmp_path / "mine.toml"
+    toml.write_text(text, encoding="utf-8")
+    ran = run("plan", rubble, *WALL, "--settings", toml, "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert said.format(f"{toml}{where}") in ran.err
+
+
+def test_a_file_that_is_not_there_says_what_to_give(rubble: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", rubble, *WALL, "--settings", tmp_path / "none.toml", "-o", tmp_path / "out")
+    assert (ran.code, "E128" in ran.err) == (3, True)
+    assert "Give a TOML file, such as the settings.toml" in ran.err
+
+
+def parsed(*options: object) -> argparse.Namespace:
+    """A command line of `plan` with some options."""
+    words = ["plan", "stones.png", "--wall", "100x36", "-o", "out", *map(str, options)]
+    return build_parser().parse_args(words)
+
+
+def test_what_is_said_of_single_stones_wins_over_the_file(tmp_path: Path) -> None:
+    toml = tmp_path / "mine.toml"
+    toml.write_text("ban = [3]\npin = [4]\n", encoding="utf-8")
+    settings = settings_from(parsed("--settings", toml, "--ban", 4, "--pin", 3))
+    assert (settings.ban, settings.pin) == ((4,), (3,))
+
+
+@pytest.mark.parametrize("method", ["paper", "best"])
+def test_a_whole_file_of_the_other_method_is_neither(method: str, tmp_path: Path) -> None:
+    whole, part = tmp_path / "settings.toml", tmp_path / "mine.toml"
+    changed = METHODS[method].updated({"mu": 0.6, "skip_too_large": True}).as_dict()
+    whole.write_bytes(tomli_w.dumps(changed).encode())
+    part.write_text("mu = 0.6\n[search]\nbudget = 3\n", encoding="utf-8")
+    named = {
+        (path.name, asked): recorded_method(parsed("--settings", path, "--method", asked))
+        for path in (whole, part)
+        for asked in METHODS
+    }
+    other = {"paper": "best", "best": "paper"}[method]
+    assert named == {
+        ("settings.toml", method): method,
+        ("settings.toml", other): "custom",
+        ("mine.toml", "paper"): "paper",
+        ("mine.toml", "best"): "best",
+    }
+    assert recorded_method(parsed("--method", method)) == method
+
+
+def test_a_plan_by_a_whole_file_of_another_method_says_so(
+    finished: Path, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    asked = ("--wall", "100x36", "--scale", "1", "--settings", finished / "settings.toml")
+    ran = run("plan", rubble, *asked, "--method", "best", "-o", tmp_path / "out")
+    assert ran.code in (0, 4)
+    assert "so that nothing of --method best is left; the plan names the method custom" in ran.err
+    assert read_plan(tmp_path / "out").method == "custom"
+    again = run("plan", rubble, *asked, "--method", "best", "-o", tmp_path / "out", "--resume")
+    assert "E136" not in again.err
 
 
 @pytest.mark.parametrize(

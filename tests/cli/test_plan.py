@@ -130,6 +130,7 @@ def test_a_file_is_no_folder(rubble: Path, tmp_path: Path, run: Run) -> None:
         ran = run("plan", rubble, *WALL, "-o", tmp_path / place, "--overwrite")
         assert ran.code == 2
         assert "E129" in ran.err
+        assert "is a file, not a folder. Choose another folder with -o" in ran.err
 
 
 def test_equal_seeds_give_equal_bytes_and_others_do_not(
@@ -246,14 +247,32 @@ def _listed(message: str) -> list[str]:
     return message.split("stones ")[1].split(" fit", maxsplit=1)[0].split(", ")
 
 
-def test_all_stones_too_large_is_an_empty_plan(bricks: Path, tmp_path: Path, run: Run) -> None:
-    ran = run("plan", bricks, "--wall", "15x8", "--scale", "1", "--method", "paper",
-              "--skip-too-large", "-o", tmp_path / "out", "--json")  # fmt: skip
-    assert ran.code == 4
-    assert ran.json()["placed"] == 0
-    assert ran.json()["unused"] == [1, 2, 3, 4, 5, 6]
-    assert ran.json()["stopped"] == "all stones that fit placed"
-    assert run("check", tmp_path / "out", "--stones", bricks).code == 0
+@pytest.mark.parametrize(
+    "options",
+    [("--wall", "15x8", "--skip-too-large"), ("--wall", "60x20", "--ban", *range(1, 7))],
+)
+def test_nothing_to_build_with_is_refused_at_once(
+    options: tuple[object, ...], bricks: Path, tmp_path: Path, run: Run
+) -> None:
+    # By the default method, which would look for better walls than an empty one.
+    ran = run("plan", bricks, "--scale", "1", "-o", tmp_path / "out", *options)
+    assert (ran.code, ran.out) == (2, "")
+    assert "E126 bricks.png: none of the 6 stones can be built with: " in ran.err
+    assert "Build a larger wall, or ban fewer stones." in ran.err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("wall", "scale", "code"), [("15x8", "1", "E120"), ("60x20", ".02", "E121")]
+)
+def test_a_plan_that_is_refused_leaves_no_folder(
+    wall: str, scale: str, code: str, bricks: Path, tmp_path: Path, run: Run
+) -> None:
+    out = tmp_path / "out"
+    ran = run("plan", bricks, "--wall", wall, "--scale", scale, "--method", "paper", "-o", out)
+    assert ran.code == 2
+    assert code in ran.err
+    assert not out.exists()
 
 
 def test_ids_above_16_bits_survive(tmp_path: Path, run: Run) -> None:
@@ -305,9 +324,10 @@ def test_profile_says_where_the_time_went(rubble: Path, tmp_path: Path, run: Run
         "seconds", "parts", "steps", "candidates", "solved_anew", "longest_step", "jobs", "kernels",
     ]  # fmt: skip
     parts = profile["parts"]
-    assert list(parts) == [*PARTS, "other"]
+    assert list(parts) == [*PARTS, "search", "other"]
     assert all(parts[part] > 0 for part in PARTS if part != "metrics")
     assert parts["metrics"] == 0  # only methods that go back look at them while planning
+    assert parts["search"] == 0
     assert sum(parts.values()) == pytest.approx(profile["seconds"])
     assert profile["candidates"] >= profile["steps"] >= 6
     assert 0 < profile["longest_step"] <= profile["seconds"]
@@ -315,9 +335,19 @@ def test_profile_says_where_the_time_went(rubble: Path, tmp_path: Path, run: Run
     assert "where the time went" in threads.out
     assert "limit analysis" in threads.out
     assert "2; parts are summed over them" in threads.out
+    assert "search" not in threads.out
 
 
 def test_without_profile_nothing_is_said_of_it(finished: Path, tmp_path: Path, run: Run) -> None:
     del finished
     told = run("demo", "--method", "paper", "--json", "-o", tmp_path / "demo")
     assert "profile" not in told.json()
+
+
+def test_a_ruler_beside_the_picture_is_refused_before_anything(
+    rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    out = tmp_path / "out"
+    ran = run("plan", rubble, "--wall", "1mx.4m", "--ruler", "0,0,90000,0=1m", "-o", out)
+    assert (ran.code, "E138" in ran.err) == (2, True)
+    assert not out.exists()

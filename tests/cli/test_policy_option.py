@@ -65,8 +65,9 @@ def test_those_of_a_settings_file_too(run: Run, rubble: Path, tmp_path: Path) ->
         assert not out.exists()
         return ran.err
 
-    assert "E146" in said("selection_rule = 'nobody'\n[search]\nbudget = 1\n")
-    assert "E123 settings: the policy 'lowest' builds" in said("selection_rule = 'lowest'\n")
+    strange = said("selection_rule = 'nobody'\n[search]\nbudget = 1\n")
+    assert f"E146 {toml}: there is no policy 'nobody'." in strange
+    assert f"E123 {toml}: the policy 'lowest' builds" in said("selection_rule = 'lowest'\n")
     toml.write_text("selection_rule = 'lowest'\n[search]\nbudget = 1\n", encoding="utf-8")
     assert asked("--settings", toml)[1].selection_rule == "lowest"
     assert asked("--settings", toml, "--policy", "filter")[1].selection_rule == "filter"

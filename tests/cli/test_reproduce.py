@@ -14,6 +14,7 @@ from drystone.experiments.reproduce.item import Item
 from drystone.experiments.reproduce.items import ITEMS
 from tests.cli.conftest import Ran, Run
 from tests.experiments.reproduce import fakes
+from tests.experiments.runs.bricks import picture
 
 RunItems = Callable[..., Ran]
 
@@ -99,6 +100,13 @@ def test_missing_stones(run_items: RunItems, tmp_path: Path) -> None:
     assert ran.code == 3
     assert "E100 almeida/PR.png" in ran.err
     assert "drystone fetch almeida" in ran.err
+
+
+def test_other_stones_in_the_place_of_published_ones(run: Run, tmp_path: Path) -> None:
+    path = picture(tmp_path / "data" / "almeida" / "PR.png")
+    ran = run("reproduce", "fig5", "--data", tmp_path / "data", "-o", tmp_path / "out")
+    assert ran.code == 3
+    assert f"fig5: E160 {path}" in ran.err
 
 
 def test_all_goes_on_without_some_stones(run_items: RunItems, tmp_path: Path) -> None:

@@ -1,10 +1,11 @@
 """How large a px is: options, and what the stones say themselves."""
 
+import pickle
 from argparse import ArgumentTypeError
 
 import pytest
 
-from drystone.cli.scale import ruler, scale_with
+from drystone.cli.scale import refuse_outside, ruler, scale_with
 from drystone.errors import UsageError
 
 
@@ -20,6 +21,27 @@ def test_a_ruler_is_a_length_between_two_points(text: str, px_per_m: float) -> N
 def test_what_is_no_ruler(text: str) -> None:
     with pytest.raises(ArgumentTypeError):
         ruler(text)
+
+
+def test_a_ruler_keeps_its_points() -> None:
+    scale = scale_with(ruler("20,30,220,30=1.0m"), 200.0)
+    for one in (scale, pickle.loads(pickle.dumps(scale))):  # noqa: S301 - its own bytes
+        assert one == 200.0
+        assert one.ends_px == ((20.0, 30.0), (220.0, 30.0))
+
+
+@pytest.mark.parametrize("text", ["20,30,2000,30=1m", "0,-1,9,9=1m", "5,61,9,9=1m", "-1,0,9,9=1m"])
+def test_a_ruler_beyond_the_picture_is_refused(text: str) -> None:
+    with pytest.raises(UsageError, match="outside the picture, which is 213 x 60 px") as caught:
+        refuse_outside(ruler(text), (213, 60))
+    assert caught.value.code == "E138"
+
+
+def test_others_are_not() -> None:
+    refuse_outside(ruler("0,0,213,60=1m"), (213, 60))  # from corner to corner
+    refuse_outside(ruler("20,30,2000,30=1m"), (0, 0))  # how large it is nobody knows
+    refuse_outside(2000.0, (213, 60))
+    refuse_outside(None, (213, 60))
 
 
 def test_either_may_know_the_scale() -> None:

@@ -39,6 +39,7 @@ def test_the_clock_ends_a_search_unless_a_budget_does(tmp_path: Path) -> None:
 def test_aims_that_mean_nothing_are_refused(aim: str, run: Run) -> None:
     ran = run("plan", "stones.png", "--wall", "100x36", "-o", "out", "--aim", aim)
     assert (ran.code, "E138" in ran.err, "--aim" in ran.err) == (2, True, True)
+    assert ("F_LR=VALUE" in ran.err) == (aim in {"F_LR", "T_LEVEL=1"})
 
 
 def test_an_aim_is_no_use_to_a_single_pass(rubble: Path, tmp_path: Path, run: Run) -> None:

@@ -1,5 +1,6 @@
 import io
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -97,6 +98,55 @@ def test_the_scale_may_be_a_ruler_or_not_known(run, tmp_path, bare):
     assert "not known" in without.out
     assert "no scale" in without.err
     assert json.loads((tmp_path / "without" / "stones.json").read_text())["px_per_m"] is None
+
+
+def test_one_file_has_one_median_stone(run, tmp_path, bare):
+    out = tmp_path / "out"
+    found = run("segment", saved(bare, tmp_path), "--px-per-m", 800, "-o", out).out
+    (median,) = re.findall(r"median stone +(\S+ x \S+) cm", found)
+    assert f" {median} cm (" in run("stones", out / "stones.png").out
+    planned = run(
+        "plan", out / "stones.png", "--wall", "0.8mx0.4m", "-o", tmp_path / "wall", "--budget", "1",
+        "--scale", "0.15", "--geometry", "raster",
+    )  # fmt: skip
+    assert f"median {median} cm)" in planned.err
+
+
+def test_markers_are_no_stones_without_their_option(run, tmp_path, sheet):
+    out = tmp_path / "out"
+    ran = run("segment", saved(sheet, tmp_path), "--px-per-m", 800, "-o", out, "--json")
+    assert ran.code == 0
+    assert any(notice.startswith("W170") for notice in ran.json()["notices"])
+    whole = np.unique(sheet.truth_in(np.eye(3), (SHEET.height_px, SHEET.width_px)))[1:]
+    assert ran.json()["stones"] <= len(whole)
+
+
+def test_a_stone_along_the_ruler_is_in_doubt(run, tmp_path):
+    picture = np.full((300, 400, 3), (60, 90, 150), np.uint8)
+    picture[50:62, 50:350] = (230, 220, 120)
+    picture[120:200, 60:160] = picture[130:210, 220:330] = (160, 150, 140)
+    Image.fromarray(picture).save(tmp_path / "photo.png")
+    out = tmp_path / "out"
+    ruled = ("--ruler", "55,49,345,49=290mm")
+    ran = run("segment", tmp_path / "photo.png", *ruled, "-o", out)
+    assert "W179 unusual: stone 1 lies along --ruler and may be the ruler" in ran.out
+    beside = ("--ruler", "55,80,345,80=290mm")
+    ran = run("segment", tmp_path / "photo.png", *beside, "-o", out, "--overwrite")
+    assert "W179" not in ran.out
+
+
+@pytest.mark.parametrize("command", ["segment", "stones", "plan"])
+def test_a_ruler_outside_the_picture_is_refused(run, tmp_path, command):
+    picture = np.zeros((120, 213), np.uint8)
+    picture[20:50, 20:80] = picture[60:100, 100:160] = 255
+    Image.fromarray(picture).save(tmp_path / "pile.png")
+    wall = ("--wall", "1.4mx0.4m") if command == "plan" else ()
+    out = tmp_path / "out"
+    output = () if command == "stones" else ("-o", out)
+    ran = run(command, tmp_path / "pile.png", *wall, *output, "--ruler", "20,30,2000,30=1.0m")
+    assert ran.code == 2
+    assert "E138 --ruler: the point 2000,30 is outside the picture" in ran.err
+    assert not list(out.glob("*"))
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from hypothesis.extra import numpy as npst
 
 from drystone.craft import RULES, CraftSettings, Limit, Masonry, look
 from drystone.craft.finding import Finding
-from drystone.errors import InputError, UsageError
+from drystone.errors import UsageError
 from drystone.io.walls import read_wall
 from tests.craft.walls import both, box, painted, running_bond, stack_bond
 
@@ -103,7 +103,7 @@ def test_limits_that_make_no_sense_are_refused(limits):
 
 
 def test_a_wedge_that_is_not_there_is_refused():
-    with pytest.raises(InputError, match="E191 wedges: the wall has no 12, 99"):
+    with pytest.raises(UsageError, match="E191 wedges: the wall has no 12, 99"):
         Masonry(stack_bond(2, 2), wedge_ids={99, 12, 1})
 
 

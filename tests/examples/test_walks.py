@@ -30,7 +30,7 @@ def run(script: str, tmp_path: Path) -> str:
 
 def test_robot(tmp_path: Path) -> None:
     said = run("robot.py", tmp_path)
-    assert "drystone: Read 10 stones (largest 30.0 x 11.0 cm" in said
+    assert "drystone: Read 10 stones (largest 30.3 x 10.0 cm" in said
     assert "wrote out/plan.json report.html wall.png" in said
     assert "build.gif" in said
     for written in ("assembly.compas.json", "scene.yaml", "wall.obj", "urdf/"):

@@ -74,6 +74,28 @@ def test_labels_scaled_by_interpolation(tmp_path, method):
         read_stones(tmp_path / "a.png")
 
 
+@pytest.mark.parametrize("method", ["BILINEAR", "BICUBIC", "LANCZOS", "HAMMING"])
+@pytest.mark.parametrize("many", [(3, 3), (5, 6)])
+def test_blended_edges_in_ids_of_other_stones(method, many):
+    # Of ids 1 ... n every value between two is an id that is there.
+    labels = many_stones(*many, first=1, step=1).astype(np.uint8)
+    size = (labels.shape[1] * 2, labels.shape[0] * 2)
+    blurred = np.asarray(Image.fromarray(labels).resize(size, Image.Resampling[method]))
+    with pytest.raises(LabelImageError, match=r"E101.*blended at the edges.*id of another") as told:
+        read_stones(blurred)
+    assert len(str(told.value)) < 400
+
+
+def test_stones_that_touch_everywhere_are_not_blended():
+    # Stones of about 4.5 px, each between a lower and a higher id at its corners.
+    points = np.random.default_rng(1).random((500, 2)) * 100
+    rows, cols = np.indices((100, 100))
+    far = (rows[..., None] - points[:, 0]) ** 2 + (cols[..., None] - points[:, 1]) ** 2
+    labels = np.pad(far.argmin(axis=2) + 1, 3)
+    settings = ReadSettings(min_area_px=1, pieces="keep-largest")
+    assert len(read_stones(labels, settings=settings)) == len(np.unique(labels)) - 1
+
+
 def test_labels_scaled_by_nearest_neighbour_are_fine(tmp_path):
     labels = many_stones(first=20, step=4).astype(np.uint8)
     image = Image.fromarray(labels).resize((333, 261), Image.Resampling.NEAREST)
@@ -151,6 +173,16 @@ def test_pieces_of_two_percent_are_refused_by_default():
     for settings in (ReadSettings(pieces="keep-largest"), ReadSettings(skip=(5,))):
         assert 600 in areas(read_stones(labels, settings=settings)).values()
     assert areas(read_stones(labels, settings=ReadSettings(pieces="keep-largest")))[5] == 375
+
+
+def test_many_pieces_are_counted_not_listed():
+    labels = np.zeros((60, 60), np.uint16)
+    labels[30:50, 5:25] = 5
+    labels[2:22:2, 2:42:2] = 5
+    labels[30:50, 30:50] = 9
+    with pytest.raises(LabelImageError, match=r"E103.*: stone 5: 400 px .* and 193 more\.") as told:
+        read_stones(labels)
+    assert told.value.what.count("at column") == 8
 
 
 def test_pieces_error_refuses_any():
@@ -258,7 +290,7 @@ def test_no_pixels(empty):
 def test_white_background(mask):
     labels = two_stones(5, 5 if mask else 9, np.uint8)
     labels[labels == 0] = 255
-    with pytest.raises(LabelImageError, match=r"E105.*value 255 fills.*Use background 255"):
+    with pytest.raises(LabelImageError, match=r"E105.*value 255 fills.*Use --background 255 "):
         read_stones(labels)
     stones = read_stones(labels, settings=ReadSettings(background=255))
     assert sorted(areas(stones).values()) == [375, 600]
@@ -266,7 +298,7 @@ def test_white_background(mask):
 
 def test_black_stones_on_white():
     mask = np.where(two_stones() > 0, 0, 255).astype(np.uint8)
-    with pytest.raises(LabelImageError, match=r"E105.*Use background 255"):
+    with pytest.raises(LabelImageError, match=r"E105.*Use --background 255 "):
         read_stones(mask)
     assert areas(read_stones(mask, settings=ReadSettings(background=255))) == {1: 375, 2: 600}
 
@@ -419,7 +451,51 @@ def test_folder_of_antialiased_masks(tmp_path):
     assert areas(read_stones(tmp_path)) == {1: int((cover * 255 >= 127.5).sum())}
 
 
+@pytest.mark.parametrize("given", [".", "..", "../set", "../set/"])
+def test_folder_is_named_however_it_is_given(tmp_path, monkeypatch, given):
+    (tmp_path / "set" / "deeper").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path / "set" / ("deeper" if given == ".." else "."))
+    with pytest.raises(InputError, match=r"E111 set: the folder has no pictures"):
+        read_stones(given)
+    save_mask(tmp_path / "set" / "a.png", two_stones() == 300)
+    assert read_stones(given).source.path == "set"
+    (tmp_path / "set" / "c.png").write_bytes(b"none")
+    with pytest.raises(InputError, match=r"E107 set/c.png"):
+        read_stones(given)
+
+
+def test_folder_of_a_plan(tmp_path):
+    save_mask(tmp_path / "a.png", two_stones() == 300)
+    for other in ("{", "[1]", '{"steps": []}'):
+        (tmp_path / "plan.json").write_text(other)
+        assert len(read_stones(tmp_path)) == 1
+    (tmp_path / "plan.json").write_text('{"steps": [], "source": {}}')
+    with pytest.raises(InputError, match=r"E113 .*this folder is a plan.*--from"):
+        read_stones(tmp_path)
+
+
 # -- settings ----------------------------------------------------------------------------------
+
+
+def test_a_picture_has_no_images_to_choose_from(tmp_path):
+    settings = ReadSettings(image="tray-3.jpg")
+    save_mask(tmp_path / "a.png", two_stones() == 300)
+    for source in (two_stones(), tmp_path, tmp_path / "a.png"):
+        with pytest.raises(UsageError, match=r"E118.*'tray-3.jpg'.*Leave --image"):
+            read_stones(source, settings=settings)
+
+
+def test_cures_name_options_and_settings():
+    holed = pieces(7)
+    holed[8:10, 8:10] = 0
+    holed[0, 0] = 77
+    text = " ".join(map(str, read_stones(holed).notices))
+    for said in (
+        "--pieces split (pieces='split' in Python)",
+        "--holes keep (holes='keep' in Python)",
+        "--min-area PX (min_area_px in Python)",
+    ):
+        assert said in text
 
 
 def test_unknown_ids_to_skip_are_said():

@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from PIL import Image
+from scipy import ndimage
 
-from drystone.errors import LabelImageError
+from drystone.errors import LabelImageError, UsageError
 from drystone.io.masks import components
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.pictures import areas, codes, discs, many_stones, two_stones
@@ -135,6 +136,30 @@ def test_mask_is_forced():
     assert read_stones(labels, settings=ReadSettings(mask=True)).total_area_px == 6 * 576
 
 
+@pytest.mark.parametrize("count", [3, 4, 30])
+@pytest.mark.parametrize("lossy", [False, True])
+def test_ids_are_not_forced_into_a_mask(tmp_path, count, lossy):
+    labels = many_stones(1, count, first=1, step=1)
+    path = tmp_path / ("ids.jpg" if lossy else "ids.png")
+    scale = 240 // count if lossy else 1
+    Image.fromarray((labels * scale).astype(np.uint8)).save(path)
+    with pytest.raises(UsageError, match=r"E118 ids.*plain areas are neither.*Leave --mask"):
+        read_stones(path, settings=ReadSettings(mask=True))
+
+
+def test_low_ids_beside_a_high_one_are_not_forced_into_the_background():
+    labels = many_stones(2, 5, first=1, step=1)
+    labels[labels == 10] = 255
+    with pytest.raises(UsageError, match=r"E118 array: 90%"):
+        read_stones(labels, settings=ReadSettings(mask=True))
+
+
+def test_a_blurred_mask_can_be_forced():
+    cover = discs((70, 70), [(15, 15), (50, 50)], 10.3)
+    values = np.round(ndimage.gaussian_filter(cover, 2.0) * 200).astype(np.uint8)
+    assert len(read_stones(values, settings=ReadSettings(mask=True))) == 2
+
+
 @given(
     arrays(np.uint8, array_shapes(min_dims=2, max_dims=2, min_side=3, max_side=12)), st.booleans()
 )
@@ -146,6 +171,10 @@ def test_forced_reading_never_crashes_and_loses_nothing(values, mask):
     settings = ReadSettings(mask=mask, min_area_px=1, pieces="split", holes="keep")
     if len(np.unique(labels)) < 2 or not (labels == 0).any():
         return
-    stones = read_stones(np.pad(labels, 1), settings=settings)
+    try:
+        stones = read_stones(np.pad(labels, 1), settings=settings)
+    except UsageError:
+        assert mask  # most of it is halfway between stone and background (E118)
+        return
     expected = (labels > 0).sum() if not mask else (2 * labels >= labels.max()).sum()
     assert stones.total_area_px == expected

@@ -21,6 +21,12 @@ def test_another_picture_has_none(tmp_path: Path) -> None:
     assert read_sidecar(tmp_path / "deeper" / "stones.png") is None
 
 
+def test_a_folder_without_a_name_has_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert read_sidecar(Path()) is None
+    assert photo_of(Path()) is None
+
+
 def test_json_of_another_kind_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / SIDECAR).write_text('{"schema": "drystone-plan/1"}', encoding="utf-8")
     assert read_sidecar(tmp_path / "stones.png") is None

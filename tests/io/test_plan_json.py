@@ -235,6 +235,36 @@ def test_error_says_what_belongs_there() -> None:
         plan_from_json(bad("steps/0/angle_deg", "12"))
 
 
+@pytest.mark.parametrize(
+    ("path", "cure"),
+    [
+        ("method", "What belongs there: Name of the planning method"),
+        ("steps/0/side", "What belongs there: End of the wall"),
+        ("steps/0/stone", "What belongs there: Id of a stone"),
+        ("metrics/F_SF", "What belongs there: Area of the placed stones"),
+    ],
+)
+def test_what_is_missing_is_described(path: str, cure: str) -> None:
+    with pytest.raises(PlanError) as caught:
+        plan_from_json(bad(path, ...))
+    assert repr(path.rsplit("/", maxsplit=1)[-1]) in caught.value.what
+    assert caught.value.cure.startswith(cure)
+
+
+@pytest.mark.parametrize(
+    ("path", "known"),
+    [
+        ("colour", "Known there: schema, version, method, "),
+        ("wall/depth", "Known there: width, height."),
+        ("steps/1/angle_deg", "Known there: step, kind, id, under, polygon, "),
+    ],
+)
+def test_beside_a_name_that_is_not_known_are_those_that_are(path: str, known: str) -> None:
+    with pytest.raises(PlanError) as caught:
+        plan_from_json(bad(path, 1.0))
+    assert caught.value.cure.startswith(known)
+
+
 def test_what_the_contract_does_not_ask_for_may_be_missing() -> None:
     data = bad("steps/0/course_height", ...)
     del data["steps"][1]["alpha_left"], data["steps"][1]["alpha_right"]

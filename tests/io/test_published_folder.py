@@ -8,7 +8,8 @@ import pooch
 import pytest
 
 from drystone.errors import InputError
-from drystone.io.published import destination, fetch_set, published_folder
+from drystone.io import published as module
+from drystone.io.published import destination, fetch_set, published_file, published_folder
 from drystone.io.published_sets import LICENCE, NOTICE, SETS
 from tests.io.served import CONTENTS, lay_open, nobody, serving, toy_set
 
@@ -153,3 +154,56 @@ def test_the_option_wins_over_the_variable_and_that_over_the_cache(
     monkeypatch.setenv("DRYSTONE_DATA", str(tmp_path / "named"))
     assert published_folder(None) == destination(None) == tmp_path / "named"
     assert published_folder("given") == destination("given") == Path("given")
+
+
+@pytest.fixture
+def toys(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """A folder with the files of a small set, which is a published one here."""
+    monkeypatch.setattr(module, "SETS", {"toy": toy_set()})
+    for name, contents in CONTENTS.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_bytes(contents)
+    return tmp_path
+
+
+def test_a_published_file_is_opened_only_with_its_contents(toys: Path) -> None:
+    assert published_file(toys, "toy/R.png") == toys / "toy" / "R.png"
+    (toys / "toy" / "R.png").write_bytes(CONTENTS["toy/IR.png"])
+    with pytest.raises(InputError) as caught:
+        published_file(toys, "toy/R.png")
+    assert (caught.value.code, caught.value.where) == ("E160", str(toys / "toy" / "R.png"))
+    assert f"drystone fetch toy --to {toys}" in caught.value.cure
+    assert toy_set().files[0].address in caught.value.cure
+    assert published_file(toys, "toy/IR.png").exists()
+
+
+def test_a_file_that_is_cut_off_is_named_with_its_folder(toys: Path) -> None:
+    (toys / "toy" / "R.png").write_bytes(CONTENTS["toy/R.png"][:5])
+    with pytest.raises(InputError, match="E160") as caught:
+        published_file(toys, "toy/R.png")
+    assert caught.value.where == str(toys / "toy" / "R.png")
+
+
+def test_files_of_the_cache_are_fetched_again_without_naming_it(
+    toys: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pooch, "os_cache", lambda _: toys)
+    (toys / "toy" / "R.png").write_bytes(b"another")
+    with pytest.raises(InputError, match=r"\(`drystone fetch toy`\)"):
+        published_file(toys, "toy/R.png")
+
+
+def test_what_is_missing_or_in_no_set_is_not_checked(toys: Path) -> None:
+    (toys / "mine.png").write_bytes(b"mine")
+    assert published_file(toys, "mine.png") == toys / "mine.png"
+    (toys / "toy" / "R.png").unlink()
+    assert not published_file(toys, "toy/R.png").exists()
+
+
+def test_a_published_file_is_hashed_once(toys: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    read = []
+    plain = Path.read_bytes
+    monkeypatch.setattr(Path, "read_bytes", lambda path: read.append(path) or plain(path))
+    for _ in range(3):
+        published_file(toys, "toy/R.png")
+    assert read == [toys / "toy" / "R.png"]

@@ -80,7 +80,7 @@ def test_a_pebble_is_too_small_for_paths_and_says_none():
     assert metrics.F_AH is None
 
 
-@pytest.mark.parametrize("size", [(0.0, 80.0), (280.0, -1.0)])
+@pytest.mark.parametrize("size", [(0.0, 80.0), (280.0, -1.0), (np.nan, 80.0), (280.0, np.inf)])
 def test_a_wall_without_room(size):
     with pytest.raises(UsageError, match="E121"):
         measure_labels(bricks(2, 2, 5, 8), wall_px=size)
@@ -89,3 +89,19 @@ def test_a_wall_without_room(size):
 def test_no_stones():
     with pytest.raises(LabelImageError, match="E104"):
         measure_labels(np.zeros((10, 10), np.uint32))
+
+
+@pytest.mark.parametrize(
+    "labels",
+    [
+        bricks(2, 2, 5, 8).astype(float),
+        bricks(2, 2, 5, 8) > 1,
+        -bricks(2, 2, 5, 8).astype(int),
+        np.ones((9, 9, 3), int),
+        np.ones(9, int),
+    ],
+    ids=["floats", "a mask", "below 0", "colours", "a line"],
+)
+def test_what_is_no_picture_of_ids(labels):
+    with pytest.raises(LabelImageError, match=r"E301 labels: .* is no picture of ids"):
+        measure_labels(labels)

@@ -1,5 +1,7 @@
 """The site: working size and units."""
 
+import math
+
 import pytest
 
 from drystone.errors import UsageError
@@ -27,6 +29,18 @@ def test_a_wall_of_too_many_pixels_is_refused_with_the_cure() -> None:
     with pytest.raises(UsageError, match=r"E121.*--scale"):
         Site.from_source(9999, 9999)
     assert Site.from_source(9999, 9999, scale=0.5).width_px == 5000
+
+
+@pytest.mark.parametrize("size", [(math.nan, 20), (60, math.inf)])
+def test_a_size_that_is_no_finite_number_is_refused(size: tuple[float, float]) -> None:
+    with pytest.raises(UsageError, match=r"E127 --wall: .* is no size of a wall"):
+        Site.from_source(*size)
+
+
+@pytest.mark.parametrize("px_per_m", [0.0, -400.0, math.nan, math.inf])
+def test_a_scale_that_is_none_is_refused(px_per_m: float) -> None:
+    with pytest.raises(UsageError, match=r"E138 --px-per-m: .* is no scale"):
+        Site.from_source(560, 160, px_per_m=px_per_m)
 
 
 def test_outlines_must_stay_within_the_lengths_in_source_px() -> None:

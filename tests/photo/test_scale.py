@@ -189,6 +189,13 @@ def test_markers_of_another_sheet_are_left_out():
     code, text = code_of(seen(STRAIGHT, [stray, (18, 0.0, 0.2, 0.0, SIDE)]), SHEET)
     assert code == "E170"
     assert "17, 18" in text
+    assert "add --marker-ids 17 18. Else: Print markers" in text
+
+
+def test_one_stray_marker_is_not_named():
+    for stray in (17, 18):
+        _, text = code_of(seen(STRAIGHT, [(stray, 0.0, 0.0, 0.0, SIDE)]), SHEET)
+        assert "--marker-ids" not in text
 
 
 def test_an_id_twice_is_refused():

@@ -1,3 +1,4 @@
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -9,9 +10,10 @@ from drystone.experiments.photographs.level import Level
 from drystone.experiments.photographs.scene import photograph
 from drystone.experiments.photos import overlaps, pixels, score
 from drystone.photo.segment import segment
-from drystone.photo.segment_doubts import doubts_of, notices_of, sizes_of
+from drystone.photo.segment_doubts import doubts_of, notices_of, ruler_doubts
 from drystone.photo.segment_photo import segment_photo
 from drystone.photo.segment_settings import SegmentSettings
+from drystone.photo.stone_size import sizes_of
 
 SMALL = Level(
     name="small", count=8, width_px=600, height_px=450, px_per_m=400.0, gap_px=10, markers="none"
@@ -242,3 +244,36 @@ def test_areas_in_square_centimetres():
     # 1 px is .25 cm2: the discs have 1257 and 314 cm2.
     assert segment_photo(picture, 200.0, min_area=(400, "cm2")).found.count == 1
     assert segment_photo(picture, 200.0, min_area=(400, "px")).found.count == 2
+
+
+def test_markers_are_no_stones_when_the_scale_is_given():
+    level = replace(SMALL, markers="sheet", width_px=900, height_px=675, px_per_m=800.0, count=7)
+    made = photograph(level)
+    for scale in (800.0, None):
+        result = segment_photo(pixels(made), scale)
+        assert result.unasked == (0, 1, 2, 3)
+        (notice,) = result.notices
+        assert notice.code == "W170"
+        assert "--aruco" in notice.cure
+        # The sheet would be one more, and a false one.
+        assert score(made, result).precision == 1.0
+
+
+def test_without_opencv_markers_are_not_looked_for(monkeypatch):
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    result = segment_photo(drawn((disc((300, 400), 150, 200, 60), (170, 160, 150))), 100.0)
+    assert (result.found.count, result.unasked, result.notices) == (1, (), ())
+
+
+def test_a_stone_along_the_ruler_is_doubted():
+    labels = np.zeros((300, 400), np.uint16)
+    labels[100:112, 50:350] = 1  # the ruler
+    labels[130:200, 60:160] = 2
+    (along,) = ruler_doubts(labels, ((60.0, 99.0), (340.0, 99.0)))
+    assert (along.code, along.stones) == ("W179", (1,))
+    (upright,) = ruler_doubts(labels.T, ((113.0, 340.0), (113.0, 60.0)))
+    assert upright.stones == (1,)
+    # From one stone to another, over none, and to the corner of the picture.
+    assert not ruler_doubts(labels, ((100.0, 105.0), (100.0, 160.0)))
+    assert not ruler_doubts(labels, ((10.0, 250.0), (390.0, 250.0)))
+    assert not ruler_doubts(labels, ((0.0, 0.0), (400.0, 300.0)))

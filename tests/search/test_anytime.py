@@ -154,6 +154,9 @@ def test_an_interrupt_keeps_the_best_wall_so_far() -> None:
     assert [one.walls for one in told] == [1, 2, 3, 5]
     assert result.plan.settings["search"]["budget"] == 5
     assert result.plan.stopped != "interrupted"
+    (notice,) = result.notices
+    assert notice.code == "W125"
+    assert "after 5 walls" in notice.message
     assert check_plan(result.plan, stones, wall_labels=result.wall.labels).problems == ()
     best = searched(first(5))[-1].best
     assert [step.stone for step in result.plan.stone_steps] == [g.stone_id for g in best.groups]

@@ -42,11 +42,11 @@ def add_scatter(command: argparse.ArgumentParser) -> None:
     group.add_argument("--scatter", type=whole_from(1), metavar="N", help="samples (default 200)")
     group.add_argument(
         "--outline-noise", type=not_negative, default=0.0, metavar="PX",
-        help="standard deviation of the outlines",
+        help="standard deviation of the outlines (of a block model: in its lengths)",
     )  # fmt: skip
     group.add_argument(
         "--placement-noise", type=not_negative, default=0.0, metavar="PX",
-        help="standard deviation of where stones lie",
+        help="standard deviation of where stones lie (of a block model: in its lengths)",
     )  # fmt: skip
     group.add_argument("--seed", type=whole_from(0), default=0)
     group.add_argument(

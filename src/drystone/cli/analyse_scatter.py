@@ -11,6 +11,8 @@ from typing import Any
 from drystone.cli.modelling import Modelled
 from drystone.cli.output import prepare_files
 from drystone.cli.progress import counting_bar
+from drystone.errors import UsageError
+from drystone.io.walls import GivenWall
 from drystone.statics.result import LimitStatus
 from drystone.statics.scatter.scatter import Quantiles, Scatter, scatter
 from drystone.statics.scatter.shaking import ScatterSettings
@@ -18,11 +20,40 @@ from drystone.statics.scatter.shaking import ScatterSettings
 SAMPLES = 200
 
 
+@dataclass(frozen=True)
+class Unit:
+    """What noise is given in.
+
+    Parameters
+    ----------
+    name : str
+        For people.
+    lengths : float
+        How many lengths of the model it is.
+    """
+
+    name: str
+    lengths: float = 1.0
+
+    def words(self, noise: float) -> str:
+        """Say how large a noise is that is known in lengths of the model."""
+        return f"{noise / self.lengths:g} {self.name}"
+
+
 @dataclass(frozen=True, eq=False)
 class ScatterCard:
-    """What the shaken walls carry."""
+    """What the shaken walls carry.
+
+    Parameters
+    ----------
+    scatter : Scatter
+        The walls.
+    unit : Unit
+        Of the noise, as it was given.
+    """
 
     scatter: Scatter
+    unit: Unit
 
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
@@ -67,26 +98,54 @@ class ScatterCard:
         if made.mu is not None:
             parts.append(f"mu {made.mu[0]:g} to {made.mu[1]:g}")
         if made.outline_noise:
-            parts.append(f"outlines +- {made.outline_noise:g}")
+            parts.append(f"outlines +- {self.unit.words(made.outline_noise)}")
         if made.placement_noise:
-            parts.append(f"placement +- {made.placement_noise:g}")
+            parts.append(f"placement +- {self.unit.words(made.placement_noise)}")
         return ", ".join(parts)
 
 
+def noise_unit(wall: GivenWall) -> Unit:
+    """Return the unit of ``--outline-noise`` and ``--placement-noise``: px where there are any.
+
+    A plan on outlines in metres has a model in metres; its px are those of the source image.
+    """
+    if wall.blocks is None:
+        return Unit("px")
+    if wall.plan is None:
+        return Unit("lengths of the block model")
+    px_per_m = wall.plan.px_per_m if wall.plan.length_unit == "m" else None
+    return Unit("px", 1.0 / (px_per_m or 1.0))
+
+
 def wants_scatter(arguments: argparse.Namespace) -> bool:
-    """Whether an option of the scatter was given."""
+    """Whether an option of the scatter was given.
+
+    Raises
+    ------
+    UsageError
+        E138 when there are samples to take, but nothing by which they would differ.
+    """
     is_varied = arguments.mu is not None and arguments.mu[0] < arguments.mu[1]
-    noisy = arguments.outline_noise > 0 or arguments.placement_noise > 0
-    return is_varied or noisy or arguments.scatter is not None
+    varied: bool = is_varied or arguments.outline_noise > 0 or arguments.placement_noise > 0
+    if arguments.scatter is not None and not varied:
+        raise UsageError(
+            "E138",
+            "all samples would be the same wall.",
+            where="--scatter",
+            cure="Say what is not known: --mu LOW:HIGH, --outline-noise or --placement-noise.",
+        )
+    return varied
 
 
-def scatter_of(wall: Modelled, arguments: argparse.Namespace, folder: Path | None) -> ScatterCard:
+def scatter_of(
+    wall: Modelled, arguments: argparse.Namespace, unit: Unit, folder: Path | None
+) -> ScatterCard:
     """Shake the wall and analyse it each time; draw the distribution into the folder."""
     settings = ScatterSettings(
         samples=SAMPLES if arguments.scatter is None else arguments.scatter,
         mu=arguments.mu,
-        outline_noise=arguments.outline_noise,
-        placement_noise=arguments.placement_noise,
+        outline_noise=arguments.outline_noise * unit.lengths,
+        placement_noise=arguments.placement_noise * unit.lengths,
     )
     if folder is not None:
         prepare_files([folder / "scatter.png"], overwrite=arguments.overwrite)
@@ -99,7 +158,7 @@ def scatter_of(wall: Modelled, arguments: argparse.Namespace, folder: Path | Non
         from drystone.plotting import plot_scatter, save  # noqa: PLC0415 - slow import
 
         save(plot_scatter(found).figure, folder / "scatter.png")
-    return ScatterCard(found)
+    return ScatterCard(found, unit)
 
 
 @contextmanager

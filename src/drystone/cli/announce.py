@@ -3,10 +3,9 @@
 import sys
 from pathlib import Path
 
-import numpy as np
-
 from drystone.errors import Notice
 from drystone.model.stone import StoneSet
+from drystone.photo.stone_size import median_sides, sides_px
 from drystone.search.plan_result import PlanResult
 
 WRITTEN = (
@@ -40,6 +39,7 @@ def read_line(
 
     Examples
     --------
+    >>> import numpy as np
     >>> from drystone.model.stone import Stone
     >>> stones = StoneSet((Stone(1, np.ones((12, 31), bool)),))
     >>> read_line(stones, (280, 80), 200.0, 3.6)
@@ -49,9 +49,9 @@ def read_line(
     """
     said = f"Read {len(stones)} stone{'' if len(stones) == 1 else 's'}"
     if len(stones):
-        biggest = max(stones, key=lambda stone: stone.area_px).mask.shape
+        biggest = sides_px(max(stones, key=lambda stone: stone.area_px).mask)
         median = _median(stones)
-        said += f" (largest {_size(biggest[1], biggest[0], px_per_m)}, median "
+        said += f" (largest {_size(*biggest, px_per_m)}, median "
         said += f"{_size(*median, px_per_m)})"
     said += f", wall {_size(*wall, px_per_m)}"
     return said if seconds is None else f"{said}, estimate {max(seconds, 1.0):.0f} s"
@@ -93,14 +93,12 @@ def say_written(folder: Path) -> None:
 
 def _median(stones: StoneSet) -> tuple[float, float]:
     """Return the medians of the longer and of the shorter sides, source px."""
-    sides = np.sort([stone.mask.shape for stone in stones], axis=1)
-    shorter, longer = np.median(sides, axis=0).tolist()
-    return longer, shorter
+    return median_sides(sides_px(stone.mask) for stone in stones)
 
 
 def _size(width: float, height: float, px_per_m: float | None) -> str:
     if px_per_m is None:
-        return f"{width:.5g} x {height:.5g} px"
+        return f"{round(width, 1):g} x {round(height, 1):g} px"
     width, height = width / px_per_m, height / px_per_m
     if max(width, height) < 1.0:
         return f"{100 * width:.1f} x {100 * height:.1f} cm"

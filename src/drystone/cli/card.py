@@ -212,13 +212,18 @@ def _alphas(
 def _alpha(result: LimitResult) -> str:
     if result.alpha is None:
         return f"{result.status}: {result.message}"
-    return f"alpha = {result.alpha:.4f}  load multiplier, adequacy factor"
+    return f"alpha = {_rounded(result.alpha)}  load multiplier, adequacy factor"
 
 
 def _without(result: NonassociativeResult) -> str:
     if result.alpha is None:
         return f"{result.status}: {result.message}"
-    return f"alpha = {result.alpha:.4f}  {_lower_first(result.message)}"
+    return f"alpha = {_rounded(result.alpha)}  {_lower_first(result.message)}"
+
+
+def _rounded(alpha: float) -> str:
+    """Write a load multiplier; one that rounds to nothing has no sign."""
+    return f"{round(alpha, 4) + 0.0:.4f}"
 
 
 def _lower_first(text: str) -> str:

@@ -3,16 +3,12 @@
 import argparse
 
 from drystone.cli.numbers import finite, whole_from
+from drystone.cli.wall_input import add_wall_input
 
 
 def add_craft(command: argparse.ArgumentParser) -> None:
     """Add what can be said about a look at a wall."""
-    command.add_argument(
-        "wall_path", metavar="WALL", help="label image, plan.json, or block model (JSON)"
-    )
-    command.add_argument("-o", "--output", metavar="DIR", help="draw the findings into a folder")
-    command.add_argument("--overwrite", action="store_true", help="replace pictures")
-    command.add_argument("--json", action="store_true", help="print as JSON")
+    add_wall_input(command)
     command.add_argument(
         "--cases", type=whole_from(0), default=3, metavar="N",
         help="how many places a rule names in the table (default 3); JSON has all",

@@ -7,6 +7,9 @@ from drystone.errors import UsageError
 _UNITS = {"": None, "px": None, "m": 1.0, "cm": 0.01, "mm": 0.001}
 _SIDE = re.compile(r"(\d+(?:\.\d*)?|\.\d+)(px|mm|cm|m|)")
 
+LEAST_PX = 8.0
+"""A wall without a unit is this wide and high at least: less was meant to be metres."""
+
 
 def parse_wall(text: str, px_per_m: float | None) -> tuple[float, float]:
     """Turn ``560x160``, ``1.4mx0.4m`` or ``140cmx40cm`` into width and height in source px.
@@ -21,7 +24,8 @@ def parse_wall(text: str, px_per_m: float | None) -> tuple[float, float]:
     Raises
     ------
     UsageError
-        E127 for anything else, E131 for metres without a scale.
+        E127 for anything else, px beside metres, and a few px without a unit; E131 for metres
+        without a scale.
 
     Examples
     --------
@@ -38,8 +42,31 @@ def parse_wall(text: str, px_per_m: float | None) -> tuple[float, float]:
             where="--wall",
             cure="Write 560x160 (px of the source image), 1.4mx0.4m or 140cmx40cm.",
         )
-    width, height = (_in_px(float(sides[number]), sides[number + 1], px_per_m) for number in (1, 3))
+    values, units = (float(sides[1]), float(sides[3])), (sides[2], sides[4])
+    _refuse_odd_units(text, values, units)
+    width, height = (_in_px(*side, px_per_m) for side in zip(values, units, strict=True))
     return width, height
+
+
+def _refuse_odd_units(text: str, values: tuple[float, float], units: tuple[str, str]) -> None:
+    """Refuse what says px, by having no unit, and means metres (E127)."""
+    metric = [_UNITS[unit] is not None for unit in units]
+    if metric[0] != metric[1]:
+        raise UsageError(
+            "E127",
+            f"{text!r} is px one way and metric the other.",
+            where="--wall",
+            cure="Give both sides a unit, as in 1.4mx0.4m, or both in px.",
+        )
+    # Such a wall in px is smaller than any stone; who means it can say so.
+    if not any(units) and 0.0 < min(values) < LEAST_PX:
+        width, height = (f"{value:g}" for value in values)
+        raise UsageError(
+            "E127",
+            f"{text!r} has no unit, so it is px of the source image, fewer than {LEAST_PX:g}.",
+            where="--wall",
+            cure=f"Write {width}mx{height}m if it is metres, {width}pxx{height}px if it is px.",
+        )
 
 
 def _in_px(value: float, unit: str, px_per_m: float | None) -> float:

@@ -28,7 +28,12 @@ def prepare_files(paths: Sequence[Path], *, overwrite: bool) -> None:
     """Make room for files, with the folders they go into; refuse to replace one (E129)."""
     for path in paths:
         if path.is_dir():
-            raise UsageError("E129", "is a folder, not a file.", where=str(path))
+            raise UsageError(
+                "E129",
+                "is a folder, not a file.",
+                where=str(path),
+                cure="Give the name of a file, in the folder for example.",
+            )
         if path.exists() and not overwrite:
             raise UsageError(
                 "E129",
@@ -74,7 +79,12 @@ def make_folder(path: Path) -> None:
     """Make a folder, with those that it lies in; refuse where a file is in the way (E129)."""
     for place in (path, *path.parents):
         if place.exists() and not place.is_dir():
-            raise UsageError("E129", "is a file, not a folder.", where=str(place))
+            raise UsageError(
+                "E129",
+                "is a file, not a folder.",
+                where=str(place),
+                cure="Choose another folder with -o, or move the file away.",
+            )
     path.mkdir(parents=True, exist_ok=True)
 
 

@@ -13,6 +13,7 @@ from drystone.cli.numbers import positive, share, whole_from
 from drystone.cli.reading import STONES, add_reading
 from drystone.cli.scale import add_scale
 from drystone.cli.segment_options import add_segment
+from drystone.cli.wall_input import add_wall_input
 from drystone.errors import UsageError
 from drystone.planner.search_settings import AIMS
 
@@ -182,8 +183,8 @@ def _choosing(command: argparse.ArgumentParser) -> None:
 
 def _aim(text: str) -> tuple[str, float]:
     """Read what a figure of merit shall reach."""
-    name, _, value = text.partition("=")
-    if name not in AIMS:
+    name, equals, value = text.partition("=")
+    if name not in AIMS or not equals:
         message = f"{text!r} is not one of {', '.join(f'{known}=VALUE' for known in AIMS)}"
         raise argparse.ArgumentTypeError(message)
     return name, positive(value)
@@ -216,17 +217,8 @@ def _stones(command: argparse.ArgumentParser) -> None:
     command.add_argument("--json", action="store_true", help="print as JSON")
 
 
-def _wall_input(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "wall_path", metavar="WALL", help="label image, plan.json, or block model (JSON)"
-    )
-    command.add_argument("--json", action="store_true", help="print as JSON")
-    command.add_argument("-o", "--output", metavar="DIR", help="draw pictures into a folder")
-    _overwriting(command, "replace pictures of the same names")
-
-
 def _analyse(command: argparse.ArgumentParser) -> None:
-    _wall_input(command)
+    add_wall_input(command)
     add_scale(command)
     add_model(command)
     add_loads(command)
@@ -234,7 +226,7 @@ def _analyse(command: argparse.ArgumentParser) -> None:
 
 
 def _measure(command: argparse.ArgumentParser) -> None:
-    _wall_input(command)
+    add_wall_input(command)
     command.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
     command.add_argument("--wall", metavar="WxH", help="wall that was to be built, px of the image")
     command.add_argument(

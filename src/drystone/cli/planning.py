@@ -20,14 +20,17 @@ from drystone.cli.choice import (
 )
 from drystone.cli.output import number, prepare_folder, print_json, print_table
 from drystone.cli.progress import step_bar
-from drystone.cli.settings import search_seconds, settings_from
+from drystone.cli.scale import refuse_outside
+from drystone.cli.settings import recorded_method, search_seconds, settings_from
 from drystone.cli.timing import print_profile, profile_summary
 from drystone.errors import ExitCode, UsageError
 from drystone.io.photo_beside import photo_beside, place_photo
 from drystone.io.plan_json import read_plan
 from drystone.model.plan import Plan
+from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.planner.workshop import fitting_stones
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall, working_scale
 from drystone.verify.replay import rebuild_wall
@@ -47,12 +50,17 @@ def plan_and_write(
 ) -> ExitCode:
     """Plan a wall of given size in source px, write all files, print the summary."""
     folder = Path(arguments.output)
-    settings = settings_from(arguments)
+    settings, method = settings_from(arguments), recorded_method(arguments)
     partial = _partial_plan(folder, stones, wall, arguments, settings)
     if partial is not None and partial.stopped != "interrupted":
-        print("drystone: this plan is finished, there is nothing to go on with", file=sys.stderr)
+        print(
+            "drystone: this plan is finished, there is nothing to go on with;"
+            " --from begins a search with it",
+            file=sys.stderr,
+        )
         return ExitCode.DONE
     begin = plan_to_begin_with(stones, wall, arguments, settings)
+    _check_stones(stones, wall, arguments, settings)
     prepare_folder(folder, overwrite=arguments.overwrite or partial is not None)
     seconds = search_seconds(method_settings(arguments.method), len(stones), arguments)
     _announce(stones, wall, arguments, seconds if settings.search.budget > 1 else None)
@@ -63,7 +71,7 @@ def plan_and_write(
             stones,
             *wall,
             seed=arguments.seed,
-            method=arguments.method,
+            method=method,
             settings=settings,
             scale=arguments.scale,
             px_per_m=arguments.px_per_m,
@@ -101,17 +109,43 @@ def plan_and_write(
     return _EXIT[result.status]
 
 
+def _check_stones(
+    stones: StoneSet,
+    wall: tuple[float, float],
+    arguments: argparse.Namespace,
+    settings: PlannerSettings,
+) -> None:
+    """Refuse what cannot be meant, before a folder is made: E126, and E138 of a ruler."""
+    refuse_outside(arguments.px_per_m, (stones.source.width_px, stones.source.height_px))
+    scale = arguments.scale or working_scale(stones)
+    site = Site.from_source(*wall, scale, arguments.px_per_m)
+    if not fitting_stones(stones, site, settings):
+        raise UsageError(
+            "E126",
+            f"none of the {len(stones)} stones can be built with: each is banned, or fits into "
+            "the wall in no orientation.",
+            where=stones.source.path,
+            cure="Build a larger wall, or ban fewer stones.",
+        )
+
+
 def _announce(
     stones: StoneSet,
     wall: tuple[float, float],
     arguments: argparse.Namespace,
     seconds: float | None,
 ) -> None:
-    """Say what is planned with, and when its scale is odd."""
+    """Say what is planned with, and when its scale or its method is odd."""
     if not (arguments.quiet or arguments.json):
         said = read_line(stones, wall, arguments.px_per_m, seconds)
         more = "" if seconds is None else " (--time, --budget)"
         print(f"drystone: {said}{more}", file=sys.stderr)
+    if recorded_method(arguments) != arguments.method:
+        print(
+            f"drystone: {arguments.settings} has every setting, so that nothing of --method "
+            f"{arguments.method} is left; the plan names the method custom",
+            file=sys.stderr,
+        )
     notice = scale_notice(stones, arguments.px_per_m)
     if notice is not None:
         print(f"drystone: {notice}", file=sys.stderr)
@@ -153,7 +187,7 @@ def _partial_plan(
         "--px-per-m": plan.px_per_m == arguments.px_per_m,
         "--scale": plan.working_scale == scale,
         "--seed": plan.seed == arguments.seed,
-        "--method": plan.method == arguments.method,
+        "--method": plan.method == recorded_method(arguments),
         "settings": _without_budget(plan.settings) == _without_budget(settings.as_dict()),
     }
     different = [name for name, same in equal.items() if not same]

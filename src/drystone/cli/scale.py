@@ -12,6 +12,18 @@ _RULER = re.compile(rf"{_NUMBER},{_NUMBER},{_NUMBER},{_NUMBER}=\s*(\d+(?:\.\d*)?
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 
 
+class Ruled(float):
+    """Px in a metre that were measured with a ruler, and where it lay.
+
+    Attributes
+    ----------
+    ends_px : tuple of (float, float)
+        Its two points, x and y in the image.
+    """
+
+    ends_px: tuple[tuple[float, float], ...] = ()
+
+
 def add_scale(command: argparse.ArgumentParser) -> None:
     """Add the options that say how large a px is."""
     group = command.add_argument_group("scale").add_mutually_exclusive_group()
@@ -22,7 +34,7 @@ def add_scale(command: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
-def ruler(text: str) -> float:
+def ruler(text: str) -> Ruled:
     """Read `--ruler`; return px in a metre.
 
     Examples
@@ -38,7 +50,32 @@ def ruler(text: str) -> float:
     px, metres = math.hypot(x2 - x1, y2 - y1), length * _METRES[found[6]]
     if px == 0.0 or metres == 0.0:
         raise argparse.ArgumentTypeError(f"{text!r} has no length")
-    return px / metres
+    scale = Ruled(px / metres)
+    scale.ends_px = (x1, y1), (x2, y2)
+    return scale
+
+
+def refuse_outside(px_per_m: float | None, size_px: tuple[int, int]) -> None:
+    """Refuse a ruler that lies beyond the picture it was measured in (E138).
+
+    Parameters
+    ----------
+    px_per_m : float or None
+        From the options; only what :func:`ruler` read has points.
+    size_px : (int, int)
+        Width and height of the picture; 0 when they are not known.
+    """
+    if not isinstance(px_per_m, Ruled) or not all(size_px):
+        return
+    width, height = size_px
+    for x, y in px_per_m.ends_px:
+        if not (0.0 <= x <= width and 0.0 <= y <= height):
+            raise UsageError(
+                "E138",
+                f"the point {x:g},{y:g} is outside the picture, which is {width} x {height} px.",
+                where="--ruler",
+                cure="Give two points of this picture in its full size, x1,y1,x2,y2 in px.",
+            )
 
 
 def scale_with(px_per_m: float | None, of_source: float | None) -> float | None:

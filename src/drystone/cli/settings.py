@@ -2,11 +2,13 @@
 
 import argparse
 import tomllib
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
 from drystone.errors import InputError, UsageError
-from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.planner.settings import METHODS, PlannerSettings, method_settings
 from drystone.selection.policies.registry import rule_of
 
 UNLIMITED = 1_000_000
@@ -16,53 +18,115 @@ SECONDS_A_STONE = 1 / 3
 """How long better walls are looked for when nothing is said."""
 
 
+_PLAIN = ("geometry", "sampling", "two_sided", "orientations", "mu", "skip_too_large")
+"""Settings that have an option of their own name."""
+
+_Asked = tuple[str, dict[str, Any]]
+"""Options, as an error names them, and what they change."""
+
+
 def settings_from(arguments: argparse.Namespace) -> PlannerSettings:
-    """Return the settings that the command line asks for."""
+    """Return the settings that the command line asks for; errors name the file or the option."""
     settings = method_settings(arguments.method)
     if arguments.settings is not None:
-        settings = settings.updated(read_toml(Path(arguments.settings)))
-    changes: dict[str, Any] = {}
-    for name in ("geometry", "sampling", "two_sided", "orientations", "mu", "skip_too_large"):
-        value = getattr(arguments, name)
-        if value is not None:
-            changes[name] = value
+        settings = _with_file(settings, arguments)
+    geometry = arguments.geometry or settings.geometry
+    _check_geometry(geometry, arguments)
+    asked = settings
+    for where, changes in [*_plain(arguments), *_grouped(settings, arguments)]:
+        try:
+            asked = asked.updated(changes)
+        except UsageError as error:
+            raise _blamed(error, where) from None
+    return asked
+
+
+def recorded_method(arguments: argparse.Namespace) -> str:
+    """Return the method that a plan names: the one asked for, or ``"custom"``.
+
+    A settings file that has every setting, like the settings.toml of a plan, leaves nothing of
+    the method that is asked for.  When it is nearer to another one, the plan is of neither.
+    """
+    if arguments.settings is None:
+        return str(arguments.method)
+    changes = read_toml(Path(arguments.settings))
+    try:
+        made = [method.updated(changes) for method in METHODS.values()]
+    except UsageError:
+        return str(arguments.method)  # it does not stand alone
+    whole = all(one == made[0] for one in made)
+    apart = {name: _differences(made[0], method) for name, method in METHODS.items()}
+    nearest = apart[arguments.method] == min(apart.values())
+    return str(arguments.method) if nearest or not whole else "custom"
+
+
+def _differences(one: object, other: object) -> int:
+    """Count the values in which settings differ."""
+    if not is_dataclass(one):
+        return int(one != other)
+    return sum(_differences(getattr(one, f.name), getattr(other, f.name)) for f in fields(one))
+
+
+def _with_file(settings: PlannerSettings, arguments: argparse.Namespace) -> PlannerSettings:
+    """Return settings with the values of the file in their place."""
+    path = Path(arguments.settings)
+    changes = read_toml(path)
+    try:
+        settings = settings.updated(changes)
+        if settings.by_policy and arguments.policy is None:
+            rule_of(settings.selection_rule)  # the file may name one that is not there
+    except UsageError as error:
+        table = error.where.removeprefix("settings").strip() if error.code == "E123" else ""
+        raise _blamed(error, f"{path} [{table}]" if table else str(path)) from None
+    return settings
+
+
+def _blamed(error: UsageError, where: str) -> UsageError:
+    """Return an error of settings that says where the values came from."""
+    return UsageError(error.code, error.what, where=where, cure=error.cure)
+
+
+def _plain(arguments: argparse.Namespace) -> list[_Asked]:
+    """Return what options ask for that set one value each."""
+    given = {name: getattr(arguments, name) for name in _PLAIN}
+    return [
+        (f"--{name.replace('_', '-')}", {name: value})
+        for name, value in given.items()
+        if value is not None
+    ]
+
+
+def _grouped(settings: PlannerSettings, arguments: argparse.Namespace) -> Iterator[_Asked]:
+    """Yield what the other options ask for; what only makes sense together is one change."""
     placement = {"rule": arguments.placement, "reach": arguments.reach}
-    changes["placement"] = {k: v for k, v in placement.items() if v is not None}
-    _check_geometry(
-        settings.updated({k: v for k, v in changes.items() if k == "geometry"}), arguments
-    )
+    yield "--placement, --reach", {"placement": {k: v for k, v in placement.items() if v}}
+    search = _search(settings, arguments)
     if arguments.policy is not None:
-        changes["selection_rule"] = rule_of(arguments.policy)
-    if arguments.settle is not None:
-        changes["settle"] = {"method": arguments.settle}
-    changes |= _chosen(arguments)
-    changes["search"] = _search(settings, arguments)
+        yield "--policy", {"selection_rule": rule_of(arguments.policy), "search": search}
+    else:
+        yield "--time" if arguments.budget is None else "--budget", {"search": search}
     if arguments.aim:
-        if changes["search"].get("budget", settings.search.budget) == 1:
+        if search.get("budget", settings.search.budget) == 1:
             raise UsageError(
                 "E138",
                 "--aim would do nothing with a single pass.",
                 cure="Leave it out, or let walls be searched: --time, --budget.",
             )
-        changes["goal"] = dict(arguments.aim)
+        yield "--aim", {"goal": dict(arguments.aim)}
+    if arguments.settle is not None:
+        yield "--settle", {"settle": {"method": arguments.settle}}
     if arguments.stabilise is not None:
-        changes["stabilise"] = {"method": arguments.stabilise}
-    asked = settings.updated(changes)
-    if asked.by_policy:
-        rule_of(asked.selection_rule)  # a settings file may name one that is not there
-    return asked
+        yield "--stabilise", {"stabilise": {"method": arguments.stabilise}}
+    yield from _chosen(arguments)
 
 
-def _chosen(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Return what is said about single stones; `demo` has no such options."""
-    changes: dict[str, Any] = {}
-    for name in ("ban", "pin"):
-        ids = getattr(arguments, name, [])
-        if ids:
-            changes[name] = sorted(set(ids))
+def _chosen(arguments: argparse.Namespace) -> Iterator[_Asked]:
+    """Yield what is said about single stones; `demo` has no such options."""
+    ids = {name: sorted(set(getattr(arguments, name, []))) for name in ("ban", "pin")}
+    given = {name: stones for name, stones in ids.items() if stones}
+    yield " and ".join(f"--{name}" for name in given), given
     if getattr(arguments, "fixed_order", False):
-        changes["order"] = "given"
-    return changes
+        yield "--fixed-order", {"order": "given"}
 
 
 def _search(settings: PlannerSettings, arguments: argparse.Namespace) -> dict[str, Any]:
@@ -113,15 +177,15 @@ def _file_has_budget(arguments: argparse.Namespace) -> bool:
     return isinstance(search, dict) and "budget" in search
 
 
-def _check_geometry(settings: PlannerSettings, arguments: argparse.Namespace) -> None:
+def _check_geometry(geometry: str, arguments: argparse.Namespace) -> None:
     """Refuse options that would do nothing on the geometry of a plan (E138)."""
-    exact = settings.geometry == "exact"
+    exact = geometry == "exact"
     useless = ("placement", "reach") if exact else ("settle",)
     given = [f"--{name}" for name in useless if getattr(arguments, name) is not None]
     if given:
         raise UsageError(
             "E138",
-            f"{' and '.join(given)} would do nothing with --geometry {settings.geometry}.",
+            f"{' and '.join(given)} would do nothing with --geometry {geometry}.",
             cure=f"Leave it out, or add --geometry {'raster' if exact else 'exact'}.",
         )
 
@@ -131,7 +195,12 @@ def read_toml(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise InputError("E128", f"cannot be read: {error.strerror}.", where=str(path)) from None
+        raise InputError(
+            "E128",
+            f"cannot be read: {error.strerror}.",
+            where=str(path),
+            cure="Give a TOML file, such as the settings.toml that is written with every plan.",
+        ) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InputError(
             "E128",

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from drystone.craft.joints import Joint, joints
 from drystone.craft.scans import Scan, scan
 from drystone.craft.settings import CraftSettings
-from drystone.errors import InputError
+from drystone.errors import UsageError
 from drystone.kernels.polygons import area_and_centroid
 from drystone.model.wall import Labels
 from drystone.statics.contacts.blocks import model_from_labels
@@ -40,7 +40,7 @@ class Masonry:
 
     Raises
     ------
-    InputError
+    UsageError
         E191 for the id of a wedge that is not in the wall.
 
     Examples
@@ -60,7 +60,7 @@ class Masonry:
     def __post_init__(self) -> None:
         strangers = sorted(set(self.wedge_ids) - set(self.outlines))
         if strangers:
-            raise InputError(
+            raise UsageError(
                 "E191",
                 f"the wall has no {', '.join(map(str, strangers))}, said to be wedges.",
                 where="wedges",
@@ -94,7 +94,7 @@ class Masonry:
 
         Raises
         ------
-        InputError
+        UsageError
             E191 for the id of a wedge that is not in the image.
         """
         picture = model_from_labels(labels, mu)

@@ -10,6 +10,7 @@ from drystone.experiments.table import BenchSettings
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.generate.fourier import FourierSettings, fourier_stones
 from drystone.generate.polygon import PolygonSettings, polygon_stones
+from drystone.io.published import published_file
 from drystone.io.read_stones import read_stones
 from drystone.kernels.polygons import Points
 from drystone.model.stone import StoneSet
@@ -51,7 +52,7 @@ class Target:
         """Return the stones; None when the published data are not there."""
         if not isinstance(self.source, str):
             return self.source(np.random.default_rng(settings.seed))
-        path = None if settings.data is None else settings.data / self.source
+        path = None if settings.data is None else published_file(settings.data, self.source)
         return read_stones(path) if path is not None and path.exists() else None
 
     def size(self, stones: StoneSet) -> tuple[float, float]:

@@ -26,6 +26,7 @@ from drystone.experiments.timed_walls import (
     size_of,
     three_digits,
 )
+from drystone.io.published import published_file
 from drystone.io.read_stones import read_stones
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.plotting.files import save
@@ -101,7 +102,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 
 def _task(settings: BenchSettings, stones: int | None) -> Task:
     if stones is None and settings.data is not None and (settings.data / "almeida").is_dir():
-        published = read_stones(settings.data / "almeida" / "PR.png")
+        published = read_stones(published_file(settings.data, "almeida/PR.png"))
         return Task(PUBLISHED, published, SOURCE_PX)
     return rubble_task(stones or LEAST_STONES, settings.seed, SOURCE_PX)
 

@@ -2,6 +2,7 @@
 
 from drystone.experiments.planned_walls import SETS
 from drystone.experiments.table import BenchSettings, Cell, Table
+from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
 from drystone.metrics.measure import measure_labels
 from drystone.metrics.reduce import reduce_labels
@@ -18,7 +19,9 @@ def masons_walls(settings: BenchSettings) -> Table:
     """Measure the walls of Almeida et al. (2021) as they were traced, at the working scales."""
     rows = []
     for name, scale, *_ in SETS:
-        path = None if settings.data is None else settings.data / "almeida" / f"{name}.png"
+        path = (
+            None if settings.data is None else published_file(settings.data, f"almeida/{name}.png")
+        )
         if path is not None and path.exists():
             rows.append(masons_row(name, read_wall_image(path), scale))
     return Table(

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from drystone.experiments.table import BenchSettings
+from drystone.io.published import published_file
 from drystone.io.read_stones import read_stones
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
@@ -78,7 +79,7 @@ def planned_walls(
         return
     assert settings.data is not None  # noqa: S101 - nothing is missing
     for name, scale, width, height in SETS[:1] if settings.quick else SETS:
-        stones = read_stones(settings.data / "almeida" / f"{name}.png")
+        stones = read_stones(published_file(settings.data, f"almeida/{name}.png"))
         for method in methods[:1] if settings.quick else methods:
             for seed in range(settings.seed, settings.seed + (1 if settings.quick else seeds)):
                 result = plan_wall(stones, width, height, seed=seed, method=method, scale=scale)

@@ -31,6 +31,10 @@ SEARCHES = {
 """Those that search, and what can be asked of them."""
 
 
+PICTURED = ("growth", "shear")
+"""Those that draw pictures."""
+
+
 def run_suite(name: str, settings: BenchSettings) -> tuple[Table, ...]:
     """Run one suite; see `SUITES` for the names."""
     module = import_module(f"drystone.experiments.{SUITES[name][1]}")

@@ -110,7 +110,7 @@ def _written(cell: Cell) -> str:
     if isinstance(cell, bool):
         return "yes" if cell else "no"
     if isinstance(cell, float):
-        return f"{cell:.1e}" if 0 < abs(cell) < 1e-3 else f"{cell:.5g}"
+        return f"{cell:.1e}" if 0 < abs(cell) < 1e-3 else f"{cell + 0.0:.5g}"  # -0.0 + 0.0 is 0.0
     return str(cell)
 
 

@@ -1,12 +1,14 @@
 """Pictures that are no label images are told apart and refused (users' table of bad input)."""
 
+import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from drystone.errors import LabelImageError
+from drystone.errors import InputError, LabelImageError
 from drystone.io.census import Census
 from drystone.kernels.ids import counted
 
@@ -16,8 +18,26 @@ _PLAIN_SHARE = 0.5
 _PLAIN_SHARE_LOSSY = 0.3
 _BLENDED_SHARE = 0.5
 """Measured on published labels scaled or blurred: .57 (bicubic, which overshoots) ... 1."""
+_FEW_VALUES = 8
+_ASTRAY_SHARE = 0.2
+"""Measured on ids 1 ... 9 and 1 ... 30 of bricks and round stones: .15 ... .6 of the outlines when
+scaled or blurred, .00 before; .13 in touching stones that are 5 px wide.  A stone set that is
+refused without reason has no cure, so the limit keeps clear of those."""
 
 _CLEAN_EXPORT = "Export the ids as PNG or TIFF, without anti-aliasing or resampling."
+
+
+def check_no_plan(folder: Path, where: str) -> None:
+    """Refuse the folder of a plan (E113), whose pictures are no masks of stones."""
+    try:
+        content = json.loads((folder / "plan.json").read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return
+    if isinstance(content, dict) and "steps" in content and "source" in content:
+        raise InputError(
+            "E113", "this folder is a plan, made of stones already.", where=where,
+            cure="Give the stones, or use it with --from.",
+        )  # fmt: skip
 
 
 def check_not_uniform(census: Census, background: int, where: str) -> None:
@@ -38,7 +58,13 @@ def check_not_uniform(census: Census, background: int, where: str) -> None:
     )
 
 
-def check_background(index: NDArray[Any], census: Census, background: int, where: str) -> None:
+def check_background(
+    index: NDArray[Any],
+    census: Census,
+    background: int,
+    where: str,
+    cure: str = "Use --background {0} (background={0} in Python)",
+) -> None:
     """Refuse a picture whose background is plainly another value (E105).
 
     Parameters
@@ -51,6 +77,8 @@ def check_background(index: NDArray[Any], census: Census, background: int, where
         What the settings say.
     where : str
         Name for messages.
+    cure : str
+        What to do when {0} is the background.
     """
     common = int(counted(index, len(census.values)).argmax())
     value = int(census.values[common - 1])
@@ -66,8 +94,7 @@ def check_background(index: NDArray[Any], census: Census, background: int, where
             f"the value {value} fills {(index == common).mean():.0%} of the picture and its "
             f"borders: it looks like the background, which is {background} by the settings.",
             where=where,
-            cure=f"Use background {value}; if it is a stone, give the picture a rim of "
-            f"{background}.",
+            cure=f"{cure.format(value)}; if it is a stone, give the picture a rim of {background}.",
         )
 
 
@@ -95,8 +122,9 @@ def check_not_lossy(ids: Census, brightness: NDArray[Any], where: str) -> None:
         f"JPEG is lossy: {len(ids.values)} values, {rare} of them on less than {RARE_PX} px, "
         f"so ids are lost.{guess}",
         where=where,
-        cure=f"{_CLEAN_EXPORT} A black-and-white mask can be read with mask=True. If it is a "
-        "photograph, find the stones in it with `drystone segment PHOTO`.",
+        cure=f"{_CLEAN_EXPORT} As stones, a black-and-white mask can be read with --mask "
+        "(mask=True in Python). If it is a photograph, find the stones in it with "
+        "`drystone segment PHOTO`.",
     )
 
 
@@ -162,6 +190,12 @@ def blended(census: Census, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def check_not_resampled(census: Census, where: str) -> None:
     """Refuse labels that were blurred, anti-aliased or scaled by interpolation (E101)."""
+    _check_no_values_of_edges(census, where)
+    _check_no_edges_of_others(census, where)
+
+
+def _check_no_values_of_edges(census: Census, where: str) -> None:
+    """Refuse values that are there at the edges of stones only."""
     if len(census.values) <= 20:
         return
     plain = np.zeros(len(census.values) + 1, bool)
@@ -177,3 +211,41 @@ def check_not_resampled(census: Census, where: str) -> None:
             where=where,
             cure=f"{_CLEAN_EXPORT} Scale label images by nearest neighbour.",
         )
+
+
+def _check_no_edges_of_others(census: Census, where: str) -> None:
+    """Refuse edges in the ids of other stones: blending leaves them where ids are dense."""
+    if len(census.values) < _FEW_VALUES:
+        return
+    astray = _astray(census)
+    outline = int((~census.solid[1:-1, 1:-1]).sum())
+    if int(astray.sum()) < _ASTRAY_SHARE * outline:
+        return
+    between = int(blended(census, astray).sum())
+    if between >= max(1.0, _ASTRAY_SHARE * outline):
+        raise LabelImageError(
+            "E101",
+            f"the ids were blended at the edges of stones: {between} of {outline} px there have "
+            "a value between those on either side, which is the id of another stone.",
+            where=where,
+            cure=f"{_CLEAN_EXPORT} Scale label images by nearest neighbour.",
+        )
+
+
+def _astray(census: Census) -> NDArray[np.bool_]:
+    """Tell which pixels neither lie in 3 x 3 px of their value nor touch such; not on the rim."""
+    wide = census.solid.copy()
+    wide[1:] |= census.solid[:-1]
+    wide[:-1] |= census.solid[1:]
+    core = wide.copy()
+    core[:, 1:] |= wide[:, :-1]
+    core[:, :-1] |= wide[:, 1:]
+    rows, cols = np.nonzero(~core[1:-1, 1:-1])
+    here = census.index[rows + 1, cols + 1]
+    lone = np.ones(len(here), bool)
+    for row, col in np.ndindex(3, 3):
+        near = rows + row, cols + col
+        lone &= ~core[near] | (census.index[near] != here)
+    astray = np.zeros_like(core)
+    astray[rows[lone] + 1, cols[lone] + 1] = True
+    return astray

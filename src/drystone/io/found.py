@@ -39,6 +39,7 @@ def stone_set(found: Found, source: Source, settings: ReadSettings) -> StoneSet:
         why = why or ("all were skipped." if known else "none has a pixel.")
         raise LabelImageError(
             "E104", f"no stones are left: {why}", where=found.where,
-            cure="Check the picture, min_area_px and skip.",
+            cure="Check the picture, and what --min-area and --skip (min_area_px and skip in "
+            "Python) leave out.",
         )  # fmt: skip
     return StoneSet(tuple(patch.to_stone() for patch in patches), source, tuple(notices))

@@ -130,7 +130,7 @@ def _not_ids(what: str, bad: NDArray[np.bool_], where: str) -> LabelImageError:
         f"{what} (first at column {col}, row {row}), so they cannot be ids.",
         where=where,
         cure="Ids are whole numbers from 1 to 4294967295, 0 is the background; name any other "
-        "background with the setting `background`.",
+        "with --background (background in Python).",
     )
 
 

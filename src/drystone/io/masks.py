@@ -1,12 +1,13 @@
 """Binary masks: which pictures are masks, and their stones (DESIGN 4.1)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from drystone.errors import UsageError
 from drystone.io.census import Census, take_census
 from drystone.io.checks import blended
 from drystone.io.labels import IdImage
@@ -14,6 +15,10 @@ from drystone.kernels.raster import Mask
 
 _USUAL_STONE_VALUES = (1, 255, 65535, 2**32 - 1)
 _WHOLE = np.ones((3, 3), bool)
+_CLEARLY = 7 / 8
+"""Of the way from the background to the stones, from where a value is clearly stone."""
+_NOISE = 1 / 16
+"""Of that way: what JPEG makes of a plain background."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,15 +33,20 @@ class BinaryMask:
         The two values of the picture.
     between_px : int
         Pixels with values between them (anti-aliasing), given to the nearer one.
+    unclear : float
+        Share of the plain areas off the background whose value is neither clearly.
     """
 
     mask: Mask
     background: int
     stone: int
     between_px: int
+    unclear: float = 0.0
 
 
-def find_mask(image: IdImage, ids: Census, wanted: bool | None) -> BinaryMask | None:
+def find_mask(
+    image: IdImage, ids: Census, wanted: bool | None, *, lossy: bool = False
+) -> BinaryMask | None:
     """Read a picture as a binary mask if it is one.
 
     Parameters
@@ -48,6 +58,8 @@ def find_mask(image: IdImage, ids: Census, wanted: bool | None) -> BinaryMask | 
     wanted : bool or None
         True forces a mask, False forbids it, None decides: two values, one of them the
         background, are a mask, and so is a picture of two values and blended edges.
+    lossy : bool
+        True when compression left noise in the background.
 
     Returns
     -------
@@ -65,9 +77,36 @@ def find_mask(image: IdImage, ids: Census, wanted: bool | None) -> BinaryMask | 
         grey = take_census(image.brightness)
     else:
         return None
-    if len(grey.values) > 1 and (wanted or _is_antialiased(grey, image.background)):
+    if len(grey.values) > 1 and wanted:
+        binary = _split(grey, image.background)
+        return replace(binary, unclear=_unclear(grey, binary, _NOISE if lossy else 0.0))
+    if len(grey.values) > 1 and _is_antialiased(grey, image.background):
         return _split(grey, image.background)
     return None
+
+
+def check_mask(binary: BinaryMask, where: str) -> None:
+    """Refuse ids that are to be read as a mask (E118): half of the stones would be background."""
+    if binary.unclear > 0.5:
+        raise UsageError(
+            "E118",
+            f"{binary.unclear:.0%} of its plain areas are neither clearly stone ({binary.stone}) "
+            f"nor background ({binary.background}), so this is no mask, and stones would be lost.",
+            where=where,
+            cure="Leave --mask (mask=True in Python) out: the values are ids.",
+        )
+
+
+def _unclear(census: Census, binary: BinaryMask, noise: float) -> float:
+    """Return how much of the plain areas off the background is neither stone nor background.
+
+    Blurred edges of a mask have values between, too, but they are not plain.
+    """
+    low = binary.background
+    share = np.abs(census.values - low) / abs(binary.stone - low)
+    off = census.pixels(share > noise) & census.solid
+    between = census.pixels((share > noise) & (share < _CLEARLY)) & census.solid
+    return float(between.sum()) / max(1, int(off.sum()))
 
 
 def components(mask: Mask) -> tuple[NDArray[np.int32], int]:

@@ -137,7 +137,9 @@ def without_specks(patches: list[Patch], limit_px: float) -> tuple[list[Patch], 
     )
     total = sum(speck.area_px for speck in specks)
     message = f"{len(specks)} specks < {limit_px:g} px left out ({total} px in all): {listed}."
-    return kept, [Notice("W113", message, "Set min_area_px to keep smaller stones.")]
+    return kept, [
+        Notice("W113", message, "Use --min-area PX (min_area_px in Python) to keep smaller stones.")
+    ]
 
 
 def filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], list[Notice]]:
@@ -159,7 +161,7 @@ def filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], l
     if settings.holes == "keep":
         text = "holes kept open (areas and centroids without them; outlines do not show them)"
         return result, [Notice("W112", f"{text}: {'; '.join(found)}.")]
-    cure = "Use holes='keep' to leave them open."
+    cure = "Use --holes keep (holes='keep' in Python) to leave them open."
     return result, [Notice("W112", f"holes filled: {'; '.join(found)}.", cure)]
 
 
@@ -207,7 +209,7 @@ def in_one_piece(
             continue
         several.append((patch, pieces[1:]))
         if _is_refused(pieces, settings.pieces):
-            refused.append(_describe(patch, pieces))
+            refused.append(_describe(patch, pieces[:_SHOWN], len(pieces) - _SHOWN))
         dropped.append(_describe(patch, pieces[1:]))
     if refused:
         raise _in_pieces(refused, where)
@@ -216,7 +218,7 @@ def in_one_piece(
     if settings.pieces == "split":
         new, text = _as_stones(several, [patch.id for patch in patches])
         return result + new, [Notice("W111", f"pieces became stones of their own: {text}.")]
-    cure = "Use pieces='split' to make them stones."
+    cure = "Use --pieces split (pieces='split' in Python) to make them stones."
     text = f"smaller pieces left out: {'; '.join(dropped)}."
     return result, [Notice("W111", text, cure)]
 
@@ -228,9 +230,9 @@ def _is_refused(pieces: list[Patch], rule: Pieces) -> bool:
     return rule == "error"
 
 
-def _describe(patch: Patch, pieces: Iterable[Patch]) -> str:
+def _describe(patch: Patch, pieces: Iterable[Patch], more: int = 0) -> str:
     places = [f"{p.area_px} px at column {p.col}, row {p.row}" for p in pieces]
-    return f"stone {patch}: {', '.join(places)}"
+    return f"stone {patch}: {', '.join(places)}" + (f" and {more} more" if more > 0 else "")
 
 
 def _in_pieces(refused: list[str], where: str) -> LabelImageError:
@@ -239,8 +241,8 @@ def _in_pieces(refused: list[str], where: str) -> LabelImageError:
         "E103",
         f"{len(refused)} stones are in several pieces: {'; '.join(refused[:_SHOWN])}{more}.",
         where=where,
-        cure="Correct the picture, or choose pieces='keep-largest' (leave the others out) or "
-        "pieces='split' (each piece a stone).",
+        cure="Correct the picture, or choose --pieces keep-largest (leave the others out) or "
+        "--pieces split (each piece a stone); in Python pieces='keep-largest' or pieces='split'.",
     )
 
 

@@ -68,8 +68,10 @@ def read_sidecar(labels: Path) -> PhotoSidecar | None:
     InputError
         E112 when it is damaged.
     """
+    if labels.name != LABELS:  # a folder such as "." has no name to replace
+        return None
     path = labels.with_name(SIDECAR)
-    if labels.name != LABELS or not path.is_file():
+    if not path.is_file():
         return None
     try:
         data = json.loads(path.read_text(encoding="utf-8"))

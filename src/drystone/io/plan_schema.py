@@ -92,13 +92,29 @@ def validate_plan(data: Any, where: str) -> None:
     if errors:
         first = errors[0]
         more = f" ({len(errors) - 1} more like this)" if len(errors) > 1 else ""
-        meaning = first.schema.get("description", "") if isinstance(first.schema, Mapping) else ""
         raise PlanError(
             "E205",
             f"{_short(first.message, quote=False)}{more}.",
             where=f"{where}: {first.json_path}",
-            cure=f"What belongs there: {meaning}" if meaning else "See plan.schema.json.",
+            cure=_cure(first),
         )
+
+
+def _cure(error: jsonschema.ValidationError) -> str:
+    """Say what belongs there; of an object, only what is missing or which names it may have."""
+    schema = error.schema if isinstance(error.schema, Mapping) else {}
+    properties = schema.get("properties", {})
+    if error.validator == "required":
+        # There is one error for each missing name, which is found in its message alone.
+        missing = [name for name in error.validator_value if error.message.startswith(repr(name))]
+        schema = properties.get(missing[0], {}) if missing else {}
+    elif error.validator == "additionalProperties":
+        return f"Known there: {', '.join(properties)}."
+    if "$ref" in schema:
+        # What is said beside a reference comes before what is said behind it.
+        schema = plan_schema()["$defs"][schema["$ref"].removeprefix("#/$defs/")] | schema
+    meaning = schema.get("description", "")
+    return f"What belongs there: {meaning}" if meaning else "See plan.schema.json."
 
 
 def _not_finite(value: Any, path: str) -> str | None:

@@ -1,13 +1,15 @@
 """Where published stone sets are looked for, and how they get there."""
 
 import os
+import shlex
 from dataclasses import dataclass
+from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
 
 from drystone.errors import InputError
 from drystone.io.atomic import write_atomically
-from drystone.io.published_sets import LICENCE, NOTICE, RAW, PublishedFile, PublishedSet
+from drystone.io.published_sets import LICENCE, NOTICE, RAW, SETS, PublishedFile, PublishedSet
 
 VARIABLE = "DRYSTONE_DATA"
 """Environment variable that names a folder of published data."""
@@ -75,6 +77,37 @@ def destination(given: str | None) -> Path:
     return cache
 
 
+def published_file(folder: Path, name: str) -> Path:
+    """Return the path of a published file, which has the contents that were released.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of published data.
+    name : str
+        Of the file there, for example ``"almeida/R.png"``; one that is in no set is not checked.
+
+    Returns
+    -------
+    Path
+        Also of a file that is missing or may not be read: whoever opens it says so.
+
+    Raises
+    ------
+    InputError
+        E160 when the file has other contents: figures of other stones would pass for those of
+        the published ones.
+    """
+    path = folder / name
+    for known, published in SETS.items():
+        for file in published.files:
+            if file.name == name and _sha256(path) not in (file.sha256, None):
+                to = "" if folder == _cache() else f" --to {shlex.quote(str(folder))}"
+                cure = f"Move it away and fetch it again (`drystone fetch {known}{to}`), or"
+                raise _other_contents(path, cure, f"{RAW}/{file.address}")
+    return path
+
+
 def fetch_set(wanted: PublishedSet, folder: Path, *, address: str = RAW) -> list[Fetched]:
     """Bring the files of a set into a folder, with their licence; what is there is only checked.
 
@@ -105,6 +138,21 @@ def fetch_set(wanted: PublishedSet, folder: Path, *, address: str = RAW) -> list
             raise _other_contents(path, "Move it away and fetch it again, or", url)
         fetched.append(Fetched(file, path, missing))
     return fetched
+
+
+def _sha256(path: Path) -> str | None:
+    """Return the hash of a file; None when it cannot be read."""
+    try:
+        found = path.stat()
+        return _hash_of(path, found.st_size, found.st_mtime_ns)
+    except OSError:
+        return None
+
+
+@lru_cache
+def _hash_of(path: Path, _size: int, _mtime_ns: int) -> str:
+    """Return the hash of a file, read once as long as it stays the same."""
+    return sha256(path.read_bytes()).hexdigest()
 
 
 def _write_notice(folder: Path) -> None:

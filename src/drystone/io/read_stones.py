@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.errors import InputError, LabelImageError, Notice
+from drystone.errors import InputError, LabelImageError, Notice, UsageError
 from drystone.io.census import Census, take_census
 from drystone.io.checks import (
     check_background,
+    check_no_plan,
     check_not_lossy,
     check_not_photo,
     check_not_resampled,
@@ -21,7 +22,7 @@ from drystone.io.checks import (
 from drystone.io.found import Found, stone_set
 from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
 from drystone.io.labels import IdImage, to_ids
-from drystone.io.masks import BinaryMask, components, find_mask
+from drystone.io.masks import BinaryMask, check_mask, components, find_mask
 from drystone.io.outlines_in.detect import outline_reader
 from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.outlines_in.npz import is_npz, read_npz
@@ -61,6 +62,8 @@ def read_stones(
     ------
     LabelImageError, InputError
         E100 ... E118, see ``docs/errors.md``.
+    UsageError
+        E118 when the settings do not fit what is read.
 
     Examples
     --------
@@ -114,6 +117,11 @@ def _scale_beside(sidecar: PhotoSidecar, picture: Picture, path: Path) -> float 
 def _of_px(settings: ReadSettings, where: str) -> tuple[tuple[str, Any], ...]:
     """Return what a plan must keep of the settings with which a picture was read."""
     check_unit(None, settings, where)
+    if settings.image:
+        raise UsageError(
+            "E118", f"there is no choice of images here, as for {settings.image!r}.",
+            where=where, cure="Leave --image (image in Python) out: it is for COCO files.",
+        )  # fmt: skip
     return replace(settings, px_per_m=None).changed()
 
 
@@ -174,7 +182,9 @@ def _check(
     if lossy and not settings.mask:
         brightness = image.ids if image.brightness is None else image.brightness
         check_not_lossy(census, brightness, where)
-    binary = find_mask(image, census, settings.mask)
+    binary = find_mask(image, census, settings.mask, lossy=lossy)
+    if binary is not None and settings.mask:
+        check_mask(binary, where)
     if binary is None:
         check_not_photo(census, where)
         check_background(census.index, census, image.background, where)
@@ -211,11 +221,13 @@ def _stone_ids(values: NDArray[np.int64], background: int, where: str) -> NDArra
 
 def _read_folder(folder: Path, settings: ReadSettings) -> StoneSet:
     """Read one-stone masks, numbered from 1 in natural file order."""
+    name = _name_of(folder)
+    check_no_plan(folder, name)
     entries = [entry for entry in folder.iterdir() if not entry.name.startswith(".")]
     files = [entry for entry in entries if entry.is_file() and entry.suffix.lower() in SUFFIXES]
     if not files:
         raise InputError(
-            "E111", "the folder has no pictures in it.", where=folder.name,
+            "E111", "the folder has no pictures in it.", where=name,
             cure=f"Stones are read from {FORMATS}.",
         )  # fmt: skip
     files.sort(key=_natural_order)
@@ -227,7 +239,7 @@ def _read_folder(folder: Path, settings: ReadSettings) -> StoneSet:
     for number, file in enumerate(files, start=1):
         data = _bytes_of(file)
         digest.update(hashlib.sha256(data).digest())
-        where = f"{folder.name}/{file.name}"
+        where = f"{name}/{file.name}"
         patch, size, notice = _read_one(decode(data, where, _max_px(settings)), where, settings)
         sizes.append(size)
         notices += [notice] if notice else []
@@ -236,9 +248,14 @@ def _read_folder(folder: Path, settings: ReadSettings) -> StoneSet:
         ]
     height, width = (max(size[axis] for size in sizes) for axis in (0, 1))
     names = tuple(file.name for file in files)
-    reading = _of_px(settings, folder.name)
-    source = Source(folder.name, digest.hexdigest(), width, height, names, reading)
-    return stone_set(Found(patches, notices, folder.name), source, settings)
+    reading = _of_px(settings, name)
+    source = Source(name, digest.hexdigest(), width, height, names, reading)
+    return stone_set(Found(patches, notices, name), source, settings)
+
+
+def _name_of(folder: Path) -> str:
+    """Return the name of a folder, also of one that is given as "." or ".."."""
+    return folder.resolve().name if folder.name in ("", "..") else folder.name
 
 
 def _natural_order(path: Path) -> tuple[list[str | int], str]:

@@ -22,6 +22,7 @@ from drystone.io.labels import IdImage, to_ids
 from drystone.model.wall import Labels
 
 _MAX_ID_16_BIT = 65535
+_CURE = "Set those pixels to 0, or use --background {0} (background={0} in Python)"
 
 
 def write_wall_image(labels: Labels, folder: str | Path) -> Path:
@@ -128,7 +129,7 @@ def read_wall_image(
         if int(census.values[0]) == image.background:
             check_not_uniform(census, image.background, where)
     else:
-        check_background(census.index, census, image.background, where)
+        check_background(census.index, census, image.background, where, _CURE)
         check_not_photo(census, where)
         check_not_resampled(census, where)
     return _with_zero_background(image, where)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from drystone.errors import InputError, Notice
+from drystone.errors import InputError, Notice, UsageError
 from drystone.io.blocks_json import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
@@ -56,12 +56,27 @@ class GivenWall:
         return float(self.plan.settings.get("mu", 0.58)) if self.plan else 0.58
 
 
-def read_wall(path: Path) -> GivenWall:
-    """Read a label image, a plan.json (with the wall image beside it), or a block model."""
+def read_wall(path: Path, *, background: int = 0) -> GivenWall:
+    """Read a label image, a plan.json (with the wall image beside it), or a block model.
+
+    Parameters
+    ----------
+    path : Path
+        The file, or the folder of a plan.
+    background : int
+        The value of a label image that is no stone.
+    """
     if path.is_dir():
         path /= "plan.json"
     if path.suffix.lower() != ".json":
-        return GivenWall(read_wall_image(path))
+        return GivenWall(read_wall_image(path, background=background))
+    if background:
+        raise UsageError(
+            "E118",
+            f"a background of {background} is of a label image, and this is none.",
+            where=str(path),
+            cure="Leave --background (background in Python) out.",
+        )
     content = _read_json(path)
     if isinstance(content, dict) and ("blocks" in content or "blocks_xywh" in content):
         return GivenWall(None, blocks=content)

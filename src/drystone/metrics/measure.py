@@ -1,9 +1,12 @@
 """All figures of merit of a wall at once (§5.2, DESIGN 5)."""
 
+import math
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from drystone.errors import UsageError
+import numpy as np
+
+from drystone.errors import LabelImageError, UsageError
 from drystone.metrics.arrangement import horizontal_arrangement, vertical_arrangement
 from drystone.metrics.filling import filling
 from drystone.metrics.flush import flush_deviation
@@ -78,9 +81,9 @@ def measure_labels(
     Raises
     ------
     LabelImageError
-        E104 when there is no stone in the image.
+        E104 when there is no stone in the image; E301 when the array is no picture of ids.
     UsageError
-        E121 when the wall's width or height is not positive.
+        E121 when the wall's width or height is not positive and finite.
 
     Examples
     --------
@@ -90,13 +93,14 @@ def measure_labels(
     >>> metrics.F_SF, metrics.T_LEVEL, metrics.E_FLUSH, metrics.stones
     (1.0, 0.0, 0.0, 4)
     """
-    if wall_px is not None and not min(wall_px) > 0:
+    if wall_px is not None and not all(0 < side < math.inf for side in wall_px):
         raise UsageError(
             "E121",
             f"a wall of {wall_px[0]:g} x {wall_px[1]:g} px has no room.",
             where="--wall",
-            cure="Give a wall with a positive width and height.",
+            cure="Give a wall with a positive, finite width and height.",
         )
+    labels = _ids(labels)
     frame = frame_wall(labels, None if wall_px is None else wall_px[0])
     if wall_px is None:
         wall_px = (float(frame.labels.shape[1]), float(frame.labels.shape[0]))
@@ -113,3 +117,17 @@ def measure_labels(
         width=wall_px[0],
         height=wall_px[1],
     )
+
+
+def _ids(labels: Labels) -> Labels:
+    """Return a picture of ids as an array; refuse scaled values, colours and masks (E301)."""
+    ids = np.asarray(labels)
+    signed = ids.dtype.kind == "i"  # what the planner measures again and again is not
+    if ids.ndim != 2 or ids.dtype.kind not in "iu" or (signed and ids.size and ids.min() < 0):
+        raise LabelImageError(
+            "E301",
+            f"an array of shape {ids.shape} and type {ids.dtype} is no picture of ids.",
+            where="labels",
+            cure="Give a two-dimensional array of whole numbers: 0 for nothing, ids above 0.",
+        )
+    return ids

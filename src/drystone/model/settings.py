@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 import types
 from collections.abc import Mapping
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -65,7 +66,15 @@ def updated(settings: Settings, changes: Mapping[str, Any], prefix: str = "") ->
         return dataclasses.replace(settings, **values)  # type: ignore[type-var]
     except ValueError as error:
         where = f"settings {prefix.removesuffix('.')}".rstrip()
-        raise UsageError("E123", f"{error}.", where=where) from None
+        cure = _to_change(str(error), list(values), prefix)
+        raise UsageError("E123", f"{error}.", where=where, cure=cure) from None
+
+
+def _to_change(message: str, given: list[str], prefix: str) -> str:
+    """Name the values to change: those that a message speaks of, or the few that were given."""
+    spoken_of = [name for name in given if re.search(rf"\b{name}\b", message)]
+    names = [f"{prefix}{name}" for name in spoken_of or given]
+    return f"Change {' or '.join(names)}." if len(names) <= 3 else "Change the value."
 
 
 def check_finite(settings: Any) -> None:

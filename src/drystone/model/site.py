@@ -60,7 +60,28 @@ class Site:
     def from_source(
         cls, width: float, height: float, scale: float = 1.0, px_per_m: float | None = None
     ) -> "Site":
-        """Make the site of a wall given in source px: working size floor(size * scale + .5)."""
+        """Make the site of a wall given in source px: working size floor(size * scale + .5).
+
+        Raises
+        ------
+        UsageError
+            E121: it is too small or too large at this scale; E127: its size is no finite number;
+            E138: the px in a metre are not positive.
+        """
+        if not (math.isfinite(width) and math.isfinite(height)):
+            raise UsageError(
+                "E127",
+                f"{width} x {height} px is no size of a wall.",
+                where="--wall",
+                cure="Give a positive, finite width and height.",
+            )
+        if px_per_m is not None and not 0 < px_per_m < math.inf:
+            raise UsageError(
+                "E138",
+                f"{px_per_m} px in a metre is no scale.",
+                where="--px-per-m",
+                cure="Give a positive number, or none for a wall in px.",
+            )
         size = working_px(width, scale), working_px(height, scale)
         return cls(*size, scale, px_per_m, (width, height))
 

@@ -15,6 +15,9 @@ PAGES_MM = {"A4": (210.0, 297.0), "A3": (297.0, 420.0), "letter": (215.9, 279.4)
 ON_A_SHEET = 4
 """Markers of a sheet: upper left, upper right, lower right, lower left."""
 
+FIRST_SHEET = tuple(range(ON_A_SHEET))
+"""Markers that a sheet has when nobody says which."""
+
 CHECK_LINE_MM = 100.0
 LEAST_MARGIN_MM = 15.0
 LEAST_SIZE_MM = 10.0
@@ -58,6 +61,10 @@ class MarkerLayout:
     def side_m(self) -> float:
         """Side of a marker as it was printed, metres."""
         return self.size_m * self.printed
+
+    def lists(self, marker_id: int) -> bool:
+        """Whether a marker belongs to it."""
+        return self.ids is None or marker_id in self.ids
 
     def group(self, marker_id: int) -> int:
         """Return the number of the piece of paper that a marker is on."""
@@ -171,7 +178,7 @@ def parse_layout(
         return MarkerLayout(parse_size_m(text), None, ids, printed)
     size_m = parse_size_m(size or "50mm")
     sheet_positions_m(named, size_m)
-    return MarkerLayout(size_m, named, tuple(range(ON_A_SHEET)) if ids is None else ids, printed)
+    return MarkerLayout(size_m, named, FIRST_SHEET if ids is None else ids, printed)
 
 
 def _largest_mm(width: float, height: float) -> int:

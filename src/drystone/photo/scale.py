@@ -99,7 +99,7 @@ def _usable(
     found: Sequence[FoundMarker], layout: MarkerLayout, limits: MarkerLimits
 ) -> tuple[tuple[FoundMarker, ...], tuple[Notice, ...]]:
     """Return at least two markers that can be measured, and say which were left out."""
-    known = [one for one in found if layout.ids is None or one.id in layout.ids]
+    known = [one for one in found if layout.lists(one.id)]
     twice = [one for one, count in Counter(marker.id for marker in known).items() if count > 1]
     if twice:
         raise InputError(
@@ -126,27 +126,40 @@ def _usable(
             said = ", ".join(f"{one.id} ({one.side_px:.0f} px)" for one in poor)
             notices.append(Notice("W171", f"Markers left out, {why}: {said}.", _NEARER))
     if len(used) < 2:
-        raise _too_few(found, used, notices)
+        raise _too_few(found, used, notices, strange)
     return used, tuple(notices)
 
 
 _NEARER = "Go nearer, photograph from above, or print larger markers."
 
 
+_PRINT = (
+    "Print markers with `drystone markers`, lay them flat beside the stones with all of their "
+    "white border, and photograph them sharp and without glare; or say the scale with --px-per-m "
+    "or --ruler."
+)
+
+
 def _too_few(
-    found: Sequence[FoundMarker], used: Sequence[FoundMarker], notices: Sequence[Notice]
+    found: Sequence[FoundMarker],
+    used: Sequence[FoundMarker],
+    notices: Sequence[Notice],
+    strange: Sequence[int],
 ) -> InputError:
     what = "no marker was found" if not found else "no marker can be used"
     if used:
         what = f"only marker {used[0].id} can be used"
     left_out = "".join(f" {notice.message}" for notice in notices)
+    cure = _PRINT
+    if len(strange) > 1:
+        # Another sheet, as `drystone markers` prints with --ids or --count.
+        named = " ".join(map(str, sorted({one.id for one in found})))
+        cure = f"If they are your markers, add --marker-ids {named}. Else: {_PRINT}"
     return InputError(
         "E170",
         f"{what}, and two are needed to know the scale and to see when it is wrong.{left_out}",
         where="markers",
-        cure="Print markers with `drystone markers`, lay them flat beside the stones with all of "
-        "their white border, and photograph them sharp and without glare; or say the scale with "
-        "--px-per-m or --ruler.",
+        cure=cure,
     )
 
 

@@ -10,6 +10,7 @@ from skimage.measure import regionprops
 from drystone.errors import Notice
 from drystone.photo.segment import Found, stones_at
 from drystone.photo.segment_settings import SegmentSettings
+from drystone.photo.stone_size import sizes_of
 
 LOW_CONTRAST = 8.0
 """Distance in CIELAB from the ground below which an outline is not to be relied on."""
@@ -22,6 +23,10 @@ HOLLOW = 0.87
 """Share of its convex hull that a stone fills; less may be two stones with a broad contact."""
 
 
+RULED = 0.8
+"""Share of the line of a ruler along which one stone lies that may be the ruler itself."""
+
+
 @dataclass(frozen=True)
 class Doubt:
     """Something that may be wrong.
@@ -29,7 +34,8 @@ class Doubt:
     Parameters
     ----------
     code : str
-        W175 neck, W176 left out at the edge, W177 shadow, W178 low contrast, W179 unusual size.
+        W175 neck, W176 left out at the edge, W177 shadow, W178 low contrast, W179 unusual size
+        or a ruler.
     stones : tuple of int
         Stones concerned; empty when it is none of them.
     at_px : (float, float)
@@ -42,57 +48,6 @@ class Doubt:
     stones: tuple[int, ...]
     at_px: tuple[float, float]
     text: str
-
-
-@dataclass(frozen=True)
-class StoneSize:
-    """Size of a stone.
-
-    Parameters
-    ----------
-    id : int
-        Its number.
-    at_px : (float, float)
-        Its middle, column and row.
-    length_px, width_px : float
-        Along its longest direction (of its second moments) and across.
-    area_px : int
-        Number of its px.
-    """
-
-    id: int
-    at_px: tuple[float, float]
-    length_px: float
-    width_px: float
-    area_px: int
-
-
-def sizes_of(labels: NDArray[np.uint16]) -> tuple[StoneSize, ...]:
-    """Return the sizes of the stones of a label image, in the order of their numbers.
-
-    Examples
-    --------
-    >>> labels = np.zeros((9, 9), np.uint16)
-    >>> labels[2:4, 1:7] = 1
-    >>> sizes_of(labels)
-    (StoneSize(id=1, at_px=(4.0, 3.0), length_px=6.0, width_px=2.0, area_px=12),)
-    """
-    rows, cols = np.nonzero(labels)
-    order = np.argsort(labels[rows, cols], kind="stable")
-    numbers, starts = np.unique(labels[rows, cols][order], return_index=True)
-    points = np.column_stack([cols, rows])[order] + 0.5
-    sizes = []
-    for number, inside in zip(numbers, np.split(points, starts[1:]), strict=True):
-        middle = inside.mean(axis=0)
-        _, axes = np.linalg.eigh(np.cov((inside - middle).T, bias=True))
-        extent = np.ptp((inside - middle) @ axes, axis=0) + 1
-        sizes.append(
-            StoneSize(
-                int(number), (float(middle[0]), float(middle[1])),
-                round(float(extent.max()), 6), round(float(extent.min()), 6), len(inside),
-            )
-        )  # fmt: skip
-    return tuple(sizes)
 
 
 def doubts_of(
@@ -136,6 +91,49 @@ def doubts_of(
     return tuple(doubts)
 
 
+def ruler_doubts(
+    labels: NDArray[np.uint16], ends_px: tuple[tuple[float, float], tuple[float, float]]
+) -> tuple[Doubt, ...]:
+    """Return what lies where a length was measured: the ruler may have been taken for a stone.
+
+    Parameters
+    ----------
+    labels : (h, w) uint16 array
+        Stones 1 ... n.
+    ends_px : two (float, float)
+        Column and row of both ends of the length.
+
+    Examples
+    --------
+    >>> labels = np.zeros((40, 80), np.uint16)
+    >>> labels[20:24, 8:72] = 3
+    >>> ruler_doubts(labels, ((10.0, 19.0), (70.0, 19.0)))[0].text
+    'stone 3 lies along --ruler and may be the ruler'
+    """
+    one, other = np.array(ends_px)
+    length = float(np.hypot(*(other - one)))
+    steps = np.linspace(0.0, 1.0, max(2, round(length)))[:, None]
+    # People point at the marks of a ruler, which are at its border.
+    across = np.array([one[1] - other[1], other[0] - one[0]]) / max(length, 1.0)
+    beside = max(3.0, 0.02 * length)
+    along: dict[int, NDArray[np.bool_]] = {}
+    for off in (-beside, 0.0, beside):
+        place = np.floor(one + steps * (other - one) + off * across).astype(int)
+        cols, rows = (np.clip(place[:, k], 0, labels.shape[1 - k] - 1) for k in (0, 1))
+        there = labels[rows, cols]
+        for stone in np.unique(there[there > 0]).tolist():
+            along[stone] = along.get(stone, np.zeros(len(there), bool)) | (there == stone)
+    middle = (one + other) / 2
+    return tuple(
+        Doubt(
+            "W179", (stone,), (float(middle[0]), float(middle[1])),
+            f"stone {stone} lies along --ruler and may be the ruler",
+        )
+        for stone, hit in sorted(along.items())
+        if hit.mean() >= RULED
+    )  # fmt: skip
+
+
 def notices_of(found: Found, doubts: Iterable[Doubt]) -> tuple[Notice, ...]:
     """Return the doubts as notices, one of each kind."""
     texts: dict[str, list[str]] = {}
@@ -161,7 +159,7 @@ _KINDS = {
     "W176": ("left out", "Photograph whole stones, clear of markers."),
     "W177": ("a part may be shadow", "Look at preview.png; avoid hard light."),
     "W178": ("hardly differs from the ground", "Look at preview.png; take another ground."),
-    "W179": ("unusual sizes", "Is it a stone, and is it one?  --min-area changes the limit."),
+    "W179": ("unusual", "Is it a stone, and is it one? --min-area changes the limit."),
 }
 """What a code means, and the cure."""
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from skimage.draw import polygon2mask
 
-from drystone.errors import Notice
+from drystone.errors import Notice, UsageError
 from drystone.kernels.raster import Mask
 from drystone.photo.layout import MarkerLayout, page_mm
 from drystone.photo.markers import FoundMarker, find_markers
@@ -38,6 +38,8 @@ class SegmentedPhoto:
         Px of the picture in a metre.
     view : View or None
         What the scale was taken from.
+    unasked : tuple of int
+        Markers that are in the photograph and were not asked about: their papers are left out.
     """
 
     picture: NDArray[np.uint8]
@@ -45,10 +47,21 @@ class SegmentedPhoto:
     from_photo: NDArray[np.float64]
     px_per_m: float | None = None
     view: View | None = None
+    unasked: tuple[int, ...] = ()
 
     @property
     def notices(self) -> tuple[Notice, ...]:
         """What there is to say of the markers."""
+        if self.unasked:
+            said = ", ".join(map(str, self.unasked))
+            return (
+                Notice(
+                    "W170",
+                    f"The photograph has markers that give no scale here: {said}. They and their "
+                    "paper are no stones.",
+                    "--aruco takes the scale and the view from them.",
+                ),
+            )
         return () if self.view is None else self.view.notices
 
 
@@ -90,9 +103,21 @@ def segment_photo(
         picture = np.asarray(Image.fromarray(image).resize(size, Image.Resampling.LANCZOS))
     by = (size[0] / width, size[1] / height)
     px_per_m = None if scale is None else scale * math.sqrt(by[0] * by[1])
-    found = segment(picture, None, _with_area(settings, min_area, px_per_m))
+    from_photo = np.diag([*by, 1.0])
+    markers = _markers_if_possible(image)
+    papers = papers_of(markers, None, from_photo, picture.shape[:2])
+    found = segment(picture, None, _with_area(settings, min_area, px_per_m), papers)
     view = None if scale is None else View.flat(scale)
-    return SegmentedPhoto(picture, found, np.diag([*by, 1.0]), px_per_m, view)
+    ids = tuple(dict.fromkeys(marker.id for marker in markers))
+    return SegmentedPhoto(picture, found, from_photo, px_per_m, view, ids)
+
+
+def _markers_if_possible(image: NDArray[np.uint8]) -> tuple[FoundMarker, ...]:
+    """Return the markers of a photograph whose scale is not theirs; none without OpenCV."""
+    try:
+        return find_markers(image)
+    except UsageError:
+        return ()
 
 
 def _by_markers(
@@ -127,7 +152,7 @@ def _with_area(
 
 def papers_of(
     markers: tuple[FoundMarker, ...],
-    layout: MarkerLayout,
+    layout: MarkerLayout | None,
     from_photo: NDArray[np.float64],
     shape: tuple[int, int],
 ) -> Mask:
@@ -137,8 +162,8 @@ def papers_of(
     ----------
     markers : tuple of FoundMarker
         All that are in the photograph.
-    layout : MarkerLayout
-        Whether they are sheets.
+    layout : MarkerLayout or None
+        Whether they are sheets; None when nobody said.
     from_photo : (3, 3) float array
         Photo px to px of the picture.
     shape : (int, int)
@@ -152,8 +177,7 @@ def papers_of(
     covered = np.zeros(shape, bool)
     for marker in markers:
         seen = apply(from_photo, marker.corners_px)
-        listed = layout.ids is None or marker.id in layout.ids
-        if layout.page is not None and listed:
+        if layout is not None and layout.page is not None and layout.lists(marker.id):
             side = np.array(page_mm(layout.page)) / 1000.0 * layout.printed
             paper = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]) * side
             outline = _similar(layout.corners_m(marker.id), seen, paper)

@@ -6,14 +6,17 @@ from dataclasses import dataclass
 from typing import Literal
 
 Part = Literal[
-    "preparation", "placement", "stabilisation", "contacts", "limit analysis", "indices", "metrics"
-]
+    "preparation", "placement", "stabilisation", "contacts", "limit analysis", "indices", "metrics",
+    "search",
+]  # fmt: skip
 """Stones turned and clustered (once); trial positions; rotating and wedging; Pic-to-Ri; both
-tilts of the wall; the indices of the actions; figures of merit, for methods that look at them."""
+tilts of the wall; the indices of the actions; figures of merit, for methods that look at them;
+all that is built after the first wall, by the clock."""
 
 PARTS: tuple[Part, ...] = (
     "preparation", "placement", "stabilisation", "contacts", "limit analysis", "indices", "metrics",
 )  # fmt: skip
+"""The parts of the work on a wall: all but the search, which is many walls."""
 
 
 @dataclass(frozen=True)

@@ -121,7 +121,7 @@ class PlannerSettings:
             raise ValueError(f"unknown order {self.order!r}")
         both = sorted(set(self.ban) & set(self.pin))
         if both:
-            raise ValueError(f"stones cannot be pinned and banned: {', '.join(map(str, both))}")
+            raise ValueError(f"ban and pin name the same stones: {', '.join(map(str, both))}")
         if not self.mu > 0:
             raise ValueError("mu must be positive")
 

@@ -70,21 +70,12 @@ class Workshop:
         Raises
         ------
         UsageError
-            E120: a stone fits into the wall in no orientation, and is not to be skipped; E126:
-            there are no stones; E145: a stone is banned or pinned that does not exist.
+            Those of :func:`fitting_stones`.
         """
-        if not len(stones):
-            raise UsageError("E126", "there are no stones to build with.", where=stones.source.path)
         book = PoseBook(site.scale)
-        banned = _known(stones, settings)
-        usable = [s for s in stones if s.id not in banned]
-        fitting = tuple(s.id for s in usable if _fits(s, site, book, settings.orientations))
-        too_large = sorted({s.id for s in usable}.difference(fitting))
-        if too_large and not settings.skip_too_large:
-            raise _too_large(too_large, site)
-        _leave_ids_for_wedges(stones)
+        fitting = fitting_stones(stones, site, settings, book)
         stock = Stock.of(book.pose(s, book.initial_angle(s)) for s in stones)
-        unfit = [stones.by_id(stone_id) for stone_id in sorted({*too_large, *banned})]
+        unfit = [stones.by_id(i) for i in sorted({s.id for s in stones}.difference(fitting))]
         sides = stock.sides.without(book.pose(s, book.initial_angle(s)) for s in unfit)
         clusters = cluster_stones(stones, book, settings.clusters)
         memory = StabiliseMemory(book, stock.mean_height_px, settings.stabilise)
@@ -125,6 +116,47 @@ class Workshop:
         """Return what the stones that are left could still fill."""
         placed = (self.initial(action.stone_id) for action in build.actions)
         return Rest.of(self.sides.without(placed), self.site)
+
+
+def fitting_stones(
+    stones: StoneSet, site: Site, settings: PlannerSettings, book: PoseBook | None = None
+) -> tuple[int, ...]:
+    """Return the ids of the stones that can be built with: not banned, and the wall has room.
+
+    Parameters
+    ----------
+    stones : StoneSet
+        To build with.
+    site : Site
+        Where.
+    settings : PlannerSettings
+        Which stones are banned, and in which poses the others are candidates.
+    book : PoseBook, optional
+        At the resolution of the site; keeps the poses that are looked at.
+
+    Raises
+    ------
+    UsageError
+        E120: a stone fits into the wall in no orientation, and is not to be skipped; E126: there
+        are no stones; E137: no ids are left for wedges; E145: a stone is banned or pinned that
+        does not exist.
+    """
+    if not len(stones):
+        raise UsageError(
+            "E126",
+            "there are no stones to build with.",
+            where=stones.source.path,
+            cure="See what was left out when the stones were read.",
+        )
+    book = book or PoseBook(site.scale)
+    banned = _known(stones, settings)
+    usable = [s for s in stones if s.id not in banned]
+    fitting = tuple(s.id for s in usable if _fits(s, site, book, settings.orientations))
+    too_large = sorted({s.id for s in usable}.difference(fitting))
+    if too_large and not settings.skip_too_large:
+        raise _too_large(too_large, site)
+    _leave_ids_for_wedges(stones)
+    return fitting
 
 
 def _has_room(site: Site, posed: PosedStone) -> bool:

@@ -174,10 +174,22 @@ def _best(model: ValueModel) -> Choose:
     return lambda offers, _: model.best(offers)
 
 
+def _refuse_existing(path: Path, *, overwrite: bool) -> None:
+    """Refuse to replace a file, before a minute of training (E129)."""
+    if path.exists() and not overwrite:
+        raise UsageError(
+            "E129",
+            "exists already.",
+            where=str(path),
+            cure="Choose another with -o, or add --overwrite to replace it.",
+        )
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m drystone.rl.train", description=__doc__)
     parser.add_argument("-o", "--output", type=Path, required=True, help="file to write")
+    parser.add_argument("--overwrite", action="store_true", help="replace a file that is there")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--rounds", type=int, default=TrainSettings.rounds)
     parser.add_argument("--walls", type=int, default=TrainSettings.walls, help="of a round")
@@ -197,6 +209,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stderr.flush()
 
     try:
+        _refuse_existing(arguments.output, overwrite=arguments.overwrite)
         settings = TrainSettings(
             seed=arguments.seed,
             rounds=arguments.rounds,

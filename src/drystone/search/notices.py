@@ -13,7 +13,12 @@ def missing_stones(planner: Planner) -> tuple[int, ...]:
 
 
 def planning_notices(
-    asked: Planner, built: Planner, left_out: Sequence[int], *, lost: bool = False
+    asked: Planner,
+    built: Planner,
+    left_out: Sequence[int],
+    *,
+    lost: bool = False,
+    interrupted_after: int | None = None,
 ) -> tuple[Notice, ...]:
     """Return the notices of a plan.
 
@@ -27,9 +32,12 @@ def planning_notices(
         Stones of the wall that was begun with that were not used.
     lost : bool
         A process of the search died.
+    interrupted_after : int, optional
+        So many walls the search had built when it was interrupted.
     """
     missing = _missing(missing_stones(built))
-    return (*_left_out(left_out), *missing, *_lost(lost=lost), *_solves(asked))
+    cut = _interrupted(interrupted_after)
+    return (*_left_out(left_out), *missing, *_lost(lost=lost), *cut, *_solves(asked))
 
 
 def _left_out(stone_ids: Sequence[int]) -> Iterator[Notice]:
@@ -56,6 +64,15 @@ def _lost(*, lost: bool) -> Iterator[Notice]:
             "W122",
             "a process of the search died, and the search ended there with the best wall so far.",
             "Give less --jobs if memory ran out.",
+        )
+
+
+def _interrupted(walls: int | None) -> Iterator[Notice]:
+    if walls is not None:
+        yield Notice(
+            "W125",
+            f"the search was interrupted after {walls} walls; this is the best of them.",
+            "To look for a better one from here, give this plan to --from.",
         )
 
 

@@ -107,6 +107,12 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         An interrupt (Ctrl-C) ends the search, and the result is the best wall so far; while the
         first wall is built, the result holds what is built.
 
+    Raises
+    ------
+    UsageError
+        E138: the seed is negative; E120 to E127, E137, E145: the wall, the scale or the stones
+        make no sense together.
+
     Examples
     --------
     >>> import drystone as ds
@@ -116,6 +122,13 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     >>> result.success, len(result.plan.steps)
     (True, 6)
     """
+    if not isinstance(settings, PlannerSettings | None):
+        raise TypeError(
+            f"settings must be PlannerSettings, not {type(settings).__name__}; "
+            "method_settings('best').updated({...}) makes them"
+        )
+    if seed < 0:
+        raise UsageError("E138", f"{seed} is no seed.", where="--seed", cure="Give 0 or more.")
     method = method or ("custom" if settings else "best")
     settings = settings or method_settings(method)
     scale = working_scale(stones) if scale is None else float(scale)
@@ -153,7 +166,13 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     best = insisted(lambda: finished(ended.planner, ended.stopped))
     return replace(
         best,
-        notices=planning_notices(first, ended.planner, left_out, lost=ended.lost),
+        notices=planning_notices(
+            first,
+            ended.planner,
+            left_out,
+            lost=ended.lost,
+            interrupted_after=ended.walls if ended.interrupted else None,
+        ),
         solves=Solves(first.failed_solves, first.cold_solves),
         choice=(best, *_others(first, ended.kept[1:], finished)) if choice and ended.kept else (),
     )
@@ -183,8 +202,8 @@ class Ended(NamedTuple):
         How many walls were built: the budget that repeats it.
     kept : tuple of Packed
         Walls that none beats in every figure of merit, the best first; none of a single pass.
-    lost : bool
-        A process of the search died, and it ended there.
+    lost, interrupted : bool
+        A process of the search died, or somebody had enough, and it ended there.
     """
 
     planner: Planner
@@ -192,6 +211,7 @@ class Ended(NamedTuple):
     walls: int
     kept: tuple[Packed, ...]
     lost: bool = False
+    interrupted: bool = False
 
 
 def run_to_end(
@@ -228,29 +248,30 @@ def run_to_end(
         return Ended(planner, planner.stopped, 1, ())
     left = seconds - (time.perf_counter() - started)
     best: Packed | None = None
-    walls, lost = 1, False
+    walls, lost, interrupted = 1, False, False
     kept: tuple[Packed, ...] = ()
     try:
         first = Found.of(planner)
-        for progress in searching(
-            first, workshop, settings, planner.seed, seconds=left, executor=executor
-        ):
-            best, walls, kept = progress.best, progress.walls, progress.kept
-            planner.failed_solves = progress.solves.failed
-            planner.cold_solves = progress.solves.cold
-            planner.callbacks.on_walls(_incumbent(progress))
+        with planner.profile.part("search"):
+            for progress in searching(
+                first, workshop, settings, planner.seed, seconds=left, executor=executor
+            ):
+                best, walls, kept = progress.best, progress.walls, progress.kept
+                planner.failed_solves = progress.solves.failed
+                planner.cold_solves = progress.solves.cold
+                planner.callbacks.on_walls(_incumbent(progress))
     except KeyboardInterrupt:
-        pass  # every wall of a search is complete
+        interrupted = True  # every wall of a search is complete
     except BrokenProcessPool:
         lost = True
     finally:
         forget()
     if best is None:
-        return Ended(planner, planner.stopped, 1, (), lost)
+        return Ended(planner, planner.stopped, 1, (), lost, interrupted)
     last, stopped = with_the_rest(planner, best)
     if len(last.build.actions) > len(best.groups):
         kept = archived(kept, [Packed.of(Found.of(last))])
-    return Ended(last, stopped, walls, kept, lost)
+    return Ended(last, stopped, walls, kept, lost, interrupted)
 
 
 def _incumbent(progress: Progress) -> Incumbent:

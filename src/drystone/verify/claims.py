@@ -19,7 +19,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 from drystone.verify.replay import Replay, Stage
-from drystone.verify.report import Problem
+from drystone.verify.report import Problem, contradicted
 from drystone.verify.stability import ALPHA_TOLERANCE, differs
 
 TOLERANCE = 1e-9
@@ -157,8 +157,7 @@ def check_indices(
     for name, found in indices.as_dict().items():
         claimed = step.indices.get(name)
         if differs(claimed, found, ALPHA_TOLERANCE if name in _BY_STATICS else TOLERANCE):
-            message = f"{name} is {claimed} by the plan, {found} was found."
-            problems.append(Problem("E232", step.step, message))
+            problems.append(Problem("E232", step.step, contradicted(name, claimed, found)))
     return problems
 
 
@@ -191,8 +190,7 @@ def check_metrics(claimed: PlanMetrics, found: PlanMetrics) -> list[Problem]:
         if plan_says is None and field.name in _OPTIONAL_METRICS:
             continue
         if differs(plan_says, value, tolerance):
-            message = f"{field.name} is {plan_says} by the plan, {value} was found."
-            problems.append(Problem("E234", None, message))
+            problems.append(Problem("E234", None, contradicted(field.name, plan_says, value)))
     return problems
 
 

@@ -1,7 +1,7 @@
 """What a plan says of itself: its settings, its site, and its lengths in px."""
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,24 +10,77 @@ from drystone.errors import PlanError, UsageError
 from drystone.kernels.polygons import on_grid
 from drystone.model.plan import Plan, Point
 from drystone.model.site import MAX_SITE_PX, Site
-from drystone.planner.settings import PlannerSettings
+from drystone.planner.settings import METHODS, PlannerSettings
 from drystone.verify.report import Problem
 
 MAX_WALL_PX = MAX_SITE_PX
 """Larger walls are neither planned nor rebuilt."""
 
+_Path = tuple[str, ...]
+"""Names that lead to a setting, the outer first."""
+
 
 def plan_settings(plan: Plan) -> tuple[PlannerSettings, list[Problem]]:
-    """Return the settings of a plan; the package's own, and E217, when they are not usable.
+    """Return the settings of a plan, and E217 when not all of them are usable.
 
-    The geometry is the one that the plan claims, in any case.
+    A setting that is not has the value of the plan's method, or the package's own default when
+    the plan names none that is known here.
     """
     try:
         return PlannerSettings().updated(plan.settings), []
     except UsageError as error:
-        problem = Problem("E217", None, f"the settings cannot be used: {error}")
-    exact = plan.settings.get("geometry") == "exact"
-    return replace(PlannerSettings(), geometry="exact" if exact else "raster"), [problem]
+        refusal = error
+    settings, refused = _usable(METHODS.get(plan.method, PlannerSettings()), plan.settings)
+    whose = f"of the method {plan.method!r}" if plan.method in METHODS else "the package's own"
+    message = f"the settings cannot be used: {refusal} {_instead(settings, refused, whose)}"
+    return settings, [Problem("E217", None, message)]
+
+
+def _usable(
+    settings: PlannerSettings, asked: Mapping[str, Any]
+) -> tuple[PlannerSettings, list[_Path]]:
+    """Take over each setting that can be; return the names of the others too."""
+    left, before = list(_single(asked)), -1
+    # Some are only allowed beside others (a policy beside a budget of 1), in whatever order.
+    while left and len(left) != before:
+        before, refused = len(left), []
+        for path, value in left:
+            try:
+                settings = settings.updated(_nested(path, value))
+            except UsageError:
+                refused.append((path, value))
+        left = refused
+    return settings, [path for path, _ in left]
+
+
+def _single(asked: Mapping[str, Any], above: _Path = ()) -> Iterator[tuple[_Path, Any]]:
+    """Yield settings one by one, with the names that lead to them."""
+    for name, value in asked.items():
+        path = (*above, name)
+        if isinstance(value, Mapping):
+            yield from _single(value, path)
+        else:
+            yield path, value
+
+
+def _nested(path: _Path, value: Any) -> dict[str, Any]:
+    return {path[0]: value if len(path) == 1 else _nested(path[1:], value)}
+
+
+def _instead(settings: PlannerSettings, refused: Sequence[_Path], whose: str) -> str:
+    """Say with what a plan is checked whose settings are not all usable."""
+    used, unknown = [], []
+    for path in refused:
+        value: Any = settings.as_dict()
+        for name in path:
+            value = value.get(name, ...) if isinstance(value, Mapping) else ...
+        if value is ...:
+            unknown.append(".".join(path))
+        else:
+            used.append(".".join(path) + ("" if isinstance(value, Mapping) else f" = {value!r}"))
+    said = [f"Used instead, {whose}: {', '.join(used)}."] if used else []
+    said += [f"Left out: {', '.join(unknown)}."] if unknown else []
+    return " ".join([*said, "The others are those of the plan."])
 
 
 def plan_site(plan: Plan) -> Site:

@@ -30,6 +30,22 @@ class Problem:
         return f"{self.code} {where}{self.message}"
 
 
+def contradicted(name: str, claimed: float | None, found: float | None) -> str:
+    """Say that a plan claims another value than was found; None is written null, as in JSON.
+
+    Examples
+    --------
+    >>> contradicted("F_AH", 2.5, None)
+    'F_AH is 2.5 by the plan, but there is no such value.'
+    >>> contradicted("F_AH", None, 2.5)
+    'F_AH is null by the plan, 2.5 was found.'
+    """
+    said = "null" if claimed is None else claimed
+    if found is None:
+        return f"{name} is {said} by the plan, but there is no such value."
+    return f"{name} is {said} by the plan, {found} was found."
+
+
 @dataclass(frozen=True)
 class PrefixAlpha:
     """What the wall carries after a stone and its wedges.

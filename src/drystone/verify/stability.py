@@ -13,7 +13,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LateralResistance
 from drystone.verify.replay import Stage
-from drystone.verify.report import PrefixAlpha, Problem
+from drystone.verify.report import PrefixAlpha, Problem, contradicted
 
 ALPHA_TOLERANCE = 1e-7
 """Between load multipliers claimed and found: two solvers' optima of one program."""
@@ -126,7 +126,7 @@ def _judge(stage: Stage, resistance: LateralResistance | None) -> list[Problem]:
     claims = zip(("alpha_left", "alpha_right"), (last.alpha_left, last.alpha_right),
                  alphas(resistance), strict=True)  # fmt: skip
     return [
-        Problem("E231", last.step, f"{name} is {claimed} by the plan, {found} was found.")
+        Problem("E231", last.step, contradicted(name, claimed, found))
         for name, claimed, found in claims
         if differs(claimed, found, ALPHA_TOLERANCE)
     ]

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from drystone.errors import DrystoneError
+from drystone.errors import DrystoneError, InputError
 from drystone.experiments.runs.source import GENERATORS, from_file, generated, published
 from tests.experiments.runs.bricks import SOURCE, picture
 
@@ -29,6 +29,16 @@ def test_published_stones_are_read_from_their_folder(tmp_path: Path) -> None:
     picture(tmp_path / "set" / "bricks.png")
     assert source.is_there(tmp_path)
     assert len(source.stones(tmp_path)) == 6
+
+
+def test_other_stones_in_the_place_of_published_ones(tmp_path: Path) -> None:
+    source = published("almeida/PR.png")
+    source.check(None)
+    source.check(tmp_path)  # a file that is missing is another matter
+    picture(tmp_path / "almeida" / "PR.png")
+    for refused in (source.check, source.stones):
+        with pytest.raises(InputError, match="E160"):
+            refused(tmp_path)
 
 
 def test_published_stones_without_their_folder() -> None:

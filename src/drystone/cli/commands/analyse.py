@@ -9,7 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from drystone.cli.analyse_pictures import REPORT, draw, draw_friction, prepare
-from drystone.cli.analyse_scatter import scatter_of, wants_scatter
+from drystone.cli.analyse_scatter import noise_unit, scatter_of, wants_scatter
 from drystone.cli.analyse_size import metres_per_unit, scarcity, size_words
 from drystone.cli.analyse_tables import write_tables
 from drystone.cli.card import Card, RangeCard
@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if wants_scatter(arguments) and not is_plain(arguments):
         raise UsageError("E138", "the scatter is that of the tilting table; leave loads out.")
     path = Path(arguments.wall_path)
-    given = read_wall(path)
+    given = read_wall(path, background=arguments.background)
     wall = modelled(given, arguments)
     per_unit_m = metres_per_unit(given, arguments)
     few = scarcity(wall, per_unit_m)
@@ -60,7 +60,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     card = _card(wall, loads, resistance, arguments)
     if folder is not None:
         _write_all(folder, pictures, wall, card, loads, per_unit_m)
-    scatter = scatter_of(wall, arguments, folder) if wants_scatter(arguments) else None
+    unit = noise_unit(given)
+    scatter = scatter_of(wall, arguments, unit, folder) if wants_scatter(arguments) else None
     if arguments.json:
         report = card.report()
         print_json(report if scatter is None else {**report, "scatter": scatter.report()})

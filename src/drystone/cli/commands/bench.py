@@ -9,7 +9,7 @@ from drystone.cli.bench_options import PUBLIC_OPTIONS
 from drystone.cli.output import make_folder, print_json, say
 from drystone.errors import ExitCode, UsageError
 from drystone.experiments.public.suites import PUBLIC_SUITES
-from drystone.experiments.suites import SEARCHES, SUITES, run_suite
+from drystone.experiments.suites import PICTURED, SEARCHES, SUITES, run_suite
 from drystone.experiments.table import BenchSettings, Table
 from drystone.io.published import published_folder
 
@@ -88,6 +88,13 @@ def _settings(arguments: argparse.Namespace, suite: str) -> BenchSettings:
                 cure=f"Leave it out; it is for {' and '.join(known)}.",
             )
     output = None if arguments.output is None else Path(arguments.output)
+    if output is not None and suite not in PICTURED:
+        raise UsageError(
+            "E138",
+            f"the suite {suite!r} draws no pictures.",
+            where="-o",
+            cure=f"Leave it out; it is for {' and '.join(PICTURED)}.",
+        )
     if output is not None:
         make_folder(output)
     return BenchSettings(

@@ -70,7 +70,8 @@ def _picture(checked: Checked, arguments: argparse.Namespace, folder: Path) -> "
 def _find_stones(plan: Plan, folder: Path) -> Path:
     """Return the source file of a plan, beside it, above it, or where we are."""
     name = str(plan.source["path"])
-    places = [folder, folder.parent, Path()]
+    # The system's way up is right where the path has none, as in "."; the other follows no link.
+    places = [folder, folder.parent, folder / "..", Path()]
     found = [place / name for place in places if name and (place / name).exists()]
     for path in found:
         if path.is_dir() or sha256(path.read_bytes()).hexdigest() == plan.source["sha256"]:

@@ -1,14 +1,16 @@
 """`drystone craft`: masons' rules as checks that name stones and steps."""
 
 import argparse
+import sys
 from pathlib import Path
 
 from drystone.cli.output import prepare_files, print_json
 from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look
 from drystone.craft.look import UNSEEN
-from drystone.errors import ExitCode
+from drystone.errors import ExitCode, UsageError
 from drystone.io.walls import GivenWall, read_wall
 from drystone.statics.contacts.given import model_from_json, polygons_from_json
+from drystone.statics.contacts.pieces import notice_of_pieces
 
 SHEET = "craft.png"
 SHEET_DPI, SINGLE_DPI = 130, 150
@@ -16,7 +18,16 @@ SHEET_DPI, SINGLE_DPI = 130, 150
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print what each rule finds; a broken rule is a result, not an error."""
-    wall = read_wall(Path(arguments.wall_path))
+    wall = read_wall(Path(arguments.wall_path), background=arguments.background)
+    for notice in () if wall.labels is None else notice_of_pieces(wall.labels):
+        print(f"drystone: {notice}", file=sys.stderr)
+    if wall.plan is not None and arguments.wedges:
+        raise UsageError(
+            "E138",
+            "a plan says itself what its wedges are.",
+            where="--wedges",
+            cure="Leave it out; it is for a label image or a block model.",
+        )
     masonry = masonry_of(wall, frozenset(arguments.wedges))
     limits = {name: Limit(good, fair) for name, good, fair in arguments.limits}
     report = look(masonry, limits)
@@ -41,7 +52,7 @@ def masonry_of(wall: GivenWall, wedge_ids: frozenset[int] = frozenset()) -> Maso
 
     Raises
     ------
-    InputError
+    UsageError
         E191 for the id of a wedge that is not in the wall.
     """
     wedges = wall.wedge_ids | wedge_ids

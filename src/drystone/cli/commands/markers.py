@@ -5,7 +5,7 @@ from pathlib import Path
 
 from drystone.cli.output import prepare_files, print_json
 from drystone.errors import ExitCode, UsageError
-from drystone.photo.layout import ON_A_SHEET, parse_size_m
+from drystone.photo.layout import FIRST_SHEET, ON_A_SHEET, parse_size_m
 from drystone.plotting.marker_sheet import MarkerSheets, write_marker_sheets
 
 
@@ -22,6 +22,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     write_marker_sheets(sheets, path)
     size = f"{sheets.size_m * 1000:g}mm"
     named = size if sheets.single else f"{sheets.page}:{size}"
+    options = ["--aruco", named]
+    if not sheets.single and sheets.ids != FIRST_SHEET:
+        options += ["--marker-ids", *map(str, sheets.ids)]
     if arguments.json:
         print_json(
             {
@@ -32,11 +35,12 @@ def run(arguments: argparse.Namespace) -> ExitCode:
                 "dictionary": sheets.dictionary,
                 "page": sheets.page,
                 "layout": named,
+                "options": options,
             }
         )
         return ExitCode.DONE
     print(f"{path}: markers {sheets.ids[0]} to {sheets.ids[-1]}, {len(sheets.pages)} page(s)")
-    print(f"Print at 100 %. The markers are called {named} when stones are looked for.")
+    print(f"Print at 100 %. Stones are then looked for with {' '.join(options)}")
     return ExitCode.DONE
 
 

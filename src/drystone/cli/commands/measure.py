@@ -14,14 +14,18 @@ from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.given import model_from_json
+from drystone.statics.contacts.pieces import notice_of_pieces
 from drystone.statics.limit import lateral_resistance
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print F_SF, F_AV, F_AH, F_LR, T_LEVEL and E_FLUSH."""
-    wall = read_wall(Path(arguments.wall_path))
+    wall = read_wall(Path(arguments.wall_path), background=arguments.background)
     if wall.labels is None:
         raise UsageError("E134", "a block model has no pixels to measure.", where="measure")
+    # Of the picture as it was given: reducing it may part what hangs together.
+    for notice in notice_of_pieces(wall.labels) if wall.blocks is None else ():
+        print(f"drystone: {notice}", file=sys.stderr)
     labels = reduce_labels(wall.labels, arguments.scale) if arguments.scale != 1 else wall.labels
     metrics = _measured(GivenWall(labels, wall.plan, wall.blocks), labels, arguments)
     if arguments.output is not None:

@@ -2,7 +2,6 @@
 
 import argparse
 import io
-import statistics
 import sys
 from pathlib import Path
 from typing import Any
@@ -11,14 +10,17 @@ import numpy as np
 from PIL import Image
 
 from drystone.cli.output import prepare_folder, print_json, print_table
+from drystone.cli.scale import Ruled, refuse_outside
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.atomic import write_atomically
 from drystone.io.photo_file import Photo, read_photo
 from drystone.io.photo_sidecar import LABELS, PhotoSidecar, write_sidecar
 from drystone.photo.layout import MarkerLayout, parse_layout, parse_size_m
-from drystone.photo.segment_doubts import Doubt, StoneSize, doubts_of, notices_of, sizes_of
+from drystone.photo.segment_doubts import Doubt, doubts_of, notices_of, ruler_doubts
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
 from drystone.photo.segment_settings import SegmentSettings
+from drystone.photo.stone_size import StoneSize, median_sides, sizes_of
+from drystone.photo.view import apply
 
 PHOTO, PREVIEW = "photo.jpg", "preview.png"
 QUALITY = 90
@@ -29,6 +31,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     scale = scale_from(arguments)
     settings = SegmentSettings(ground=arguments.ground, split=arguments.split)
     photo = read_photo(Path(arguments.photo))
+    refuse_outside(arguments.px_per_m, photo.size_px)
     unit = None if arguments.min_area is None else arguments.min_area[1]
     if unit == "cm2" and scale is None:
         raise UsageError(
@@ -40,6 +43,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         photo.values, scale, settings, arguments.min_area, max_px=round(arguments.mpx * 1e6)
     )
     doubts = doubts_of(result.found, result.px_per_m, settings)
+    if isinstance(scale, Ruled):
+        doubts += ruler_doubts(result.found.labels, _moved(result, scale))
     notices = (*photo.notices, *result.notices, *notices_of(result.found, doubts))
     _write(folder, photo, result, doubts)
     sizes = sizes_of(result.found.labels)
@@ -72,6 +77,12 @@ def scale_from(arguments: argparse.Namespace) -> MarkerLayout | float | None:
     printed = 1.0 if arguments.check_line is None else parse_size_m(arguments.check_line) / 0.1
     ids = None if arguments.marker_ids is None else tuple(arguments.marker_ids)
     return parse_layout(arguments.aruco, ids, printed)
+
+
+def _moved(result: SegmentedPhoto, scale: Ruled) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return where the ends of a ruler are in the picture of the result."""
+    (x1, y1), (x2, y2) = apply(result.from_photo, np.array(scale.ends_px)).tolist()
+    return (x1, y1), (x2, y2)
 
 
 def _write(folder: Path, photo: Photo, result: SegmentedPhoto, doubts: tuple[Doubt, ...]) -> None:
@@ -168,10 +179,7 @@ def _print(
 
     ordered = sorted(sizes, key=lambda one: one.area_px)
     height, width = result.found.labels.shape
-    middle = (
-        statistics.median(one.length_px for one in sizes),
-        statistics.median(one.width_px for one in sizes),
-    )
+    middle = median_sides((one.length_px, one.width_px) for one in sizes)
     rows = [
         ("picture", f"{width} x {height} px"),
         ("scale", "not known" if result.px_per_m is None else f"{result.px_per_m:.1f} px a metre"),

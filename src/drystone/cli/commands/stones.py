@@ -6,10 +6,11 @@ from pathlib import Path
 
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_from
-from drystone.cli.scale import scale_with
+from drystone.cli.scale import refuse_outside, scale_with
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode
 from drystone.io.read_stones import read_stones
+from drystone.photo.stone_size import median_sides, sides_px
 from drystone.poses import PoseBook
 
 
@@ -19,10 +20,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if picture is not None:
         prepare_picture(picture, overwrite=arguments.overwrite)
     stones = read_stones(Path(arguments.stones), settings=reading_from(arguments))
+    refuse_outside(arguments.px_per_m, (stones.source.width_px, stones.source.height_px))
     px_per_m = scale_with(arguments.px_per_m, stones.source.px_per_m)
     clusters = cluster_stones(stones, PoseBook())
     areas = [stone.area_px for stone in stones]
-    sizes = [(stone.mask.shape[1], stone.mask.shape[0]) for stone in stones]
+    sides = {stone.id: sides_px(stone.mask) for stone in stones}
     largest = max(stones, key=lambda stone: stone.area_px)
     if picture is not None:
         from drystone.plotting import plot_stones, save  # noqa: PLC0415 - matplotlib is slow
@@ -44,21 +46,15 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             }
         )
         return ExitCode.DONE
-    median = [statistics.median(side) for side in zip(*sizes, strict=True)]
+    median = median_sides(sides.values())
     print_table(
         f"{stones.source.path}: {len(stones)} stones",
         [
             ("image", f"{stones.source.width_px} x {stones.source.height_px} px"),
             *([] if px_per_m is None else [("scale", f"{px_per_m:g} px a metre")]),
             ("total area", _area(stones.total_area_px, px_per_m)),
-            (
-                "median stone",
-                f"{_size((median[0], median[1]), px_per_m)}, {statistics.median(areas):g} px²",
-            ),
-            (
-                "largest stone",
-                f"{largest.id}: {_size((largest.mask.shape[1], largest.mask.shape[0]), px_per_m)}",
-            ),
+            ("median stone", f"{_size(median, px_per_m)}, {statistics.median(areas):g} px²"),
+            ("largest stone", f"{largest.id}: {_size(sides[largest.id], px_per_m)}"),
             ("clusters", str(max(clusters.values()))),
             *[("notice", str(notice)) for notice in stones.notices],
         ],
@@ -67,12 +63,12 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def _size(size_px: tuple[float, float], px_per_m: float | None) -> str:
-    width_px, height_px = size_px
-    px = f"{width_px:g} x {height_px:g} px"
+    length_px, width_px = size_px
+    px = f"{round(length_px, 1):g} x {round(width_px, 1):g} px"
     if px_per_m is None:
         return px
     per_px_cm = 100.0 / px_per_m
-    return f"{width_px * per_px_cm:.1f} x {height_px * per_px_cm:.1f} cm ({px})"
+    return f"{length_px * per_px_cm:.1f} x {width_px * per_px_cm:.1f} cm ({px})"
 
 
 def _area(area_px: int, px_per_m: float | None) -> str:

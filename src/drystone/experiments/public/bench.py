@@ -116,7 +116,8 @@ def run_public(settings: PublicSettings) -> tuple[Table, ...]:
         E138: no wall has the name that is asked for; E146, E123: there is no such method or
         setting; E305: the yardstick needs spyrrow, which is not installed.
     InputError
-        E100: all walls need published stones, which are not there; E401: the store is damaged.
+        E100: all walls need published stones, which are not there; E160: there are others in
+        their place; E401: the store is damaged.
     """
     methods = [method_named(name, settings.stamp.settings) for name in settings.methods]
     asked = walls_of(settings.suite, settings.only, quick=settings.quick)
@@ -124,6 +125,8 @@ def run_public(settings: PublicSettings) -> tuple[Table, ...]:
     if not walls:
         absent = dict.fromkeys(wall.source.name for wall in asked)
         raise absent_data(tuple(absent), known=settings.data is not None)
+    for wall in walls:
+        wall.source.check(settings.data)  # before an hour of planning, and before a run is kept
     # Methods take turns, so that all have the same day.
     tasks = [
         (wall, method, method.run(wall, seed))

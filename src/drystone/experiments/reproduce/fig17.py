@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from drystone.experiments.reproduce.base import PR, PaperWall
 from drystone.experiments.reproduce.item import Context, Item, Output, Picture
 from drystone.experiments.table import Cell, Table
+from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
 from drystone.metrics.arrangement import SHORTEST, mean_excess
 from drystone.metrics.frame import frame_wall
@@ -84,7 +85,7 @@ def make(context: Context, wall: PaperWall = PR) -> Output:
     built = context.wall(spec)
     walls = [Paths.of(f"planned {wall.name}", built.labels, built.site.width_px)]
     if context.data is not None and wall.source.kind == "published":
-        traced = read_wall_image(context.data / wall.source.name)
+        traced = read_wall_image(published_file(context.data, wall.source.name))
         walls.append(Paths.of(f"the masons' {wall.name}", reduce_labels(traced, wall.scale)))
     return Output(
         paper=PAPER,

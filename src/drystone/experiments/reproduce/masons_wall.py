@@ -7,6 +7,7 @@ from pathlib import Path
 from drystone.clusters import cluster_stones
 from drystone.experiments.reproduce.base import PaperWall
 from drystone.experiments.reproduce.masons_gaps import dilated, drawn_together
+from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
@@ -77,7 +78,7 @@ def masons_wall(wall: PaperWall, data: Path | None) -> MasonsWall:
     if data is None:
         raise FileNotFoundError(wall.source.name)
     stones = wall.source.stones(data)
-    labels = reduce_labels(read_wall_image(data / wall.source.name), wall.scale)
+    labels = reduce_labels(read_wall_image(published_file(data, wall.source.name)), wall.scale)
     return MasonsWall(wall, labels, cluster_stones(stones, PoseBook(wall.scale)))
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from drystone.experiments.reproduce.base import PaperWall
 from drystone.experiments.runs.source import generated, published
+from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
 from drystone.metrics.measure import measure_labels
 from drystone.metrics.reduce import reduce_labels
@@ -135,7 +136,7 @@ def reference_of(wall: PaperWall, data: Path | None) -> Reference | None:
     """
     if wall.stand_in or data is None:
         return None
-    return measured(read_wall_image(data / wall.source.name), wall.scale)
+    return measured(read_wall_image(published_file(data, wall.source.name)), wall.scale)
 
 
 def measured(labels: Labels, scale: float) -> Reference:

@@ -14,6 +14,7 @@ from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.generate.fourier import FourierSettings, fourier_stones
 from drystone.generate.polygon import PolygonSettings, polygon_stones
 from drystone.generate.rubble import RubbleSettings, rubble_stones
+from drystone.io.published import published_file
 from drystone.io.read_stones import read_stones
 from drystone.model.stone import StoneSet
 
@@ -63,6 +64,17 @@ class StoneSource:
         """Return False when published stones are asked for and the folder has none of this name."""
         return self.kind != "published" or (data is not None and (data / self.name).is_file())
 
+    def check(self, data: Path | None) -> None:
+        """Refuse other stones in the place of published ones.
+
+        Raises
+        ------
+        InputError
+            E160: the file in the folder has other contents than the one that was released.
+        """
+        if self.kind == "published" and data is not None:
+            published_file(data, self.name)
+
     def stones(self, data: Path | None) -> StoneSet:
         """Return the stones.
 
@@ -77,12 +89,12 @@ class StoneSource:
             Published data that are not there (:meth:`is_there`).
         InputError
             E100 ... E111, see :func:`drystone.read_stones`; E100 also for a file that is no longer
-            the one that was meant.
+            the one that was meant; E160 for another file in the place of a published one.
         """
         if self.kind == "published":
             if data is None:
                 raise FileNotFoundError(self.name)
-            return read_stones(data / self.name)
+            return read_stones(published_file(data, self.name))
         if self.kind == "file":
             return _same(read_stones(Path(self.name)), self)
         settings, make = GENERATORS[self.kind]

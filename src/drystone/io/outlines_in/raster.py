@@ -84,7 +84,8 @@ def rastered(file: OutlineFile, settings: ReadSettings, where: str) -> Rastered:
         cure = "Is something drawn far away from the stones, or in another unit? Remove it, give "
         raise InputError(
             error.code, error.what, where=error.where,
-            cure=f"{cure}a smaller px_per_m, or raise max_image_mpx.",
+            cure=f"{cure}a smaller --px-per-m (px_per_m in Python), or raise max_image_mpx in "
+            "Python.",
         ) from None  # fmt: skip
     check_reach(stones, where, int(settings.max_image_mpx * 1e6))
     patches, lost, empty = [], [], []
@@ -131,7 +132,7 @@ def _usual_scale(file: OutlineFile, where: str) -> tuple[float, Notice]:
         f"the longer side of the median stone is {side:.3g} m; drawn at {px_per_m:g} px a metre, "
         f"it is {side * px_per_m:.0f} px long."
     )
-    return px_per_m, Notice("W119", text, "Choose another resolution with px_per_m.")
+    return px_per_m, Notice("W119", text, "Choose another with --px-per-m (px_per_m in Python).")
 
 
 def _corners(stone: OutlinedStone) -> Points:

@@ -1,0 +1,96 @@
+"""How large a stone is, as a person with a rule would say: the one measure of all that is told."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from statistics import median
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from drystone.kernels.raster import Mask
+
+
+@dataclass(frozen=True)
+class StoneSize:
+    """Size of a stone.
+
+    Parameters
+    ----------
+    id : int
+        Its number.
+    at_px : (float, float)
+        Its middle, column and row.
+    length_px, width_px : float
+        Longer and shorter side of the smallest rectangle around it, turned in any way.
+    area_px : int
+        Number of its px.
+    """
+
+    id: int
+    at_px: tuple[float, float]
+    length_px: float
+    width_px: float
+    area_px: int
+
+
+def sizes_of(labels: NDArray[np.uint16]) -> tuple[StoneSize, ...]:
+    """Return the sizes of the stones of a label image, in the order of their numbers.
+
+    Examples
+    --------
+    >>> labels = np.zeros((9, 9), np.uint16)
+    >>> labels[2:4, 1:7] = 1
+    >>> sizes_of(labels)
+    (StoneSize(id=1, at_px=(4.0, 3.0), length_px=6.0, width_px=2.0, area_px=12),)
+    """
+    sizes = []
+    for number, box in enumerate(ndimage.find_objects(labels), start=1):
+        if box is None:
+            continue
+        mask = labels[box] == number
+        rows, cols = np.nonzero(mask)
+        middle = (cols.mean() + box[1].start + 0.5, rows.mean() + box[0].start + 0.5)
+        length, width = sides_px(mask)
+        x, y = (float(part) for part in middle)
+        sizes.append(StoneSize(number, (x, y), length, width, len(rows)))
+    return tuple(sizes)
+
+
+def sides_px(mask: Mask) -> tuple[float, float]:
+    """Return the longer and the shorter side of the smallest rectangle around a stone.
+
+    Parameters
+    ----------
+    mask : (h, w) bool array
+        Its px, one or more.
+
+    Examples
+    --------
+    >>> sides_px(np.ones((2, 5), bool)), sides_px(np.eye(4, dtype=bool))
+    ((5.0, 2.0), (5.242641, 1.0))
+    """
+    rows = np.flatnonzero(mask.any(axis=1))
+    # The ends of the rows have all corners of the stone.
+    first = mask[rows].argmax(axis=1)
+    last = mask.shape[1] - 1 - mask[rows, ::-1].argmax(axis=1)
+    ends = np.concatenate([np.column_stack([first, rows]), np.column_stack([last, rows])])
+    corners = shapely.get_coordinates(shapely.oriented_envelope(shapely.MultiPoint(ends)))
+    # One px is a point, a row of them a line: they have fewer sides.
+    sides = np.hypot(*np.diff(corners, axis=0)[:2].T).tolist()
+    shorter, longer = sorted([0.0, 0.0, *sides])[-2:]
+    # From the middles of px to their borders.
+    return round(longer + 1.0, 6), round(shorter + 1.0, 6)
+
+
+def median_sides(sides: Iterable[tuple[float, float]]) -> tuple[float, float]:
+    """Return the median of the longer and that of the shorter sides of one stone or more.
+
+    Examples
+    --------
+    >>> median_sides([(6.0, 2.0), (9.0, 1.0), (7.0, 5.0)])
+    (7.0, 2.0)
+    """
+    longer, shorter = zip(*sides, strict=True)
+    return median(longer), median(shorter)

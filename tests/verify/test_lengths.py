@@ -1,0 +1,52 @@
+"""What a plan says of itself: its settings, also when not all of them can be used."""
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from drystone.model.plan import Plan
+from drystone.planner.settings import METHODS, PlannerSettings
+from drystone.verify.lengths import plan_settings
+from tests.verify.examples import example
+
+
+def plan_with(settings: dict[str, Any], method: str = "best") -> Plan:
+    whole = METHODS.get(method, PlannerSettings()).as_dict() | settings
+    return replace(example().plan, method=method, settings=whole)
+
+
+def test_usable_settings_are_taken_as_they_are() -> None:
+    settings, problems = plan_settings(plan_with({"mu": 0.6}))
+    assert settings == replace(METHODS["best"], mu=0.6)
+    assert problems == []
+
+
+@pytest.mark.parametrize("method", ["paper", "best"])
+def test_a_setting_out_of_range_is_the_one_of_the_plans_method(method: str) -> None:
+    settings, (problem,) = plan_settings(plan_with({"mu": -3.0, "vary": 0.1}, method))
+    assert settings == replace(METHODS[method], vary=0.1)
+    assert problem.code == "E217"
+    assert "mu must be positive" in problem.message
+    assert f"Used instead, of the method {method!r}: mu = 0.58." in problem.message
+    assert problem.message.endswith("The others are those of the plan.")
+
+
+def test_of_a_method_that_is_not_known_the_default_is_used() -> None:
+    settings, (problem,) = plan_settings(plan_with({"orientations": "north"}, "custom"))
+    assert settings == PlannerSettings()
+    assert "Used instead, the package's own: orientations = 'sf'." in problem.message
+
+
+def test_unknown_ones_are_left_out_and_wrong_groups_named() -> None:
+    stop = {"filling": 0.9, "wonder": 1}
+    settings, (problem,) = plan_settings(plan_with({"wings": 2, "stop": stop, "score": 3}))
+    assert settings == METHODS["best"].updated({"stop": {"filling": 0.9}})
+    assert "Used instead, of the method 'best': score. " in problem.message
+    assert "Left out: stop.wonder, wings." in problem.message
+
+
+def test_those_that_need_each_other_are_kept_in_any_order() -> None:
+    policy = {"selection_rule": "towers", "search": {"budget": 1}, "mu": -1.0}
+    settings, _ = plan_settings(plan_with(policy))
+    assert (settings.selection_rule, settings.search.budget) == ("towers", 1)
