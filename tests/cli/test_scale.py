@@ -5,8 +5,9 @@ from argparse import ArgumentTypeError
 
 import pytest
 
-from drystone.cli.scale import refuse_outside, ruler, scale_with
+from drystone.cli.scale import picture_size_px, refuse_outside, ruler, scale_with
 from drystone.errors import UsageError
+from drystone.model.stone import Source
 
 
 @pytest.mark.parametrize(
@@ -42,6 +43,13 @@ def test_others_are_not() -> None:
     refuse_outside(ruler("20,30,2000,30=1m"), (0, 0))  # how large it is nobody knows
     refuse_outside(2000.0, (213, 60))
     refuse_outside(None, (213, 60))
+
+
+def test_where_the_size_of_a_picture_is_known() -> None:
+    assert picture_size_px(Source("stones.png", width_px=213, height_px=60)) == (213, 60)
+    # They say how far the stones reach, and a ruler lies beside them.
+    assert picture_size_px(Source("stones.json", width_px=213, height_px=60)) == (0, 0)
+    assert picture_size_px(Source("masks", width_px=56, height_px=46, files=("1.png",))) == (0, 0)
 
 
 def test_either_may_know_the_scale() -> None:

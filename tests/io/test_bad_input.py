@@ -86,6 +86,15 @@ def test_blended_edges_in_ids_of_other_stones(method, many):
     assert len(str(told.value)) < 400
 
 
+def test_joints_of_a_value_between_ids_are_background():
+    ids = np.random.default_rng(3).permutation([i for i in range(1, 50) if i != 30])
+    bricks = np.full((6 * 22 + 12, 8 * 42 + 12), 30, np.uint8)
+    for number, stone in enumerate(ids):
+        row, col = 6 + 22 * (number // 8), 6 + 42 * (number % 8)
+        bricks[row : row + 20, col : col + 40] = stone
+    assert len(read_stones(bricks, settings=ReadSettings(background=30))) == 48
+
+
 def test_stones_that_touch_everywhere_are_not_blended():
     # Stones of about 4.5 px, each between a lower and a higher id at its corners.
     points = np.random.default_rng(1).random((500, 2)) * 100

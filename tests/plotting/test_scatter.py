@@ -81,9 +81,8 @@ def test_without_varied_friction_there_are_histograms_only():
 
 
 def test_words_tell_what_was_shaken_and_how_many_do_not_stand(shaken, falling):
-    assert "40 walls, shaken: friction 0.4 to 0.8, outlines by 0.1, places by 0.2" in words(
-        plot_scatter(shaken)
-    )
+    said = "40 walls, shaken: friction 0.4 to 0.8, outlines by 0.1, places by 0.2"
+    assert f"{said} (lengths of the model)" in words(plot_scatter(shaken))
     assert "All of them stand" in words(plot_scatter(shaken))
     fallen = falling.counts[LimitStatus.UNSTABLE]
     assert f"{fallen} of 40 ({100 * fallen / 40:.3g} %) do not stand" in words(

@@ -43,13 +43,14 @@ def ids(planner: Planner) -> list[int]:
 def test_stones_that_find_a_place_stay_where_that_is_better(planner: Planner) -> None:
     half = half_of(planner)
     before = [group.stone_id for group in half.groups]
-    whole, stopped = with_the_rest(planner, half)
+    whole, stopped, _ = with_the_rest(planner, half)
     assert ids(whole)[: len(before)] == before
     assert len(ids(whole)) > len(before)
     assert stopped == whole.stopped
-    left, why = with_the_rest(planner, replace(half, merit=math.inf))
+    left, why, interrupted = with_the_rest(planner, replace(half, merit=math.inf))
+    assert not interrupted
     assert ids(left) == before
-    assert why == Stopped("search", "no stone that is left makes the wall better")
+    assert why == Stopped("search", "the stones that are left do not make the wall better")
 
 
 def test_a_wall_to_choose_is_as_it_was_found(planner: Planner) -> None:
@@ -73,7 +74,8 @@ def test_an_interrupt_at_the_end_loses_nothing(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(Callbacks, "on_step", interrupt)
-    found, why = with_the_rest(planner, half)
+    found, why, interrupted = with_the_rest(planner, half)
+    assert interrupted
     assert ids(found) == [group.stone_id for group in half.groups]
     assert why.reason == "search"
     calls: list[int] = []

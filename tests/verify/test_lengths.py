@@ -50,3 +50,10 @@ def test_those_that_need_each_other_are_kept_in_any_order() -> None:
     policy = {"selection_rule": "towers", "search": {"budget": 1}, "mu": -1.0}
     settings, _ = plan_settings(plan_with(policy))
     assert (settings.selection_rule, settings.search.budget) == ("towers", 1)
+
+
+def test_what_a_plan_does_not_say_is_the_default_beside_a_bad_setting_too() -> None:
+    plan = replace(example().plan, method="best", settings={"search": {"budget": 1}, "mu": -1.0})
+    settings, _ = plan_settings(plan)
+    assert settings == PlannerSettings().updated({"search": {"budget": 1}})
+    assert settings.geometry != METHODS["best"].geometry

@@ -107,10 +107,11 @@ class ScatterCard:
 def noise_unit(wall: GivenWall) -> Unit:
     """Return the unit of ``--outline-noise`` and ``--placement-noise``: px where there are any.
 
-    A plan on outlines in metres has a model in metres; its px are those of the source image.
+    They are those of the source image: a plan on outlines in metres has a model in metres, one on
+    pixels has one in working px.
     """
     if wall.blocks is None:
-        return Unit("px")
+        return Unit("px", 1.0 if wall.plan is None else wall.plan.working_scale)
     if wall.plan is None:
         return Unit("lengths of the block model")
     px_per_m = wall.plan.px_per_m if wall.plan.length_unit == "m" else None

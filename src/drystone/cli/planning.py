@@ -20,7 +20,7 @@ from drystone.cli.choice import (
 )
 from drystone.cli.output import number, prepare_folder, print_json, print_table
 from drystone.cli.progress import step_bar
-from drystone.cli.scale import refuse_outside
+from drystone.cli.scale import picture_size_px, refuse_outside
 from drystone.cli.settings import recorded_method, search_seconds, settings_from
 from drystone.cli.timing import print_profile, profile_summary
 from drystone.errors import ExitCode, UsageError
@@ -116,7 +116,7 @@ def _check_stones(
     settings: PlannerSettings,
 ) -> None:
     """Refuse what cannot be meant, before a folder is made: E126, and E138 of a ruler."""
-    refuse_outside(arguments.px_per_m, (stones.source.width_px, stones.source.height_px))
+    refuse_outside(arguments.px_per_m, picture_size_px(stones.source))
     scale = arguments.scale or working_scale(stones)
     site = Site.from_source(*wall, scale, arguments.px_per_m)
     if not fitting_stones(stones, site, settings):
@@ -187,7 +187,7 @@ def _partial_plan(
         "--px-per-m": plan.px_per_m == arguments.px_per_m,
         "--scale": plan.working_scale == scale,
         "--seed": plan.seed == arguments.seed,
-        "--method": plan.method == recorded_method(arguments),
+        "--method": plan.method in (recorded_method(arguments), arguments.method),
         "settings": _without_budget(plan.settings) == _without_budget(settings.as_dict()),
     }
     different = [name for name, same in equal.items() if not same]

@@ -3,12 +3,18 @@
 import argparse
 import math
 import re
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from drystone.cli.numbers import positive
 from drystone.errors import UsageError
 
+if TYPE_CHECKING:  # it would bring NumPy
+    from drystone.model.stone import Source
+
 _NUMBER = r"\s*(-?\d+(?:\.\d*)?|-?\.\d+)\s*"
 _RULER = re.compile(rf"{_NUMBER},{_NUMBER},{_NUMBER},{_NUMBER}=\s*(\d+(?:\.\d*)?|\.\d+)(m|cm|mm)")
+_PICTURES = {".png", ".tif", ".tiff", ".bmp", ".gif", ".jpg", ".jpeg", ".npy"}
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 
 
@@ -53,6 +59,17 @@ def ruler(text: str) -> Ruled:
     scale = Ruled(px / metres)
     scale.ends_px = (x1, y1), (x2, y2)
     return scale
+
+
+def picture_size_px(source: "Source") -> tuple[int, int]:
+    """Return width and height of the picture that stones came from; 0 where it is not known.
+
+    Files of outlines and folders of masks say how far the stones reach, and a ruler lies beside
+    them.
+    """
+    if source.files or Path(source.path).suffix.lower() not in _PICTURES:
+        return 0, 0
+    return source.width_px, source.height_px
 
 
 def refuse_outside(px_per_m: float | None, size_px: tuple[int, int]) -> None:

@@ -188,7 +188,7 @@ def _check(
     if binary is None:
         check_not_photo(census, where)
         check_background(census.index, census, image.background, where)
-        check_not_resampled(census, where)
+        check_not_resampled(census, image.background, where)
     else:
         ends = np.array([binary.background, binary.stone])
         two = Census(binary.mask.astype(np.int32) + np.int32(1), ends)

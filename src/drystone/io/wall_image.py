@@ -131,7 +131,7 @@ def read_wall_image(
     else:
         check_background(census.index, census, image.background, where, _CURE)
         check_not_photo(census, where)
-        check_not_resampled(census, where)
+        check_not_resampled(census, image.background, where)
     return _with_zero_background(image, where)
 
 

@@ -100,6 +100,8 @@ def _words(scatter: Scatter) -> list[str]:
         shaken.append(f"outlines by {settings.outline_noise:g}")
     if settings.placement_noise:
         shaken.append(f"places by {settings.placement_noise:g}")
+    if settings.outline_noise or settings.placement_noise:
+        shaken[-1] += " (lengths of the model)"
     lines = [f"{len(scatter.status)} walls, shaken: {', '.join(shaken) or 'nothing'}"]
     falling, share = counts[LimitStatus.UNSTABLE], scatter.falling_share
     if share is not None:

@@ -10,6 +10,8 @@ from drystone.search.packed import Packed, found_again
 
 Result = TypeVar("Result")
 
+_FOUND = Stopped("search", "kept as the search found it")
+
 
 def insisted(work: Callable[[], Result]) -> Result:
     """Do some work in spite of one interrupt, so that a search is not lost at its end."""
@@ -30,15 +32,14 @@ def as_found(planner: Planner, wall: Packed) -> tuple[Planner, Stopped]:
         From the search.
     """
     last = _planner_of(planner, wall)
-    return last, last.finished or Stopped("search", "kept as the search found it")
+    return last, last.finished or _FOUND
 
 
-def with_the_rest(planner: Planner, best: Packed) -> tuple[Planner, Stopped]:
+def with_the_rest(planner: Planner, best: Packed) -> tuple[Planner, Stopped, bool]:
     """Return a planner with the best wall of a search, and why nothing more is placed on it.
 
     The passes of a search have weights of their own: a stone that found no place by those may
-    find one by the settings'.  It stays if the wall is better with it.  An interrupt keeps the
-    wall as it was found.
+    find one by the settings'.  As many stay as make the wall best.
 
     Parameters
     ----------
@@ -46,20 +47,30 @@ def with_the_rest(planner: Planner, best: Packed) -> tuple[Planner, Stopped]:
         Of the first wall.
     best : Packed
         From the search.
+
+    Returns
+    -------
+    planner : Planner
+        With the wall.
+    stopped : Stopped
+        Why no more.
+    interrupted : bool
+        Not all was tried.
     """
     last = insisted(lambda: _planner_of(planner, best))
-    found = last.build
+    build, merit, interrupted = last.build, best.merit, False
     try:
         for _ in last.steps():
-            pass
-        better = last.build is found or Found.of(last).merit > best.merit
+            now = Found.of(last).merit
+            if now > merit:
+                build, merit = last.build, now
     except KeyboardInterrupt:
-        return insisted(lambda: as_found(planner, best))
-    assert last.stopped is not None  # noqa: S101 - steps() ended by itself
-    if better:
-        return last, last.stopped
-    last.build = found
-    return last, Stopped("search", "no stone that is left makes the wall better")
+        interrupted = True
+    if last.stopped is not None and last.build is build:
+        return last, last.stopped, interrupted
+    last.build = build
+    why = Stopped("search", "the stones that are left do not make the wall better")
+    return last, _FOUND if interrupted else why, interrupted
 
 
 def _planner_of(planner: Planner, wall: Packed) -> Planner:

@@ -268,10 +268,10 @@ def run_to_end(
         forget()
     if best is None:
         return Ended(planner, planner.stopped, 1, (), lost, interrupted)
-    last, stopped = with_the_rest(planner, best)
+    last, stopped, cut = with_the_rest(planner, best)
     if len(last.build.actions) > len(best.groups):
         kept = archived(kept, [Packed.of(Found.of(last))])
-    return Ended(last, stopped, walls, kept, lost, interrupted)
+    return Ended(last, stopped, walls, kept, lost, interrupted or cut)
 
 
 def _incumbent(progress: Progress) -> Incumbent:

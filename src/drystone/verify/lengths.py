@@ -30,7 +30,12 @@ def plan_settings(plan: Plan) -> tuple[PlannerSettings, list[Problem]]:
         return PlannerSettings().updated(plan.settings), []
     except UsageError as error:
         refusal = error
-    settings, refused = _usable(METHODS.get(plan.method, PlannerSettings()), plan.settings)
+    settings, refused = _usable(PlannerSettings(), plan.settings)
+    instead = METHODS.get(plan.method, PlannerSettings()).as_dict()
+    for path in refused:
+        value = _value(instead, path)
+        if value is not ...:
+            settings, _ = _usable(settings, _nested(path, value))
     whose = f"of the method {plan.method!r}" if plan.method in METHODS else "the package's own"
     message = f"the settings cannot be used: {refusal} {_instead(settings, refused, whose)}"
     return settings, [Problem("E217", None, message)]
@@ -67,13 +72,18 @@ def _nested(path: _Path, value: Any) -> dict[str, Any]:
     return {path[0]: value if len(path) == 1 else _nested(path[1:], value)}
 
 
+def _value(settings: Any, path: _Path) -> Any:
+    """Return a setting by the names that lead to it; ... where there is none."""
+    for name in path:
+        settings = settings.get(name, ...) if isinstance(settings, Mapping) else ...
+    return settings
+
+
 def _instead(settings: PlannerSettings, refused: Sequence[_Path], whose: str) -> str:
     """Say with what a plan is checked whose settings are not all usable."""
     used, unknown = [], []
     for path in refused:
-        value: Any = settings.as_dict()
-        for name in path:
-            value = value.get(name, ...) if isinstance(value, Mapping) else ...
+        value = _value(settings.as_dict(), path)
         if value is ...:
             unknown.append(".".join(path))
         else:

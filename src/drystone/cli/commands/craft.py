@@ -7,7 +7,7 @@ from pathlib import Path
 from drystone.cli.output import prepare_files, print_json
 from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look
 from drystone.craft.look import UNSEEN
-from drystone.errors import ExitCode, UsageError
+from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.walls import GivenWall, read_wall
 from drystone.statics.contacts.given import model_from_json, polygons_from_json
 from drystone.statics.contacts.pieces import notice_of_pieces
@@ -19,7 +19,7 @@ SHEET_DPI, SINGLE_DPI = 130, 150
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print what each rule finds; a broken rule is a result, not an error."""
     wall = read_wall(Path(arguments.wall_path), background=arguments.background)
-    for notice in () if wall.labels is None else notice_of_pieces(wall.labels):
+    for notice in _pieces(wall):
         print(f"drystone: {notice}", file=sys.stderr)
     if wall.plan is not None and arguments.wedges:
         raise UsageError(
@@ -38,6 +38,13 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     else:
         _print(report, arguments)
     return ExitCode.DONE
+
+
+def _pieces(wall: GivenWall) -> tuple[Notice, ...]:
+    """Say of a wall of pixels whether its stones hang together (W304)."""
+    if wall.labels is None or wall.blocks is not None:
+        return ()
+    return tuple(notice_of_pieces(wall.labels))
 
 
 def masonry_of(wall: GivenWall, wedge_ids: frozenset[int] = frozenset()) -> Masonry:

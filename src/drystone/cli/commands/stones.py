@@ -6,7 +6,7 @@ from pathlib import Path
 
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_from
-from drystone.cli.scale import refuse_outside, scale_with
+from drystone.cli.scale import picture_size_px, refuse_outside, scale_with
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode
 from drystone.io.read_stones import read_stones
@@ -20,7 +20,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if picture is not None:
         prepare_picture(picture, overwrite=arguments.overwrite)
     stones = read_stones(Path(arguments.stones), settings=reading_from(arguments))
-    refuse_outside(arguments.px_per_m, (stones.source.width_px, stones.source.height_px))
+    refuse_outside(arguments.px_per_m, picture_size_px(stones.source))
     px_per_m = scale_with(arguments.px_per_m, stones.source.px_per_m)
     clusters = cluster_stones(stones, PoseBook())
     areas = [stone.area_px for stone in stones]
