@@ -24,7 +24,8 @@ def test_parts_of_a_search_add_up(searched: PlanResult, jobs: int) -> None:
     summary = profile_summary(searched, jobs)
     parts = summary["parts"]
     assert sum(parts.values()) == pytest.approx(summary["seconds"])
-    assert parts["search"] > parts["other"] > 0
+    assert parts["search"] > 0
+    assert parts["other"] >= 0
 
 
 @pytest.mark.parametrize("jobs", [1, 2])

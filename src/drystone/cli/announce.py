@@ -5,7 +5,7 @@ from pathlib import Path
 
 from drystone.errors import Notice
 from drystone.model.stone import StoneSet
-from drystone.photo.stone_size import median_sides, sides_px
+from drystone.model.stone_size import median_sides, sides_px
 from drystone.search.plan_result import PlanResult
 
 WRITTEN = (

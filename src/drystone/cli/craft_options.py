@@ -3,12 +3,12 @@
 import argparse
 
 from drystone.cli.numbers import finite, whole_from
-from drystone.cli.wall_input import add_wall_input
+from drystone.cli.wall_options import add_wall
 
 
 def add_craft(command: argparse.ArgumentParser) -> None:
     """Add what can be said about a look at a wall."""
-    add_wall_input(command)
+    add_wall(command)
     command.add_argument(
         "--cases", type=whole_from(0), default=3, metavar="N",
         help="how many places a rule names in the table (default 3); JSON has all",

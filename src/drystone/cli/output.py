@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import UsageError
+from drystone.io.atomic import refuse_existing
 
 _PICTURES = (".png", ".pdf", ".svg")
 
@@ -27,20 +28,7 @@ def prepare_folder(path: Path, *, overwrite: bool) -> Path:
 def prepare_files(paths: Sequence[Path], *, overwrite: bool) -> None:
     """Make room for files, with the folders they go into; refuse to replace one (E129)."""
     for path in paths:
-        if path.is_dir():
-            raise UsageError(
-                "E129",
-                "is a folder, not a file.",
-                where=str(path),
-                cure="Give the name of a file, in the folder for example.",
-            )
-        if path.exists() and not overwrite:
-            raise UsageError(
-                "E129",
-                "exists already.",
-                where=str(path),
-                cure="Choose another with -o, or add --overwrite to replace it.",
-            )
+        refuse_existing(path, overwrite=overwrite)
     for path in paths:
         make_folder(path.parent)
 

@@ -13,7 +13,7 @@ from drystone.cli.numbers import positive, share, whole_from
 from drystone.cli.reading import STONES, add_reading
 from drystone.cli.scale import add_scale
 from drystone.cli.segment_options import add_segment
-from drystone.cli.wall_input import add_wall_input
+from drystone.cli.wall_options import add_wall
 from drystone.errors import UsageError
 from drystone.planner.search_settings import AIMS
 
@@ -218,7 +218,7 @@ def _stones(command: argparse.ArgumentParser) -> None:
 
 
 def _analyse(command: argparse.ArgumentParser) -> None:
-    add_wall_input(command)
+    add_wall(command)
     add_scale(command)
     add_model(command)
     add_loads(command)
@@ -226,7 +226,7 @@ def _analyse(command: argparse.ArgumentParser) -> None:
 
 
 def _measure(command: argparse.ArgumentParser) -> None:
-    add_wall_input(command)
+    add_wall(command)
     command.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
     command.add_argument("--wall", metavar="WxH", help="wall that was to be built, px of the image")
     command.add_argument(

@@ -1,10 +1,10 @@
-"""Files that are either whole or not there."""
+"""Files that are either whole or not there, and none that is replaced unasked."""
 
 import os
 import uuid
 from pathlib import Path
 
-from drystone.errors import PlanError
+from drystone.errors import PlanError, UsageError
 
 
 def write_atomically(path: Path, data: bytes) -> None:
@@ -34,3 +34,27 @@ def write_atomically(path: Path, data: bytes) -> None:
             where=str(path),
             cure="Give a folder that exists, has room and may be written to.",
         ) from error
+
+
+def refuse_existing(path: Path, *, overwrite: bool) -> None:
+    """Refuse to write where a folder is, or a file that is not to be replaced.
+
+    Raises
+    ------
+    UsageError
+        E129.
+    """
+    if path.is_dir():
+        raise UsageError(
+            "E129",
+            "is a folder, not a file.",
+            where=str(path),
+            cure="Give the name of a file, in the folder for example.",
+        )
+    if path.exists() and not overwrite:
+        raise UsageError(
+            "E129",
+            "exists already.",
+            where=str(path),
+            cure="Choose another with -o, or add --overwrite to replace it.",
+        )

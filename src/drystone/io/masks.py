@@ -33,15 +33,16 @@ class BinaryMask:
         The two values of the picture.
     between_px : int
         Pixels with values between them (anti-aliasing), given to the nearer one.
-    unclear : float
-        Share of the plain areas off the background whose value is neither clearly.
+    lost : float
+        Share of the plain areas off the background that are taken for background, where a mask is
+        forced.
     """
 
     mask: Mask
     background: int
     stone: int
     between_px: int
-    unclear: float = 0.0
+    lost: float = 0.0
 
 
 def find_mask(
@@ -79,18 +80,18 @@ def find_mask(
         return None
     if len(grey.values) > 1 and wanted:
         binary = _split(grey, image.background)
-        return replace(binary, unclear=_unclear(grey, binary, _NOISE if lossy else 0.0))
+        return replace(binary, lost=_lost(grey, binary, _NOISE if lossy else 0.0))
     if len(grey.values) > 1 and _is_antialiased(grey, image.background):
         return _split(grey, image.background)
     return None
 
 
 def check_mask(binary: BinaryMask, where: str) -> None:
-    """Refuse ids that are to be read as a mask (E118): half of the stones would be background."""
-    if binary.unclear > _LOST:
+    """Refuse ids that are to be read as a mask (E118): many stones would be background."""
+    if binary.lost > _LOST:
         raise UsageError(
             "E118",
-            f"{binary.unclear:.0%} of its plain areas are neither background "
+            f"{binary.lost:.0%} of its plain areas are neither background "
             f"({binary.background}) nor near to stone ({binary.stone}), and would be lost.",
             where=where,
             cure="If the values are ids, leave --mask (mask=True in Python) out, and export them "
@@ -98,7 +99,7 @@ def check_mask(binary: BinaryMask, where: str) -> None:
         )
 
 
-def _unclear(census: Census, binary: BinaryMask, noise: float) -> float:
+def _lost(census: Census, binary: BinaryMask, noise: float) -> float:
     """Return how much of the plain areas off the background is taken for background.
 
     Blurred edges of a mask have values between, too, but they are not plain.

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from skimage.measure import regionprops
 
 from drystone.errors import Notice
+from drystone.model.stone_size import sizes_of
 from drystone.photo.segment import Found, stones_at
 from drystone.photo.segment_settings import SegmentSettings
-from drystone.photo.stone_size import sizes_of
 
 LOW_CONTRAST = 8.0
 """Distance in CIELAB from the ground below which an outline is not to be relied on."""

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.random import Generator
 
 from drystone.errors import DrystoneError, ExitCode, UsageError
+from drystone.io.atomic import refuse_existing
 from drystone.planner.workshop import Workshop
 from drystone.rl.draw import DrawSettings, draw_wall
 from drystone.rl.episode import Episode, prepared
@@ -174,17 +175,6 @@ def _best(model: ValueModel) -> Choose:
     return lambda offers, _: model.best(offers)
 
 
-def _refuse_existing(path: Path, *, overwrite: bool) -> None:
-    """Refuse to replace a file, before a minute of training (E129)."""
-    if path.exists() and not overwrite:
-        raise UsageError(
-            "E129",
-            "exists already.",
-            where=str(path),
-            cure="Choose another with -o, or add --overwrite to replace it.",
-        )
-
-
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m drystone.rl.train", description=__doc__)
@@ -209,7 +199,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stderr.flush()
 
     try:
-        _refuse_existing(arguments.output, overwrite=arguments.overwrite)
+        # Before a minute of training.
+        refuse_existing(arguments.output, overwrite=arguments.overwrite)
         settings = TrainSettings(
             seed=arguments.seed,
             rounds=arguments.rounds,

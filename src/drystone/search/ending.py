@@ -69,8 +69,9 @@ def with_the_rest(planner: Planner, best: Packed) -> tuple[Planner, Stopped, boo
     if last.stopped is not None and last.build is build:
         return last, last.stopped, interrupted
     last.build = build
-    why = Stopped("search", "the stones that are left do not make the wall better")
-    return last, _FOUND if interrupted else why, interrupted
+    if interrupted:
+        return last, last.finished or _FOUND, True
+    return last, Stopped("search", "the stones that are left do not make the wall better"), False
 
 
 def _planner_of(planner: Planner, wall: Packed) -> Planner:

@@ -133,7 +133,12 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     settings = settings or method_settings(method)
     scale = working_scale(stones) if scale is None else float(scale)
     if not 0 < scale <= 1:
-        raise UsageError("E125", f"a scale of {scale} is not in (0, 1].", where="--scale")
+        raise UsageError(
+            "E125",
+            f"a scale of {scale} is not in (0, 1].",
+            where="--scale",
+            cure="Give a share of the source resolution such as .5, or none to have it chosen.",
+        )
     frame = Frame(width, height, Site.from_source(width, height, scale, px_per_m))
     started = time.perf_counter()
     single = settings.search.budget == 1

@@ -15,11 +15,11 @@ from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.atomic import write_atomically
 from drystone.io.photo_file import Photo, read_photo
 from drystone.io.photo_sidecar import LABELS, PhotoSidecar, write_sidecar
+from drystone.model.stone_size import StoneSize, median_sides, sizes_of
 from drystone.photo.layout import MarkerLayout, parse_layout, parse_size_m
 from drystone.photo.segment_doubts import Doubt, doubts_of, notices_of, ruler_doubts
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
 from drystone.photo.segment_settings import SegmentSettings
-from drystone.photo.stone_size import StoneSize, median_sides, sizes_of
 from drystone.photo.view import apply
 
 PHOTO, PREVIEW = "photo.jpg", "preview.png"

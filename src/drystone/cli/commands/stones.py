@@ -10,7 +10,7 @@ from drystone.cli.scale import picture_size_px, refuse_outside, scale_with
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode
 from drystone.io.read_stones import read_stones
-from drystone.photo.stone_size import median_sides, sides_px
+from drystone.model.stone_size import median_sides, sides_px
 from drystone.poses import PoseBook
 
 

@@ -3,7 +3,7 @@
 import argparse
 
 
-def add_wall_input(command: argparse.ArgumentParser) -> None:
+def add_wall(command: argparse.ArgumentParser) -> None:
     """Add the wall, how its picture is read, and where results go."""
     command.add_argument(
         "wall_path", metavar="WALL", help="label image, plan.json, or block model (JSON)"

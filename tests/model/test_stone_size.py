@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from drystone.photo.stone_size import median_sides, sides_px, sizes_of
+from drystone.model.stone_size import median_sides, sides_px, sizes_of
 
 
 def block(length: float, width: float, angle_deg: float) -> np.ndarray:
