@@ -1,17 +1,20 @@
 """What the shell gets to know: exit codes, and no traceback that was not asked for."""
 
 import io
+import json
 import os
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from drystone.cli import main
 from drystone.cli.commands import stones as command
 from drystone.errors import UsageError
 from tests.cli.conftest import Run
+from tests.statics.walls import stacked
 
 
 @pytest.mark.parametrize(
@@ -78,3 +81,14 @@ def test_a_reader_that_goes_away_is_no_error(rubble: Path) -> None:
     )
     os.close(write)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_libraries_that_print_by_themselves_are_silent(tmp_path: Path) -> None:
+    wall = tmp_path / "wall.npy"
+    np.save(wall, stacked((20, 8, 0), (20, 8, 5), (20, 8, 2)))
+    done = subprocess.run(  # noqa: S603 - our own code
+        [sys.executable, "-m", "drystone", "analyse", str(wall), "--json"],
+        stdout=subprocess.PIPE,
+        check=True,
+    )
+    assert json.loads(done.stdout)["F_LR"] is not None

@@ -19,7 +19,8 @@ from scipy.sparse import csc_array, vstack
 
 from drystone.statics.program import EquilibriumProgram, Floats
 from drystone.statics.result import LimitStatus
-from drystone.statics.solvers.highs import TOLERANCE, HighsSession, set_options
+from drystone.statics.solvers.highs import TOLERANCE, HighsSession
+from drystone.statics.solvers.silent import silent_highs
 
 NOTHING = 1e-9
 """Forces and velocities below this share of the largest one are taken as none."""
@@ -146,17 +147,14 @@ class MotionsOfForces:
         free = np.full(columns, highspy.kHighsInf)
         least, greatest = self._open_bounds()
         by_column, minimise, offset = 1, 1, 0.0
-        self._highs = highspy.Highs()  # type: ignore[no-untyped-call]  # it has no types
-        set_options(
-            self._highs,
+        self._highs = silent_highs(
             {
-                "output_flag": False,
                 "threads": 1,
                 "solver": "simplex",
                 "presolve": "off",
                 "primal_feasibility_tolerance": TOLERANCE,
                 "dual_feasibility_tolerance": TOLERANCE,
-            },
+            }
         )
         self._highs.passModel(
             columns, self._rows, matrix.nnz, by_column, minimise, offset, np.zeros(columns), -free,

@@ -8,6 +8,7 @@ import numpy as np
 
 from drystone.statics.program import EquilibriumProgram, Floats
 from drystone.statics.result import LimitStatus
+from drystone.statics.solvers.silent import set_options, silent_highs
 from drystone.statics.solvers.solution import Solution
 
 Algorithm = Literal["simplex", "ipm"]
@@ -19,7 +20,6 @@ PIVOTS_PER_ROW = 10
 """HiGHS gives up after so many and a thousand more; walls take one to three, but it can cycle."""
 
 _COMMON: Mapping[str, Any] = {
-    "output_flag": False,
     "primal_feasibility_tolerance": TOLERANCE,
     "dual_feasibility_tolerance": TOLERANCE,
 }
@@ -120,17 +120,10 @@ def _loaded(program: EquilibriumProgram, options: Mapping[str, Any]) -> highspy.
     lower[0] = -highspy.kHighsInf
     upper = np.full(columns, highspy.kHighsInf)
     by_column, minimise, offset = 1, 1, 0.0
-    highs = highspy.Highs()  # type: ignore[no-untyped-call]  # its constructor has no types
-    set_options(highs, options)
+    highs = silent_highs(options)
     highs.passModel(
         columns, rows, len(program.value), by_column, minimise, offset, np.zeros(columns), lower,
         upper, program.rhs, program.rhs, program.start, program.index, program.value,
         np.zeros(columns, np.int32),
     )  # fmt: skip
     return highs
-
-
-def set_options(highs: highspy.Highs, options: Mapping[str, Any]) -> None:
-    """Set options of HiGHS by name."""
-    for name, value in options.items():
-        highs.setOptionValue(name, value)

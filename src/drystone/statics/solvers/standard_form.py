@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from drystone.statics.program import Floats
-from drystone.statics.solvers.highs import TOLERANCE, set_options
+from drystone.statics.solvers.highs import TOLERANCE
 from drystone.statics.solvers.refined import corrected
+from drystone.statics.solvers.silent import silent_highs
 
 # Dual simplex without perturbed costs takes half the time of the primal method where only feasible
 # unknowns are sought, from a basis with gaps.
 _DUAL, _DEVEX = 1, 1
 _OPTIONS: Mapping[str, Any] = {
-    "output_flag": False,
     "threads": 1,
     "solver": "simplex",
     "presolve": "off",
@@ -67,8 +67,7 @@ def least(
     """
     count, rows = len(costs), len(rhs)
     by_column, minimise, offset = 1, 1, 0.0
-    highs = highspy.Highs()  # type: ignore[no-untyped-call]  # its constructor has no types
-    set_options(highs, _OPTIONS)
+    highs = silent_highs(_OPTIONS)
     highs.passModel(
         count, rows, len(matrix.data), by_column, minimise, offset, costs, np.zeros(count),
         np.full(count, highspy.kHighsInf), rhs, rhs, matrix.indptr, matrix.indices, matrix.data,

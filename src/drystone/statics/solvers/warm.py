@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.statics.program import EquilibriumProgram
-from drystone.statics.solvers.highs import HighsSession, set_options
+from drystone.statics.solvers.highs import HighsSession
+from drystone.statics.solvers.silent import set_options
 
 NAME = "HiGHS warm simplex"
 
