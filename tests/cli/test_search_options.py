@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 
 from drystone.cli.parser import build_parser
-from drystone.cli.settings import UNLIMITED, search_seconds, settings_from
+from drystone.cli.settings import search_seconds, settings_from
 from drystone.io.plan_json import read_plan
+from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.settings import method_settings
 from tests.cli.conftest import EXACT, Run
 

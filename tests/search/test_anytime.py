@@ -1,16 +1,17 @@
 """A search: the same budget gives the same wall, and a larger one none that is worse."""
 
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from drystone.errors import UsageError
 from drystone.generate.polygon import PolygonSettings, polygon_stones
 from drystone.model.site import Site
 from drystone.planner.events import Callbacks, Incumbent
 from drystone.planner.planner import Planner
+from drystone.planner.search_settings import UNLIMITED
 from drystone.search.anytime import Progress, searching
 from drystone.search.chain import in_cycle, wedged
 from drystone.search.found import Found
@@ -121,13 +122,25 @@ def test_processes_change_nothing() -> None:
 
 
 def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls() -> None:
-    settings = greedy({"search": {"budget": 10_000, **SMALL}})
+    settings = greedy({"search": {"budget": 1, **SMALL}})
     timed = plan_wall(rubble(), 100, 36, scale=1.0, seed=2, settings=settings, seconds=1.0)
     used = timed.plan.settings["search"]["budget"]
-    assert 1 <= used < 10_000
-    again = replace(settings, search=replace(settings.search, budget=used))
-    repeated = plan_wall(rubble(), 100, 36, scale=1.0, seed=2, settings=again)
-    assert repeated.plan == timed.plan
+    assert 1 < used < UNLIMITED
+    again = plan_wall(rubble(), 100, 36, scale=1.0, seed=2, settings=settings, budget=used)
+    assert again.plan == timed.plan
+
+
+def test_a_budget_ends_a_search_that_has_more_time() -> None:
+    settings = greedy({"search": {"budget": 1, **SMALL}})
+    result = plan_wall(
+        rubble(), 100, 36, scale=1.0, seed=2, settings=settings, budget=3, seconds=1e6
+    )
+    assert result.plan.settings["search"]["budget"] == 3
+
+
+def test_no_budget_is_none_to_plan_with() -> None:
+    with pytest.raises(UsageError, match="E123"):
+        plan_wall(rubble(), 100, 36, scale=1.0, budget=0)
 
 
 def test_no_time_is_one_wall() -> None:

@@ -8,11 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import InputError, UsageError
+from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.settings import METHODS, PlannerSettings, method_settings
 from drystone.selection.policies.registry import rule_of
-
-UNLIMITED = 1_000_000
-"""Budget of a search that the clock ends."""
 
 SECONDS_A_STONE = 1 / 3
 """How long better walls are looked for when nothing is said."""

@@ -87,6 +87,10 @@ class WedgeStep:
     kind: Literal["wedge"] = "wedge"
 
 
+FIGURES = ("F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH")
+"""What is told of a wall, in this order."""
+
+
 @dataclass(frozen=True)
 class PlanMetrics:
     """The figures of merit of a finished wall (§5.2); None when one cannot be computed.
@@ -106,6 +110,13 @@ class PlanMetrics:
     wedge_area: float
     F_LR_half: float | None = None
     F_LR_double: float | None = None
+
+    def __str__(self) -> str:
+        shown = {name: getattr(self, name) for name in FIGURES}
+        return ", ".join(
+            f"{name} {'-' if value is None else format(value, '.3g')}"
+            for name, value in shown.items()
+        )
 
 
 @dataclass(frozen=True)
@@ -154,6 +165,13 @@ class Plan:
     unused: tuple[int, ...]
     stopped: str
     metrics: PlanMetrics
+
+    def __repr__(self) -> str:
+        unit, stones = self.length_unit, len(self.stone_steps)
+        return (
+            f"<Plan of a wall of {self.width:g} x {self.height:g} {unit}, {self.method}, "
+            f"seed {self.seed}: {stones} stones, {len(self.steps) - stones} wedges, {self.metrics}>"
+        )
 
     @property
     def stone_steps(self) -> tuple[StoneStep, ...]:

@@ -56,6 +56,11 @@ class Stone:
         mask.flags.writeable = False
         object.__setattr__(self, "mask", mask)
 
+    def __repr__(self) -> str:
+        height, width = self.mask.shape
+        named = f" ({self.name})" if self.name else ""
+        return f"<Stone {self.id}{named}: {width} x {height} px, area {self.area_px} px²>"
+
     @cached_property
     def area_px(self) -> int:
         """Number of pixels."""
@@ -177,6 +182,11 @@ class StoneSet:
         if len(set(ids)) != len(ids):
             raise ValueError("two stones have the same id")
         object.__setattr__(self, "stones", tuple(sorted(self.stones, key=lambda s: s.id)))
+
+    def __repr__(self) -> str:
+        source = f" of {self.source.path}" if self.source.path else ""
+        said = f", {len(self.notices)} notices" if self.notices else ""
+        return f"<StoneSet{source}: {len(self)} stones, area {self.total_area_px} px²{said}>"
 
     def __len__(self) -> int:
         return len(self.stones)

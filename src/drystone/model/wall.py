@@ -54,6 +54,10 @@ class Wall:
     def __post_init__(self) -> None:
         self.labels.flags.writeable = False
 
+    def __repr__(self) -> str:
+        size = f"{self.site.width_px} x {self.site.height_px} px"
+        return f"<Wall of {size}: {len(self.groups)} stones, {len(self.wedges)} wedges>"
+
     @classmethod
     def empty(cls, site: Site, *, exact: bool = False) -> "Wall":
         """Return the wall before the first stone.

@@ -88,6 +88,16 @@ class Candidate:
     sturdy: bool = True
     failed: bool = False
 
+    def __repr__(self) -> str:
+        return f"<Candidate: {self.said}>"
+
+    @property
+    def said(self) -> str:
+        """Which stone it is, how far it is turned, and on how many wedges it stands."""
+        angle_deg = self.stabilised.placement.posed.angle_deg
+        wedges = len(self.stabilised.wedges)
+        return f"stone {self.stone_id} turned by {angle_deg:.1f} deg, {wedges} wedges"
+
     @property
     def stabilised(self) -> Stabilised:
         """Placement and wedges."""

@@ -31,6 +31,10 @@ class Step:
     build: Build
     candidates: int
 
+    def __repr__(self) -> str:
+        x_px, y_px = self.action.stabilised.placement.centroid(self.build.wall.site.height_px)
+        return f"<Step {self.number}: {self.action.said}, centroid at ({x_px:.1f}, {y_px:.1f}) px>"
+
     @property
     def stone_id(self) -> int:
         """Id of the stone."""

@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+UNLIMITED = 1_000_000
+"""Budget of a search that the clock ends."""
+
 AIMS = ("F_SF", "F_LR", "F_AV", "F_AH")
 """Figures of merit that may have an aim."""
 

@@ -94,6 +94,10 @@ class PlanResult:
     solves: Solves = field(default_factory=Solves)
     choice: "tuple[PlanResult, ...]" = ()
 
+    def __repr__(self) -> str:
+        placed, stones = len(self.plan.stone_steps), self.plan.source["stones"]
+        return f"<PlanResult {self.status}: {placed} of {stones} stones, {self.metrics}>"
+
     def _repr_html_(self) -> str:
         # By name, as the package itself loads its rooms: the report lies above the search.
         return str(import_module("drystone.report.notebook").frame_of_result(self))

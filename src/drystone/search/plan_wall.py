@@ -19,6 +19,7 @@ from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame
 from drystone.planner.events import Callbacks, Incumbent, Stopped
 from drystone.planner.planner import Planner
+from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.planner.solves import Solves
 from drystone.search.anytime import Progress, searching
@@ -55,6 +56,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     settings: PlannerSettings | None = None,
     scale: float | None = None,
     px_per_m: float | None = None,
+    budget: int | None = None,
     seconds: float = math.inf,
     n_jobs: int = 1,
     executor: Executor | None = None,
@@ -82,9 +84,13 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         Working resolution over source resolution, in (0, 1]; chosen when missing.
     px_per_m : float, optional
         Source px in a metre; the plan is then in metres.
+    budget : int, optional
+        How many walls are built, the best of which is the plan; 1 is a single pass.  That of the
+        settings when missing: 16 for ``"best"``, some eight seconds for 30 stones.
     seconds : float
-        Time after which the search begins no further wall, where its budget does not end before.
-        The plan's settings hold the budget that was used, which repeats the plan.
+        Time after which the search begins no further wall, as many as there are by then; with
+        `budget` the search ends with the first of the two.  The plan's settings hold the budget
+        that was used, which repeats the plan.
     n_jobs : int
         Processes that build the walls of a search, threads that evaluate candidates where a
         single wall is built; never changes the result.
@@ -110,8 +116,8 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     Raises
     ------
     UsageError
-        E138: the seed is negative; E120 to E127, E137, E145: the wall, the scale or the stones
-        make no sense together.
+        E138: the seed is negative; E123: the budget is less than 1; E120 to E127, E137, E145: the
+        wall, the scale or the stones make no sense together.
 
     Examples
     --------
@@ -130,7 +136,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     if seed < 0:
         raise UsageError("E138", f"{seed} is no seed.", where="--seed", cure="Give 0 or more.")
     method = method or ("custom" if settings else "best")
-    settings = settings or method_settings(method)
+    settings = _searched(settings or method_settings(method), budget, seconds)
     scale = working_scale(stones) if scale is None else float(scale)
     if not 0 < scale <= 1:
         raise UsageError(
@@ -181,6 +187,13 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         solves=Solves(first.failed_solves, first.cold_solves),
         choice=(best, *_others(first, ended.kept[1:], finished)) if choice and ended.kept else (),
     )
+
+
+def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> PlannerSettings:
+    """Return the settings with the budget that is asked for, by number or by time."""
+    if budget is None and not math.isfinite(seconds):
+        return settings
+    return settings.updated({"search": {"budget": UNLIMITED if budget is None else budget}})
 
 
 def _others(

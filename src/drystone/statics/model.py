@@ -100,7 +100,11 @@ class RigidBlockModel:
     blocks: tuple[Block, ...]
     interfaces: tuple[Interface, ...]
     mu: float = 0.58
-    added: "Addition | None" = field(default=None, init=False, repr=False)
+    added: "Addition | None" = field(default=None, init=False)
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.blocks)} blocks, {len(self.interfaces)} interfaces"
+        return f"<RigidBlockModel: {counts}, mu {self.mu:g}>"
 
     def with_added(
         self,

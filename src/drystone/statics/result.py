@@ -1,6 +1,6 @@
 """What the limit analysis returns: load multipliers, how the wall fails, and their certificate."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
@@ -129,8 +129,8 @@ class LimitResult:
     status: LimitStatus
     direction: Direction
     alpha: float | None = None
-    mechanism: Mechanism | None = None
-    forces: Floats | None = None
+    mechanism: Mechanism | None = field(default=None, repr=False)
+    forces: Floats | None = field(default=None, repr=False)
     certificate: Certificate | None = None
     message: str = ""
     solver: str = ""

@@ -36,7 +36,7 @@ when a stone is held only by friction in contacts that are pressed together by n
 themselves.  Such a wall is called unstable here, with the motion that shows it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -87,8 +87,8 @@ class NonassociativeResult:
     status: LimitStatus
     direction: Direction
     alpha: float | None = None
-    mechanism: Mechanism | None = None
-    forces: Floats | None = None
+    mechanism: Mechanism | None = field(default=None, repr=False)
+    forces: Floats | None = field(default=None, repr=False)
     rounds: int = 0
     method: str = ""
     check: FlowCheck | None = None
