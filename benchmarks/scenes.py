@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from drystone.experiments.benchmark_walls import coursed_labels, irregular_labels
 from drystone.generate import RubbleSettings, rubble_stones
+from drystone.io.published import published_file
 from drystone.io.read_stones import read_stones
 from drystone.model.landscape import Landscape
 from drystone.model.pose import PosedStone
@@ -105,7 +106,7 @@ def stock(count: int | None = None) -> Stock:
     """
     folder = data_folder()
     if count is None and folder is not None:
-        return Stock("PR", read_stones(folder / "almeida" / "PR.png"), WALL_PX)
+        return Stock("PR", read_stones(published_file(folder, "almeida/PR.png")), WALL_PX)
     wanted = 32 if count is None else count
     factor = (wanted / 32) ** 0.5
     width, height = round(factor * WALL_PX[0]), round(factor * WALL_PX[1])

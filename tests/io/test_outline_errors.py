@@ -102,6 +102,16 @@ def test_sam_of_several_images(tmp_path):
         read(tmp_path, content)
     stones = read_stones(tmp_path / "stones.json", settings=ReadSettings(image="2"))
     assert len(stones) == 1
+    (tmp_path / "stones.json").write_text(json.dumps(content[:1]))
+    with pytest.raises(InputError, match=r"E115 .*no image is called '2'.*there are 1"):
+        read_stones(tmp_path / "stones.json", settings=ReadSettings(image="2"))
+
+
+def test_files_that_name_no_images_have_none_to_choose_from(tmp_path):
+    for content in (labelme(), [{"segmentation": [[1, 1, 30, 1, 30, 30]]}], geojson()):
+        (tmp_path / "stones.json").write_text(json.dumps(content))
+        with pytest.raises(UsageError, match=r"E118 stones.json: .*'tray'.*Leave --image"):
+            read_stones(tmp_path / "stones.json", settings=ReadSettings(image="tray"))
 
 
 @pytest.mark.parametrize(

@@ -41,10 +41,13 @@ def stones_of(
     InputError
         E113 ... E116, see ``docs/errors.md``.
     UsageError
-        E118 when the file has another unit than the settings say.
+        E118 when the file has another unit than the settings say, or says nothing of images and
+        one is asked for.
     """
     file = read(data, where, settings)
     check_unit(file.unit_m, settings, where)
+    if not file.names_images:
+        check_no_image(settings, where)
     # Half a character pair can be neither printed nor written.
     named = tuple(replace(stone, name=_printable(stone.name)) for stone in file.stones)
     kept, wedges = without_wedges(named)
@@ -79,3 +82,13 @@ def check_unit(unit_m: float | None, settings: ReadSettings, where: str) -> None
         "E118", f"this file is in {own}, not in {settings.unit}.", where=where,
         cure="Leave the unit out: it is for drawings that do not say theirs.",
     )  # fmt: skip
+
+
+def check_no_image(settings: ReadSettings, where: str) -> None:
+    """Refuse the name of an image where there are none to choose from (E118)."""
+    if settings.image:
+        raise UsageError(
+            "E118", f"there is no choice of images here, as for {settings.image!r}.", where=where,
+            cure="Leave --image (image in Python) out: it is for annotations that name their "
+            "images (COCO, masks of SAM).",
+        )  # fmt: skip

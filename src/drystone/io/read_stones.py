@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.errors import InputError, LabelImageError, Notice, UsageError
+from drystone.errors import InputError, LabelImageError, Notice
 from drystone.io.census import Census, take_census
 from drystone.io.checks import (
     check_background,
@@ -28,7 +28,7 @@ from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.outlines_in.npz import is_npz, read_npz
 from drystone.io.patches import Patch, cut
 from drystone.io.photo_sidecar import LABELS, SIDECAR, PhotoSidecar, read_sidecar
-from drystone.io.read_outlines import check_unit, stones_of
+from drystone.io.read_outlines import check_no_image, check_unit, stones_of
 from drystone.io.read_settings import ReadSettings
 from drystone.model.stone import Source, StoneSet
 
@@ -117,11 +117,7 @@ def _scale_beside(sidecar: PhotoSidecar, picture: Picture, path: Path) -> float 
 def _of_px(settings: ReadSettings, where: str) -> tuple[tuple[str, Any], ...]:
     """Return what a plan must keep of the settings with which a picture was read."""
     check_unit(None, settings, where)
-    if settings.image:
-        raise UsageError(
-            "E118", f"there is no choice of images here, as for {settings.image!r}.",
-            where=where, cure="Leave --image (image in Python) out: it is for COCO files.",
-        )  # fmt: skip
+    check_no_image(settings, where)
     return replace(settings, px_per_m=None).changed()
 
 

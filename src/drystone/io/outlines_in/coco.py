@@ -73,7 +73,7 @@ def read_coco(content: Mapping[str, Any], where: str, settings: ReadSettings) ->
         check_reach(stones, where, int(settings.max_image_mpx * 1e6))
         stones, nested = without_nested(stones, settings.skip)
         notices += nested
-    return OutlineFile(tuple(stones), size_px=size, notices=tuple(notices))
+    return OutlineFile(tuple(stones), size_px=size, notices=tuple(notices), names_images=True)
 
 
 def _is_crowd(found: Mapping[str, Any]) -> bool:

@@ -93,6 +93,8 @@ class OutlineFile:
         Width and height of the image of a file in px, if the file says so.
     notices : tuple of Notice
         What had to be decided.
+    names_images : bool
+        The file says of which image each stone is, so that one of them can be asked for.
     """
 
     stones: tuple[OutlinedStone, ...]
@@ -100,6 +102,7 @@ class OutlineFile:
     y_up: bool = False
     size_px: tuple[int, int] | None = None
     notices: tuple[Notice, ...] = ()
+    names_images: bool = False
 
 
 def number_in(text: object) -> int | None:

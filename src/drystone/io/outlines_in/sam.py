@@ -31,12 +31,14 @@ def read_sam(content: list[Mapping[str, Any]], where: str, settings: ReadSetting
     InputError
         E114 naming the mask that cannot be used, E115 when they are of several images.
     """
-    images = {str(found.get("image_id")) for found in content}
-    if len(images) > 1:
-        asked = {settings.image} & images
-        if not asked:
-            raise image_needed(f"masks of {len(images)} images are in it", where, sorted(images))
-        content = [found for found in content if str(found.get("image_id")) in asked]
+    images = {str(found["image_id"]) for found in content if "image_id" in found}
+    several = len({str(found.get("image_id")) for found in content}) > 1
+    if images and (several or settings.image):
+        if settings.image not in images:
+            no_such = f"no image is called {settings.image!r}"
+            what = no_such if settings.image else f"masks of {len(images)} images are in it"
+            raise image_needed(what, where, sorted(images))
+        content = [found for found in content if str(found.get("image_id")) == settings.image]
     stones, sizes = [], set()
     for number, found in enumerate(content, start=1):
         with entry(where, f"mask {number}"):
@@ -55,7 +57,12 @@ def read_sam(content: list[Mapping[str, Any]], where: str, settings: ReadSetting
             stones.append(OutlinedStone(number, "", areas, masks))
     check_reach(stones, where, int(settings.max_image_mpx * 1e6))
     kept, notices = without_nested(stones, settings.skip)
-    return OutlineFile(tuple(kept), size_px=size_in(None, sizes, where), notices=tuple(notices))
+    return OutlineFile(
+        tuple(kept),
+        size_px=size_in(None, sizes, where),
+        notices=tuple(notices),
+        names_images=bool(images),
+    )
 
 
 def _is_nested_list(segmentation: Any) -> bool:
