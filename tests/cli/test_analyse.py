@@ -161,6 +161,47 @@ def test_cases_that_are_ranges(tower: Path, bridge: Path, run: Run) -> None:
     assert (light["alpha_greatest"], light["status_greatest"]) == (None, "unbounded")
 
 
+def test_ranges_say_what_was_guessed_and_the_friction(tmp_path: Path, run: Run) -> None:
+    labels = np.zeros((40, 40), np.uint32)
+    labels[20:, 5:35], labels[:18, 8:32] = 1, 2
+    np.save(tmp_path / "gap.npy", labels)
+    asked = (
+        "analyse", tmp_path / "gap.npy", "--close-gaps", "4", "--mu-head", ".3",
+        "--px-per-m", "100", "--load", "gravity", "--dead", "1@10,10:1,0",
+    )  # fmt: skip
+    said = run(*asked).out
+    for name in ("friction", "gaps", "head joints", "size"):
+        assert f"\n{name} " in said
+    report = run(*asked, "--json").json()
+    assert list(report["remarks"]) == ["gaps", "head joints", "size"]
+    assert report["mu"] == 0.58
+
+
+def test_a_wall_that_no_load_brings_down_one_way_stands(tmp_path: Path, run: Run) -> None:
+    np.save(tmp_path / "block.npy", np.ones((20, 40), np.uint32))
+    asked = ("analyse", tmp_path / "block.npy", "--load", "points", "--live", "1@20,10:0,-1")
+    ran = run(*asked, "--associative-only")
+    assert "own weight         stands\n" in ran.out
+    assert "unbounded" in ran.out
+    assert "W302" not in ran.err
+
+
+def test_head_friction_of_the_options_wins_over_that_of_the_file(tmp_path: Path, run: Run) -> None:
+    block, slab = [0, 0, 1, 2], [1, 0, 1, 2]
+    model = tmp_path / "pair.json"
+    model.write_text(json.dumps({"blocks_xywh": [block, slab], "mu": 0.9, "mu_head": 0.9}))
+    without = run("analyse", model, "--json", "--associative-only").json()["alpha_right"]
+    oiled = run("analyse", model, "--json", "--associative-only", "--mu-head", "0").json()
+    assert oiled["alpha_right"] < without - 1e-3
+
+
+def test_a_model_without_blocks_has_no_size(tmp_path: Path, run: Run) -> None:
+    (tmp_path / "none.json").write_text('{"blocks": []}')
+    ran = run("analyse", tmp_path / "none.json", "--px-per-m", "100")
+    assert ran.code == 0
+    assert "size" not in ran.out
+
+
 def test_a_multiplier_of_nothing_has_no_sign(
     tower: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -205,7 +246,7 @@ def test_options_that_make_no_sense(tower: Path, run: Run, options: list[str], c
 
 def test_a_range_is_certified_described_and_drawn(bridge: Path, tmp_path: Path, run: Run) -> None:
     ran = run("analyse", bridge, "--settle", "2", "-o", tmp_path / "out")
-    assert "Rocking of" in ran.out
+    assert "Shifting of block 2 along 3; block 3 rocks about its right toe, on 1." in ran.out
     assert "forces and mechanism give the same alpha" in ran.out
     assert (tmp_path / "out" / "mechanism_left.png").exists()
     report = run("analyse", bridge, "--settle", "2", "--json").json()

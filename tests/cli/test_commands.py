@@ -146,6 +146,10 @@ def test_analyse_and_measure_a_plan(plan_copy: Path, run: Run) -> None:
         for name in ("F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH"):
             assert measured[name] == pytest.approx(getattr(plan.metrics, name))
         assert measured["F_SF"] == pytest.approx(plan.metrics.F_SF, rel=0.02)
+        asked = run("measure", given, "--json", "--wall", "100x36").json()
+        assert asked == measured
+        wider = run("measure", given, "--json", "--wall", "200x36").json()
+        assert wider["F_SF"] == pytest.approx(measured["F_SF"] / 2)
 
 
 def test_a_plan_needs_its_own_wall_image(plan_copy: Path, run: Run) -> None:
@@ -173,6 +177,10 @@ def test_measure(tmp_path: Path, run: Run) -> None:
     assert reduced["F_SF"] == pytest.approx(20 * 40 / (40 * 50))
     assert "E127" in run("measure", tower, "--wall", "40").err
     assert "E131" in run("measure", tower, "--wall", "1mx1m").err
+    metres = run("measure", tower, "--json", "--wall", ".4mx.5m", "--px-per-m", "100").json()
+    assert metres == given
+    for mu in ("-1", "nan", "inf"):
+        assert run("measure", tower, "--mu", mu).code == 2
     assert "measured at 30 x 50 px" in run("measure", tower).out
 
 

@@ -104,3 +104,9 @@ def test_without_wedges_or_contacts_nothing_is_judged():
 def test_a_wall_that_falls_has_no_least_load():
     loops = {1: box(0, 0, 1, 1), 2: box(0.2, 1, 4, 1), 9: box(1, 0, 0.2, 1)}
     assert pins.find(modelled(loops, {9})).number is None
+
+
+def test_wedges_carry_nothing_where_every_block_is_fixed():
+    blocks = [{"id": i, "polygon": box(i, 0, 1, 1).tolist(), "fixed": True} for i in (1, 2)]
+    model = model_from_json({"blocks": blocks})
+    assert wedge_loads.least_wedge_loads(model, frozenset({2})) == {2: 0.0}

@@ -10,6 +10,7 @@ from drystone.statics import asking
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance, limit_load
+from drystone.statics.loads import Loads, weight
 from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LimitStatus
 from drystone.statics.solvers import clarabel, highs
@@ -391,3 +392,13 @@ def test_many_blocks_are_solved_by_the_interior_point_method(monkeypatch):
     assert found.left.solver == "Clarabel"
     assert found.value == pytest.approx(expected.value, abs=1e-9)
     assert lateral_resistance(model, mechanism=True).left.solver == "HiGHS simplex"
+
+
+def test_a_wall_stands_where_nothing_limits_the_load():
+    """Pressed onto the ground, a block carries any load; lifted, its own weight."""
+    block = model_from_json({"blocks_xywh": [[0, 0, 2, 1]]})
+    both = lateral_resistance(block, Loads(weight(block), np.array([[0.0, -1.0, 0.0]])))
+    assert statuses(both) == (LimitStatus.OPTIMAL, LimitStatus.UNBOUNDED)
+    assert both.stable
+    assert both.value is None
+    assert lateral_resistance(RigidBlockModel((), ())).stable

@@ -35,8 +35,8 @@ def metres_per_unit(wall: GivenWall, arguments: argparse.Namespace) -> float | N
 
 
 def size_words(shapes: Shapes, per_unit_m: float | None) -> str | None:
-    """Say how wide and high a wall is, in metres; None without a scale."""
-    if per_unit_m is None:
+    """Say how wide and high a wall is, in metres; None without a scale or a block."""
+    if per_unit_m is None or not len(shapes):
         return None
     if isinstance(shapes, Mapping):
         corners = np.concatenate(list(shapes.values()))

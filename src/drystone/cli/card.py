@@ -148,18 +148,21 @@ class RangeCard:
     """A case whose answer is a range of alpha; parameters as for :class:`Card`."""
 
     found: LoadRange
+    mu: float
     load_case: str
     failures: Mapping[str, Failure]
     sha256: str
     version: str
+    remarks: Mapping[str, str]
 
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
-        rows = [("load case", self.load_case)]
+        rows = [("load case", self.load_case), ("friction", f"mu = {self.mu:g}")]
         for name, end in (("least", self.found.least), ("greatest", self.found.greatest)):
             rows.append((f"{name} alpha", _alpha(end)))
             if end.direction in self.failures:
                 rows.append(("  mechanism", self.failures[end.direction].words))
+        rows += list(self.remarks.items())
         rows.append(("certificate", _certified(self.found.least, self.found.greatest)))
         rows.append(("assumptions", ASSUMPTIONS))
         rows.append(("input", f"sha256 {self.sha256[:16]}, drystone {self.version}"))
@@ -174,12 +177,14 @@ class RangeCard:
             "status_greatest": str(greatest.status),
             "alpha_least": least.alpha,
             "alpha_greatest": greatest.alpha,
+            "mu": self.mu,
             "certificate": _certificate(least, greatest, ("least", "greatest")),
             "words": {
                 name: self.failures[end.direction].words
                 for name, end in (("least", least), ("greatest", greatest))
                 if end.direction in self.failures
             },
+            "remarks": dict(self.remarks),
             "sha256": self.sha256,
             "version": self.version,
         }
@@ -239,7 +244,7 @@ def _standing(both: LateralResistance) -> str:
 
 def _least(both: LateralResistance) -> float | None:
     alphas = [result.alpha for result in (both.left, both.right) if result.alpha is not None]
-    return min(alphas) if both.stable else None
+    return min(alphas) if both.stable and alphas else None
 
 
 def _certificate(

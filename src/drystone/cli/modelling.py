@@ -65,7 +65,8 @@ def modelled(wall: GivenWall, arguments: argparse.Namespace) -> Modelled:
         assert wall.labels is not None  # noqa: S101 - a wall without blocks has an image
         found = _drawn(wall, wall.labels, mu, arguments)
     if arguments.mu_head is not None:
-        found = replace(found, model=with_head_friction(found.model, arguments.mu_head))
+        if wall.blocks is None:
+            found = replace(found, model=with_head_friction(found.model, arguments.mu_head))
         said = f"friction {arguments.mu_head:g}"
         found = replace(found, remarks={**found.remarks, "head joints": said})
     return found
@@ -91,6 +92,8 @@ def _given(
         raise UsageError("E138", what, cure=cure)
     if arguments.mu is not None:
         blocks = {**blocks, "mu": mu}
+    if arguments.mu_head is not None:
+        blocks = {**blocks, "mu_head": arguments.mu_head}
     return Modelled(
         model_from_json(blocks),
         polygons_from_json(blocks),

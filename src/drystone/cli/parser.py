@@ -9,7 +9,7 @@ from drystone.cli.bench_options import add_bench
 from drystone.cli.craft_options import add_craft
 from drystone.cli.export_options import add_export
 from drystone.cli.markers_options import add_markers
-from drystone.cli.numbers import positive, share, whole_from
+from drystone.cli.numbers import not_negative, positive, share, whole_from
 from drystone.cli.reading import STONES, add_reading
 from drystone.cli.scale import add_scale
 from drystone.cli.segment_options import add_segment
@@ -227,11 +227,12 @@ def _analyse(command: argparse.ArgumentParser) -> None:
 
 def _measure(command: argparse.ArgumentParser) -> None:
     add_wall(command)
-    command.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
-    command.add_argument("--wall", metavar="WxH", help="wall that was to be built, px of the image")
+    command.add_argument("--mu", type=not_negative, help="coefficient of friction (default .58)")
+    command.add_argument("--wall", metavar="WxH", help="wall that was to be built")
     command.add_argument(
         "--scale", type=share, default=1.0, metavar="S", help="reduce the image by S first"
     )
+    add_scale(command)
 
 
 def _check(command: argparse.ArgumentParser) -> None:

@@ -41,6 +41,8 @@ def least_wedge_loads(
     >>> round(found[3], 6)
     1.333333
     """
+    if all(block.fixed for block in model.blocks):
+        return dict.fromkeys(sorted(wedge_ids), 0.0)
     program = assemble(model)
     loads = {}
     for wedge in sorted(wedge_ids):

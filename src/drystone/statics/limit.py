@@ -13,8 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from drystone.statics.asking import Answer, Solver, extremes
+from drystone.statics.asking import Answer, Solver
 from drystone.statics.certificate import of_fall
+from drystone.statics.light_blocks import extremes_of
 from drystone.statics.loads import Loads
 from drystone.statics.model import Direction, RigidBlockModel
 from drystone.statics.program import EquilibriumProgram, Floats, assemble
@@ -99,7 +100,7 @@ def lateral_resistance(
     if all(block.fixed for block in model.blocks):
         return LateralResistance(_no_blocks("left"), _no_blocks("right"), model.mu)
     program = assemble(model, loads)
-    least, greatest = extremes(program, solver, mechanism=mechanism)
+    least, greatest = extremes_of(model, program, solver, mechanism=mechanism)
     return resistance_between(program, least, greatest, model.mu, mechanism=mechanism)
 
 
@@ -137,7 +138,7 @@ def load_range(
     if all(block.fixed for block in model.blocks):
         return LoadRange(_no_blocks("left"), _no_blocks("right"))
     program = assemble(model, loads)
-    least, greatest = extremes(program, solver, mechanism=mechanism)
+    least, greatest = extremes_of(model, program, solver, mechanism=mechanism)
     ends = zip(("left", "right"), (least, greatest), strict=True)
     return LoadRange(*(_end(d, answer, program, mechanism) for d, answer in ends))  # type: ignore[arg-type]
 

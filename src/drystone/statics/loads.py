@@ -4,6 +4,7 @@ The paper's tilting table is one of them.  Every case is made of forces at centr
 add up: ``Loads(weight(model) + point_load(model, 7, (3, 2), (0, -5)), live)``.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import cos, radians, sin
 
@@ -14,6 +15,9 @@ from drystone.errors import InputError
 from drystone.statics.model import Block, RigidBlockModel
 
 Floats = NDArray[np.float64]
+
+LISTED = 8
+"""So many blocks are named."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,9 +183,12 @@ def support_settlement(model: RigidBlockModel, block: int) -> tuple[RigidBlockMo
             "E306",
             f"block {block} is not fixed, so it is no support that can settle.",
             where="load case",
-            cure="Name a fixed block.",
+            cure=f"Name a fixed one: {_listed(b for b in model.blocks if b.fixed)}.",
         )
-    guided = replace(found, fixed=False, held=("x", "turn"))
+    carried = [other.weight for other in model.blocks if not other.fixed]
+    # Weightless in this case: as heavy as the others, so that it does not spoil their units.
+    usual = float(np.mean(carried)) if carried else found.area
+    guided = replace(found, fixed=False, held=("x", "turn"), area=usual, density=1.0)
     blocks = (*model.blocks[:row], guided, *model.blocks[row + 1 :])
     others = {other.id for other in model.blocks if other.fixed and other.id != block} | {0}
     kept = tuple(
@@ -195,9 +202,8 @@ def support_settlement(model: RigidBlockModel, block: int) -> tuple[RigidBlockMo
     released = RigidBlockModel(blocks, kept, model.mu)
     dead = weight(released)
     dead[row] = 0.0
-    carried = sum(other.weight for other in model.blocks if not other.fixed)
     live = np.zeros_like(dead)
-    live[row, 1] = carried
+    live[row, 1] = sum(carried)
     return released, Loads(dead, live, f"settlement of block {block}")
 
 
@@ -209,5 +215,12 @@ def _block(model: RigidBlockModel, block: int) -> tuple[int, Block]:
         "E306",
         f"there is no block {block}.",
         where="load case",
-        cure=f"The model has {len(model.blocks)} blocks; `drystone analyse --json` names them.",
+        cure=f"There are {_listed(model.blocks)}.",
     )
+
+
+def _listed(blocks: Iterable[Block]) -> str:
+    """Name some blocks, or say that there is none."""
+    ids = [str(block.id) for block in blocks]
+    more = f" and {len(ids) - LISTED} more" if len(ids) > LISTED else ""
+    return ", ".join(ids[:LISTED]) + more if ids else "there is none"

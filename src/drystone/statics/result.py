@@ -189,5 +189,9 @@ class LateralResistance:
 
     @property
     def stable(self) -> bool:
-        """True when the wall stands under its own weight, by both analyses."""
-        return self.left.success and self.right.success
+        """True when the wall stands under its own weight, by both analyses.
+
+        It does where nothing limits the load in a direction, too.
+        """
+        stands = (LimitStatus.OPTIMAL, LimitStatus.UNBOUNDED)
+        return self.left.status in stands and self.right.status in stands

@@ -3,7 +3,7 @@ import math
 import pytest
 
 from drystone.errors import InputError
-from drystone.statics.contacts.given import model_from_json
+from drystone.statics.contacts.given import model_from_json, polygons_from_json
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
 
@@ -151,3 +151,30 @@ def test_what_is_no_block_model_is_refused(data, code):
         model_from_json(data)
     assert refused.value.cure
     assert refused.value.where
+
+
+def test_a_corner_at_which_an_edge_goes_straight_on_is_none():
+    feet = {"id": 2, "polygon": [[1, 1], [3, 2], [5, 1], [5, 4], [1, 4]]}
+    for step in (0, 1e-13, -1e-13):
+        slab = [[0, 0], [6, 0], [6, 1], [5, 1 + step], [1, 1], [0, 1]]
+        model = model_from_json({"blocks": [{"id": 1, "polygon": slab}, feet]})
+        assert [p.tolist() for i in model.interfaces[1:] for p in i.points] == [[1, 1], [5, 1]]
+    # A turn of a thousandth is a corner.
+    bent = [[0, 0], [6, 0], [6, 1], [3, 1.001], [0, 1]]
+    assert len(polygons_from_json({"blocks": [{"id": 1, "polygon": bent}]})[1]) == 6
+
+
+def test_points_of_an_interface_run_along_it():
+    three = {"between": [1, 0], "points": [[2, 0], [0, 0], [4, 0]], "normal": [0, 1]}
+    model = model_from_json({"blocks_xywh": [[0, 0, 4, 4]], "mu": 2, "interfaces": [three]})
+    assert model.interfaces[0].points.tolist() == [[0, 0], [2, 0], [4, 0]]
+    assert model.interfaces[0].length == 4
+
+
+def test_numbers_that_no_float_holds_are_refused():
+    for data, code in (
+        ({"blocks_xywh": [[0, 0, 1, 10**400]]}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1, 1]], "mu": 10**400}, "E302"),
+    ):
+        with pytest.raises(InputError, match=code):
+            model_from_json(data)

@@ -121,3 +121,11 @@ def test_blocks_that_nothing_carries():
     assert loose_blocks(model) == (2, 3)
     fixed = {"blocks": [{"id": 4, "polygon": [[0, 3], [1, 3], [1, 4]], "fixed": True}]}
     assert loose_blocks(model_from_json(fixed)) == ()
+
+
+def test_what_is_said_of_one_joint_wins_over_what_is_said_of_all_head_joints():
+    upright = {"between": [2, 1], "points": [[1, 0], [1, 1]], "normal": [1, 0]}
+    data = {"blocks_xywh": [[0, 0, 1, 1], [1, 0, 1, 1]], "mu_head": 0.1}
+    assert [i.mu for i in model_from_json({**data, "interfaces": [upright]}).interfaces] == [0.1]
+    own = {**upright, "mu": 0.9}
+    assert [i.mu for i in model_from_json({**data, "interfaces": [own]}).interfaces] == [0.9]

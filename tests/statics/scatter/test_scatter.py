@@ -264,3 +264,11 @@ def test_settings_that_make_no_sense(code, settings):
     with pytest.raises(InputError) as error:
         ScatterSettings(**settings)
     assert error.value.code == code
+
+
+def test_contacts_stay_as_they_are_where_only_friction_is_shaken():
+    three = {"between": [1, 0], "points": [[2, 0], [0, 0], [4, 0]], "normal": [0, 1]}
+    block = {"blocks_xywh": [[0, 0, 4, 4]], "interfaces": [three]}
+    found = scatter(model_from_json(block), ScatterSettings(samples=3, mu=(1.5, 2)), seed=1)
+    assert found.alpha_left.tolist() == pytest.approx([1, 1, 1])
+    assert found.alpha_right.tolist() == pytest.approx([1, 1, 1])

@@ -170,7 +170,13 @@ def _print_range(wall: Modelled, arguments: argparse.Namespace, pictures: list[P
     found = load_range(model, loads, mechanism=True, solver=arguments.solver)
     ends = (found.least, found.greatest)
     card = RangeCard(
-        found, loads.name, _failures(wall, ends), _sha256(arguments), version("drystone")
+        found=found,
+        mu=model.mu,
+        load_case=loads.name,
+        failures=_failures(wall, ends),
+        sha256=_sha256(arguments),
+        version=version("drystone"),
+        remarks=wall.remarks,
     )
     if pictures:
         draw(pictures, wall, loads, ends)

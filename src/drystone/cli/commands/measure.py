@@ -7,6 +7,7 @@ from pathlib import Path
 
 from drystone.cli.lengths import parse_wall
 from drystone.cli.output import number, prepare_files, print_json, print_table
+from drystone.cli.scale import scale_with
 from drystone.errors import ExitCode, UsageError
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.metrics.measure import WallMetrics, measure_labels
@@ -52,15 +53,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) -> WallMetrics:
-    wall_px = stone_area_px = None
-    if arguments.wall is not None:
-        width, height = parse_wall(arguments.wall, None)
-        wall_px = (width * arguments.scale, height * arguments.scale)
-    elif wall.plan is not None:
-        to_px = wall.plan.working_scale * (wall.plan.px_per_m or 1.0) * arguments.scale
-        wall_px = (wall.plan.width * to_px, wall.plan.height * to_px)
-        # The pixels of reduced stones are off by a little; the plan knows their real area.
-        stone_area_px = wall.plan.metrics.F_SF * wall_px[0] * wall_px[1]
+    wall_px, stone_area_px = _size(wall, arguments)
     mu = wall.mu if arguments.mu is None else arguments.mu
     if wall.blocks is not None:  # pixels misread a wall of outlines
         model = replace(model_from_json(wall.blocks), mu=mu)
@@ -77,6 +70,30 @@ def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) ->
         stone_area_px=stone_area_px,
         lateral_resistance=resistance.value,
     )
+
+
+def _size(
+    wall: GivenWall, arguments: argparse.Namespace
+) -> tuple[tuple[float, float] | None, float | None]:
+    """Return width and height of the wall, and the area of its stones, in px of what is measured.
+
+    None is what the picture says itself.
+    """
+    plan = wall.plan
+    scale = scale_with(arguments.px_per_m, None if plan is None else plan.px_per_m)
+    asked = None if arguments.wall is None else parse_wall(arguments.wall, scale)
+    if plan is None:
+        return None if asked is None else _reduced(asked, arguments.scale), None
+    to_source = plan.px_per_m or 1.0
+    planned = plan.width * to_source, plan.height * to_source
+    factor = plan.working_scale * arguments.scale
+    # The pixels of reduced stones are off by a little; the plan knows their real area.
+    stone_area_px = plan.metrics.F_SF * planned[0] * planned[1] * factor**2
+    return _reduced(asked or planned, factor), stone_area_px
+
+
+def _reduced(size_px: tuple[float, float], factor: float) -> tuple[float, float]:
+    return size_px[0] * factor, size_px[1] * factor
 
 
 def _draw(labels: Labels, width_px: float | None, folder: Path, *, overwrite: bool) -> None:

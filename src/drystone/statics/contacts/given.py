@@ -24,6 +24,9 @@ from drystone.statics.model import FREEDOMS, GROUND, Block, Interface, RigidBloc
 LARGEST_RATIO = 1e6
 """Of weights; errors of an answer are relative to the mean weight, up to 1e-8 of it."""
 
+STRAIGHT = 1e-12
+"""A corner this far from the line between its neighbours, in sizes of the block, is none."""
+
 RELATIVE_TOLERANCE = 1e-6
 """Gaps up to this share of the model's extent count as contact."""
 
@@ -150,7 +153,22 @@ def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
     line = shapely.get_coordinates(shapely.remove_repeated_points(shape))
     if not shape.exterior.is_ccw:
         line = line[::-1].copy()
+    line = _without_straight_corners(line)
     return Block(block_id, 0.0, (0.0, 0.0), density, fixed, tuple(held)), line
+
+
+def _without_straight_corners(line: Points) -> Points:
+    """Drop corners at which a closed line goes straight on: a corner on one would be on an edge.
+
+    Some digits of rounding do not make a corner.
+    """
+    corners = line[:-1]
+    before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
+    area = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+    chord = np.hypot(*(before + after).T)
+    # How far the corner is from the line between those beside it.
+    kept = corners[area > STRAIGHT * chord * np.ptp(line, axis=0).max()]
+    return np.concatenate((kept, kept[:1]))
 
 
 def _measured(block: Block, polygon: Points) -> Block:

@@ -1,6 +1,7 @@
 """Reading the parts of a block model file: numbers, lists, friction, and interfaces."""
 
 from collections.abc import Collection, Mapping, Sequence
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ def read_numbers(value: Any, shape: tuple[int, ...], where: str) -> Points:
     """Read finite numbers; -1 in `shape` stands for any length."""
     try:
         array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         array = np.empty(0)
     fits = array.ndim == len(shape) and all(
         n in (m, -1) for n, m in zip(shape, array.shape, strict=True)
@@ -45,8 +46,12 @@ def read_mu(data: Mapping[str, Any], key: str, default: float) -> float:
     mu = data.get(key, default)
     if not isinstance(mu, int | float) or isinstance(mu, bool):
         raise bad(f"{key} is {mu!r}.", key, "Give a number.")
+    try:
+        mu = float(mu)
+    except OverflowError:  # a whole number of hundreds of digits
+        mu = inf
     check_mu(mu)
-    return float(mu)
+    return mu
 
 
 def read_friction(entries: Sequence[Any], ids: Collection[int]) -> dict[tuple[int, int], float]:
@@ -74,6 +79,8 @@ def read_interfaces(entries: Sequence[Any], ids: Collection[int]) -> tuple[Inter
             raise bad("it has no points or no normal.", where, "Give both.")
         mu = read_mu(entry, "mu", 0.0) if "mu" in entry else None
         x, y = (normal / length).tolist()
+        if len(points) > 2:  # others go by the first and the last one as its ends
+            points = points[np.argsort(points @ (y, -x), kind="stable")]
         found.append(Interface(block, other, points, (x, y), mu))
     return tuple(found)
 

@@ -15,7 +15,9 @@ def is_head_joint(interface: Interface) -> bool:
 
 
 def with_head_friction(model: RigidBlockModel, mu: float) -> RigidBlockModel:
-    """Give the head joints a coefficient of friction of their own; 0 for open, dirty or wet ones.
+    """Give the head joints a coefficient of friction; 0 for open, dirty or wet ones.
+
+    Joints that have one of their own keep it.
 
     Examples
     --------
@@ -27,7 +29,9 @@ def with_head_friction(model: RigidBlockModel, mu: float) -> RigidBlockModel:
     return replace(
         model,
         interfaces=tuple(
-            replace(interface, mu=mu) if is_head_joint(interface) else interface
+            replace(interface, mu=mu)
+            if interface.mu is None and is_head_joint(interface)
+            else interface
             for interface in model.interfaces
         ),
     )

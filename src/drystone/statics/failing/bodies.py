@@ -127,7 +127,7 @@ def _group(kin: Kinematics, body: Ints, number: int) -> MovingGroup:
     if kin.length * abs(velocity[2]) <= kin.least:
         velocity[2] = 0.0
     border = _Border.of(kin, body, number)
-    motion, at = border.motion(down=velocity[1] < 0)
+    motion, at = border.motion(down=velocity[1] < 0, turning=velocity[2] != 0.0)
     toe = border.toe(at) if motion == "rocking" else None
     vx, vy, turning = velocity.tolist()
     return MovingGroup(
@@ -188,8 +188,11 @@ class _Border:
             sign * kin.normal[contact, 1] > BED,
         )
 
-    def motion(self, *, down: bool) -> tuple[Motion, Ints]:
-        """Tell how the body moves, and at which of the contact points."""
+    def motion(self, *, down: bool, turning: bool) -> tuple[Motion, Ints]:
+        """Tell how the body moves, and at which of the contact points.
+
+        A body that does not turn itself does not rock, though what touches it may.
+        """
         kin, still = self.kin, self.other == _STILL
         opens, slips = kin.opens[self.contact], kin.slips[self.contact]
         turns = np.abs(self.turning) > kin.least
@@ -206,7 +209,7 @@ class _Border:
             ("rocking", self._on_one(pivots)),
             ("mixed", kept),
         ):
-            if at.any():
+            if at.any() and (turning or motion != "rocking"):
                 return motion, np.flatnonzero(at)  # type: ignore[return-value]
         return "falling" if down else "mixed", np.empty(0, np.int64)
 

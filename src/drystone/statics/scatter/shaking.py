@@ -151,8 +151,8 @@ def _shaken_interfaces(
     turns : (k,) float array
         In standard deviations.
     """
-    if not model.interfaces:
-        return ()
+    if not (model.interfaces and (settings.outline_noise or settings.placement_noise)):
+        return model.interfaces
     ends = np.array([(i.points[0], i.points[-1]) for i in model.interfaces])
     normal = np.array([i.normal for i in model.interfaces])
     length = np.array([i.length for i in model.interfaces])

@@ -1,0 +1,45 @@
+"""A stone far lighter than the others falls at its own load, not at that of the wall."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.contacts.given import model_from_json
+from drystone.statics.light_blocks import own_units
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.program import assemble
+from drystone.statics.result import LimitStatus
+from tests.statics.walls import coursed
+from tests.strategies import repeatable
+
+
+@given(
+    side=st.floats(100, 1500), height=st.floats(1.8, 3), solver=st.sampled_from(["highs", "auto"])
+)
+@repeatable(20)
+def test_a_speck_on_a_block_overturns_by_its_own_shape(side, height, solver):
+    model = model_from_json({"blocks_xywh": [[0, 0, side, side], [side / 3, side, 1, height]]})
+    both = lateral_resistance(model, solver=solver, mechanism=True)
+    assert (both.left.alpha, both.right.alpha) == pytest.approx((1 / height, 1 / height), rel=1e-6)
+    # Alone, and turning: the large one stays.
+    speed = np.abs(both.right.mechanism.velocity)
+    assert speed[0].max() < 1e-6 * speed[1].max()
+
+
+def test_a_speck_of_pixels_does_too():
+    labels = np.zeros((1003, 1000), np.uint32)
+    labels[3:], labels[:3, 300] = 1, 2
+    both = lateral_resistance(model_from_labels(labels).model)
+    assert (both.left.alpha, both.right.alpha) == pytest.approx((1 / 3, 1 / 3))
+
+
+def test_a_speck_that_stands_on_nothing_brings_the_wall_down():
+    model = model_from_json({"blocks_xywh": [[0, 0, 900, 900], [899.6, 900, 1, 2]]})
+    assert lateral_resistance(model).left.status is LimitStatus.UNSTABLE
+
+
+def test_walls_of_like_stones_have_the_units_of_the_wall():
+    model = model_from_labels(coursed(3, 3, 60)).model
+    assert own_units(model, assemble(model)) is None
