@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from drystone import generate as generate
     from drystone.assembly.read import read_assembly as read_assembly
     from drystone.errors import DrystoneError as DrystoneError
+    from drystone.io.plan_folder import write_plan_folder as write_plan_folder
     from drystone.io.plan_json import read_plan as read_plan
     from drystone.io.plan_json import write_plan as write_plan
     from drystone.io.read_stones import ReadSettings as ReadSettings
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from drystone.planner.settings import method_settings as method_settings
     from drystone.report.notebook import view as view
     from drystone.search.plan_result import PlanResult as PlanResult
+    from drystone.search.plan_result import result_of as result_of
     from drystone.search.plan_wall import plan_wall as plan_wall
     from drystone.statics.contacts.blocks import model_from_labels as model_from_labels
     from drystone.statics.contacts.given import model_from_json as model_from_json
@@ -47,6 +49,7 @@ _HOMES = {
     "DrystoneError": "drystone.errors",
     "read_plan": "drystone.io.plan_json",
     "write_plan": "drystone.io.plan_json",
+    "write_plan_folder": "drystone.io.plan_folder",
     "ReadSettings": "drystone.io.read_stones",
     "read_stones": "drystone.io.read_stones",
     "measure_labels": "drystone.metrics.measure",
@@ -56,6 +59,7 @@ _HOMES = {
     "StoneSet": "drystone.model.stone",
     "view": "drystone.report.notebook",
     "PlanResult": "drystone.search.plan_result",
+    "result_of": "drystone.search.plan_result",
     "plan_wall": "drystone.search.plan_wall",
     "MeasuredPose": "drystone.planner.measured",
     "Observation": "drystone.planner.observe",

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 
 import drystone as ds
-from drystone.cli.choice import write_built
 from drystone.search.plan_result import PlanResult
 
 WALL_PX = (130.0, 50.0)
@@ -32,7 +31,7 @@ def _planned(method: str, px_per_m: float | None) -> PlanResult:
 
 def written(folder: Path, method: str = "best", px_per_m: float | None = None) -> Path:
     """Write the files of a plan as `drystone plan` does, without pictures."""
-    write_built(result(method, px_per_m), folder)
+    ds.write_plan_folder(result(method, px_per_m), folder)
     return folder
 
 

@@ -3,29 +3,13 @@
 from pathlib import Path
 from typing import Any
 
-import tomli_w
-
 from drystone.cli.output import make_folder, number
-from drystone.io.blocks_json import write_blocks
-from drystone.io.plan_json import write_plan
-from drystone.io.wall_image import write_wall_image
+from drystone.io.plan_folder import WRITTEN, write_plan_folder
 from drystone.search.plan_result import PlanResult
 
 FOLDER, PICTURE = "pareto", "pareto.png"
-WRITTEN = ("plan.json", "settings.toml", "blocks.json", "wall.png", "wall.tif")
 FIGURES = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 3}
 """Figures of merit of the table, with their digits."""
-
-
-def write_built(result: PlanResult, folder: Path) -> None:
-    """Write plan.json, settings.toml, blocks.json and wall.png."""
-    write_plan(result.plan, folder / "plan.json")
-    (folder / "settings.toml").write_bytes(tomli_w.dumps(dict(result.plan.settings)).encode())
-    write_blocks(result.wall, result.model, folder)
-    written = write_wall_image(result.wall.labels, folder)
-    for name in {"wall.png", "wall.tif"} - {written.name}:
-        # One that an earlier run left would belong to another wall.
-        (folder / name).unlink(missing_ok=True)
 
 
 def walls_to_choose_from(result: PlanResult) -> tuple[PlanResult, ...]:
@@ -39,7 +23,7 @@ def write_choice(result: PlanResult, folder: Path) -> None:
     for index, one in enumerate(walls, 1):
         place = _place(folder, index)
         make_folder(place)
-        write_built(one, place)
+        write_plan_folder(one, place)
     clear_choice(folder, len(walls) + 1)
     # Drawing loads matplotlib, which takes as long as a small plan.
     from drystone.plotting import plot_choice, save  # noqa: PLC0415

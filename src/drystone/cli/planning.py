@@ -15,7 +15,6 @@ from drystone.cli.choice import (
     choice_summary,
     clear_choice,
     print_choice,
-    write_built,
     write_choice,
 )
 from drystone.cli.output import number, prepare_folder, print_json, print_table
@@ -25,6 +24,7 @@ from drystone.cli.settings import recorded_method, search_seconds, settings_from
 from drystone.cli.timing import print_profile, profile_summary
 from drystone.errors import ExitCode, UsageError
 from drystone.io.photo_beside import photo_beside, place_photo
+from drystone.io.plan_folder import write_plan_folder
 from drystone.io.plan_json import read_plan
 from drystone.model.plan import Plan
 from drystone.model.site import Site
@@ -153,7 +153,7 @@ def _announce(
 
 def write_result(result: PlanResult, stones: StoneSet, folder: Path) -> None:
     """Write plan.json, settings.toml, wall.png, the pictures and the report."""
-    write_built(result, folder)
+    write_plan_folder(result, folder)
     # Drawing loads matplotlib, which takes as long as a small plan.
     from drystone.plotting import write_pictures  # noqa: PLC0415
     from drystone.report import view_of_result, write_report  # noqa: PLC0415

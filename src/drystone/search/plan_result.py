@@ -1,8 +1,9 @@
 """What planning gave, and whether the wall counts as complete."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import import_module
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
@@ -135,6 +136,41 @@ def finish(
         F_SF_bound=min(1.0, usable_area_px(planner.workshop) / (frame.width * frame.height)),
         profile=planner.profile,
     )
+
+
+def result_of(planner: Planner) -> PlanResult:
+    """Return what a planner has built so far, as a result whose plan can be written.
+
+    Parameters
+    ----------
+    planner : Planner
+        After its :meth:`~drystone.Planner.steps`, or in the midst of them: the result is then
+        "interrupted".
+
+    Examples
+    --------
+    >>> import drystone as ds
+    >>> bricks = ds.generate.BrickSettings(count=3, height_px=10, aspect=2)
+    >>> stones = ds.generate.brick_stones(bricks, np.random.default_rng(1))
+    >>> planner = ds.Planner(stones, ds.Site(60, 10))
+    >>> steps = planner.steps()
+    >>> _ = next(steps), next(steps)
+    >>> result = result_of(planner)
+    >>> result.status, len(result.plan.steps)
+    ('interrupted', 2)
+    """
+    settings = planner.settings
+    one_pass = replace(settings, search=replace(settings.search, budget=1))
+    provenance = {
+        "version": version("drystone"),
+        "method": "custom",
+        "seed": planner.seed,
+        "settings": one_pass.as_dict(),
+    }
+    site = planner.build.wall.site
+    stopped = planner.stopped or Stopped("interrupted", "construction goes on")
+    result = finish(planner, Frame(*site.extent_px, site), stopped, provenance, 0.0)
+    return replace(result, solves=Solves(planner.failed_solves, planner.cold_solves))
 
 
 def _shortfall(planner: Planner, metrics: PlanMetrics) -> str:
