@@ -294,6 +294,8 @@ def test_huge_pictures_are_refused_before_decoding_and_the_limit_is_a_setting(tm
     path.write_bytes(data)
     with pytest.raises(InputError, match=r"E110.*100000 x 50000 px are 5000 million.*200 million"):
         read_stones(path)
+    with pytest.raises(InputError, match=r"crop it; only in Python .* raised \(max_image_mpx\)\.$"):
+        read_stones(path)
     for name in ("b.tif", "b.npy", "b.bmp"):
         target = tmp_path / name
         small = two_stones(7, 9, np.uint8)

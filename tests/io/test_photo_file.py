@@ -131,3 +131,24 @@ def test_cut_short_missing_large_and_several(tmp_path):
     with pytest.raises(InputError) as caught:
         read_photo(whole, max_px=1000)
     assert caught.value.code == "E110"
+    assert "nearest neighbour" not in str(caught.value)
+    assert "only in Python can the limit be raised (max_px)" in str(caught.value)
+
+
+def test_orientations_in_any_compression_and_in_xmp_are_said(tmp_path):
+    upright = PICTURE[::-1]
+    xmp = b'<rdf:Description tiff:Orientation="4"/>'
+    for number, options in enumerate(
+        ({"tiffinfo": {274: 4}}, {"tiffinfo": {274: 4}, "compression": "tiff_lzw"},
+         {"tiffinfo": {700: xmp}}),
+    ):  # fmt: skip
+        photo = read_photo(saved(tmp_path / f"{number}.tif", **options))
+        assert np.array_equal(photo.values, upright)
+        assert [notice.code for notice in photo.notices] == ["W173"]
+
+
+def test_cmyk_of_16_bits_is_refused(tmp_path):
+    four = np.dstack([PICTURE, PICTURE[..., 0]]).astype(np.uint16)
+    tifffile.imwrite(tmp_path / "deep.tif", four, photometric="separated")
+    with pytest.raises(InputError, match=r"E107 .*16 bits a channel in CMYK.*8 bits"):
+        read_photo(tmp_path / "deep.tif")

@@ -95,3 +95,10 @@ def test_a_set_is_ordered_and_knows_its_stones() -> None:
         stones.by_id(8)
     with pytest.raises(ValueError, match="same id"):
         StoneSet((Stone(7, pixel), Stone(7, pixel)))
+
+
+def test_names_that_are_no_utf8_can_be_written():
+    name = b"st\xf6nes.png".decode("utf-8", "surrogateescape")
+    source = Source(name, files=(name, "b.png"))
+    assert (source.path, source.files) == ("st?nes.png", ("st?nes.png", "b.png"))
+    assert Stone(1, np.ones((2, 2), bool), name=name).name == "st?nes.png"

@@ -4,7 +4,14 @@ from dataclasses import dataclass
 
 from drystone.errors import LabelImageError, Notice
 from drystone.io.necks import suspect_necks
-from drystone.io.patches import Patch, filled, in_one_piece, smallest_stone_px, without_specks
+from drystone.io.patches import (
+    Patch,
+    filled,
+    in_one_piece,
+    piece_numbers,
+    smallest_stone_px,
+    without_specks,
+)
 from drystone.io.read_settings import ReadSettings
 from drystone.model.stone import Source, StoneSet
 
@@ -20,17 +27,22 @@ class Found:
 
 def stone_set(found: Found, source: Source, settings: ReadSettings) -> StoneSet:
     """Put patches in order and make stones of them; every decision becomes a notice."""
-    known = {patch.id for patch in found.patches}
+    numbers = piece_numbers(found.patches, settings)
+    known = {patch.id for patch in found.patches}.union(*numbers.values())
     unknown = sorted(set(settings.skip) - known)
     notices = list(found.notices)
     if unknown:
         listed = ", ".join(str(stone_id) for stone_id in unknown)
         notices.append(Notice("W116", f"no stone {listed} to skip.", "Check the ids."))
-    patches = [patch for patch in found.patches if patch.id not in settings.skip]
-    limit_px = smallest_stone_px(patches, settings)
+    skip = set(settings.skip)
+    # One of several numbers stays until it is split.
+    patches = [p for p in found.patches if not {p.id, *numbers.get(p.id, ())} <= skip]
+    # What is split must not depend on what is skipped.
+    judged = found.patches if settings.pieces == "split" else patches
+    limit_px = smallest_stone_px(judged, settings)
     patches, specks = without_specks(patches, limit_px)
     patches, holes = filled(patches, settings)
-    patches, pieces = in_one_piece(patches, settings, found.where)
+    patches, pieces = in_one_piece(patches, settings, found.where, numbers)
     patches, bits = without_specks(patches, limit_px)
     notices += [*specks, *holes, *pieces, *bits, *suspect_necks(patches)]
     if not patches:

@@ -34,7 +34,8 @@ class Picture:
     Parameters
     ----------
     values : (h, w) or (h, w, c) array
-        Values, palette indices or colour channels (c = 2: grey and alpha, 3: RGB, 4: RGBA).
+        Values, palette indices or colour channels, without what says that it is alpha; c = 2 and
+        4 are left for arrays, and for channels of a TIFF that do not say what they are.
     lossy : bool
         True when the format does not keep values exactly.
     """
@@ -103,7 +104,14 @@ def _reader(data: bytes, where: str) -> Callable[[bytes, str, int], Picture]:
     )
 
 
-def check_size(width: int, height: int, where: str, max_px: int) -> None:
+def check_size(
+    width: int,
+    height: int,
+    where: str,
+    max_px: int,
+    cure: str = "Reduce the picture (nearest neighbour, so that ids survive) or crop it; only in "
+    "Python can the limit be raised (max_image_mpx).",
+) -> None:
     """Refuse pictures that would fill the memory (E110)."""
     if width * height > max_px:
         raise InputError(
@@ -111,8 +119,7 @@ def check_size(width: int, height: int, where: str, max_px: int) -> None:
             f"{width} x {height} px are {width * height / 1e6:.0f} million; the limit is "
             f"{max_px / 1e6:g} million.",
             where=where,
-            cure="Reduce the picture (nearest neighbour, so that ids survive), crop it, or "
-            "raise max_image_mpx.",
+            cure=cure,
         )
 
 
@@ -153,13 +160,23 @@ def _read_pillow(image: Image.Image, where: str, max_px: int) -> Picture:
     if getattr(image, "n_frames", 1) > 1:
         raise several_pages(f"{image.n_frames} frames", where)  # type: ignore[attr-defined]
     if image.mode not in {"1", "L", "P", "LA", "PA", "I", "I;16", "F", "RGB", "RGBA"}:
-        raise InputError(
-            "E107",
-            f"the colour mode {image.mode} does not hold ids.",
-            where=where,
-            cure="Export a grey, palette or RGB picture.",
-        )
-    return Picture(np.asarray(image))
+        raise _no_ids(image.mode, where)
+    values = np.asarray(image)
+    return Picture(_without_alpha(values) if image.mode in {"LA", "PA", "RGBA"} else values)
+
+
+def _no_ids(mode: str, where: str) -> InputError:
+    return InputError(
+        "E107",
+        f"the colour mode {mode} does not hold ids.",
+        where=where,
+        cure="Export a grey, palette or RGB picture.",
+    )
+
+
+def _without_alpha(values: NDArray[Any]) -> NDArray[Any]:
+    """Drop the last channel of two or four, which is known to be alpha."""
+    return values[:, :, 0] if values.shape[2] == 2 else values[:, :, :-1]
 
 
 def several_pages(found: str, where: str) -> InputError:
@@ -185,7 +202,10 @@ def _read_tiff(data: bytes, where: str, max_px: int) -> Picture:
             cure="Export it uncompressed, with LZW or with deflate; ids of 16 or 32 bits in one "
             "channel.",
         )
-    return Picture(tiff.values(data), lossy=page.lossy)
+    if page.colours:
+        raise _no_ids(page.colours, where)
+    values = tiff.values(data)
+    return Picture(_without_alpha(values) if page.alpha else values, lossy=page.lossy)
 
 
 def _read_npy(data: bytes, where: str, max_px: int) -> Picture:

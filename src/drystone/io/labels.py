@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.errors import LabelImageError, Notice
+from drystone.errors import InputError, LabelImageError, Notice
 from drystone.io.census import take_census
 from drystone.io.images import several_pages
 
@@ -46,7 +46,8 @@ def to_ids(values: NDArray[Any], background: int, where: str) -> IdImage:
     Parameters
     ----------
     values : (h, w) or (h, w, c) array
-        Of bools, integers or whole floats; c = 1, 2 (grey, alpha), 3 (RGB) or 4 (RGBA).
+        Of bools, integers or whole floats; c = 1, 2 (grey, alpha), 3 (RGB) or 4 (RGBA), where
+        alpha tells nothing that the other channels do not.
     background : int
         The value that is not stone; -1 is allowed for arrays.
     where : str
@@ -57,7 +58,7 @@ def to_ids(values: NDArray[Any], background: int, where: str) -> IdImage:
     LabelImageError
         E108 values that cannot be ids.
     InputError
-        E109 not one picture.
+        E109 not one picture, or a last channel that is no alpha.
 
     Notes
     -----
@@ -71,10 +72,18 @@ def to_ids(values: NDArray[Any], background: int, where: str) -> IdImage:
     """
     values = _as_picture(values, where)
     values = _whole_numbers(values, where)
-    if values.ndim == 3 and values.shape[2] > 2:
-        return _ids_of_colours(values[:, :, :3], background, where)
-    if values.ndim == 3:
-        values = values[:, :, 0]
+    if values.ndim == 2:
+        return _ids_of_numbers(values, background, where)
+    if values.shape[2] == 2:
+        image = _ids_of_numbers(values[:, :, 0], background, where)
+    else:
+        image = _ids_of_colours(values[:, :, :3], background, where)
+    if values.shape[2] in (2, 4):
+        _check_alpha(values[:, :, -1], image, where)
+    return image
+
+
+def _ids_of_numbers(values: NDArray[Any], background: int, where: str) -> IdImage:
     ids, background = _without_negative_background(values, background)
     low, high = int(ids.min()), int(ids.max())
     if low < 0 or high > MAX_ID:
@@ -113,6 +122,9 @@ def _whole_numbers(values: NDArray[Any], where: str) -> NDArray[Any]:
             "E108", f"values of type {values.dtype} are no ids.", where=where,
             cure="Give whole numbers (or bools for a mask).",
         )  # fmt: skip
+    if values.dtype.itemsize < 4:
+        # The largest id is beyond what 16 bits can be compared with.
+        values = values.astype(np.float32)
     for name, bad in (
         ("not finite (NaN or infinite)", ~np.isfinite(values)),
         ("no whole numbers", values != np.floor(values)),
@@ -121,6 +133,24 @@ def _whole_numbers(values: NDArray[Any], where: str) -> NDArray[Any]:
         if bad.any():
             raise _not_ids(f"{int(bad.sum())} px are {name}", bad, where)
     return values.astype(np.int64)
+
+
+def _check_alpha(alpha: NDArray[Any], image: IdImage, where: str) -> None:
+    """Refuse a last channel that is neither of one value nor the same as where stones are (E109).
+
+    Anything else may be the mask of a further stone.
+    """
+    stone = image.ids != image.background
+    highest = alpha.max()
+    if alpha.min() == highest or np.array_equal(alpha, np.where(stone, highest, 0)):
+        return
+    raise InputError(
+        "E109",
+        "the last channel is no transparency: it does not go with where stones are.",
+        where=where,
+        cure="Give ids in one channel, or colours in three; masks of one stone each in a folder "
+        "of pictures, or as the arrays of an NPZ.",
+    )
 
 
 def _not_ids(what: str, bad: NDArray[np.bool_], where: str) -> LabelImageError:
@@ -147,7 +177,7 @@ def _ids_of_colours(colours: NDArray[Any], background: int, where: str) -> IdIma
     red, green, blue = (colours[:, :, i] for i in range(3))
     grey = (red == green) & (green == blue)
     if grey.all():
-        return to_ids(red, background, where)
+        return _ids_of_numbers(red, background, where)
     if int(colours.min()) < 0 or int(colours.max()) > 255:
         raise LabelImageError(
             "E108", "colours have values outside 0 ... 255.", where=where,

@@ -146,6 +146,8 @@ def _is_one_id(binary: BinaryMask) -> bool:
 
 def _is_antialiased(census: Census, background: int) -> bool:
     """Tell a mask with grey edges: all other values lie between two plain ones, at edges."""
+    if len(census.values) < 3:
+        return False
     ends = np.zeros(len(census.values), bool)
     ends[[0, -1]] = True
     most = set(np.argsort(census.counts)[-2:].tolist())

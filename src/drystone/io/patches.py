@@ -1,6 +1,6 @@
 """Stones cut out of label images, with their holes and pieces put in order."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -181,8 +181,37 @@ def enclosed(mask: Mask) -> Mask:
     return np.asarray(found[1:-1, 1:-1] > 1)
 
 
+def piece_numbers(patches: list[Patch], settings: ReadSettings) -> dict[int, list[int]]:
+    """Return the ids of the further pieces of every patch that is split.
+
+    They come after the largest id (where ids end: the free ones from 1), whatever is skipped.
+
+    Parameters
+    ----------
+    patches : list of Patch
+        All that were found, skipped ones included.
+    settings : ReadSettings
+        Empty is the answer unless its ``pieces`` is "split".
+    """
+    if settings.pieces != "split" or not patches:
+        return {}
+    stones, _ = without_specks(patches, smallest_stone_px(patches, settings))
+    whole, _ = filled(stones, settings)
+    used = {patch.id for patch in patches}
+    next_id = max(used)
+    numbers: dict[int, list[int]] = {}
+    for patch in whole:
+        for _ in patch.piece_areas_px[1:]:
+            next_id = next_id + 1 if next_id < MAX_ID else 1
+            while next_id in used:
+                next_id = next_id + 1 if next_id < MAX_ID else 1
+            used.add(next_id)
+            numbers.setdefault(patch.id, []).append(next_id)
+    return numbers
+
+
 def in_one_piece(
-    patches: list[Patch], settings: ReadSettings, where: str
+    patches: list[Patch], settings: ReadSettings, where: str, numbers: Mapping[int, list[int]]
 ) -> tuple[list[Patch], list[Notice]]:
     """Leave every stone one 8-connected piece.
 
@@ -191,9 +220,11 @@ def in_one_piece(
     patches : list of Patch
         With filled holes.
     settings : ReadSettings
-        ``pieces`` decides.
+        ``pieces`` decides; where they are split, ``skip`` is heard here, for each piece.
     where : str
         Name for messages.
+    numbers : mapping of int to list of int
+        Of :func:`piece_numbers`.
 
     Raises
     ------
@@ -216,8 +247,10 @@ def in_one_piece(
     if not several:
         return result, []
     if settings.pieces == "split":
-        new, text = _as_stones(several, [patch.id for patch in patches])
-        return result + new, [Notice("W111", f"pieces became stones of their own: {text}.")]
+        new, text = _as_stones(several, numbers, settings.skip)
+        kept = [patch for patch in result if patch.id not in settings.skip] + new
+        said = [Notice("W111", f"pieces became stones of their own: {text}.")] if new else []
+        return kept, said
     cure = "Use --pieces split (pieces='split' in Python) to make them stones."
     text = f"smaller pieces left out: {'; '.join(dropped)}."
     return result, [Notice("W111", text, cure)]
@@ -247,19 +280,19 @@ def _in_pieces(refused: list[str], where: str) -> LabelImageError:
 
 
 def _as_stones(
-    several: list[tuple[Patch, list[Patch]]], taken: list[int]
+    several: list[tuple[Patch, list[Patch]]],
+    numbers: Mapping[int, list[int]],
+    skip: tuple[int, ...],
 ) -> tuple[list[Patch], str]:
-    """Give pieces the ids after the largest (where ids end: the free ones from 1)."""
-    used, next_id = set(taken), max(taken)
+    """Give pieces their ids, and leave out those that are skipped."""
     stones, text = [], []
     for patch, pieces in several:
-        new = []
-        for piece in pieces:
-            next_id = next_id + 1 if next_id < MAX_ID else 1
-            while next_id in used:
-                next_id = next_id + 1 if next_id < MAX_ID else 1
-            used.add(next_id)
-            new.append(replace(piece, id=next_id))
+        new = [
+            replace(piece, id=number)
+            for piece, number in zip(pieces, numbers[patch.id], strict=True)
+            if number not in skip
+        ]
         stones += new
-        text.append(f"stone {patch}: " + ", ".join(f"{p.id} ({p.area_px} px)" for p in new))
+        if new:
+            text.append(f"stone {patch}: " + ", ".join(f"{p.id} ({p.area_px} px)" for p in new))
     return stones, "; ".join(text)

@@ -21,6 +21,8 @@ MAX_PX = 200_000_000
 _ORIENTATION = 0x0112
 """Tag of EXIF and TIFF: how the camera was held."""
 
+_REDUCE = "Reduce it or crop it; only in Python can the limit be raised (max_px)."
+
 _TURNS = {
     2: "mirrored left to right", 3: "turned by 180 degrees", 4: "mirrored top to bottom",
     5: "mirrored and turned", 6: "turned by 90 degrees clockwise", 7: "mirrored and turned",
@@ -128,7 +130,7 @@ def _decode(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int, bo
 
 
 def _by_pillow(image: Image.Image, where: str, max_px: int) -> tuple[NDArray[Any], int]:
-    check_size(*image.size, where, max_px)
+    check_size(*image.size, where, max_px, _REDUCE)
     orientation = int(image.getexif().get(_ORIENTATION, 1))
     if image.mode in ("1", "CMYK", "YCbCr", "LAB", "HSV"):
         return np.asarray(image.convert("RGB")), orientation
@@ -143,19 +145,24 @@ def _by_pillow(image: Image.Image, where: str, max_px: int) -> tuple[NDArray[Any
 
 def _tiff(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int]:
     page = tiff.inspect(data)
-    check_size(page.width, page.height, where, max_px)
+    check_size(page.width, page.height, where, max_px, _REDUCE)
     if page.pages > 1:
         raise several_pages(f"{page.pages} pages", where)
     bits, orientation = _tiff_tags(data)
     if bits <= 8:
         # Pillow turns a TIFF by itself when it reads it: taken back, so that it is said.
         image = TiffImagePlugin.TiffImageFile(io.BytesIO(data))
-        values, _ = _by_pillow(image, where, max_px)
+        values, orientation = _by_pillow(image, where, max_px)
         return _turned(values, _BACK.get(orientation, orientation)), orientation
     if page.unreadable:
         raise InputError(
             "E107", f"TIFF with {page.unreadable} cannot be read.", where=where,
             cure="Export it uncompressed or with LZW.",
+        )  # fmt: skip
+    if page.colours:
+        raise InputError(
+            "E107", f"TIFF of {bits} bits a channel in {page.colours} cannot be read.", where=where,
+            cure="Export it in RGB, or with 8 bits a channel.",
         )  # fmt: skip
     return tiff.values(data), orientation
 

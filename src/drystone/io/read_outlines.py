@@ -42,10 +42,11 @@ def stones_of(
         E113 ... E116, see ``docs/errors.md``.
     UsageError
         E118 when the file has another unit than the settings say, or says nothing of images and
-        one is asked for.
+        one is asked for; when a background or a mask is.
     """
     file = read(data, where, settings)
     check_unit(file.unit_m, settings, where)
+    _check_of_outlines(settings, where)
     if not file.names_images:
         check_no_image(settings, where)
     # Half a character pair can be neither printed nor written.
@@ -92,3 +93,18 @@ def check_no_image(settings: ReadSettings, where: str) -> None:
             cure="Leave --image (image in Python) out: it is for annotations that name their "
             "images (COCO, masks of SAM).",
         )  # fmt: skip
+
+
+def _check_of_outlines(settings: ReadSettings, where: str) -> None:
+    """Refuse what tells stone from background in pictures: outlines say it themselves (E118)."""
+    mask = "--no-mask" if settings.mask is False else "--mask"
+    for given, option, name in (
+        (settings.background != 0, "--background", "background"),
+        (settings.mask is not None, mask, "mask"),
+    ):
+        if given:
+            raise UsageError(
+                "E118", f"this file says itself what is stone, so {option} has no meaning.",
+                where=where,
+                cure=f"Leave {option} ({name} in Python) out: it is for pictures of stones.",
+            )  # fmt: skip

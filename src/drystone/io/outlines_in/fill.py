@@ -28,8 +28,8 @@ def check_reach(stones: Iterable[OutlinedStone], where: str, max_px: int) -> Non
                     f"stone {stone.name or stone.id} reaches over {right - left} x {bottom - top} "
                     f"px; the limit is {max_px / 1e6:g} million.",
                     where=where,
-                    cure="Is a corner of it far away from the picture? Correct it, or raise "
-                    "max_image_mpx.",
+                    cure="Is a corner of it far away from the picture? Correct it; only in Python "
+                    "can the limit be raised (max_image_mpx).",
                 )
 
 

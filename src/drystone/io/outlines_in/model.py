@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -18,6 +18,7 @@ from drystone.kernels.raster import Mask
 METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048})
 """Metres in each unit that a user may name."""
 
+_SHOWN = 8
 _STONE_NAME = re.compile(r"(?:stones?[ _-]*)?0*([1-9][0-9]*)", re.IGNORECASE)
 _WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
 
@@ -62,7 +63,7 @@ class OutlinedStone:
     Parameters
     ----------
     id : int or None
-        The file's own number, if it has one.
+        The file's own number, if it has one, be it one that no stone can have.
     name : str
         The file's own name.
     areas : tuple of Area
@@ -108,30 +109,61 @@ class OutlineFile:
 def number_in(text: object) -> int | None:
     """Return the number that a label is, or that follows the word stone in it.
 
+    Numbers are returned as they are, also those that no stone can have; labels only when one can.
+
     Examples
     --------
-    >>> number_in("stone_012"), number_in(7), number_in("wall 3"), number_in(True)
-    (12, 7, None, None)
+    >>> number_in("stone_012"), number_in(0), number_in("0"), number_in("wall 3"), number_in(True)
+    (12, 0, None, None, None)
     """
     if isinstance(text, bool) or not isinstance(text, int | str):
         return None
-    found = _STONE_NAME.fullmatch(str(text).strip())
+    if isinstance(text, int):
+        return text
+    found = _STONE_NAME.fullmatch(text.strip())
     number = int(found[1]) if found and len(found[1]) < 11 else 0
     return number if 0 < number <= MAX_ID else None
 
 
 def numbered(stones: tuple[OutlinedStone, ...]) -> tuple[tuple[OutlinedStone, ...], list[Notice]]:
-    """Give every stone an id: the file's own when all differ, else 1, 2, 3 and so on."""
-    counts = Counter(stone.id for stone in stones)
-    if None not in counts and all(count == 1 for count in counts.values()):
+    """Give every stone an id: the file's own when all differ, else 1, 2, 3 and so on.
+
+    A file with any number of its own is not numbered anew without a notice (W119).
+
+    Examples
+    --------
+    >>> stones, notices = numbered((OutlinedStone(0), OutlinedStone(1)))
+    >>> print(notices[0].message)
+    0 cannot be the number of a stone: all are numbered in order (0 is now 1, 1 is now 2).
+    """
+    own = [stone.id for stone in stones if stone.id is not None]
+    several = sorted(number for number, count in Counter(own).items() if count > 1)
+    beyond = sorted({number for number in own if not 0 < number <= MAX_ID})
+    if len(own) == len(stones) and not several and not beyond:
         return stones, []
-    several = sorted(key for key, count in counts.items() if key is not None and count > 1)
-    notices = []
+    result = tuple(replace(stone, id=i) for i, stone in enumerate(stones, start=1))
+    if not own:
+        return result, []
     if several:
-        shown = ", ".join(map(str, several[:8])) + (" …" if len(several) > 8 else "")
-        text = f"the numbers of the file are not different ({shown}): stones are numbered in order."
-        notices.append(Notice("W119", text, "Give every stone a number of its own to keep them."))
-    return tuple(replace(stone, id=i) for i, stone in enumerate(stones, start=1)), notices
+        why = f"the numbers of the file are not different ({_shown(several)}): stones"
+        text = f"{why} are numbered in order."
+    else:
+        missing = len(stones) - len(own)
+        why = f"{_shown(beyond)} cannot be the number of a stone" if beyond else ""
+        why += ", " if beyond and missing else ""
+        why += f"{missing} of {len(stones)} stones without a number" if missing else ""
+        moved = [
+            f"{stone.id} is now {i}"
+            for i, stone in enumerate(stones, start=1)
+            if stone.id not in (None, i)
+        ]
+        text = f"{why}: all are numbered in order{f' ({_shown(moved)})' if moved else ''}."
+    cure = "Give every stone a number of its own, from 1, to keep them."
+    return result, [Notice("W119", text, cure)]
+
+
+def _shown(things: Sequence[object]) -> str:
+    return ", ".join(map(str, things[:_SHOWN])) + (" …" if len(things) > _SHOWN else "")
 
 
 def without_wedges(
