@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from drystone.cli import main
+from drystone.cli.commands import generate
 from drystone.cli.commands import stones as command
 from drystone.errors import UsageError
 from tests.cli.conftest import Run
@@ -42,6 +43,19 @@ def test_errors_become_exit_codes(
     assert (ran.code, ran.out) == (code, "")
     assert ran.err.startswith(f"drystone: {said}")
     assert ran.err.count("\n") == 1
+
+
+def test_a_cure_names_options_that_the_command_has(
+    run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def fail(_: object) -> int:
+        raise MemoryError
+
+    monkeypatch.setattr(generate, "run", fail)
+    ran = run("generate", "brick", "-o", tmp_path / "x.png")
+    assert (
+        "E142 the memory is not large enough. Use a smaller --count or number in --set" in ran.err
+    )
 
 
 def test_debug_shows_the_traceback(run: Run) -> None:

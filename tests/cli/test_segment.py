@@ -73,6 +73,50 @@ def test_a_plan_is_made_of_what_was_written(run, tmp_path, sheet):
     assert json.loads((wall / "plan.json").read_text())["steps"]
 
 
+def quickly_planned(run, stones, out, *more):
+    return run(
+        "plan", stones, "--wall", "0.8mx0.4m", "-o", out, "--method", "paper", "--scale", "0.15",
+        "--quiet", *more,
+    )  # fmt: skip
+
+
+def test_a_plan_in_the_folder_of_the_stones_keeps_their_photograph(run, tmp_path, bare):
+    out = tmp_path / "out"
+    assert run("segment", saved(bare, tmp_path), "--px-per-m", 800, "-o", out).code == 0
+    photo = (out / "photo.jpg").read_bytes()
+    ran = quickly_planned(run, out, out, "--overwrite")
+    assert ran.code in (0, 4), ran.err
+    assert (out / "photo.jpg").read_bytes() == photo
+    assert "data:image/jpeg" in (out / "report.html").read_text(encoding="utf-8")
+    assert "photo" not in json.loads((out / "plan.json").read_text())["source"]
+
+
+def test_a_plan_knows_its_copy_and_refuses_before_it_replaces_another(run, tmp_path, bare):
+    out, wall, mine = tmp_path / "out", tmp_path / "wall", tmp_path / "mine"
+    assert run("segment", saved(bare, tmp_path), "--px-per-m", 800, "-o", out).code == 0
+    for _ in range(2):
+        assert quickly_planned(run, out, wall, "--overwrite").code in (0, 4)
+        source = json.loads((wall / "plan.json").read_text())["source"]
+        assert source["photo"]["name"] == "photo.jpg"
+    mine.mkdir()
+    (mine / "photo.jpg").write_bytes(b"mine")
+    ran = quickly_planned(run, out, mine, "--overwrite")
+    assert ran.code == 2
+    assert "E129" in ran.err
+    assert [path.name for path in mine.iterdir()] == ["photo.jpg"]
+    assert (mine / "photo.jpg").read_bytes() == b"mine"
+
+
+def test_a_damaged_photograph_is_refused_before_the_search(run, tmp_path, bare):
+    out, wall = tmp_path / "out", tmp_path / "wall"
+    assert run("segment", saved(bare, tmp_path), "--px-per-m", 800, "-o", out).code == 0
+    (out / "photo.jpg").write_bytes(b"no picture")
+    ran = quickly_planned(run, out, wall)
+    assert ran.code == 3
+    assert "E189" in ran.err
+    assert not wall.exists()
+
+
 def test_a_turned_photograph_gives_the_same_stones(run, tmp_path, bare):
     picture = Image.open(io.BytesIO(bare.jpeg))
     upright, turned = tmp_path / "upright.png", tmp_path / "turned.png"
@@ -175,9 +219,11 @@ def test_no_stones_and_noise_are_errors(run, tmp_path):
     Image.fromarray(np.full((300, 400, 3), 180, np.uint8)).save(tmp_path / "plain.png")
     Image.fromarray(rng.integers(0, 256, (300, 400, 3), np.uint8)).save(tmp_path / "noise.png")
     for name in ("plain", "noise"):
-        ran = run("segment", tmp_path / f"{name}.png", "-o", tmp_path / name)
-        assert ran.code == 3
-        assert "drystone: E17" in ran.err
+        for ground in ("auto", "light", "dark"):
+            out = tmp_path / name / ground
+            ran = run("segment", tmp_path / f"{name}.png", "-o", out, "--ground", ground)
+            assert ran.code == 3
+            assert "drystone: E17" in ran.err
 
 
 def test_a_folder_with_files_is_not_touched(run, tmp_path, bare):

@@ -4,9 +4,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import ndimage
 
+from drystone.errors import UsageError
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.generate.fourier import FourierSettings, fourier_stones
-from drystone.generate.layout import GAP_PX, lay_out, stones_of
+from drystone.generate.layout import GAP_PX, check_room, lay_out, stones_of
 from drystone.generate.polygon import PolygonSettings, polygon_stones
 from drystone.generate.rubble import RubbleSettings, rubble_stones
 from drystone.model.stone import Stone, StoneSet
@@ -75,6 +76,31 @@ def test_stones_never_touch_each_other_or_the_edge(sizes):
     assert np.array_equal(grown, labels)
     assert not np.delete(labels, np.s_[GAP_PX:-GAP_PX], axis=0).any()
     assert not np.delete(labels, np.s_[GAP_PX:-GAP_PX], axis=1).any()
+
+
+@pytest.mark.parametrize(
+    ("settings", "wrong", "named"),
+    [
+        (FourierSettings, {"largest_radius_px": 1e8}, "largest_radius_px or count"),
+        (FourierSettings, {"count": 10**9}, "largest_radius_px or count"),
+        (PolygonSettings, {"height_px": 1e8}, "width_px, height_px or count"),
+        (BrickSettings, {"height_px": 10**12}, "height_px, aspect or count"),
+        (BrickSettings, {"halves": 10**9}, "height_px, aspect, count or halves"),
+        (RubbleSettings, {"height_px": 1e8}, "width_px, height_px or tilt_deg"),
+        # 280 million px of stone, in boxes of billions.
+        (RubbleSettings, {"height_px": 1e6}, "width_px, height_px or tilt_deg"),
+        (RubbleSettings, {"height_px": 1e8, "tilt_deg": 0.0}, "width_px or height_px"),
+    ],
+)
+def test_stones_that_fit_into_no_image_are_refused(settings, wrong, named):
+    with pytest.raises(UsageError, match=f"E130 .*500 million px. Make {named} smaller"):
+        settings(**wrong)
+
+
+def test_large_images_of_stones_are_allowed():
+    RubbleSettings(count=10_000, width_px=28_000, height_px=8_000, courses=100)
+    RubbleSettings(height_px=1e6, tilt_deg=0.0)
+    check_room(5, (9_996, 9_996), ("a", "b"), "test")
 
 
 def test_ids_of_any_stones_are_kept():

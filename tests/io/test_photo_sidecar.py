@@ -1,11 +1,12 @@
 """What stands beside the label image of a photograph, and the photograph itself."""
 
+import json
 from pathlib import Path
 
 import pytest
 
-from drystone.errors import InputError
-from drystone.io.photo_beside import photo_beside, photo_of, place_photo
+from drystone.errors import InputError, UsageError
+from drystone.io.photo_beside import check_place, photo_beside, photo_of, place_photo
 from drystone.io.photo_sidecar import SIDECAR, PhotoSidecar, read_sidecar, write_sidecar
 
 
@@ -48,19 +49,77 @@ def test_damage_is_said(tmp_path: Path, text: str) -> None:
         read_sidecar(tmp_path / "stones.png")
 
 
+def segmented(folder: Path, picture: bytes = b"a picture") -> Path:
+    """What `drystone segment` leaves, as far as it matters here."""
+    folder.mkdir()
+    (folder / "photo.jpg").write_bytes(picture)
+    (folder / "stones.png").write_bytes(b"labels")
+    write_sidecar(PhotoSidecar(640, 480, photo="photo.jpg"), folder)
+    return folder
+
+
+def planned(stones: Path | None, folder: Path) -> Path | None:
+    """Place the photograph and write down what the plan must say of it."""
+    folder.mkdir(exist_ok=True)
+    beside, record = place_photo(None if stones is None else photo_of(stones), folder)
+    (folder / "plan.json").write_text(json.dumps({"source": dict(record)}), encoding="utf-8")
+    return beside
+
+
 def test_the_photograph_goes_beside_the_plan(tmp_path: Path) -> None:
-    found, plan = tmp_path / "found", tmp_path / "plan"
-    found.mkdir()
-    plan.mkdir()
-    (found / "photo.jpg").write_bytes(b"a picture")
-    (found / "stones.png").write_bytes(b"labels")
-    write_sidecar(PhotoSidecar(640, 480, photo="photo.jpg"), found)
+    found, plan = segmented(tmp_path / "found"), tmp_path / "plan"
     for stones in (found, found / "stones.png"):
         assert photo_of(stones) == found / "photo.jpg"
-    assert place_photo(photo_of(found), plan) == plan / "photo.jpg"
-    assert photo_beside(plan) == plan / "photo.jpg"
-    place_photo(None, plan)  # the next plan has none
+    assert planned(found, plan) == photo_beside(plan) == plan / "photo.jpg"
+    other = segmented(tmp_path / "other", b"another")
+    assert planned(other, plan) == plan / "photo.jpg"
+    assert (plan / "photo.jpg").read_bytes() == b"another"
+    assert planned(None, plan) is None  # the next plan has none
     assert photo_beside(plan) is None
+
+
+def test_a_photograph_that_no_plan_put_there_stays(tmp_path: Path) -> None:
+    mine = tmp_path / "photo.jpg"
+    mine.write_bytes(b"mine")
+    for _ in range(2):  # the second time beside a plan
+        assert planned(None, tmp_path) is None
+        assert mine.read_bytes() == b"mine"
+    found = segmented(tmp_path / "found")
+    for placed in (check_place, place_photo):
+        with pytest.raises(UsageError, match=r"E129 .*photo\.jpg: no plan put this.*-o"):
+            placed(photo_of(found), tmp_path)
+    assert mine.read_bytes() == b"mine"
+
+
+def test_a_copy_that_somebody_changed_stays(tmp_path: Path) -> None:
+    plan = tmp_path / "plan"
+    planned(segmented(tmp_path / "found"), plan)
+    (plan / "photo.jpg").write_bytes(b"painted over")
+    planned(None, plan)
+    assert (plan / "photo.jpg").read_bytes() == b"painted over"
+
+
+def test_the_photograph_of_the_label_image_stays_beside_it(tmp_path: Path) -> None:
+    found = segmented(tmp_path / "found")
+    for _ in range(2):
+        assert planned(found, found) == found / "photo.jpg"
+        assert (found / "photo.jpg").read_bytes() == b"a picture"
+    # It is of that label image even when the plan beside it was given a copy of the same bytes.
+    (found / "stones.json").unlink()
+    moved = segmented(tmp_path / "moved")
+    (found / "photo.jpg").unlink()
+    planned(moved, found)
+    write_sidecar(PhotoSidecar(640, 480, photo="photo.jpg"), found)
+    planned(None, found)
+    assert (found / "photo.jpg").read_bytes() == b"a picture"
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"source": 1}', '{"source": {"photo": "x"}}'])
+def test_a_damaged_plan_owns_no_photograph(tmp_path: Path, text: str) -> None:
+    (tmp_path / "photo.png").write_bytes(b"mine")
+    (tmp_path / "plan.json").write_text(text, encoding="utf-8")
+    place_photo(None, tmp_path)
+    assert (tmp_path / "photo.png").read_bytes() == b"mine"
 
 
 def test_the_name_of_a_photograph_leads_nowhere_else(tmp_path: Path) -> None:

@@ -220,6 +220,24 @@ def test_no_stones_is_an_error(picture):
     assert refused.value.code in ("E175", "E176")
 
 
+@pytest.mark.parametrize("ground", ["auto", "light", "dark"])
+@pytest.mark.parametrize("value", [0, 255])
+def test_a_picture_of_one_value_has_no_stones(ground, value):
+    picture = np.full((100, 100, 3), value, np.uint8)
+    with pytest.raises(InputError) as refused:
+        segment(picture, settings=SegmentSettings(ground=ground))
+    assert refused.value.code == "E175"
+
+
+@pytest.mark.parametrize("ground", ["auto", "light", "dark"])
+def test_where_all_is_paper_there_is_no_ground(ground):
+    picture = drawn((disc((300, 400), 150, 200, 60), (170, 160, 150)))
+    everywhere = np.ones((300, 400), bool)
+    with pytest.raises(InputError) as refused:
+        segment(picture, settings=SegmentSettings(ground=ground), papers=everywhere)
+    assert refused.value.code == "E176"
+
+
 def test_a_picture_of_something_else_has_no_ground():
     noise = np.random.default_rng(3).standard_normal((3, 300, 400))
     clouds = np.stack([ndimage.gaussian_filter(one, 12) for one in noise], axis=-1)

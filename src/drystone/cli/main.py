@@ -43,20 +43,19 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (DrystoneError, OSError, MemoryError) as error:
         if arguments.debug:
             raise
-        coded = _coded(error)
+        coded = _coded(error, arguments.command)
         print(f"drystone: {coded}", file=sys.stderr)
         return int(coded.exit_code)
     return code
 
 
-def _coded(error: DrystoneError | OSError | MemoryError) -> DrystoneError:
+def _coded(error: DrystoneError | OSError | MemoryError, command: str) -> DrystoneError:
     """Return an error with a code; what the system refuses has none of its own."""
     if isinstance(error, DrystoneError):
         return error
     if isinstance(error, MemoryError):
-        return InputError(
-            "E142", "the memory is not large enough.", cure="Use a smaller --scale or wall."
-        )
+        less = "--count or number in --set" if command == "generate" else "--scale or wall"
+        return InputError("E142", "the memory is not large enough.", cure=f"Use a smaller {less}.")
     return InputError(
         "E141",
         f"the system refuses this: {error.strerror or error}.",

@@ -18,12 +18,12 @@ from drystone.cli.choice import (
     write_choice,
 )
 from drystone.cli.output import number, prepare_folder, print_json, print_table
+from drystone.cli.plan_photo import check_photo, with_photo
 from drystone.cli.progress import step_bar
 from drystone.cli.scale import picture_size_px, refuse_outside
 from drystone.cli.settings import recorded_method, search_seconds, settings_from
 from drystone.cli.timing import print_profile, profile_summary
 from drystone.errors import ExitCode, UsageError
-from drystone.io.photo_beside import photo_beside, place_photo
 from drystone.io.plan_folder import write_plan_folder
 from drystone.io.plan_json import read_plan
 from drystone.model.plan import Plan
@@ -61,6 +61,7 @@ def plan_and_write(
         return ExitCode.DONE
     begin = plan_to_begin_with(stones, wall, arguments, settings)
     _check_stones(stones, wall, arguments, settings)
+    check_photo(photo, stones, folder)
     prepare_folder(folder, overwrite=arguments.overwrite or partial is not None)
     seconds = search_seconds(method_settings(arguments.method), len(stones), arguments)
     _announce(stones, wall, arguments, seconds if settings.search.budget > 1 else None)
@@ -85,8 +86,8 @@ def plan_and_write(
         )
     for notice in result.notices:
         print(f"drystone: {notice}", file=sys.stderr)
-    place_photo(photo, folder)
-    write_result(result, stones, folder)
+    result, beside = with_photo(result, photo, folder)
+    write_result(result, stones, folder, beside)
     write_film(result, folder)
     if arguments.pareto:
         write_choice(result, folder)
@@ -151,7 +152,9 @@ def _announce(
         print(f"drystone: {notice}", file=sys.stderr)
 
 
-def write_result(result: PlanResult, stones: StoneSet, folder: Path) -> None:
+def write_result(
+    result: PlanResult, stones: StoneSet, folder: Path, photo: Path | None = None
+) -> None:
     """Write plan.json, settings.toml, wall.png, the pictures and the report."""
     write_plan_folder(result, folder)
     # Drawing loads matplotlib, which takes as long as a small plan.
@@ -159,9 +162,7 @@ def write_result(result: PlanResult, stones: StoneSet, folder: Path) -> None:
     from drystone.report import view_of_result, write_report  # noqa: PLC0415
 
     write_pictures(folder, result.wall, result.clusters, resistance=result.resistance)
-    view = view_of_result(
-        result, photo=photo_beside(folder), notices=(*stones.notices, *result.notices)
-    )
+    view = view_of_result(result, photo=photo, notices=(*stones.notices, *result.notices))
     write_report(folder / "report.html", view, pictures=folder)
 
 

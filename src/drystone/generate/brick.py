@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator
 
-from drystone.generate.layout import stones_of
+from drystone.generate.layout import check_room, stones_of
 from drystone.generate.outlines import check_setting
 from drystone.model.stone import StoneSet
 
@@ -37,6 +37,9 @@ class BrickSettings:
         check_setting(numbers, "there must be at least one brick", "brick")
         check_setting(self.height_px >= 1, "the height must be 1 px or more", "brick")
         check_setting(self.width_px >= 2, "the width must be 2 px or more", "brick")
+        size_px = self.width_px, self.height_px
+        names = ("height_px", "aspect", "count") + (("halves",) if self.halves else ())
+        check_room(self.count + self.halves, size_px, names, "brick")
 
     @property
     def width_px(self) -> int:

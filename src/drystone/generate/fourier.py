@@ -10,7 +10,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from drystone.generate.layout import stones_of
+from drystone.generate.layout import check_room, stones_of
 from drystone.generate.outlines import Outline, check_setting, draw_stone
 from drystone.model.stone import StoneSet
 
@@ -61,6 +61,9 @@ class FourierSettings:
         )
         for ok, what in ranges:
             check_setting(ok, what, "fourier")
+        # The radius is positive everywhere, which bounds how long a stone can be.
+        size_px = 2 * largest * (1 + min(self.D2, 1)), 2 * largest
+        check_room(self.count, size_px, ("largest_radius_px", "count"), "fourier")
 
     @cached_property
     def waves(self) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from drystone.errors import UsageError
 from drystone.kernels.raster import Mask
 from drystone.model.stone import Source, Stone, StoneSet
 from drystone.model.wall import Labels
@@ -14,6 +15,40 @@ GAP_PX = 4
 
 WIDTH_TO_HEIGHT = 1.6
 """Shape of the image of stones, about."""
+
+LARGEST_PX = 500_000_000
+"""Of the image of stones: with more, most machines run out of memory half way."""
+
+
+def check_room(
+    count: int, size_px: tuple[float, float], settings: Sequence[str], where: str
+) -> None:
+    """Refuse stones that no image has room for, before any is made.
+
+    Parameters
+    ----------
+    count : int
+        Number of stones.
+    size_px : (float, float)
+        Width and height of the box of a stone, about.
+    settings : sequence of str
+        Names of those that decide the size.
+    where : str
+        Name of the stones, for the message.
+
+    Raises
+    ------
+    UsageError
+        E130.
+    """
+    width, height = (side + GAP_PX for side in size_px)
+    if not count * width * height <= LARGEST_PX:
+        raise UsageError(
+            "E130",
+            f"the stones would fill an image of more than {LARGEST_PX // 1_000_000} million px.",
+            where=f"generate {where}",
+            cure=f"Make {', '.join(settings[:-1])} or {settings[-1]} smaller.",
+        )
 
 
 def lay_out(stones: StoneSet) -> Labels:

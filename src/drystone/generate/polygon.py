@@ -9,7 +9,7 @@ import shapely
 from numpy.random import Generator
 from scipy.spatial import ConvexHull
 
-from drystone.generate.layout import stones_of
+from drystone.generate.layout import check_room, stones_of
 from drystone.generate.outlines import (
     ATTEMPTS,
     Outline,
@@ -53,6 +53,8 @@ class PolygonSettings:
         side = min(self.width_px, self.height_px)
         check_setting(side >= 4, "width and height must be 4 px or more", "polygon")
         check_setting(0 <= self.noise <= 2, "noise must be between 0 and 2", "polygon")
+        size_px = self.width_px, self.height_px
+        check_room(self.count, size_px, ("width_px", "height_px", "count"), "polygon")
 
 
 def noisy_polygon(settings: PolygonSettings, rng: Generator) -> Outline | None:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from drystone.generate.layout import stones_of
+from drystone.generate.layout import check_room, stones_of
 from drystone.generate.outlines import (
     Outline,
     check_setting,
@@ -80,6 +80,16 @@ class RubbleSettings:
         )
         for ok, what in ranges:
             check_setting(ok, what, "rubble")
+        # Long stones that lie askew have large boxes.
+        names = ("width_px", "height_px") + (("tilt_deg",) if self.tilt_deg else ())
+        check_room(self.count, self._box_px(), names, "rubble")
+
+    def _box_px(self) -> tuple[float, float]:
+        """Return the sides of the box about a stone of middle size that is tilted most."""
+        width, height = self.width_px * self.courses / self.count, self.height_px / self.courses
+        tilt = math.radians(min(self.tilt_deg, 45.0))
+        cos, sin = math.cos(tilt), math.sin(tilt)
+        return width * cos + height * sin, width * sin + height * cos
 
 
 def course_sizes(settings: RubbleSettings, rng: Generator) -> NDArray[np.float64]:

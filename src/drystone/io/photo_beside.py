@@ -1,12 +1,20 @@
 """The photograph of the stones, beside their label image and beside a plan."""
 
+import hashlib
+import json
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-from drystone.io.atomic import write_atomically
-from drystone.io.photo_sidecar import LABELS, read_sidecar
+from drystone.errors import UsageError
+from drystone.io.atomic import refuse_existing, write_atomically
+from drystone.io.photo_sidecar import LABELS, SIDECAR, read_sidecar
 
 NAMES = ("photo.jpg", "photo.png")
 """Beside a plan; it shows the whole source image, at any resolution."""
+
+RECORD = "photo"
+"""In the source of a plan: the copy that was put beside it, so that a later one knows it."""
 
 
 def photo_of(stones: Path) -> Path | None:
@@ -23,20 +31,90 @@ def photo_of(stones: Path) -> Path | None:
         return None
     # A base name: what stands in the file leads nowhere else.
     photo = labels.with_name(Path(sidecar.photo).name)
-    return photo if photo.is_file() and f"photo{photo.suffix.lower()}" in NAMES else None
+    return photo if photo.is_file() and _copy_of(photo, photo.parent).name in NAMES else None
 
 
-def place_photo(photo: Path | None, folder: Path) -> Path | None:
-    """Put a photograph of the stones beside a plan; that of an earlier plan is removed."""
-    for name in NAMES:
-        (folder / name).unlink(missing_ok=True)
+def check_place(photo: Path | None, folder: Path) -> None:
+    """Refuse to replace a photograph that no plan put beside itself.
+
+    Raises
+    ------
+    UsageError
+        E129.
+    """
     if photo is None:
-        return None
-    copy = folder / f"photo{photo.suffix.lower()}"
-    write_atomically(copy, photo.read_bytes())
-    return copy
+        return
+    copy = _copy_of(photo, folder)
+    refuse_existing(copy, overwrite=True)
+    if copy.exists() and not _is_ours(copy) and copy.read_bytes() != photo.read_bytes():
+        raise UsageError(
+            "E129",
+            "no plan put this photograph here, and that of these stones has the same name.",
+            where=str(copy),
+            cure="Choose another folder with -o, or move it away; --overwrite leaves it.",
+        )
+
+
+def place_photo(photo: Path | None, folder: Path) -> tuple[Path | None, Mapping[str, Any]]:
+    """Put a photograph of the stones beside a plan; the copy of an earlier plan is removed.
+
+    A photograph that no plan put there stays.
+
+    Parameters
+    ----------
+    photo : Path or None
+        Of the stones; it may lie in the folder already.
+    folder : Path
+        Of the plan; its plan.json, if any, is still that of the earlier plan.
+
+    Returns
+    -------
+    beside : Path or None
+        The photograph beside the plan.
+    record : mapping
+        What the source of the plan must say; empty when nothing was put there.
+
+    Raises
+    ------
+    UsageError
+        E129 when a photograph that is not of a plan has the name of the copy.
+    """
+    check_place(photo, folder)
+    # All is read before anything is removed: the photograph may be what an earlier plan left.
+    data = b"" if photo is None else photo.read_bytes()
+    copy = None if photo is None else _copy_of(photo, folder)
+    put = copy is not None and (not copy.exists() or _is_ours(copy))
+    for old in _beside(folder):
+        if old != copy and _is_ours(old):
+            old.unlink()
+    if copy is None or not put:
+        return copy, {}
+    write_atomically(copy, data)
+    return copy, {RECORD: {"name": copy.name, "sha256": hashlib.sha256(data).hexdigest()}}
 
 
 def photo_beside(folder: Path) -> Path | None:
     """Return the photograph beside a plan; None when there is none."""
-    return next((folder / name for name in NAMES if (folder / name).is_file()), None)
+    return next(iter(_beside(folder)), None)
+
+
+def _beside(folder: Path) -> list[Path]:
+    return [folder / name for name in NAMES if (folder / name).is_file()]
+
+
+def _copy_of(photo: Path, folder: Path) -> Path:
+    return folder / f"photo{photo.suffix.lower()}"
+
+
+def _is_ours(photo: Path) -> bool:
+    """Tell whether the plan in this folder put a photograph there, and nobody changed it since."""
+    if (photo.parent / SIDECAR).exists():
+        return False  # it belongs to the label image that `drystone segment` wrote there
+    try:
+        plan = json.loads((photo.parent / "plan.json").read_bytes())
+        record = plan["source"][RECORD]
+        name, digest = record["name"], record["sha256"]
+    except (OSError, ValueError, LookupError, TypeError, RecursionError):
+        return False
+    found = photo.name, hashlib.sha256(photo.read_bytes()).hexdigest()
+    return found == (str(name), str(digest))

@@ -77,7 +77,7 @@ def fit_ground(image: NDArray[np.uint8], usable: Mask, ground: Ground) -> Ground
     Raises
     ------
     InputError
-        E176 when no colour is frequent enough to be a ground.
+        E176 when no colour is frequent enough to be a ground, or nothing may be one.
     """
     light = linear_light(image)
     smooth = np.stack([ndimage.gaussian_filter(light[..., k], 1.0) for k in range(3)], axis=-1)
@@ -93,16 +93,20 @@ def fit_ground(image: NDArray[np.uint8], usable: Mask, ground: Ground) -> Ground
     lab = lab_of(even)
     colour, spread, share = _statistics(lab, usable, middle)
     if share < LEAST_SHARE:
-        raise InputError(
-            "E176",
-            "no even ground was found: its most frequent colour fills only "
-            f"{100 * share:.0f} % of the photograph.",
-            cure="Lay the stones on a plain sheet of another colour than theirs, and photograph "
-            "nothing else; or say --ground light or --ground dark.",
-        )
+        raise _no_ground(share)
     brightness = log_ground[usable].mean(axis=-1)
     uneven = 1 - float(np.exp(np.percentile(brightness, 1) - np.percentile(brightness, 99)))
     return GroundModel(log_light.astype(np.float32), lab, colour, spread, share, uneven)
+
+
+def _no_ground(share: float) -> InputError:
+    return InputError(
+        "E176",
+        "no even ground was found: its most frequent colour fills only "
+        f"{100 * share:.0f} % of the photograph.",
+        cure="Lay the stones on a plain sheet of another colour than theirs, and photograph "
+        "nothing else; or say --ground light or --ground dark.",
+    )
 
 
 def linear_light(image: NDArray[np.uint8]) -> Planes:
@@ -121,9 +125,13 @@ def lab_of(light: NDArray[Any]) -> Planes:
 
 def _fit_light(light: Planes, usable: Mask, ground: Ground) -> NDArray[np.float64]:
     """Return coefficients (10, 3) of the logarithm of the light on the ground."""
+    if not usable.any():
+        raise _no_ground(0.0)
     lab = lab_of(light)
     log = np.log(np.maximum(light, 1e-3))
     near = usable & (_away(lab - _frequent(lab, usable, ground)) < _NEAR)
+    if not near.any():
+        raise _no_ground(0.0)
     basis = _basis(usable.shape)
     field = np.zeros((10, 3))
     for order in _ORDERS:
@@ -152,7 +160,9 @@ def _frequent(lab: Planes, usable: Mask, ground: Ground) -> NDArray[np.float64]:
     allowed = usable
     if ground != "auto":
         split = threshold_otsu(lab[..., 0][usable])
-        allowed = usable & ((lab[..., 0] > split) == (ground == "light"))
+        side = usable & ((lab[..., 0] > split) == (ground == "light"))
+        # Where all is equally bright there is no lighter side to choose from.
+        allowed = side if side.any() else usable
     depth = ndimage.distance_transform_edt(np.pad(usable, 1))[1:-1, 1:-1]
     border = allowed & (depth < 0.06 * max(usable.shape))
     edges = [np.arange(0, 105, _BIN), np.arange(-110, 114, _BIN), np.arange(-110, 114, _BIN)]

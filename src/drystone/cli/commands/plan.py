@@ -4,6 +4,9 @@ import argparse
 import sys
 from pathlib import Path
 
+from drystone.cli.announce import WRITTEN
+from drystone.cli.choice import FOLDER
+from drystone.cli.inputs import files_of, files_of_plan, refuse_inputs
 from drystone.cli.lengths import parse_wall
 from drystone.cli.planning import plan_and_write
 from drystone.cli.reading import reading_from
@@ -16,7 +19,11 @@ from drystone.io.read_stones import read_stones
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Plan a wall and write it."""
     parse_wall(arguments.wall, 1.0)  # what is no size is refused before anything is read
-    source = Path(arguments.stones)
+    source, folder = Path(arguments.stones), Path(arguments.output)
+    begin = () if arguments.begin is None else files_of_plan(Path(arguments.begin))
+    refuse_inputs(files_of(source), (folder / name for name in WRITTEN))
+    # A plan may be replaced by a better one, the choice of an earlier search may not.
+    refuse_inputs(begin, (folder / FOLDER).glob("*/plan.json"))
     stones = read_stones(source, settings=reading_from(arguments))
     for notice in stones.notices:
         print(f"drystone: {notice}", file=sys.stderr)

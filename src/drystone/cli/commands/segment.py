@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
+from drystone.cli.inputs import refuse_inputs
 from drystone.cli.output import prepare_folder, print_json, print_table
 from drystone.cli.scale import Ruled, refuse_outside
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.atomic import write_atomically
 from drystone.io.photo_file import Photo, read_photo
-from drystone.io.photo_sidecar import LABELS, PhotoSidecar, write_sidecar
+from drystone.io.photo_sidecar import LABELS, SIDECAR, PhotoSidecar, write_sidecar
 from drystone.model.stone_size import StoneSize, median_sides, sizes_of
 from drystone.photo.layout import MarkerLayout, parse_layout, parse_size_m
 from drystone.photo.segment_doubts import Doubt, doubts_of, notices_of, ruler_doubts
@@ -23,6 +24,7 @@ from drystone.photo.segment_settings import SegmentSettings
 from drystone.photo.view import apply
 
 PHOTO, PREVIEW = "photo.jpg", "preview.png"
+WRITTEN = (LABELS, PHOTO, SIDECAR, PREVIEW)
 QUALITY = 90
 
 
@@ -30,7 +32,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     """Find the stones of a photograph, write them, and say what is in doubt."""
     scale = scale_from(arguments)
     settings = SegmentSettings(ground=arguments.ground, split=arguments.split)
-    photo = read_photo(Path(arguments.photo))
+    path, folder = Path(arguments.photo), Path(arguments.output)
+    refuse_inputs([path], [folder / name for name in WRITTEN])
+    photo = read_photo(path)
     refuse_outside(arguments.px_per_m, photo.size_px)
     unit = None if arguments.min_area is None else arguments.min_area[1]
     if unit == "cm2" and scale is None:
@@ -38,7 +42,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             "E131", "an area in cm2 needs the scale of the photograph.", where="--min-area",
             cure="Give it with --aruco, --px-per-m or --ruler, or give the area in px.",
         )  # fmt: skip
-    folder = prepare_folder(Path(arguments.output), overwrite=arguments.overwrite)
+    prepare_folder(folder, overwrite=arguments.overwrite)
     result = segment_photo(
         photo.values, scale, settings, arguments.min_area, max_px=round(arguments.mpx * 1e6)
     )

@@ -4,6 +4,7 @@ import argparse
 import statistics
 from pathlib import Path
 
+from drystone.cli.inputs import files_of, refuse_inputs
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_from
 from drystone.cli.scale import picture_size_px, refuse_outside, scale_with
@@ -17,9 +18,11 @@ from drystone.poses import PoseBook
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print count, sizes, clusters and notices; draw the stones when asked."""
     picture = None if arguments.output is None else Path(arguments.output)
+    source = Path(arguments.stones)
     if picture is not None:
+        refuse_inputs(files_of(source), [picture])
         prepare_picture(picture, overwrite=arguments.overwrite)
-    stones = read_stones(Path(arguments.stones), settings=reading_from(arguments))
+    stones = read_stones(source, settings=reading_from(arguments))
     refuse_outside(arguments.px_per_m, picture_size_px(stones.source))
     px_per_m = scale_with(arguments.px_per_m, stones.source.px_per_m)
     clusters = cluster_stones(stones, PoseBook())

@@ -1,0 +1,46 @@
+"""What is read is never written over by what is made of it."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from drystone.errors import UsageError
+from drystone.io.images import SUFFIXES
+from drystone.io.photo_sidecar import LABELS, read_sidecar
+
+
+def refuse_inputs(read: Iterable[Path], written: Iterable[Path]) -> None:
+    """Refuse to write where something is read, whatever is said of overwriting.
+
+    Parameters
+    ----------
+    read, written : iterable of Path
+        Files; they may have several names.
+
+    Raises
+    ------
+    UsageError
+        E129.
+    """
+    sources = [path for path in read if path.exists()]
+    for path in written:
+        if path.exists() and any(path.samefile(source) for source in sources):
+            raise UsageError(
+                "E129",
+                "is read here, and what is read is never replaced, also not with --overwrite.",
+                where=str(path),
+                cure="Choose another place with -o.",
+            )
+
+
+def files_of(stones: Path) -> tuple[Path, ...]:
+    """Return the files that stones are read from: itself, or what is read of a folder."""
+    if not stones.is_dir():
+        return (stones,)
+    if read_sidecar(stones / LABELS) is not None:
+        return (stones / LABELS,)
+    return tuple(entry for entry in stones.iterdir() if entry.suffix.lower() in SUFFIXES)
+
+
+def files_of_plan(plan: Path) -> tuple[Path, ...]:
+    """Return the file that a plan is read from."""
+    return (plan / "plan.json" if plan.is_dir() else plan,)

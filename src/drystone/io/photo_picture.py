@@ -1,0 +1,49 @@
+"""The photograph beside a plan as a picture of the source image."""
+
+from pathlib import Path
+
+from PIL import Image, ImageOps
+
+from drystone.errors import InputError
+from drystone.io.images import DAMAGE
+
+SAME_SHAPE = 0.02
+"""Widths over heights may differ by this share: a photograph of few px rounds them."""
+
+
+def read_photo_picture(photo: Path, source_px: tuple[float, float]) -> Image.Image:
+    """Read the photograph of the stones as RGB, turned as its EXIF data say.
+
+    Parameters
+    ----------
+    photo : Path
+        Shows the whole source image, at any resolution.
+    source_px : (float, float)
+        Width and height of the source image.
+
+    Raises
+    ------
+    InputError
+        E189 when it cannot be read, or shows something of another shape than the source image.
+    """
+    try:
+        with Image.open(photo) as opened:
+            image = ImageOps.exif_transpose(opened).convert("RGB")
+    except (*DAMAGE, Image.DecompressionBombError) as error:
+        raise _unusable(photo, f"the photograph cannot be read ({error}).") from error
+    width, height = source_px
+    ratio = (image.width / image.height) / (width / height) if width and height else 0.0
+    if abs(ratio - 1.0) > SAME_SHAPE:
+        raise _unusable(
+            photo,
+            f"the photograph has {image.width} x {image.height} px and shows something else than "
+            f"the source image of {width:g} x {height:g} px.",
+        )
+    return image
+
+
+def _unusable(path: Path, what: str) -> InputError:
+    return InputError(
+        "E189", what, where=path.name,
+        cure="Remove the file, or put the photograph there that the stones were found in.",
+    )  # fmt: skip

@@ -1,0 +1,104 @@
+"""What is read is never written over, whatever is said of overwriting."""
+
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from drystone.cli.commands.segment import WRITTEN
+from drystone.io.photo_sidecar import LABELS, PhotoSidecar, write_sidecar
+from tests.cli.conftest import WALL, Run
+
+
+@pytest.fixture
+def photo(tmp_path: Path) -> Path:
+    """Two stones on blue cloth."""
+    picture = np.full((300, 400, 3), (60, 90, 150), np.uint8)
+    picture[60:140, 60:160] = picture[130:210, 220:330] = (170, 160, 140)
+    path = tmp_path / "photo.jpg"
+    Image.fromarray(picture).save(path)
+    return path
+
+
+@pytest.mark.parametrize("more", [(), ("--overwrite",)])
+@pytest.mark.parametrize("name", ["photo.jpg", "stones.png", "preview.png"])
+def test_segment_keeps_its_photograph(
+    name: str, more: tuple[str, ...], photo: Path, run: Run
+) -> None:
+    given = photo.rename(photo.with_name(name))
+    before = given.read_bytes()
+    ran = run("segment", given, "--px-per-m", 400, "-o", photo.parent, *more)
+    assert (ran.code, ran.out) == (2, "")
+    assert f"E129 {given}: is read here" in ran.err
+    assert [path.name for path in photo.parent.iterdir()] == [name]
+    assert given.read_bytes() == before
+
+
+def test_another_name_of_the_same_photograph_is_seen(photo: Path, run: Run) -> None:
+    out = photo.parent / "out"
+    out.mkdir()
+    os.link(photo, out / "photo.jpg")
+    ran = run("segment", photo, "-o", out, "--overwrite")
+    assert "E129" in ran.err
+    assert len(list(out.iterdir())) == 1
+    (out / "photo.jpg").unlink()
+    ran = run("segment", photo, "--px-per-m", 400, "-o", out)
+    assert ran.code == 0, ran.err
+    assert {path.name for path in out.iterdir()} == set(WRITTEN)
+
+
+def test_stones_keeps_what_it_reads(rubble: Path, tmp_path: Path, run: Run) -> None:
+    mine, masks, found = tmp_path / "mine.png", tmp_path / "masks", tmp_path / "found"
+    for folder in (masks, found):
+        folder.mkdir()
+    shutil.copy(rubble, mine)
+    shutil.copy(rubble, masks / "1.png")
+    shutil.copy(rubble, found / LABELS)
+    write_sidecar(PhotoSidecar(1, 1), found)
+    for source, picture in ((mine, mine), (masks, masks / "1.png"), (found, found / LABELS)):
+        ran = run("stones", source, "-o", picture, "--overwrite")
+        assert (ran.code, ran.out) == (2, "")
+        assert f"E129 {picture}: is read here" in ran.err
+        assert picture.read_bytes() == rubble.read_bytes()
+
+
+def test_a_plan_keeps_photographs_that_are_not_its_own(
+    rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(rubble, "labels.png")
+    names = ("photo.jpg", "photo.png")
+    for name in names:
+        Path(name).write_bytes(b"mine")
+    for _ in range(2):
+        ran = run("plan", "labels.png", *WALL, "-o", ".", "--overwrite")
+        assert ran.code in (0, 4), ran.err
+        assert "photo.jpg was not put there by a plan and stays" in ran.err
+        assert [Path(name).read_bytes() for name in names] == [b"mine", b"mine"]
+
+
+@pytest.mark.parametrize("name", ["wall.png", "picture.png"])
+def test_plan_keeps_the_stones_that_it_reads(
+    name: str, rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    given = tmp_path / name
+    shutil.copy(rubble, given)
+    ran = run("plan", given, *WALL, "-o", tmp_path, "--overwrite")
+    assert ran.code == 2
+    assert f"E129 {given}: is read here" in ran.err
+    assert given.read_bytes() == rubble.read_bytes()
+
+
+def test_plan_keeps_the_choice_that_it_begins_with(rubble: Path, tmp_path: Path, run: Run) -> None:
+    asked = ("plan", rubble, *WALL, "--seed", 1, "-o", tmp_path)
+    assert run(*asked, "--budget", 4, "--pareto").code in (0, 4)
+    first = tmp_path / "pareto" / "01"
+    before = (first / "plan.json").read_bytes()
+    for given in (first, first / "plan.json"):
+        assert "E129" in run(*asked, "--budget", 2, "--from", given, "--overwrite").err
+    assert (first / "plan.json").read_bytes() == before
+    # The plan itself is replaced by one that is as good at least.
+    assert run(*asked, "--budget", 2, "--from", tmp_path, "--overwrite").code in (0, 4)
