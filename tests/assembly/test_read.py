@@ -1,6 +1,9 @@
 """Plans read with the files beside them."""
 
+import json
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -67,6 +70,50 @@ def test_files_must_be_there(tmp_path: Path) -> None:
     write_plan_folder("exact", tmp_path)
     (tmp_path / "blocks.json").unlink()
     refused("E133", tmp_path)
+
+
+def renumbered(steps: list[dict[str, Any]]) -> None:
+    for number, step in enumerate(steps, 1):
+        step["step"] = number
+
+
+def twice(steps: list[dict[str, Any]]) -> None:
+    steps.append(dict(steps[-1]))
+    renumbered(steps)
+
+
+def without_its_stone(steps: list[dict[str, Any]]) -> None:
+    next(step for step in steps if step["kind"] == "wedge")["under"] = 9999
+
+
+def backwards(steps: list[dict[str, Any]]) -> None:
+    steps.reverse()
+
+
+def from_two(steps: list[dict[str, Any]]) -> None:
+    for step in steps:
+        step["step"] += 1
+
+
+@pytest.mark.parametrize(
+    ("name", "tamper", "code", "said"),
+    [
+        ("exact", twice, "E213", "was placed before"),
+        ("exact", without_its_stone, "E214", "does not follow stone 9999"),
+        ("raster", backwards, "E214", "this is step 1 of the plan"),
+        ("raster", from_two, "E214", "this is step 1 of the plan"),
+    ],
+)
+def test_steps_that_nobody_can_build_by_are_refused(
+    name: str, tamper: Callable[[Any], None], code: str, said: str, tmp_path: Path
+) -> None:
+    path = write_plan_folder(name, tmp_path) / "plan.json"
+    plan = json.loads(path.read_text("utf-8"))
+    tamper(plan["steps"])
+    path.write_text(json.dumps(plan), "utf-8")
+    error = refused(code, tmp_path)
+    assert said in error.what
+    assert "`drystone check`" in error.cure
 
 
 def test_the_usual_thickness_is_the_side_of_the_median_stone(tmp_path: Path) -> None:

@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import shapely
 from matplotlib.image import imread
+from PIL import Image
 
 from drystone.cli import check_physics, check_picture
 from drystone.cli.check_physics import PhysicsCard
@@ -315,3 +317,58 @@ def test_a_stone_that_hangs_by_friction_is_drawn_where_it_hangs() -> None:
     assert "E237" in view.title
     assert list(view.concerned) == [3]
     assert not view.ended
+
+
+def test_another_block_model_beside_the_plan_is_found(settled_copy: Path, run: Run) -> None:
+    path = settled_copy / "blocks.json"
+    ran = run("check", settled_copy)
+    assert (ran.code, "blocks.json" in ran.out) == (0, False)
+    blocks = json.loads(path.read_text("utf-8"))
+    block = blocks["blocks"][2]
+    x, y = shapely.Polygon(block["polygon"]).centroid.coords[0]
+    block["polygon"] = [[2 * x - a, 2 * y - b] for a, b in block["polygon"]]
+    path.write_text(json.dumps(blocks), "utf-8")
+    ran = run("check", settled_copy)
+    assert ran.code == 5
+    assert f"the outline of stone {block['id']} in blocks.json is" in ran.out
+    (problem,) = run("check", settled_copy, "--json").json()["problems"]
+    assert problem["code"] == "E238"
+    for damaged in ("null", "{"):
+        path.write_text(damaged, "utf-8")
+        ran = run("check", settled_copy)
+        assert (ran.code, "E238 blocks.json is no block model" in ran.out) == (5, True)
+    analysed = run("analyse", settled_copy)
+    assert (analysed.code, "E132" in analysed.err, "or plan again" in analysed.err) == (
+        3,
+        True,
+        True,
+    )
+    path.unlink()
+    ran = run("check", settled_copy)
+    assert ran.code == 0
+    (line,) = (row for row in ran.out.splitlines() if "blocks.json" in row)
+    assert line.startswith("note ")
+
+
+def test_stones_with_other_bytes_are_named_as_such(plan_copy: Path, run: Run) -> None:
+    """The same picture, saved anew."""
+    path = plan_copy / "rubble.png"
+    with Image.open(path) as opened:
+        opened.copy().save(path, compress_level=1)
+    ran = run("check", plan_copy)
+    assert ran.code == 3
+    assert f"E202 {plan_copy}: {path} is another file than the 'rubble.png'" in ran.err
+    ran = run("check", plan_copy, "--stones", path)
+    assert (ran.code, "E210" in ran.out) == (5, True)
+    change(plan_copy, lambda plan: plan["source"].update(sha256=""))
+    ran = run("check", plan_copy)
+    assert (ran.code, "The bytes of the source were not compared" in ran.out) == (0, True)
+
+
+def test_a_stone_that_is_banned_is_found(plan_copy: Path, run: Run) -> None:
+    def ban(plan: dict[str, Any]) -> None:
+        plan["settings"]["ban"] = [plan["steps"][0]["stone"]]
+
+    change(plan_copy, ban)
+    ran = run("check", plan_copy)
+    assert (ran.code, "E239 step 1: stone" in ran.out) == (5, True)

@@ -159,7 +159,9 @@ def test_a_plan_needs_its_own_blocks(
         assert (ran.code, ran.out) == (3, "")
         assert code in ran.err
         assert said in ran.err
-    assert run("check", settled_copy).code == 0  # it takes the outlines from the stones
+    ran = run("check", settled_copy)  # it takes the outlines from the stones, and compares these
+    there = (settled_copy / BLOCKS).exists()
+    assert (ran.code, "E238" in ran.out) == ((5, True) if there else (0, False))
 
 
 def test_a_wedge_in_another_place_is_not_that_of_the_plan(settled_copy: Path, run: Run) -> None:

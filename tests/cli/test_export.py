@@ -4,7 +4,9 @@ import csv
 import json
 import shutil
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree as ET
 
 import ezdxf
@@ -38,6 +40,12 @@ def tree(folder: Path) -> dict[str, bytes]:
         str(path.relative_to(folder)): path.read_bytes() if path.is_file() else b""
         for path in sorted(folder.rglob("*"))
     }
+
+
+def rewrite(path: Path, tamper: Callable[[dict[str, Any]], object]) -> None:
+    read = json.loads(path.read_text("utf-8"))
+    tamper(read)
+    path.write_text(json.dumps(read), "utf-8")
 
 
 def test_formats_are_listed(run: Run) -> None:
@@ -106,6 +114,30 @@ def test_a_ruler_is_a_scale(run: Run, plan: Path, tmp_path: Path) -> None:
     assert tree(tmp_path / "a") == tree(tmp_path / "b")
     both = run("export", plan, "--to", "csv", "--px-per-m", "200", "--ruler", "0,0,3,4=1m")
     assert both.code == 2
+
+
+@pytest.mark.parametrize("ruler", ["0,0,9000,0=1m", "0,-3,20,0=1m"])
+def test_a_ruler_outside_the_picture_is_refused(run: Run, plan: Path, ruler: str) -> None:
+    rewrite(plan, lambda read: read["source"].update(path="stones.png"))
+    before = tree(plan.parent)
+    ran = run("export", plan, "--to", "csv", f"--ruler={ruler}")
+    assert (ran.code, "E138" in ran.err, "outside the picture" in ran.err) == (2, True, True)
+    assert tree(plan.parent) == before
+    # Files of outlines say only how far the stones reach: the ruler lies beside them.
+    rewrite(plan, lambda read: read["source"].update(path="stones.svg"))
+    assert run("export", plan, "--to", "csv", "--ruler", "0,0,9000,0=1m").code == 0
+
+
+@pytest.mark.parametrize("name", ["gif", "pdf", "csv"])
+def test_a_wedge_without_its_stone_is_refused(run: Run, plan: Path, name: str) -> None:
+    def orphan(read: dict[str, Any]) -> None:
+        next(step for step in read["steps"] if step["kind"] == "wedge")["under"] = 9999
+
+    rewrite(plan, orphan)
+    before = tree(plan.parent)
+    ran = run("export", plan, "--to", name)
+    assert (ran.code, "E214" in ran.err) == (3, True)
+    assert tree(plan.parent) == before
 
 
 def test_another_scale_than_that_of_the_plan_is_refused(run: Run, tmp_path: Path) -> None:

@@ -1,7 +1,11 @@
 """A small wall of outlines made by hand, with a plan that claims what is true of it."""
 
+import json
+from typing import Any
+
 import numpy as np
 
+from drystone.io.blocks_json import blocks_to_json
 from drystone.kernels.polygons import Points, on_grid
 from drystone.kernels.raster import turn
 from drystone.model.placement import Settled, Side
@@ -16,6 +20,7 @@ from drystone.search.plan_result import finish
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import placed_outline
 from drystone.stabilise.settings import StabiliseSettings
+from drystone.statics.contacts.settled import model_of_outlines
 from tests.planner.scenes import stones_of_masks
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example, stone_set
 
@@ -100,3 +105,11 @@ def plan_of(wall: Wall, stones: StoneSet) -> Example:
     stopped = Stopped("stones", "all stones that fit are placed")
     made = finish(planner, Frame(*WALL_PX, wall.site), stopped, provenance, 0.0)
     return Example(made.plan, stones, wall)
+
+
+def block_model(made: Example) -> Any:
+    """Return what blocks.json beside the plan of a wall of outlines says, read again."""
+    assert made.wall.outlines is not None
+    settle = SETTINGS.settle
+    model = model_of_outlines(made.wall.outlines, SETTINGS.mu, settle.contact_px)
+    return json.loads(json.dumps(blocks_to_json(made.wall, model)))

@@ -83,6 +83,7 @@ EXACT: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
     "rotation moves": (lambda p: changed(p, 3, rotation_moves=1), {"E235"}),
     "too many rotation moves": (lambda p: changed(p, 3, rotation_moves=99), {"E235"}),
     "alpha of a stone": (lambda p: changed(p, 3, alpha_left=0.580001), {"E231"}),
+    "a banned stone": (lambda p: replace(p, settings={**p.settings, "ban": [9, SLAB]}), {"E239"}),
     "alpha of a wedge": (lambda p: changed(p, WEDGE, alpha_right=None), {"E231"}),
     "course height of an inner stone": (lambda p: changed(p, L_STONE, course_height=9.0), {"E232"}),
     "course height left out": (lambda p: changed(p, 3, course_height=None), {"E232"}),
@@ -95,6 +96,25 @@ def test_tampering_is_caught_by_its_code(true: Example, name: str) -> None:
     report = check_plan(change(true.plan), true.stones)
     assert codes(report) == expected
     assert not report.ok
+
+
+def test_stones_that_the_settings_do_not_allow_are_named(true: Example) -> None:
+    assert [step.stone for step in true.plan.stone_steps] == [3, 5, SLAB, L_STONE, 300]
+
+    def with_choice(plan: Plan, **values: object) -> Plan:
+        return replace(plan, settings={**plan.settings, **values})
+
+    assert check_plan(with_choice(true.plan, order="given", ban=[9]), true.stones).ok
+    assert check_plan(with_choice(true.plan, pin=[9]), true.stones).ok  # it may be missing
+    (problem,) = check_plan(with_choice(true.plan, ban=[SLAB]), true.stones).problems
+    assert (problem.code, problem.step) == ("E239", 3)
+    assert problem.message == f"stone {SLAB} is banned."
+    steps = (true.plan.steps[1], true.plan.steps[0], *true.plan.steps[2:])
+    plan = replace(with_choice(true.plan, order="given"), steps=steps)
+    problems = [p for p in check_plan(plan, true.stones).problems if p.code == "E239"]
+    assert [problem.message for problem in problems] == [
+        "stone 3 comes after stone 5 in an order that is given."
+    ]
 
 
 def test_what_is_claimed_and_cannot_be_is_said_in_words(true: Example) -> None:

@@ -19,7 +19,7 @@ from drystone.verify.check import check_plan
 from drystone.verify.exact_replay import PENETRATION_PX
 from drystone.verify.overlap import SPACING_PX
 from drystone.verify.report import PrefixAlpha
-from tests.verify.exact_examples import GAP_PX, exact_example, hanging_example
+from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example
 from tests.verify.tampering import (
     changed,
@@ -55,7 +55,8 @@ def test_true_plan_passes_in_any_unit_and_at_any_scale(
 ) -> None:
     made = exact_example(scale, px_per_m)
     plan = plan_from_json(json.loads(json.dumps(plan_to_json(made.plan))))
-    report = check_plan(plan, made.stones, wall_labels=made.wall.labels)
+    labels, blocks = made.wall.labels, block_model(made)
+    report = check_plan(plan, made.stones, wall_labels=labels, blocks=blocks)
     assert report.problems == ()
     assert report.notes == ()
     assert report.geometry == report.as_dict()["geometry"] == "exact"

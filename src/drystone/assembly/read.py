@@ -9,11 +9,12 @@ import numpy as np
 import shapely
 
 from drystone.assembly.parts import DENSITY_KG_M3, Assembly, Part
-from drystone.errors import InputError, UsageError
+from drystone.errors import InputError, PlanError, UsageError
 from drystone.io.photo_beside import photo_beside
 from drystone.io.walls import GivenWall, read_wall
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.plan import Plan, StoneStep
+from drystone.model.steps import first_fault
 from drystone.plotting.outlines import label_regions
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.given import model_from_json, polygons_from_json
@@ -46,6 +47,8 @@ def read_assembly(
     ------
     InputError
         E133 when files are missing or do not belong together; E132 for what is no plan.
+    PlanError
+        E213, E214 for ids or an order of steps that cannot be.
     UsageError
         E131 for another scale than the plan's, or a thickness without a scale.
     """
@@ -124,7 +127,20 @@ def _read(path: Path) -> tuple[Plan, Mapping[int, Points], RigidBlockModel]:
             "E132", "this is no plan.", where=str(path),
             cure="Give the plan.json of a plan, or its folder.",
         )  # fmt: skip
+    _refuse_disorder(wall.plan, path)
     return wall.plan, *_shapes(wall, wall.plan)
+
+
+def _refuse_disorder(plan: Plan, path: Path) -> None:
+    """Refuse steps that nobody can build by: what is made of them goes by their numbers."""
+    fault = first_fault(plan)
+    if fault is not None:
+        raise PlanError(
+            fault.code,
+            fault.message,
+            where=f"{path}, step {fault.step}",
+            cure="Give the plan as it was written; `drystone check` lists everything.",
+        )
 
 
 def _scale(plan: Plan, px_per_m: float | None, path: Path) -> float | None:

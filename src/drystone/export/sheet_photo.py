@@ -1,20 +1,16 @@
 """Pieces of the photograph of the stones, for a build sheet."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageOps
+from PIL import Image
 
 from drystone.assembly.parts import Assembly
-from drystone.errors import InputError
+from drystone.io.photo_picture import read_photo_picture
 
 CROP_PX = 240
 """Longer side of a piece: 200 px an inch on paper, and small files."""
-
-SAME_SHAPE = 0.02
-"""Widths over heights may differ by this share: a photograph of few px rounds them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,18 +70,7 @@ def read_photo(assembly: Assembly) -> Photo | None:
         return None
     width, height = (float(assembly.plan.source.get(f"{side}_px") or 0) for side in
                      ("width", "height"))  # fmt: skip
-    try:
-        with Image.open(assembly.photo) as opened:
-            image = ImageOps.exif_transpose(opened).convert("RGB")
-    except OSError as error:
-        raise _unusable(assembly.photo, f"the photograph cannot be read ({error}).") from error
-    ratio = (image.width / image.height) / (width / height) if width and height else 0.0
-    if abs(ratio - 1.0) > SAME_SHAPE:
-        raise _unusable(
-            assembly.photo,
-            f"the photograph has {image.width} x {image.height} px and shows something else than "
-            f"the source image of {width:g} x {height:g} px.",
-        )
+    image = read_photo_picture(assembly.photo, (width, height))
     return Photo(image, width, height)
 
 
@@ -101,10 +86,3 @@ def _reduced(
     y1 = min(image.height, int(top + step_y * CROP_PX) + 2 * factor)
     small = image.crop((x0, y0, x1, y1)).reduce(factor)
     return small, (left - x0) / factor, (top - y0) / factor, step_x / factor, step_y / factor
-
-
-def _unusable(path: Path, what: str) -> InputError:
-    return InputError(
-        "E189", what, where=path.name,
-        cure="Remove the file, or put the photograph there that the stones were found in.",
-    )  # fmt: skip

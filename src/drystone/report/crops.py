@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image, ImageOps
+from PIL import Image
 
+from drystone.io.photo_picture import read_photo_picture
 from drystone.kernels.polygons import Points
 
 LONGEST_PX = 96
@@ -39,9 +40,13 @@ def photo_crops(
     crops : dict
         By id: ``data``, a JPEG as data URL, and ``box``, what it shows (x0, y0, x1, y1; source
         px, y up).  Stones outside of the picture have none.
+
+    Raises
+    ------
+    InputError
+        E189 when it cannot be read, or shows something of another shape than the source image.
     """
-    with Image.open(photo) as opened:
-        picture = ImageOps.exif_transpose(opened).convert("RGB")
+    picture = read_photo_picture(photo, source_px)
     found = {
         stone: _crop(picture, source_px, corners) for stone, corners in sorted(outlines.items())
     }

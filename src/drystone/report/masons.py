@@ -26,7 +26,7 @@ class MasonsWall:
 
 
 WALLS = (
-    MasonsWall("R", 0.846, 34.0, 0.59),
+    MasonsWall("R", 0.846, 33.9, 0.59),
     MasonsWall("PR", 0.808, 29.5, 1.50),
     MasonsWall("IR", 0.850, 23.8, 3.69),
 )
@@ -53,7 +53,7 @@ def masons_words(symbol: str, sha256: str | None) -> str | None:
     Examples
     --------
     >>> masons_words("F_AV", None)
-    '23.8 to 34.0 % in three walls of masons, of other stones'
+    '23.8 to 33.9 % in three walls of masons, of other stones'
     """
     if symbol not in ("F_SF", "F_AV", "F_AH"):
         return None

@@ -1,5 +1,7 @@
 """Check a plan: build its wall again and verify every claim (DESIGN 2, 4.9)."""
 
+from typing import Any
+
 import numpy as np
 import shapely
 
@@ -8,9 +10,11 @@ from drystone.model.plan import Plan, PlanMetrics, WedgeStep
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.statics.model import RigidBlockModel
+from drystone.verify.blocks import check_blocks
 from drystone.verify.buried import is_buried
 from drystone.verify.claims import (
     Reference,
+    check_choice,
     check_indices,
     check_metrics,
     check_source,
@@ -25,7 +29,9 @@ from drystone.verify.stability import Standing, check_stability, prefix_alphas
 from drystone.verify.wedges import check_polygon, check_settled_wedge, check_wedge
 
 
-def check_plan(plan: Plan, stones: StoneSet, *, wall_labels: Labels | None = None) -> CheckReport:
+def check_plan(
+    plan: Plan, stones: StoneSet, *, wall_labels: Labels | None = None, blocks: Any = None
+) -> CheckReport:
     """Build the wall of a plan again from the input stones and verify everything it claims.
 
     Parameters
@@ -37,6 +43,8 @@ def check_plan(plan: Plan, stones: StoneSet, *, wall_labels: Labels | None = Non
     wall_labels : (h, w) integer array, optional
         Contents of wall.png; every stone's pixels must be those of its pose, which a mirrored
         stone's are not.
+    blocks : anything, optional
+        Contents of blocks.json beside a plan of outlines; all that is exported is made of it.
 
     Returns
     -------
@@ -53,7 +61,8 @@ def check_plan(plan: Plan, stones: StoneSet, *, wall_labels: Labels | None = Non
     Verified are: the source; that each stone is used once and the others are listed; that stones
     and wedges are inside the site and overlap by no pixel at the working resolution; the source
     centroids, clusters and turns of stones; the rules of wedging; that the wall stands after
-    every stone with its wedges, with the load multipliers claimed; all indices; the metrics.
+    every stone with its wedges, with the load multipliers claimed; all indices; the metrics; that
+    no stone is banned or out of a given order; the images and the block model beside the plan.
     On exact geometry outlines are what is judged: how deep they lie in each other and beyond the
     edges of the wall, and the limit analysis on their contacts, with the tolerance of the plan.
     Stones that cannot be lowered in from above, the deviation of pixel areas from the stones' own
@@ -63,13 +72,17 @@ def check_plan(plan: Plan, stones: StoneSet, *, wall_labels: Labels | None = Non
     reference = Reference.of(stones, replay.settings, plan.working_scale)
     standing = check_stability(replay.stages, replay.settings)
     problems = [*check_source(plan, stones), *check_unused(plan, stones), *replay.problems]
+    problems += check_choice(plan, replay.settings)
     problems += _check_pieces(replay, reference)
     problems += standing.problems + tuple(_check_stages(replay, standing, reference))
     if wall_labels is not None:
         problems += _check_image(replay, wall_labels)
     metrics: PlanMetrics | None = None
-    if replay.broken_at is None and None not in standing.models:
-        model = standing.models[-1] if standing.models else None
+    whole = replay.broken_at is None and None not in standing.models
+    model = standing.models[-1] if whole and standing.models else None
+    if blocks is not None and replay.exact:
+        problems += check_blocks(blocks, plan, replay, model)
+    if whole:
         metrics = recompute_metrics(plan, replay, model)
         problems += check_metrics(plan.metrics, metrics)
     depth, depth_at = deepest_overlap(_outlines(replay))
@@ -83,7 +96,7 @@ def check_plan(plan: Plan, stones: StoneSet, *, wall_labels: Labels | None = Non
         area_error_at=area_error_at,
         prefixes=prefix_alphas(replay.stages, standing.resistances),
         metrics=metrics,
-        notes=tuple(_notes(plan, stones, replay, wall_labels)),
+        notes=tuple(_notes(plan, stones, replay, wall_labels, blocks)),
         geometry=replay.settings.geometry,
     )
 
@@ -182,12 +195,16 @@ def _worst_area(replay: Replay) -> tuple[float, int | None]:
     return worst, at
 
 
-def _notes(plan: Plan, stones: StoneSet, replay: Replay, wall_labels: Labels | None) -> list[str]:
+def _notes(
+    plan: Plan, stones: StoneSet, replay: Replay, wall_labels: Labels | None, blocks: Any
+) -> list[str]:
     notes = []
     if not (plan.source["sha256"] and stones.source.sha256):
         notes.append("The bytes of the source were not compared: one of the digests is missing.")
     if wall_labels is None:
         notes.append("wall.png was not compared.")
+    if blocks is None and replay.exact and plan.steps:
+        notes.append("There is no blocks.json to compare; `analyse` and exports need it.")
     if replay.broken_at is not None:
         notes.append(
             f"From step {replay.broken_at} on the wall cannot be built: stability, indices and "

@@ -103,6 +103,19 @@ def check_unused(plan: Plan, stones: StoneSet) -> list[Problem]:
     return [Problem("E216", None, f"unused is {list(plan.unused)} by the plan, found {left}.")]
 
 
+def check_choice(plan: Plan, settings: PlannerSettings) -> list[Problem]:
+    """Verify that the settings allow the stones that the steps place, in their order (E239)."""
+    problems, last = [], 0
+    for step in plan.stone_steps:
+        if step.stone in settings.ban:
+            problems.append(Problem("E239", step.step, f"stone {step.stone} is banned."))
+        if settings.order == "given" and step.stone < last:
+            message = f"stone {step.stone} comes after stone {last} in an order that is given."
+            problems.append(Problem("E239", step.step, message))
+        last = max(last, step.stone)
+    return problems
+
+
 def check_stone_claims(step: StoneStep, reference: Reference) -> list[Problem]:
     """Verify what a step says of its stone: centroid (E225), cluster (E233), turning (E235)."""
     stone = reference.stones.by_id(step.stone)

@@ -6,11 +6,12 @@ from typing import Protocol
 
 from drystone.kernels.polygons import Points
 from drystone.model.placement import Placement, Wedge
-from drystone.model.plan import StoneStep, WedgeStep
+from drystone.model.steps import Fault, Step, piece_id, piece_name
+from drystone.model.steps import grouped as steps_grouped
 from drystone.model.wall import Labels
 from drystone.verify.report import Problem
 
-Step = StoneStep | WedgeStep
+__all__ = ["Canvas", "Piece", "Step", "grouped", "piece_id", "piece_name", "problem_of"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,42 +58,12 @@ class Canvas(Protocol):
         ...
 
 
-def piece_id(step: Step) -> int:
-    """Return the value in wall.png of what a step places."""
-    return step.id if isinstance(step, WedgeStep) else step.stone
-
-
-def piece_name(step: Step) -> str:
-    """Return what messages call it.
-
-    Examples
-    --------
-    >>> piece_name(WedgeStep(2, 301, 7, (), None, None))
-    'wedge 301'
-    """
-    return f"{step.kind} {piece_id(step)}"
-
-
 def grouped(steps: Sequence[Step]) -> tuple[list[list[Step]], list[Problem]]:
     """Put each stone and its wedges together (E214 where the order is not the contract's)."""
-    groups: list[list[Step]] = []
-    problems = []
-    for number, step in enumerate(steps, 1):
-        if step.step != number:
-            problems.append(Problem("E214", step.step, f"this is step {number} of the plan."))
-        if isinstance(step, StoneStep):
-            groups.append([step])
-            continue
-        above = groups[-1][0] if groups else None
-        if not isinstance(above, StoneStep) or above.stone != step.under:
-            message = f"wedge {step.id} does not follow stone {step.under}, which it supports."
-            problems.append(Problem("E214", step.step, message))
-        if groups:
-            groups[-1].append(step)
-    for group in groups:
-        early = [s.step for s in group[:-1] if (s.alpha_left, s.alpha_right) != (None, None)]
-        problems += [
-            Problem("E214", at, "load multipliers are claimed before the stone's last wedge.")
-            for at in early
-        ]
-    return groups, problems
+    groups, faults = steps_grouped(steps)
+    return groups, [problem_of(fault) for fault in faults]
+
+
+def problem_of(fault: Fault) -> Problem:
+    """Return a fault of the steps as what a check found."""
+    return Problem(fault.code, fault.step, fault.message)

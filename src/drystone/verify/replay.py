@@ -7,12 +7,13 @@ from drystone.errors import PlanError
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, StoneStep, WedgeStep
 from drystone.model.site import Site
+from drystone.model.steps import id_fault
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Group, Labels, Wall
 from drystone.planner.settings import PlannerSettings
 from drystone.verify.exact_replay import ExactCanvas
 from drystone.verify.lengths import plan_settings, plan_site
-from drystone.verify.pieces import Canvas, Piece, Step, grouped, piece_name
+from drystone.verify.pieces import Canvas, Piece, Step, grouped, problem_of
 from drystone.verify.raster_replay import RasterCanvas
 from drystone.verify.report import Problem
 
@@ -161,6 +162,7 @@ def _derive(
     """Turn the steps of a group into what they place; note their ids as used."""
     pieces: list[Piece] = []
     problems = []
+    largest = max((stone.id for stone in stones), default=0)
     for step in steps:
         try:
             piece, found = canvas.put(step)
@@ -169,18 +171,6 @@ def _derive(
             problems.append(Problem(code, step.step, error.what))
         else:
             pieces.append(piece)
-            problems += _repeated(piece, used, stones) + found
+            repeated = id_fault(step, used, largest)
+            problems += found if repeated is None else [problem_of(repeated), *found]
     return pieces, problems
-
-
-def _repeated(piece: Piece, used: set[int], stones: StoneSet) -> list[Problem]:
-    """Note an id as used; name it when it was (E213)."""
-    name = piece_name(piece.step)
-    if piece.id in used:
-        return [Problem("E213", piece.step.step, f"{name} was placed before.")]
-    used.add(piece.id)
-    largest = max((stone.id for stone in stones), default=0)
-    if isinstance(piece.step, WedgeStep) and piece.id <= largest:
-        message = f"{name} has an id that is not larger than every stone's."
-        return [Problem("E213", piece.step.step, message)]
-    return []

@@ -4,16 +4,16 @@ import argparse
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from drystone.cli.check_physics import physics_of
 from drystone.cli.checked import Checked
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_of
-from drystone.errors import ExitCode, PlanError
+from drystone.errors import ExitCode, InputError, PlanError
 from drystone.io.plan_json import read_plan
 from drystone.io.read_stones import read_stones
-from drystone.io.walls import read_image_of
+from drystone.io.walls import read_blocks_of, read_image_of
 from drystone.model.plan import Plan
 from drystone.physics.table import load_engine
 from drystone.verify.check import check_plan
@@ -36,11 +36,12 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     source = Path(arguments.stones) if arguments.stones else _find_stones(plan, path.parent)
     # The image of a plan without stones is no picture of stones.
     labels = read_image_of(plan, path.parent) if plan.steps else None
+    blocks = _blocks_beside(plan, path.parent)
     stones = read_stones(source, settings=reading_of(plan.source))
     checked = Checked(
         plan,
         stones,
-        check_plan(plan, stones, wall_labels=labels),
+        check_plan(plan, stones, wall_labels=labels, blocks=blocks),
         plan_polygons(plan, stones),
         asked_physics=arguments.physics,
     )
@@ -67,18 +68,29 @@ def _picture(checked: Checked, arguments: argparse.Namespace, folder: Path) -> "
     return draw_failures(checked, folder)
 
 
+def _blocks_beside(plan: Plan, folder: Path) -> Any:
+    """Return what blocks.json holds; words of one that is damaged, which are no block model."""
+    try:
+        return read_blocks_of(plan, folder)
+    except InputError as error:
+        return error.what
+
+
 def _find_stones(plan: Plan, folder: Path) -> Path:
-    """Return the source file of a plan, beside it, above it, or where we are."""
-    name = str(plan.source["path"])
+    """Return the source file of a plan, beside it, above it, or where we are.
+
+    A plan without a digest takes the first of its name; the check says what was not compared.
+    """
+    name, digest = str(plan.source["path"]), plan.source["sha256"]
     # The system's way up is right where the path has none, as in "."; the other follows no link.
     places = [folder, folder.parent, folder / "..", Path()]
     found = [place / name for place in places if name and (place / name).exists()]
     for path in found:
-        if path.is_dir() or sha256(path.read_bytes()).hexdigest() == plan.source["sha256"]:
+        if not digest or path.is_dir() or sha256(path.read_bytes()).hexdigest() == digest:
             return path
-    raise PlanError(
-        "E202",
-        f"the stones {name!r} that the plan was made from are not beside it.",
-        where=str(folder),
-        cure="Say where they are with --stones.",
-    )
+    what = f"the stones {name!r} that the plan was made from are not beside it."
+    cure = "Say where they are with --stones."
+    if found:
+        what = f"{found[0]} is another file than the {name!r} that the plan was made from."
+        cure = "Say where that is with --stones, or give this file there to check with it (E210)."
+    raise PlanError("E202", what, where=str(folder), cure=cure)

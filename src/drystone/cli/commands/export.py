@@ -5,12 +5,15 @@ import re
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from drystone.assembly.read import read_assembly
 from drystone.cli.output import make_folder, prepare_files, print_json
+from drystone.cli.scale import picture_size_px, refuse_outside
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.export.formats import FORMATS
 from drystone.export.settings import ExportSettings
+from drystone.model.stone import Source
 
 _PROJECTOR = re.compile(r"(\d+)x(\d+)@(\d+(?:\.\d*)?)")
 
@@ -34,6 +37,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         thickness_m=arguments.thickness_m,
         density_kg_m3=arguments.density_kg_m3,
     )
+    refuse_outside(arguments.px_per_m, _picture_px(assembly.plan.source))
     asked = list(dict.fromkeys(arguments.to))
     modules = {name: FORMATS[name].exporter() for name in asked}
     for name in asked:
@@ -56,6 +60,14 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     else:
         _print_files(written)
     return ExitCode.DONE
+
+
+def _picture_px(source: Mapping[str, Any]) -> tuple[int, int]:
+    """Return the size of the picture that the stones of a plan are from; 0 where it was none."""
+    files = tuple(source.get("files", ()))
+    return picture_size_px(
+        Source(source["path"], "", source["width_px"], source["height_px"], files)
+    )
 
 
 def _print_files(written: Mapping[str, Sequence[str]]) -> None:

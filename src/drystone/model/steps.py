@@ -1,0 +1,98 @@
+"""The steps of a plan: what they place, and whether their order and their ids can be."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from drystone.model.plan import Plan, StoneStep, WedgeStep
+
+Step = StoneStep | WedgeStep
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A step that cannot be where it is, or cannot have its id.
+
+    Parameters
+    ----------
+    code : {"E213", "E214"}
+        An id; the order.
+    step : int
+        Number that the step gives itself.
+    message : str
+        What is wrong.
+    """
+
+    code: str
+    step: int
+    message: str
+
+
+def piece_id(step: Step) -> int:
+    """Return the value in wall.png of what a step places."""
+    return step.id if isinstance(step, WedgeStep) else step.stone
+
+
+def piece_name(step: Step) -> str:
+    """Return what messages call it.
+
+    Examples
+    --------
+    >>> piece_name(WedgeStep(2, 301, 7, (), None, None))
+    'wedge 301'
+    """
+    return f"{step.kind} {piece_id(step)}"
+
+
+def grouped(steps: Sequence[Step]) -> tuple[list[list[Step]], list[Fault]]:
+    """Put each stone and its wedges together (E214 where the order is not the contract's)."""
+    groups: list[list[Step]] = []
+    faults = []
+    for number, step in enumerate(steps, 1):
+        if step.step != number:
+            faults.append(Fault("E214", step.step, f"this is step {number} of the plan."))
+        if isinstance(step, StoneStep):
+            groups.append([step])
+            continue
+        above = groups[-1][0] if groups else None
+        if not isinstance(above, StoneStep) or above.stone != step.under:
+            message = f"wedge {step.id} does not follow stone {step.under}, which it supports."
+            faults.append(Fault("E214", step.step, message))
+        if groups:
+            groups[-1].append(step)
+    for group in groups:
+        early = [s.step for s in group[:-1] if (s.alpha_left, s.alpha_right) != (None, None)]
+        faults += [
+            Fault("E214", at, "load multipliers are claimed before the stone's last wedge.")
+            for at in early
+        ]
+    return groups, faults
+
+
+def id_fault(step: Step, used: set[int], largest: int) -> Fault | None:
+    """Note an id as used; say when it was, or is none of a wedge (E213).
+
+    Parameters
+    ----------
+    step : StoneStep or WedgeStep
+        The step.
+    used : set of int
+        Ids of the steps before it; this one's is added.
+    largest : int
+        Id of a stone; those of wedges are larger.
+    """
+    name, its_id = piece_name(step), piece_id(step)
+    if its_id in used:
+        return Fault("E213", step.step, f"{name} was placed before.")
+    used.add(its_id)
+    if isinstance(step, WedgeStep) and its_id <= largest:
+        message = f"{name} has an id that is not larger than every stone's."
+        return Fault("E213", step.step, message)
+    return None
+
+
+def first_fault(plan: Plan) -> Fault | None:
+    """Return the first fault of the steps of a plan that its stones are not needed for."""
+    largest = max((*plan.unused, *(step.stone for step in plan.stone_steps)), default=0)
+    used: set[int] = set()
+    found = [fault for step in plan.steps if (fault := id_fault(step, used, largest))]
+    return next(iter([*found, *grouped(plan.steps)[1]]), None)

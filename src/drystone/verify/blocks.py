@@ -1,0 +1,146 @@
+"""The block model beside a plan of outlines is that of its poses (E238)."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import shapely
+
+from drystone.errors import DrystoneError
+from drystone.kernels.polygons import Points
+from drystone.model.plan import Plan
+from drystone.statics.contacts.given import model_from_json, polygons_from_json
+from drystone.statics.model import Block, Interface, RigidBlockModel
+from drystone.verify.pieces import piece_name
+from drystone.verify.replay import Replay
+from drystone.verify.report import Problem
+
+FILE = "blocks.json"
+
+NEAR_PX = 0.01
+"""So far apart, source px, outlines and contact points may be: rounding of either file."""
+
+SAME_WAY = 1e-3
+"""Between unit normals: that much a short edge turns when its ends are rounded."""
+
+SAME_FRICTION = 1e-9
+
+Pair = tuple[int, int]
+"""Ids of two blocks that touch, the smaller one first."""
+
+
+def check_blocks(
+    content: Any, plan: Plan, replay: Replay, model: RigidBlockModel | None
+) -> list[Problem]:
+    """Compare a block model with the plan that it lies beside (E238).
+
+    Parameters
+    ----------
+    content : anything
+        Of blocks.json; words say why it has none.
+    plan : Plan
+        Says its unit of length.
+    replay : Replay
+        Of the plan, on outlines.
+    model : RigidBlockModel or None
+        Of the whole wall as it was built again, source px; None leaves contacts out.
+    """
+    if not isinstance(content, Mapping):
+        why = f": {content}" if isinstance(content, str) else "."
+        return [_problem(f"{FILE} is no block model{why}")]
+    try:
+        polygons, claimed = polygons_from_json(content), model_from_json(content)
+    except DrystoneError as error:
+        return [_problem(f"{FILE} is no block model: {error.where}: {error.what}")]
+    px = plan.px_per_m or 1.0
+    outlines = {block: corners * px for block, corners in polygons.items()}
+    problems = _check_outlines(outlines, replay) + _check_bodies(claimed.blocks)
+    if any(abs(claimed.friction(face) - replay.settings.mu) > SAME_FRICTION
+           for face in claimed.interfaces):  # fmt: skip
+        problems.append(_problem(f"friction in {FILE} is not mu = {replay.settings.mu:g}."))
+    if model is not None:
+        problems += _check_contacts(_by_pair(claimed, px), _by_pair(model, 1.0))
+    return problems
+
+
+def _check_outlines(outlines: Mapping[int, Points], replay: Replay) -> list[Problem]:
+    """Compare ids and polygons, source px."""
+    pieces = {piece.id: piece for piece in replay.pieces}
+    problems = [
+        _problem(f"{FILE} has a block {block}, which the plan does not place.")
+        for block in sorted(set(outlines) - set(pieces))
+    ]
+    for block, piece in pieces.items():
+        name, step = piece_name(piece.step), piece.step.step
+        if block not in outlines:
+            problems.append(_problem(f"{name} is not in {FILE}.", step))
+        elif piece.corners is not None:
+            off = _apart(outlines[block], piece.corners)
+            if not off <= NEAR_PX:
+                said = f"the outline of {name} in {FILE} is {off:.3g} source px from its pose."
+                problems.append(_problem(said, step))
+    return problems
+
+
+def _check_bodies(blocks: tuple[Block, ...]) -> list[Problem]:
+    """Name blocks of another density, or that do not move freely: no plan has them."""
+    odd = [block.id for block in blocks if block.density != 1.0 or block.fixed or block.held]
+    said = f"of another density, fixed or held in {FILE}: {', '.join(map(str, odd))}."
+    return [_problem(said)] if odd else []
+
+
+def _check_contacts(
+    claimed: Mapping[Pair, list[Interface]], found: Mapping[Pair, list[Interface]]
+) -> list[Problem]:
+    """Compare where blocks touch, pair by pair; in source px both."""
+    wrong = [
+        pair
+        for pair in sorted({*claimed, *found})
+        if not _same(claimed.get(pair, []), found.get(pair, []))
+    ]
+    names = [f"{one or 'the ground'} and {other}" for one, other in wrong]
+    return [
+        _problem(f"the contacts between {name} in {FILE} are not those of their outlines.")
+        for name in names
+    ]
+
+
+def _by_pair(model: RigidBlockModel, px: float) -> dict[Pair, list[Interface]]:
+    """Return the interfaces of each pair in source px, normals into the larger id."""
+    found: dict[Pair, list[Interface]] = {}
+    for face in model.interfaces:
+        low, high = sorted((face.block, face.other))
+        (x, y), sign = face.normal, 1.0 if face.block == high else -1.0
+        turned = Interface(high, low, face.points * px, (sign * x, sign * y))
+        found.setdefault((low, high), []).append(turned)
+    return found
+
+
+def _same(claimed: list[Interface], found: list[Interface]) -> bool:
+    """Say whether two lists hold the same contacts, in any order."""
+    left = list(found)
+    for face in claimed:
+        match = next((other for other in left if _meets(face, other)), None)
+        if match is None:
+            return False
+        left = [other for other in left if other is not match]
+    return not left
+
+
+def _meets(one: Interface, other: Interface) -> bool:
+    if one.points.shape != other.points.shape or not np.allclose(
+        one.normal, other.normal, rtol=0.0, atol=SAME_WAY
+    ):
+        return False
+    ways = (other.points, other.points[::-1])
+    return any(float(np.hypot(*(one.points - way).T).max()) <= NEAR_PX for way in ways)
+
+
+def _apart(claimed: Points, found: Points) -> float:
+    """Return how far two outlines are from each other, in any direction."""
+    lines = [shapely.LinearRing(corners) for corners in (claimed, found)]
+    return float(shapely.hausdorff_distance(*lines))
+
+
+def _problem(message: str, step: int | None = None) -> Problem:
+    return Problem("E238", step, message)

@@ -1,0 +1,153 @@
+"""The block model beside a plan of outlines is compared with its poses."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drystone.verify.check import check_plan
+from drystone.verify.report import Problem
+from tests.verify.exact_examples import block_model, exact_example
+from tests.verify.examples import SLAB, WEDGE, Example, example
+from tests.verify.tampering import moved, step_of
+
+
+@pytest.fixture(scope="module", params=[None, 200.0], ids=["px", "m"])
+def true(request: pytest.FixtureRequest) -> Example:
+    return exact_example(0.5, request.param)
+
+
+def found(made: Example, blocks: Any) -> list[Problem]:
+    report = check_plan(made.plan, made.stones, wall_labels=made.wall.labels, blocks=blocks)
+    assert not any("blocks.json" in note for note in report.notes)
+    return list(report.problems)
+
+
+def block(blocks: Any, its_id: int) -> Any:
+    return next(one for one in blocks["blocks"] if one["id"] == its_id)
+
+
+def turned(blocks: Any, _unit: float) -> None:
+    """Turn the L by 180 degrees about the middle of its box, which moves its outline by px."""
+    corners = np.array(block(blocks, 12)["polygon"])
+    block(blocks, 12)["polygon"] = (corners.min(axis=0) + corners.max(axis=0) - corners).tolist()
+
+
+def shifted(blocks: Any, unit: float) -> None:
+    block(blocks, WEDGE)["polygon"][0][0] -= 0.02 * unit
+
+
+def other_id(blocks: Any, _unit: float) -> None:
+    block(blocks, 300)["id"] = 400
+    blocks["interfaces"] = [i for i in blocks["interfaces"] if 300 not in i["between"]]
+
+
+def heavy(blocks: Any, _unit: float) -> None:
+    block(blocks, 3)["density"] = 2.0
+
+
+def held(blocks: Any, _unit: float) -> None:
+    block(blocks, 3)["held"] = ["turn"]
+
+
+def rough(blocks: Any, _unit: float) -> None:
+    blocks["mu"] = 0.7
+
+
+def rough_pair(blocks: Any, _unit: float) -> None:
+    blocks["friction"] = [{"between": [3, 0], "mu": 0.9}]
+
+
+def fewer_contacts(blocks: Any, _unit: float) -> None:
+    blocks["interfaces"] = [i for i in blocks["interfaces"] if set(i["between"]) != {3, SLAB}]
+
+
+def moved_contact(blocks: Any, unit: float) -> None:
+    pair = next(i for i in blocks["interfaces"] if set(i["between"]) == {3, SLAB})
+    pair["points"][0][0] += 0.02 * unit
+
+
+def other_normal(blocks: Any, _unit: float) -> None:
+    pair = next(i for i in blocks["interfaces"] if set(i["between"]) == {3, SLAB})
+    pair["normal"] = [-x for x in pair["normal"]]
+
+
+def doubled(blocks: Any, _unit: float) -> None:
+    blocks["interfaces"].append(blocks["interfaces"][0])
+
+
+Tamper = Callable[[Any, float], None]
+
+WAYS: list[tuple[Tamper, list[str]]] = [
+    (turned, ["outline of stone 12 in blocks.json is "]),
+    (shifted, [f"outline of wedge {WEDGE} in blocks.json is 0.02 source px"]),
+    (other_id, ["has a block 400", "contacts between the ground and 300", "stone 300 is not in"]),
+    (heavy, ["fixed or held in blocks.json: 3."]),
+    (held, ["fixed or held in blocks.json: 3."]),
+    (rough, ["friction in blocks.json is not mu = 0.58"]),
+    (rough_pair, ["friction in blocks.json is not mu = 0.58"]),
+    (fewer_contacts, [f"contacts between 3 and {SLAB} in"]),
+    (moved_contact, [f"contacts between 3 and {SLAB} in"]),
+    (other_normal, [f"contacts between 3 and {SLAB} in"]),
+    (doubled, ["contacts between "]),
+]
+
+
+@pytest.mark.parametrize(("tamper", "said"), WAYS, ids=[way.__name__ for way, _ in WAYS])
+def test_another_block_model_is_named(true: Example, tamper: Tamper, said: list[str]) -> None:
+    blocks = block_model(true)
+    tamper(blocks, 1.0 / (true.plan.px_per_m or 1.0))
+    problems = found(true, blocks)
+    assert {problem.code for problem in problems} == {"E238"}
+    for words in said:
+        assert any(words in problem.message for problem in problems), words
+
+
+def test_the_step_of_an_outline_is_named(true: Example) -> None:
+    blocks = block_model(true)
+    turned(blocks, 1.0)
+    (problem,) = found(true, blocks)
+    assert problem.step == step_of(true.plan, 12).step
+
+
+def test_the_same_in_other_words_is_the_same(true: Example) -> None:
+    blocks = block_model(true)
+    blocks["blocks"].reverse()
+    blocks["interfaces"].reverse()
+    for one in blocks["blocks"]:
+        one["polygon"] = [*one["polygon"][2:], *one["polygon"][:2]]
+    for one in blocks["interfaces"]:
+        one["points"].reverse()
+        if 0 not in one["between"]:
+            one["between"].reverse()
+            one["normal"] = [-x for x in one["normal"]]
+    assert found(true, blocks) == []
+
+
+@pytest.mark.parametrize("content", [3, [], {}, {"blocks": 1}, {"blocks": [{"id": 1}]}])
+def test_what_is_no_block_model_is_named(true: Example, content: Any) -> None:
+    (problem,) = found(true, content)
+    assert problem.code == "E238"
+    assert problem.message.startswith("blocks.json is no block model")
+
+
+def test_outlines_are_compared_where_the_wall_cannot_be_built(true: Example) -> None:
+    blocks = block_model(true)
+    turned(blocks, 1.0)
+    plan = moved(true.plan, SLAB, 0, -3.0 / (true.plan.px_per_m or 1.0))
+    report = check_plan(plan, true.stones, blocks=blocks)
+    said = [problem.message for problem in report.problems if problem.code == "E238"]
+    assert [words.split(" in blocks.json")[0] for words in said] == [
+        f"the outline of stone {SLAB}", "the outline of stone 12",
+    ]  # fmt: skip
+
+
+def test_that_there_is_none_is_said_of_outlines_alone(true: Example) -> None:
+    def notes(made: Example) -> str:
+        return " ".join(check_plan(made.plan, made.stones).notes)
+
+    assert "There is no blocks.json to compare" in notes(true)
+    on_pixels = example()
+    assert "blocks.json" not in notes(on_pixels)
+    assert check_plan(on_pixels.plan, on_pixels.stones, blocks={"blocks": []}).ok
