@@ -118,7 +118,11 @@ def _planning(command: argparse.ArgumentParser) -> None:
         help="who chooses the stones of a single pass: paper, random, lowest, scalarised, filter, "
         "towers, learned, or one that is installed (docs/policies.md)",
     )  # fmt: skip
-    group.add_argument("--sampling", choices=["variant", "uniform", "twofold", "full"])
+    group.add_argument(
+        "--sampling", choices=["variant", "uniform", "twofold", "full"],
+        help="stones that are tried in a step: one of each cluster, as many at random, one of "
+        "each and then all of the winner's cluster, or all",
+    )  # fmt: skip
     group.add_argument("--placement", choices=["snug", "eq12", "lowest"])
     group.add_argument("--reach", choices=["any", "above"], help="where a stone may be inserted")
     group.add_argument(

@@ -56,7 +56,9 @@ class PlannerSettings:
         With several orientations: each is a candidate of its own, or the placement rule picks one
         per stone.
     sampling : {"variant", "uniform", "twofold", "full"}
-        Candidate sets (§5.1).
+        Which stones are tried in a step (§3.4, §5.1): ``"variant"``: one at random from each
+        cluster; ``"uniform"``: as many as there were clusters at first, at random; ``"twofold"``:
+        as variant, then all of the winner's cluster; ``"full"``: all that are left.
     selection_rule : str
         ``"algorithm2"``: the paper's filters and sums; ``"score"``: the least craft cost
         (:mod:`drystone.selection.scored`); or the name of a policy, with which a search's budget
