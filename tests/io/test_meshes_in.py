@@ -112,6 +112,53 @@ f -4 -3 -2 -1
     assert [stone.name for stone in stones] == ["wall_1", "wall_2"]
 
 
+def boxes(*names):
+    """An OBJ of squares side by side, each after lines of its own."""
+    lines = []
+    for i, name in enumerate(names):
+        lines += [*(f"v {3 * i + x} {y} 0" for x, y in ((0, 0), (2, 0), (2, 2), (0, 2))), name]
+        lines.append("f -4 -3 -2 -1")
+    return "\n".join(lines)
+
+
+def test_obj_names_of_several_words(tmp_path):
+    scene = trimesh.Scene()
+    for i in (3, 1, 2):
+        box = trimesh.creation.box((1.0, 1.0, 0.1))
+        box.apply_translation((1.5 * i, 0.0, 0.0))  # they would be in pieces together
+        scene.add_geometry(box, geom_name=f"Stone {i}")
+    text = scene.export(file_type="obj")
+    assert "o Stone 1\n" in text
+    stones = read_stones(saved(tmp_path, text, "s.obj"), settings=ReadSettings(px_per_m=50))
+    assert [(stone.id, stone.name) for stone in stones] == [(i, f"Stone {i}") for i in (1, 2, 3)]
+    assert [stone.left_px for stone in stones] == [0, 75, 150]
+
+
+@pytest.mark.parametrize(
+    ("names", "expected", "said"),
+    [
+        (["g Stone 2", "g Stone 1"], ["Stone 1", "Stone 2"], ""),
+        (["o Stone 2 # left", "o Stone 1"], ["Stone 1", "Stone 2"], ""),
+        (["o big one", "o big other"], ["big one", "big other"], ""),
+        (["g a wall", "g b wall"], ["a", "b"], ""),  # of the group and of that of all
+        (["o x\ng left part", "g right part\no y"], ["x", "y"], ""),
+        (["g stone_1 top", "g stone_1 side"], ["stone_1"],
+         "faces of several groups count for the first, so stone_1 is one stone of: "
+         "stone_1 top, stone_1 side."),
+    ],
+)  # fmt: skip
+def test_obj_objects_and_groups(tmp_path, names, expected, said):
+    settings = ReadSettings(px_per_m=50, pieces="keep-largest")
+    stones = read_stones(saved(tmp_path, boxes(*names), "s.obj"), settings=settings)
+    assert [stone.name for stone in stones] == expected
+    assert [n.message for n in stones.notices if "groups" in n.message] == ([said] if said else [])
+
+
+def test_obj_with_an_empty_object_at_its_end(tmp_path):
+    path = saved(tmp_path, boxes("", "") + "\no x", "s.obj")
+    assert len(read_stones(path, settings=ReadSettings(px_per_m=50))) == 2
+
+
 def test_a_sphere_shows_its_circle(tmp_path):
     sphere = trimesh.creation.icosphere(subdivisions=4, radius=0.3)
     sphere.apply_scale((1, 1, 0.5))

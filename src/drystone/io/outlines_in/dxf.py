@@ -9,6 +9,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from drystone.errors import InputError, Notice, UsageError
+from drystone.io.outlines_in.dxf_blocks import Drawn, drawn_entities
 from drystone.io.outlines_in.model import (
     METRES,
     OutlinedStone,
@@ -59,20 +60,17 @@ def read_dxf(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
     ezdxf = load_ezdxf()
     document = _document(ezdxf, data, where)
     unit_m = _unit(ezdxf, document, where, settings)
-    entities = list(import_module("ezdxf.disassemble").recursive_decompose(document.modelspace()))
-    shown = [entity for entity in entities if not _is_hidden(entity, document)]
-    aside = Counter({"entities that are hidden, or on hidden layers": len(entities) - len(shown)})
-    entities = shown
-    named = [e for e in entities if str(e.dxf.get("layer", "0")).upper() == _LAYER]
+    aside: Counter[str] = Counter()
+    shown = drawn_entities(document, where, aside)
+    named = [drawn for drawn in shown if drawn.layer.upper() == _LAYER]
     if named:
-        others = {id(entity) for entity in entities} - {id(entity) for entity in named}
-        aside["entities outside the layer STONES"] = len(others)
+        aside["entities outside the layer STONES"] = len(shown) - len(named)
     rings, names = [], []
-    for entity in named or entities:
-        corners = _outline(entity, where, aside)
+    for drawn in named or shown:
+        corners = _outline(drawn, where, aside)
         if corners is not None:
             rings.append(corners)
-            names.append(_name(entity))
+            names.append(_name(drawn))
     return _file(rings, names, unit_m, +aside)
 
 
@@ -128,17 +126,9 @@ def _unit(ezdxf: Any, document: Any, where: str, settings: ReadSettings) -> floa
     )
 
 
-def _is_hidden(entity: Any, document: Any) -> bool:
-    layer = str(entity.dxf.get("layer", "0"))
-    if layer in document.layers:
-        found = document.layers.get(layer)
-        if found.is_off() or found.is_frozen():
-            return True
-    return bool(entity.dxf.get("invisible", 0))
-
-
-def _outline(entity: Any, where: str, aside: Counter[str]) -> Points | None:
+def _outline(drawn: Drawn, where: str, aside: Counter[str]) -> Points | None:
     """Return the corners of a closed outline; what is none is counted."""
+    entity = drawn.entity
     kind = entity.dxftype()
     if kind not in _OUTLINES or (kind == "POLYLINE" and not _is_line(entity)):
         aside[kind] += 1
@@ -146,7 +136,8 @@ def _outline(entity: Any, where: str, aside: Counter[str]) -> Points | None:
     handle = entity.dxf.get("handle", "?")
     try:
         if kind == "SPLINE" and len(entity.control_points):
-            corners = spline(entity.control_points, entity.knots, entity.weights, entity.dxf.degree)
+            control = [v.xyz for v in drawn.matrix.transform_vertices(entity.control_points)]
+            corners = spline(control, entity.knots, entity.weights, entity.dxf.degree)
             if np.abs(corners[0] - corners[-1]).max() > _CLOSED * np.ptp(corners, axis=0).max():
                 aside["open SPLINE"] += 1
                 return None
@@ -155,6 +146,8 @@ def _outline(entity: Any, where: str, aside: Counter[str]) -> Points | None:
         if not len(path) or not path.is_closed:
             aside[f"open {kind}"] += 1
             return None
+        # Curves stay curves also where a block is stretched, or mirrored.
+        path = path.transform(drawn.matrix)
         # Few corners are enough to see how large it is.
         rough = np.array([(v.x, v.y) for v in path.control_vertices()])
         size = float(np.ptp(rough, axis=0).max())
@@ -194,13 +187,13 @@ def _is_line(entity: Any) -> bool:
     return bool(entity.is_2d_polyline or entity.is_3d_polyline)
 
 
-def _name(entity: Any) -> str:
+def _name(drawn: Drawn) -> str:
     """Return what drystone wrote to the outline of a stone, else the layer."""
+    entity = drawn.entity
     if entity.has_xdata(_APPLICATION):
         said = [str(value) for code, value in entity.get_xdata(_APPLICATION) if code == 1000]
         return said[0] if said else ""
-    layer = str(entity.dxf.get("layer", "0"))
-    return "" if layer.upper() in {"0", _LAYER} else layer
+    return "" if drawn.layer.upper() in {"0", _LAYER} else drawn.layer
 
 
 def _file(

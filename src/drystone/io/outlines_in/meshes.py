@@ -5,7 +5,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,7 @@ _WORDS = {
 }
 _OURS = (b"# drystone ", b"drystone, ")
 _HEAD = 400
+_SHOWN = 8
 _STL_FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _STL_VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
 _PLY_FACES = re.compile(rb"^element\s+face\s+(\d+)", re.MULTILINE)
@@ -49,11 +50,14 @@ class Body:
         Of the whole file.
     faces : sequence of integer arrays
         Positions in `vertices`, three or more a face.
+    said : tuple of str
+        What the file says of its groups, each once; only of an OBJ.
     """
 
     name: str
     vertices: NDArray[np.float64]
     faces: Sequence[NDArray[np.int64]]
+    said: tuple[str, ...] = ()
 
 
 def mesh_kind(data: bytes, suffix: str) -> str | None:
@@ -102,11 +106,18 @@ def read_mesh(kind: str, data: bytes, where: str, settings: ReadSettings) -> Out
     )
     why = "as drystone writes meshes" if ours else "in which the mesh is thinnest"
     notices = [Notice("W119", f"{len(stones)} bodies, seen {_WORDS[axis]} ({why}).")]
+    notices += [_united(body) for body in bodies if len(body.said) > 1]
     if not settings.unit and not ours:
         text = f"{kind.upper()} has no unit: lengths were taken as metres."
         notices.append(Notice("W119", text, "Say --unit mm (or cm, in, ft) if they are not."))
     unit_m = METRES.get(settings.unit or "m")
     return OutlineFile(stones, unit_m, y_up=True, notices=tuple(notices))
+
+
+def _united(body: Body) -> Notice:
+    shown = ", ".join(body.said[:_SHOWN]) + (" …" if len(body.said) > _SHOWN else "")
+    text = f"faces of several groups count for the first, so {body.name} is one stone of: {shown}."
+    return Notice("W119", text, "Give every stone an object (o) of its own if they are several.")
 
 
 def load_trimesh() -> Any:
@@ -172,31 +183,62 @@ def _cut(why: str, where: str) -> InputError:
 
 
 def _obj_bodies(data: bytes, where: str) -> list[Body]:
-    """Read vertices, faces and object names of an OBJ; faces may have any number of corners."""
+    """Read vertices, faces and object names of an OBJ; faces may have any number of corners.
+
+    Where there are objects (o), groups (g) are their parts; otherwise they are the stones.
+    """
     points: list[list[float]] = []
-    objects: dict[str, list[NDArray[np.int64]]] = {}
-    name = ""
+    parts: dict[_Part, list[NDArray[np.int64]]] = {}
+    said: dict[_Part, dict[str, None]] = {}
+    nameless = _Part("", "")
+    part, title = nameless, ""
     for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), start=1):
         words = line.split()
         try:
             if words[:1] == ["v"]:
                 points.append([float(word) for word in words[1:4]])
             elif words[:1] == ["f"]:
-                corners = np.array([int(word.split("/")[0]) for word in words[1:]])
-                corners = np.where(corners < 0, corners + len(points), corners - 1)
-                if len(corners) < 3 or corners.min() < 0 or corners.max() >= len(points):
-                    raise ValueError(f"a face of {len(words) - 1} corners, or of unknown vertices")
-                objects.setdefault(name, []).append(corners)
-            elif words[:1] == ["o"] or (words[:1] == ["g"] and not name.startswith("o ")):
-                name = " ".join(words[:2])
+                parts.setdefault(part, []).append(_face(words[1:], len(points)))
+                said.setdefault(part, {})[title] = None
+            elif words[:1] == ["o"] or (words[:1] == ["g"] and part.kind != "o"):
+                part, title = _part(line)
         except ValueError as error:
             raise damaged(where, f"line {number} cannot be used ({error})") from error
     if any(len(point) < 3 for point in points):
         raise damaged(where, "a vertex has less than three coordinates")
     vertices = np.array(points, float).reshape(-1, 3)
-    if len(objects) < 2 and not any(objects):
-        return _bodies("", vertices, objects.get("", []), where)
-    return [Body(name[2:], vertices, faces) for name, faces in objects.items()]
+    if not any(part.kind for part in parts):
+        return _bodies("", vertices, parts.get(nameless, []), where)
+    return [Body(part.name, vertices, parts[part], tuple(said[part])) for part in parts]
+
+
+class _Part(NamedTuple):
+    """An object (o) or a group (g) of an OBJ; of no kind before the first of them."""
+
+    kind: str
+    name: str
+
+
+def _part(line: str) -> tuple[_Part, str]:
+    """Return what a line o or g begins, and all that it says.
+
+    An object has one name, be there spaces in it.  A group line lists groups that its faces all
+    belong to, the one of the thing itself first (then of its parents, or its colour), unless the
+    words together are the number of a stone.
+    """
+    kind, *words = line.partition(" # ")[0].split()
+    title = " ".join(words)
+    whole = kind == "o" or not words or number_in(title) is not None
+    return _Part(kind, title if whole else words[0]), title if kind == "g" else ""
+
+
+def _face(words: list[str], count: int) -> NDArray[np.int64]:
+    """Return the corners of a face after `count` vertices; negative ones count from the last."""
+    corners = np.array([int(word.split("/")[0]) for word in words])
+    corners = np.where(corners < 0, corners + count, corners - 1)
+    if len(corners) < 3 or corners.min() < 0 or corners.max() >= count:
+        raise ValueError(f"a face of {len(words)} corners, or of unknown vertices")
+    return corners
 
 
 def _bodies(

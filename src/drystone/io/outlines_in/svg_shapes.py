@@ -14,7 +14,8 @@ SHAPES = frozenset({"path", "polygon", "polyline", "rect", "circle", "ellipse"})
 
 Matrix = NDArray[np.float64]
 
-_CALL = re.compile(r"\s*,?\s*([a-zA-Z]+)\s*\(([^)]*)\)")
+TRANSFORM = re.compile(r"\s*,?\s*([a-zA-Z]+)\s*\(([^)]*)\)")
+"""A function of a transform, and what it is of."""
 _LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-z%]*)\s*")
 UNITS_M = {
     "mm": 0.001, "cm": 0.01, "q": 0.00025, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6,
@@ -49,16 +50,17 @@ def transform(text: str) -> Matrix:
     matrix, place = np.eye(3), 0
     text = "" if text.strip() == "none" else text
     while place < len(text.rstrip()):
-        found = _CALL.match(text, place)
+        found = TRANSFORM.match(text, place)
         if found is None:
             raise ValueError(f"{text[place:][:30]!r} is no transform")
         numbers = [bounded(word) for word in re.split(r"[\s,]+", found[2].strip()) if word]
-        matrix = matrix @ _matrix(found[1], numbers)
+        matrix = matrix @ matrix_of(found[1], numbers)
         place = found.end()
     return matrix
 
 
-def _matrix(name: str, numbers: list[float]) -> Matrix:
+def matrix_of(name: str, numbers: list[float]) -> Matrix:
+    """Return the matrix of one function of a transform; ValueError when it is none."""
     matrix = np.eye(3)
     count = len(numbers)
     if name == "matrix" and count == 6:
@@ -111,17 +113,17 @@ def lines_of(
         return [Subpath(points, closed)]
     if kind == "rect":
         return [Subpath(_rectangle(attributes, view), closed=True)]
-    rx, ry = (_number(attributes, "r" if kind == "circle" else n, view) for n in ("rx", "ry"))
+    rx, ry = (user_units(attributes, "r" if kind == "circle" else n, view) for n in ("rx", "ry"))
     angles = np.arange(CORNERS_OF_CIRCLE) * (2.0 * math.pi / CORNERS_OF_CIRCLE)
     circle = np.column_stack([rx * np.cos(angles), ry * np.sin(angles)])
-    middle = np.array([_number(attributes, "cx", view), _number(attributes, "cy", view)])
+    middle = np.array([user_units(attributes, "cx", view), user_units(attributes, "cy", view)])
     return [Subpath(circle + middle, closed=True)]
 
 
 def _rectangle(attributes: Mapping[str, str], view: tuple[float, float] | None) -> Points:
     names = ("x", "y", "width", "height")
-    x, y, width, height = (_number(attributes, name, view) for name in names)
-    given = [_number(attributes, name, view) for name in ("rx", "ry") if name in attributes]
+    x, y, width, height = (user_units(attributes, name, view) for name in names)
+    given = [user_units(attributes, name, view) for name in ("rx", "ry") if name in attributes]
     # One radius counts for both.
     rx, ry = (min(given[0], width / 2), min(given[-1], height / 2)) if given else (0.0, 0.0)
     if rx <= 0.0 or ry <= 0.0:
@@ -138,7 +140,8 @@ def _rectangle(attributes: Mapping[str, str], view: tuple[float, float] | None) 
     return np.concatenate(corners)
 
 
-def _number(attributes: Mapping[str, str], name: str, view: tuple[float, float] | None) -> float:
+def user_units(attributes: Mapping[str, str], name: str, view: tuple[float, float] | None) -> float:
+    """Return an attribute that is a length, 0 when there is none; ValueError when it is none."""
     value, unit = length(attributes.get(name, "0"))
     if unit in UNITS_M:
         return value * UNITS_M[unit] / PX_M

@@ -1,0 +1,148 @@
+"""Viewports of SVG: what width, height, viewBox and preserveAspectRatio make of user units."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from xml.etree import ElementTree as ET
+
+import numpy as np
+
+from drystone.io.outlines_in.model import METRES
+from drystone.io.outlines_in.svg_path import bounded
+from drystone.io.outlines_in.svg_shapes import PX_M, UNITS_M, Matrix, length, user_units
+from drystone.io.read_settings import ReadSettings
+
+View = tuple[float, float]
+"""Width and height that per cents are of, user units."""
+
+_RATIO = re.compile(r"(?:defer\s+)?(?:none|x(Min|Mid|Max)Y(Min|Mid|Max))(?:\s+(meet|slice))?")
+_SHARES = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
+"""Of the free space before the box."""
+
+
+@dataclass(frozen=True, eq=False)
+class Page:
+    """What the root element says.
+
+    Parameters
+    ----------
+    matrix : Matrix
+        From its user units to the page.
+    unit_m : float or None
+        Metres in a unit of the page; None for px.
+    size : (float, float) or None
+        Of the page, in its unit, if it is known.
+    view : (float, float) or None
+        What per cents are of.
+    """
+
+    matrix: Matrix
+    unit_m: float | None
+    size: tuple[float, float] | None
+    view: View | None
+
+
+def page_of(root: ET.Element, settings: ReadSettings) -> Page:
+    """Read width, height and viewBox of the root; ValueError when they cannot be used."""
+    sides = [length(root.get(name, "100%")) for name in ("width", "height")]
+    physical = all(unit in UNITS_M for _, unit in sides)
+    if not physical and any(unit not in {"", "px", "%"} for _, unit in sides):
+        raise ValueError("its width and height are in units that cannot be used together")
+    box = view_box(root)
+    given = not any(unit == "%" for _, unit in sides)
+    unit_m = METRES.get(settings.unit or "px")
+    size = [value for value, _ in sides] if given else box[2:]
+    if physical:
+        unit_m = UNITS_M[sides[0][1]]
+        size = [value * UNITS_M[unit] / unit_m for value, unit in sides]
+    elif unit_m is not None:
+        # What the settings name is the user's unit, whatever px it is shown in.
+        size = box[2:] or size
+    if given and min(size, default=1.0) <= 0.0:
+        raise ValueError("its width or height is not above 0")
+    matrix = np.eye(3)
+    if box and size:
+        matrix = fitted(box, size, root.get("preserveAspectRatio", ""))
+    elif physical:
+        # User units are the px of CSS then.
+        matrix[0, 0] = matrix[1, 1] = PX_M / UNITS_M[sides[0][1]]
+    if not size:
+        return Page(matrix, unit_m, None, None)
+    view = (box[2], box[3]) if box else (size[0] / matrix[0, 0], size[1] / matrix[1, 1])
+    return Page(matrix, unit_m, (size[0], size[1]), view)
+
+
+def inner_view(
+    element: ET.Element, use: ET.Element | None, around: View | None
+) -> tuple[Matrix, View | None] | None:
+    """Return the way out of the viewport of an inner svg or a symbol, and what per cents are of.
+
+    Parameters
+    ----------
+    element : Element
+        The svg or symbol; ValueError when it cannot be used.
+    use : Element or None
+        What shows it; its width and height come first.
+    around : (float, float) or None
+        What per cents around it are of.
+
+    Returns
+    -------
+    (Matrix, (float, float) or None) or None
+        None when nothing of it can be seen.
+    """
+    said, box, size = dict(element.attrib), view_box(element), None
+    for name in ("width", "height"):
+        given = (one.get(name, "auto") for one in (use, element) if one is not None)
+        said[name] = next((text for text in given if text != "auto"), "100%")
+    if box or around is not None or "%" not in said["width"] + said["height"]:
+        size = (user_units(said, "width", around), user_units(said, "height", around))
+    if size is not None and min(size) < 0.0:
+        raise ValueError("its width or height is below 0")
+    if size is not None and min(size) == 0.0:
+        return None
+    matrix = np.eye(3)
+    matrix[:2, 2] = [user_units(said, name, around) for name in ("x", "y")]
+    if not box or size is None:
+        return matrix, size
+    return matrix @ fitted(box, size, said.get("preserveAspectRatio", "")), (box[2], box[3])
+
+
+def view_box(element: ET.Element) -> list[float]:
+    """Return the four numbers of a viewBox; none when there is none, ValueError for others."""
+    text = element.get("viewBox", "").strip()
+    box = [bounded(word) for word in re.split(r"[\s,]+", text) if word]
+    if box and (len(box) != 4 or not min(box[2:]) > 0.0):
+        raise ValueError(f"its viewBox is {text!r}")
+    return box
+
+
+def fitted(box: Sequence[float], size: Sequence[float], ratio: str = "") -> Matrix:
+    """Return the way from the units of a viewBox to a viewport with its origin at (0, 0).
+
+    Parameters
+    ----------
+    box : sequence of 4 floats
+        Its left and upper edge, width and height.
+    size : sequence of 2 floats
+        Width and height of the viewport.
+    ratio : str
+        preserveAspectRatio: all of the box in the middle, unless it says otherwise.
+
+    Examples
+    --------
+    >>> fitted((0, 0, 10, 10), (40, 20), "xMaxYMin").tolist()
+    [[2.0, 0.0, 20.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0]]
+    """
+    found = _RATIO.fullmatch(ratio.strip() or "xMidYMid")
+    if found is None:
+        raise ValueError(f"its preserveAspectRatio is {ratio!r}")
+    origin, sides = np.array(box[:2]), np.array(box[2:])
+    scale = np.array(size) / sides
+    if found[1]:
+        scale[:] = scale.max() if found[3] == "slice" else scale.min()
+    before = [_SHARES[word] if word else 0.0 for word in found.groups()[:2]]
+    matrix = np.eye(3)
+    matrix[:2, :2] = np.diag(scale)
+    matrix[:2, 2] = before * (np.array(size) - scale * sides) - scale * origin
+    return matrix
