@@ -1,5 +1,7 @@
 """A stone far lighter than the others falls at its own load, not at that of the wall."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -38,6 +40,18 @@ def test_a_speck_of_pixels_does_too():
 def test_a_speck_that_stands_on_nothing_brings_the_wall_down():
     model = model_from_json({"blocks_xywh": [[0, 0, 900, 900], [899.6, 900, 1, 2]]})
     assert lateral_resistance(model).left.status is LimitStatus.UNSTABLE
+
+
+def test_what_weighs_nothing_falls_at_no_load_of_its_own():
+    blocks = [
+        {"id": 1, "polygon": [[0, 0], [9, 0], [9, 9], [0, 9]]},
+        {"id": 2, "polygon": [[8, 9], [10, 9], [10, 11], [8, 11]]},
+    ]
+    model = model_from_json({"blocks": blocks})
+    for density in (0.0, 1e-12):
+        weightless = replace(model.blocks[1], density=density)
+        both = lateral_resistance(replace(model, blocks=(model.blocks[0], weightless)))
+        assert (both.left.alpha, both.right.alpha) == pytest.approx((0.58, 0.58))
 
 
 def test_walls_of_like_stones_have_the_units_of_the_wall():

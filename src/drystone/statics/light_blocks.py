@@ -16,6 +16,9 @@ from drystone.statics.program import EquilibriumProgram, Floats
 LIGHT = 1e-3
 """A block below this share of the mean weight has units of its own; others are as they were."""
 
+WEIGHTLESS = 1e-8
+"""A block below this share is meant to weigh nothing, and so has none."""
+
 
 def extremes_of(
     model: RigidBlockModel, program: EquilibriumProgram, solver: Solver, *, mechanism: bool
@@ -58,11 +61,12 @@ def own_units(model: RigidBlockModel, program: EquilibriumProgram) -> Floats | N
     """
     free = [block for block in model.blocks if not block.fixed]
     weights = np.array([block.weight for block in free]) / program.weight
-    if weights.min(initial=1.0) >= LIGHT:
+    light = (weights >= WEIGHTLESS) & (weights < LIGHT)
+    if not light.any():
         return None
     sizes = np.sqrt([block.area for block in free]) / program.length
     own = np.column_stack((weights, weights, weights * sizes))
-    own[weights >= LIGHT] = 1.0
+    own[~light] = 1.0
     units = np.ones(len(program.rhs))
     moves = program.rows >= 0
     units[program.rows[moves]] = own[moves]
