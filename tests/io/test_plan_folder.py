@@ -59,3 +59,11 @@ def test_a_planner_becomes_a_plan_at_any_step() -> None:
     assert whole.plan.steps == again.plan.steps
     assert np.array_equal(whole.wall.labels, again.wall.labels)
     assert whole.plan.settings["search"]["budget"] == 1
+
+
+def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    result = ds.plan_wall(rubble(), 100, 36, scale=1.0, settings=greedy({}), budget=1)
+    for place in (tmp_path / "file", tmp_path / "file" / "in"):
+        with pytest.raises(ds.DrystoneError, match=r"E206 .*file"):
+            ds.write_plan_folder(result, place)

@@ -138,6 +138,12 @@ def test_a_budget_ends_a_search_that_has_more_time() -> None:
     assert result.plan.settings["search"]["budget"] == 3
 
 
+def test_a_policy_builds_one_wall_in_any_time() -> None:
+    settings = greedy({"selection_rule": "lowest", "search": {"budget": 1}})
+    result = plan_wall(rubble(), 100, 36, scale=1.0, settings=settings, seconds=100.0)
+    assert result.plan.settings["search"]["budget"] == 1
+
+
 def test_no_budget_is_none_to_plan_with() -> None:
     with pytest.raises(UsageError, match="E123"):
         plan_wall(rubble(), 100, 36, scale=1.0, budget=0)

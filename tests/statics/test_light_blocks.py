@@ -42,6 +42,15 @@ def test_a_speck_that_stands_on_nothing_brings_the_wall_down():
     assert lateral_resistance(model).left.status is LimitStatus.UNSTABLE
 
 
+@pytest.mark.parametrize("count", [3, 10])
+def test_slivers_under_a_heavy_block_have_an_answer(count):
+    thin = 3e-6 * 50
+    slivers = [[0, thin * k, 100, thin] for k in range(count)]
+    model = model_from_json({"blocks_xywh": [*slivers, [0, thin * count, 100, 50]]})
+    both = lateral_resistance(model)
+    assert (both.left.alpha, both.right.alpha) == pytest.approx((0.58, 0.58))
+
+
 def test_what_weighs_nothing_falls_at_no_load_of_its_own():
     blocks = [
         {"id": 1, "polygon": [[0, 0], [9, 0], [9, 9], [0, 9]]},

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import tomli_w
 
+from drystone.errors import PlanError
+from drystone.io.atomic import write_atomically
 from drystone.io.blocks_json import write_blocks
 from drystone.io.plan_json import write_plan
 from drystone.io.wall_image import write_wall_image
@@ -16,7 +18,8 @@ WRITTEN = ("plan.json", "settings.toml", "blocks.json", "wall.png", "wall.tif")
 def write_plan_folder(result: PlanResult, folder: str | Path) -> Path:
     """Write plan.json, settings.toml, the wall image and, for outlines, blocks.json.
 
-    `drystone check`, `export`, `analyse`, `measure` and `craft` read such a folder.  Pictures and
+    `drystone check`, `export`, `analyse`, `measure` and `craft` read such a folder, where stones
+    are placed.  Pictures and
     the report are those of the command line (`drystone plan`).
 
     Parameters
@@ -37,9 +40,18 @@ def write_plan_folder(result: PlanResult, folder: str | Path) -> Path:
         E206: the folder is full or not writable.
     """
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise PlanError(
+            "E206",
+            f"the folder cannot be made ({error.strerror}).",
+            where=str(folder),
+            cure="Give a folder that exists, has room and may be written to.",
+        ) from error
     write_plan(result.plan, folder / "plan.json")
-    (folder / "settings.toml").write_bytes(tomli_w.dumps(dict(result.plan.settings)).encode())
+    settings = tomli_w.dumps(dict(result.plan.settings))
+    write_atomically(folder / "settings.toml", settings.encode())
     write_blocks(result.wall, result.model, folder)
     written = write_wall_image(result.wall.labels, folder)
     for name in {"wall.png", "wall.tif"} - {written.name}:

@@ -96,7 +96,7 @@ class PlanResult:
     choice: "tuple[PlanResult, ...]" = ()
 
     def __repr__(self) -> str:
-        placed, stones = len(self.plan.stone_steps), self.plan.source["stones"]
+        placed, stones = len(self.plan.stone_steps), self.plan.source.get("stones", "?")
         return f"<PlanResult {self.status}: {placed} of {stones} stones, {self.metrics}>"
 
     def _repr_html_(self) -> str:

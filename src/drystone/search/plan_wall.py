@@ -85,12 +85,14 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     px_per_m : float, optional
         Source px in a metre; the plan is then in metres.
     budget : int, optional
-        How many walls are built, the best of which is the plan; 1 is a single pass.  That of the
-        settings when missing: 16 for ``"best"``, some eight seconds for 30 stones.
+        How many walls are built, the best of which is the plan; 1 is a single pass.  Without it
+        and without `seconds` that of the settings: 16 for ``"best"``, some eight seconds for 30
+        stones.
     seconds : float
-        Time after which the search begins no further wall, as many as there are by then; with
-        `budget` the search ends with the first of the two.  The plan's settings hold the budget
-        that was used, which repeats the plan.
+        Time after which the search begins no further wall, as many as there are by then, whatever
+        the budget of the settings; with `budget` it ends with the first of the two.  Policies
+        build a single wall.  The plan's settings hold the budget that was used, which repeats the
+        plan.
     n_jobs : int
         Processes that build the walls of a search, threads that evaluate candidates where a
         single wall is built; never changes the result.
@@ -191,7 +193,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
 
 def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> PlannerSettings:
     """Return the settings with the budget that is asked for, by number or by time."""
-    if budget is None and not math.isfinite(seconds):
+    if budget is None and (settings.by_policy or not math.isfinite(seconds)):
         return settings
     return settings.updated({"search": {"budget": UNLIMITED if budget is None else budget}})
 

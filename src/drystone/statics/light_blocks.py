@@ -12,6 +12,7 @@ import numpy as np
 from drystone.statics.asking import Answer, Solver, extremes
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.program import EquilibriumProgram, Floats
+from drystone.statics.result import LimitStatus
 
 LIGHT = 1e-3
 """A block below this share of the mean weight has units of its own; others are as they were."""
@@ -45,6 +46,9 @@ def extremes_of(
     value = program.value / units[program.index]
     scaled = replace(program, value=value, rhs=program.rhs / units)
     least, greatest = extremes(scaled, solver, mechanism=mechanism)
+    if LimitStatus.FAILED in (least.status, greatest.status):
+        # Slivers under heavy blocks are badly scaled so; an answer needs its certificate anyway.
+        return extremes(program, solver, mechanism=mechanism)
     return _in_program(least, units), _in_program(greatest, units)
 
 
