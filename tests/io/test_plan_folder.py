@@ -7,6 +7,7 @@ import pytest
 
 import drystone as ds
 from drystone.cli.main import main
+from drystone.io.wall_image import read_wall_image
 from drystone.io.walls import read_wall
 from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
 
@@ -67,3 +68,15 @@ def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     for place in (tmp_path / "file", tmp_path / "file" / "in"):
         with pytest.raises(ds.DrystoneError, match=r"E206 .*file"):
             ds.write_plan_folder(result, place)
+
+
+def test_stones_of_a_few_px_are_not_taken_for_blended_ids(tmp_path: Path) -> None:
+    stones = ds.generate.rubble_stones(
+        ds.generate.RubbleSettings(count=14), np.random.default_rng(3)
+    )
+    settings = greedy({"geometry": "raster"})
+    result = ds.plan_wall(stones, 200, 100, scale=0.12, settings=settings, budget=1)
+    ds.write_plan_folder(result, tmp_path)
+    with pytest.raises(ds.DrystoneError, match="E101"):
+        read_wall_image(tmp_path / "wall.png")
+    assert (read_wall(tmp_path).labels == result.wall.labels).all()

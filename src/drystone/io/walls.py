@@ -133,7 +133,7 @@ def image_name(plan: Plan) -> str:
 def read_image_of(plan: Plan, folder: Path) -> Labels | None:
     """Return the wall image in the folder of a plan; None when it is not there."""
     path = folder / image_name(plan)
-    return read_wall_image(path) if path.exists() else None
+    return read_wall_image(path, planned=True) if path.exists() else None
 
 
 def read_blocks_of(plan: Plan, folder: Path) -> Any:
