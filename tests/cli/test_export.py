@@ -14,7 +14,7 @@ import pytest
 
 from drystone.export.formats import FORMATS
 from drystone.export.settings import ExportSettings
-from tests.cli.conftest import Run
+from tests.cli.conftest import WALL, Run
 from tests.export.robot_plans import assembly, write_plan_folder
 
 QUICK = ("poses", "compas", "moveit", "urdf", "obj", "glb", "stl", "csv", "geojson")
@@ -187,6 +187,14 @@ def test_tables_need_no_scale(run: Run, plan: Path) -> None:
     assert {row["mass_kg"] for row in rows} == {""}
 
 
+def test_formats_write_what_they_say() -> None:
+    wall = assembly("exact")
+    for name, one in FORMATS.items():
+        files = one.exporter().files(wall, ExportSettings())
+        said = {first + cut for first, cut, _ in (file.partition("/") for file in files)}
+        assert said == set(one.writes), name
+
+
 def test_no_two_formats_write_the_same_file() -> None:
     wall = assembly("exact")
     named = [
@@ -242,6 +250,16 @@ def test_a_title_of_any_letters_makes_files_that_can_be_read(run: Run, plan: Pat
     assert read.findtext("{http://www.w3.org/2000/svg}title") == said
     texts = ezdxf.readfile(plan.parent / "wall.dxf").modelspace().query("TEXT")
     assert said in [text.dxf.text for text in texts]
+
+
+def test_exports_of_an_earlier_plan_are_named(run: Run, tmp_path: Path, rubble: Path) -> None:
+    folder = tmp_path / "out"
+    again = ("plan", rubble, *WALL, "-o", folder, "--overwrite")
+    assert "W181" not in run(*again).err
+    assert run("export", folder, "--to", "csv", "stl", "--px-per-m", 200).code == 0
+    said = run(*again).err
+    assert f"W181 of an earlier plan: stl/, steps.csv, in {folder}." in said
+    assert (folder / "steps.csv").exists()
 
 
 def test_files_of_another_plan_in_a_folder_of_its_own_are_named(run: Run, plan: Path) -> None:

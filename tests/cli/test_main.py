@@ -52,10 +52,13 @@ def test_a_cure_names_options_that_the_command_has(
         raise MemoryError
 
     monkeypatch.setattr(generate, "run", fail)
-    ran = run("generate", "brick", "-o", tmp_path / "x.png")
-    assert (
-        "E142 the memory is not large enough. Use a smaller --count or number in --set" in ran.err
-    )
+    monkeypatch.setattr(command, "run", fail)
+    for asked, smaller in (
+        (("generate", "brick", "-o", tmp_path / "x.png"), "--count or number in --set."),
+        (("stones", "x.png"), "wall or picture."),
+    ):
+        said = f"E142 the memory is not large enough. Use a smaller {smaller}"
+        assert said in run(*asked).err
 
 
 def test_debug_shows_the_traceback(run: Run) -> None:

@@ -96,6 +96,9 @@ def test_a_finished_plan_is_left_as_it_is(rubble: Path, tmp_path: Path, run: Run
     ran = run(*plan, "--resume")
     assert ran.code == 0
     assert "finished" in ran.err
+    told = run(*plan, "--resume", "--json").json()
+    assert (told["status"], told["shortfall"], told["seconds"]) == ("finished", None, None)
+    assert told["placed"] == len(read_plan(tmp_path / "out").stone_steps)
     assert {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()} == before
 
 

@@ -50,6 +50,7 @@ def test_a_planner_becomes_a_plan_at_any_step() -> None:
     half = ds.result_of(planner)
     assert (half.status, len(half.plan.stone_steps)) == ("interrupted", 2)
     assert half.plan.seed == 1
+    assert half.plan.stopped == "interrupted"  # as --resume looks for
     for _ in planner.steps():
         pass
     whole = ds.result_of(planner)

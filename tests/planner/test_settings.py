@@ -44,6 +44,9 @@ def test_an_int_is_a_float_where_one_is_wanted() -> None:
         {"orientations": 10},
         {"placement": 3},
         {"stop": {"failures": "five"}},
+        {"mu": 10**400},
+        {"placement": {"tries": 10**5000}},
+        {"search": {"pin": [2**63]}},
     ],
 )
 def test_values_of_the_wrong_type_are_refused(changes: dict[str, Any]) -> None:

@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 from drystone.errors import Notice
+from drystone.export.formats import FORMATS
 from drystone.model.stone import StoneSet
 from drystone.model.stone_size import median_sides, sides_px
 from drystone.search.plan_result import PlanResult
@@ -83,6 +84,19 @@ def write_film(result: PlanResult, folder: Path) -> None:
     from drystone.export.settings import ExportSettings  # noqa: PLC0415
 
     gif.write(read_assembly(folder), folder, ExportSettings())
+
+
+def exports_notice(folder: Path) -> Notice | None:
+    """Say when exports of an earlier plan lie beside a new one (W181); None when there are none."""
+    names = (name for one in FORMATS.values() for name in one.writes if name not in WRITTEN)
+    earlier = [name for name in names if (folder / name).exists()]
+    if not earlier:
+        return None
+    return Notice(
+        "W181",
+        f"of an earlier plan: {', '.join(earlier)}, in {folder}.",
+        "Make them again: drystone export --overwrite.",
+    )
 
 
 def say_written(folder: Path) -> None:

@@ -10,6 +10,14 @@ from drystone.cli.parser import build_parser
 from drystone.errors import DrystoneError, ExitCode, InputError, UsageError
 from drystone.kernels.backend import CHOICES, VARIABLE, fault
 
+_SMALLER = {
+    "plan": "--scale or wall",
+    "demo": "--scale",
+    "measure": "--scale or picture",
+    "generate": "--count or number in --set",
+}
+"""What takes less memory when it is smaller, by command."""
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code (DESIGN 2).
@@ -54,7 +62,7 @@ def _coded(error: DrystoneError | OSError | MemoryError, command: str) -> Drysto
     if isinstance(error, DrystoneError):
         return error
     if isinstance(error, MemoryError):
-        less = "--count or number in --set" if command == "generate" else "--scale or wall"
+        less = _SMALLER.get(command, "wall or picture")
         return InputError("E142", "the memory is not large enough.", cure=f"Use a smaller {less}.")
     return InputError(
         "E141",

@@ -9,7 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from drystone.cli.announce import read_line, say_written, scale_notice, write_film
+from drystone.cli.announce import (
+    exports_notice,
+    read_line,
+    say_written,
+    scale_notice,
+    write_film,
+)
 from drystone.cli.beginning import plan_to_begin_with
 from drystone.cli.choice import (
     choice_summary,
@@ -17,8 +23,9 @@ from drystone.cli.choice import (
     print_choice,
     write_choice,
 )
-from drystone.cli.output import number, prepare_folder, print_json, print_table
+from drystone.cli.output import prepare_folder, print_json
 from drystone.cli.plan_photo import check_photo, with_photo
+from drystone.cli.plan_summary import print_summary, summary, summary_of_plan
 from drystone.cli.progress import step_bar
 from drystone.cli.scale import picture_size_px, refuse_outside
 from drystone.cli.settings import recorded_method, search_seconds, settings_from
@@ -58,6 +65,8 @@ def plan_and_write(
             " --from begins a search with it",
             file=sys.stderr,
         )
+        if arguments.json:
+            print_json(summary_of_plan(partial, folder) | {"status": "finished"})
         return ExitCode.DONE
     begin = plan_to_begin_with(stones, wall, arguments, settings)
     _check_stones(stones, wall, arguments, settings)
@@ -86,21 +95,15 @@ def plan_and_write(
         )
     for notice in result.notices:
         print(f"drystone: {notice}", file=sys.stderr)
-    result, beside = with_photo(result, photo, folder)
-    write_result(result, stones, folder, beside)
-    write_film(result, folder)
-    if arguments.pareto:
-        write_choice(result, folder)
-    else:
-        clear_choice(folder)
+    result = _write(result, stones, folder, photo, choice=arguments.pareto)
     profile = profile_summary(result, arguments.jobs) if arguments.profile else None
     if arguments.json:
-        summary = _summary(result, folder)
+        told = summary(result, folder)
         if arguments.pareto:
-            summary["pareto"] = choice_summary(result, folder)
-        print_json(summary | ({} if profile is None else {"profile": profile}))
+            told["pareto"] = choice_summary(result, folder)
+        print_json(told | ({} if profile is None else {"profile": profile}))
         return _EXIT[result.status]
-    _print_summary(result, folder)
+    print_summary(result, folder)
     if arguments.pareto:
         print_choice(result)
     if profile is not None:
@@ -108,6 +111,22 @@ def plan_and_write(
     if not arguments.quiet:
         say_written(folder)
     return _EXIT[result.status]
+
+
+def _write(
+    result: PlanResult, stones: StoneSet, folder: Path, photo: Path | None, *, choice: bool
+) -> PlanResult:
+    """Write the plan and its pictures; return it as it was written, with its photo."""
+    result, beside = with_photo(result, photo, folder)
+    write_result(result, stones, folder, beside)
+    write_film(result, folder)
+    if choice:
+        write_choice(result, folder)
+    else:
+        clear_choice(folder)
+    if (earlier := exports_notice(folder)) is not None:
+        print(f"drystone: {earlier}", file=sys.stderr)
+    return result
 
 
 def _check_stones(
@@ -218,77 +237,3 @@ def _course_heights(plan: Plan | None) -> dict[int, float]:
         for step in plan.stone_steps
         if step.course_height is not None
     }
-
-
-def _summary(result: PlanResult, folder: Path) -> dict[str, Any]:
-    metrics = result.metrics
-    return {
-        "plan": str(folder / "plan.json"),
-        "status": result.status,
-        "stopped": result.message,
-        "shortfall": result.shortfall,
-        "placed": len(result.plan.stone_steps),
-        "stones": len(result.plan.stone_steps) + len(result.plan.unused),
-        "unused": list(result.plan.unused),
-        "wedges": len(result.plan.wedge_steps),
-        "F_SF": metrics.F_SF,
-        "F_SF_bound": result.F_SF_bound,
-        "F_AV": metrics.F_AV,
-        "F_AH": metrics.F_AH,
-        "F_LR": metrics.F_LR,
-        "F_LR_half": metrics.F_LR_half,
-        "F_LR_double": metrics.F_LR_double,
-        "T_LEVEL": metrics.T_LEVEL,
-        "E_FLUSH": metrics.E_FLUSH,
-        "alpha_left": metrics.alpha_left,
-        "alpha_right": metrics.alpha_right,
-        "wedge_area": metrics.wedge_area,
-        "working_scale": result.plan.working_scale,
-        "seconds": result.seconds,
-    }
-
-
-def _by_tolerance(result: PlanResult) -> list[tuple[str, str]]:
-    """Say what the lateral resistance is with other contact tolerances."""
-    metrics = result.metrics
-    if result.wall.outlines is None:
-        return []
-    half, double = number(metrics.F_LR_half), number(metrics.F_LR_double)
-    return [("", f"{half} and {double} at half and twice the contact tolerance")]
-
-
-def _bound(result: PlanResult) -> str:
-    """Say how large F_SF can be at most, and why."""
-    bound = result.F_SF_bound
-    return f"{number(bound)} ({'a full wall' if bound == 1.0 else 'area of the stones'})"
-
-
-def _how_it_ended(result: PlanResult) -> str:
-    if result.status == "interrupted":
-        return "interrupted: --resume goes on from here"
-    return f"{result.status}: {'; '.join(filter(None, (result.message, result.shortfall)))}"
-
-
-def _print_summary(result: PlanResult, folder: Path) -> None:
-    plan, metrics = result.plan, result.metrics
-    placed, left = len(plan.stone_steps), len(plan.unused)
-    unused = f", unused: {', '.join(map(str, plan.unused))}" if left else ""
-    print_table(
-        _how_it_ended(result),
-        [
-            ("stones", f"{placed} of {placed + left} placed{unused}"),
-            ("F_SF", f"{number(metrics.F_SF)} of at most {_bound(result)}"),
-            ("F_AV", f"{number(metrics.F_AV, 2)}  vertical arrangement, higher is better"),
-            ("F_AH", f"{number(metrics.F_AH, 2)}  horizontal arrangement, lower is better"),
-            ("F_LR", f"{number(metrics.F_LR)}  lateral resistance / mu, higher is better"),
-            *_by_tolerance(result),
-            ("T_LEVEL", f"{number(metrics.T_LEVEL)}  unevenness of the top"),
-            ("E_FLUSH", f"{number(metrics.E_FLUSH)}  unevenness of the ends"),
-            ("alpha", f"left {number(metrics.alpha_left)}, right {number(metrics.alpha_right)}"),
-            ("wedges", f"{len(plan.wedge_steps)}, area {metrics.wedge_area:g} {plan.length_unit}²"),
-            ("working scale", f"{plan.working_scale:g}"),
-            ("planned in", f"{result.seconds:.2f} s"),
-            ("picture", str(folder / "picture.png")),
-            ("report", str(folder / "report.html")),
-        ],
-    )

@@ -38,13 +38,16 @@ class Format:
     ----------
     module : str
         Of :mod:`drystone.export`.
+    writes : tuple of str
+        The names of its files; a folder of its own ends in ``/``.
     text : str
-        For people.
+        What they are, for people.
     metric : bool
         Whether it means nothing without a scale (E131).
     """
 
     module: str
+    writes: tuple[str, ...]
     text: str
     metric: bool = False
 
@@ -54,23 +57,32 @@ class Format:
 
 
 FORMATS: Mapping[str, Format] = {
-    "poses": Format("poses", "poses.json: pick and place poses, grasps, masses", metric=True),
-    "compas": Format("compas", "assembly.compas.json: COMPAS frames and meshes", metric=True),
+    "poses": Format("poses", ("poses.json",), "pick and place poses, grasps, masses", metric=True),
+    "compas": Format("compas", ("assembly.compas.json",), "COMPAS frames and meshes", metric=True),
     "moveit": Format(
-        "moveit", "scene.yaml, wall.scene: collision objects for MoveIt, in order", metric=True
+        "moveit",
+        ("scene.yaml", "wall.scene"),
+        "collision objects for MoveIt, in order",
+        metric=True,
     ),
-    "urdf": Format("urdf", "urdf/: a URDF with mesh and inertia of every part", metric=True),
-    "obj": Format("meshes", "wall.obj: extruded stones, named objects", metric=True),
-    "glb": Format("meshes_glb", "wall.glb: the same as glTF", metric=True),
-    "stl": Format("meshes_stl", "stl/: one file a part", metric=True),
-    "csv": Format("csv_table", "steps.csv: the build list"),
-    "parquet": Format("parquet_table", "steps.parquet: the build list"),
-    "geojson": Format("geojson", "wall.geojson: polygons with their steps"),
-    "dxf": Format("dxf", "wall.dxf: R2010, layers STONES WEDGES CONTACTS FORCES MECHANISM"),
-    "svg": Format("svg", "wall.svg: every stone defined once and placed by a transform"),
-    "png": Format("png", "wall-numbered.png: the wall with step numbers"),
-    "gif": Format("gif", "build.gif: the construction"),
-    "mp4": Format("mp4", "build.mp4: the construction"),
-    "pdf": Format("pdf", "build-sheet.pdf: drawing to scale, every stone in order, fetch list"),
-    "projector": Format("projector", "projector/: a frame a step, 1:1 on the wall", metric=True),
+    "urdf": Format("urdf", ("urdf/",), "a URDF with mesh and inertia of every part", metric=True),
+    "obj": Format(
+        "meshes", ("wall.obj", "wall.mtl"), "extruded stones, named objects", metric=True
+    ),
+    "glb": Format("meshes_glb", ("wall.glb",), "the same as glTF", metric=True),
+    "stl": Format("meshes_stl", ("stl/",), "one file a part", metric=True),
+    "csv": Format("csv_table", ("steps.csv",), "the build list"),
+    "parquet": Format("parquet_table", ("steps.parquet",), "the build list"),
+    "geojson": Format("geojson", ("wall.geojson",), "polygons with their steps"),
+    "dxf": Format("dxf", ("wall.dxf",), "R2010, layers STONES WEDGES CONTACTS FORCES MECHANISM"),
+    "svg": Format("svg", ("wall.svg",), "every stone defined once and placed by a transform"),
+    "png": Format("png", ("wall-numbered.png",), "the wall with step numbers"),
+    "gif": Format("gif", ("build.gif",), "the construction"),
+    "mp4": Format("mp4", ("build.mp4",), "the construction"),
+    "pdf": Format(
+        "pdf", ("build-sheet.pdf",), "drawing to scale, every stone in order, fetch list"
+    ),
+    "projector": Format(
+        "projector", ("projector/",), "a frame a step, 1:1 on the wall", metric=True
+    ),
 }

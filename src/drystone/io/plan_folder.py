@@ -19,8 +19,7 @@ def write_plan_folder(result: PlanResult, folder: str | Path) -> Path:
     """Write plan.json, settings.toml, the wall image and, for outlines, blocks.json.
 
     `drystone check`, `export`, `analyse`, `measure` and `craft` read such a folder, where stones
-    are placed.  Pictures and
-    the report are those of the command line (`drystone plan`).
+    are placed.  Pictures and the report are those of the command line (`drystone plan`).
 
     Parameters
     ----------

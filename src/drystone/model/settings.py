@@ -21,6 +21,9 @@ _KINDS: Mapping[Any, str] = types.MappingProxyType(
     }
 )
 
+_MOST = 2**63 - 1
+"""What arrays hold; Python reads longer ones from files and options."""
+
 
 def updated(settings: Settings, changes: Mapping[str, Any], prefix: str = "") -> Settings:
     """Return settings with some values replaced, checked against the declared types.
@@ -100,6 +103,8 @@ def _checked(value: Any, hint: Any, where: str) -> Any:
         raise UsageError(
             "E123", f"{where} = {value}.", where="settings", cure="Give a finite number."
         )
+    if isinstance(value, int):
+        _check_size(value, where)
     if get_origin(hint) is tuple:
         return _whole_numbers(value, where)
     kinds = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
@@ -126,4 +131,14 @@ def _whole_numbers(value: Any, where: str) -> tuple[int, ...]:
             where="settings",
             cure="Give a list of whole numbers.",
         )
-    return tuple(numbers)
+    return tuple(_checked(one, int, where) for one in numbers)
+
+
+def _check_size(value: int, where: str) -> None:
+    if abs(value) > _MOST:
+        raise UsageError(
+            "E123",
+            f"the number of {where} is too large.",
+            where="settings",
+            cure=f"Give one of at most {_MOST}.",
+        )

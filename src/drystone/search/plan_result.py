@@ -168,7 +168,7 @@ def result_of(planner: Planner) -> PlanResult:
         "settings": one_pass.as_dict(),
     }
     site = planner.build.wall.site
-    stopped = planner.stopped or Stopped("interrupted", "construction goes on")
+    stopped = planner.stopped or Stopped("interrupted", "interrupted")
     result = finish(planner, Frame(*site.extent_px, site), stopped, provenance, 0.0)
     return replace(result, solves=Solves(planner.failed_solves, planner.cold_solves))
 

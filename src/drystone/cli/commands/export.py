@@ -22,7 +22,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     """Write a plan in every format that is asked for; nothing is written when one cannot be."""
     if arguments.list:
         for name, one in FORMATS.items():
-            print(f"{name}: {one.text}")
+            print(f"{name}: {', '.join(one.writes)}: {one.text}")
         return ExitCode.DONE
     if arguments.plan is None or not arguments.to:
         raise UsageError(
