@@ -1,5 +1,6 @@
 """The comparison of methods: bricks, of which all is known, and results made by hand."""
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -164,6 +165,32 @@ def test_each_time_has_its_tables_of_the_methods_that_were_asked_for(tmp_path):
         (row,) = table.records()
         assert (row["wall"], row["method"], row["merit"]) == ("bricks, raster", "search", merit)
     assert tables[1].rows == tables[3].rows == masons.rows == ()
+
+
+def test_results_with_settings_are_in_the_tables_that_say_so(tmp_path):
+    kept, aim = tmp_path / "runs.csv", (("goal.F_AV", 24.0),)
+    found = {
+        Run("bricks, raster", "search", 3, 1.0): result(merit=1.0),
+        Run("bricks, raster", "search, goal.F_AV = 24.0", 3, 1.0): result(merit=2.0),
+    }
+    append_results(kept, found.items())
+    asked = BenchSettings(
+        quick=True, seconds=(1.0,), seed=3, seeds=1, only=("bricks, r",), policies=("search",),
+        runs=kept, changes=aim,
+    )  # fmt: skip
+    table, *_ = search.run(asked)
+    (row,) = table.records()
+    assert (row["method"], row["merit"]) == ("search", 2.0)
+    assert "With goal.F_AV = 24.0." in table.notes
+    assert not any("goal" in note for note in search.run(replace(asked, changes=()))[0].notes)
+
+
+@pytest.mark.parametrize(
+    ("name", "code"), [("geometry", "E138"), ("search.budget", "E138"), ("goal.wonder", "E123")]
+)
+def test_settings_that_no_search_can_go_by_are_refused(name, code):
+    with pytest.raises(UsageError, match=code):
+        search.run(BenchSettings(quick=True, changes=((name, 1),)))
 
 
 def test_targets_are_published_stones_on_both_geometries_and_unseen_sets():

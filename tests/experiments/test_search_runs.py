@@ -62,6 +62,27 @@ def test_seeds_are_outermost_and_ways_take_turns(done: list[Task]) -> None:
     ]  # fmt: skip
 
 
+def test_runs_with_other_settings_are_others(done: list[Task], tmp_path: Path) -> None:
+    plain = replace(ONE_WAY, runs=tmp_path / "runs.csv")
+    aimed = replace(plain, changes=(("goal.F_AH", 1.5), ("goal.F_AV", 40)))
+    walls = [(TARGET, STONES)]
+    searched(walls, [1], (1.0,), plain)
+    (run,) = searched(walls, [1], (1.0,), aimed)
+    assert run == Run(TARGET.name, "restarts, goal.F_AH = 1.5, goal.F_AV = 40", 1, 1.0)
+    assert [task.changes for task in done] == [(), aimed.changes]
+    searched(walls, [1], (1.0,), aimed)
+    assert len(done) == 2
+    assert len(read_results(tmp_path / "runs.csv")) == 2
+
+
+def test_settings_are_what_a_way_goes_by() -> None:
+    task = Task(TARGET.name, "restarts", 1, (1e-6,), None, True)
+    (plain,) = search_runs.do(task)
+    (halved,) = search_runs.do(replace(task, changes=(("goal.filling", 0.0),)))
+    lost = 15.0 * plain.figures["F_SF"] / plain.possible
+    assert halved.figures["merit"] == pytest.approx(plain.figures["merit"] - lost)
+
+
 def test_processes_do_what_one_does(tmp_path: Path) -> None:
     walls, settings = [(TARGET, STONES)], replace(ONE_WAY, runs=tmp_path / "runs.csv", jobs=2)
     # The first wall is always finished, and here none is begun after it.

@@ -51,8 +51,9 @@ def _public(command: argparse.ArgumentParser) -> None:
         "that are compared",
     )  # fmt: skip
     group.add_argument(
-        "--settings", metavar="FILE.toml", help="parameters that are replaced for all methods"
-    )
+        "--settings", metavar="FILE.toml",
+        help="parameters that are replaced for all methods (search too)",
+    )  # fmt: skip
     group.add_argument(
         "--jobs", type=whole_from(1), metavar="N",
         help="processes; never the results (search too: the time of each is its own)",

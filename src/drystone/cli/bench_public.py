@@ -12,8 +12,9 @@ from drystone.cli.settings import read_toml
 from drystone.errors import UsageError
 from drystone.experiments.public.bench import PublicSettings, run_public
 from drystone.experiments.public.history import Medians, drawn_history, history_table, medians_of
-from drystone.experiments.public.methods import Changes, flat_changes
+from drystone.experiments.public.methods import flat_changes
 from drystone.experiments.public.store import BenchStore, Stamp
+from drystone.experiments.runs.changes import Changes
 from drystone.experiments.table import Table
 from drystone.plotting.files import save
 
@@ -46,10 +47,7 @@ def public_tables(arguments: argparse.Namespace, suite: str, data: Path | None) 
         E138: options that make no sense together.
     """
     _refuse_useless(arguments)
-    changes: Changes = ()
-    if arguments.settings is not None:
-        path = Path(arguments.settings)
-        changes = flat_changes(read_toml(path), str(path))
+    changes = read_changes(arguments.settings)
     if arguments.store is not None:
         make_folder(Path(arguments.store))
     return run_public(
@@ -135,6 +133,11 @@ def _refuse_useless(arguments: argparse.Namespace) -> None:
     for name, (given, cure) in useless.items():
         if given:
             raise UsageError("E138", "it would do nothing here.", where=name, cure=cure)
+
+
+def read_changes(name: str | None) -> Changes:
+    """Return what a file of settings replaces for all methods; nothing without a file."""
+    return () if name is None else flat_changes(read_toml(Path(name)), name)
 
 
 def _stamp(changes: Changes) -> Stamp:

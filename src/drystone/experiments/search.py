@@ -4,15 +4,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
 
+from drystone.errors import UsageError
 from drystone.experiments.masons import masons_walls
 from drystone.experiments.paired import median_difference
 from drystone.experiments.planned_walls import missing_data
+from drystone.experiments.runs.changes import Changes, nested, told
 from drystone.experiments.search_results import FIGURES, Result, Run
-from drystone.experiments.search_runs import searched
+from drystone.experiments.search_runs import method_name, searched
 from drystone.experiments.search_targets import SearchTarget, search_targets
 from drystone.experiments.search_ways import NO_COURSES, RESTARTS, SEARCH, WEDGED, ways_of
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.model.stone import StoneSet
+from drystone.planner.settings import method_settings
 
 SECONDS, SEEDS = 20.0, 6
 QUICK_SECONDS, QUICK_SEEDS = 0.1, 2
@@ -46,6 +49,7 @@ class Compared:
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Let every method look for every wall with every seed."""
+    _check(settings.changes)
     times, seeds = _effort(settings)
     walls = [
         (target, stones)
@@ -55,9 +59,22 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     results = searched(walls, seeds, times, settings)
     tables = []
     for seconds in times:
-        compared = [_compared(*wall, seeds, seconds, results) for wall in walls]
+        compared = [_compared(*wall, seeds, seconds, settings, results) for wall in walls]
         tables += [_medians(compared, seconds, len(seeds), settings), _paired(compared, seconds)]
     return (*tables, masons_walls(settings))
+
+
+def _check(changes: Changes) -> None:
+    """Refuse settings that there are not (E123), and what walls and times say themselves (E138)."""
+    own = [name for name, _ in changes if name in ("geometry", "search.budget")]
+    if own:
+        raise UsageError(
+            "E138",
+            f"{own[0]} cannot be replaced: walls are searched on both geometries, for a time.",
+            where="--settings",
+            cure="Leave it out; see --only and --seconds.",
+        )
+    method_settings("best").updated(nested(changes))
 
 
 def _medians(
@@ -75,6 +92,7 @@ def _medians(
             "finished, where a longer time follows what is finished counts. No F_SF can be above "
             "the possible one: the area of all stones over that of the wall.",
             "2nd: by a definition that no search goes by (drystone.metrics.second).",
+            *([f"With {told(settings.changes)}."] if settings.changes else []),
             *missing_data(settings),
         ),
     )
@@ -107,12 +125,14 @@ def _compared(
     stones: StoneSet,
     seeds: Sequence[int],
     seconds: float,
+    settings: BenchSettings,
     results: Mapping[Run, Result],
 ) -> Compared:
     """Sort the results of a wall after a time by methods."""
     found: dict[str, list[Result]] = {}
     for way in ways_of(target):
-        runs = [Run(target.name, way.name, seed, seconds) for seed in seeds]
+        method = method_name(way.name, settings.changes)
+        runs = [Run(target.name, method, seed, seconds) for seed in seeds]
         if runs[0] in results:
             found[way.name] = [results[run] for run in runs]
     return Compared(target, len(stones), found)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from drystone.errors import UsageError
+from drystone.experiments.runs.changes import Changes, told
 from drystone.experiments.runs.processes import crew
 from drystone.experiments.search_results import Result, Run, append_results, read_results
 from drystone.experiments.search_targets import SearchTarget, search_targets
@@ -29,6 +30,8 @@ class Task:
         Folder of the published data.
     quick : bool
         Whether targets are those of the smaller version.
+    changes : tuple of (str, value)
+        Settings that are replaced.
     """
 
     wall: str
@@ -37,14 +40,31 @@ class Task:
     times: tuple[float, ...]
     data: Path | None
     quick: bool
+    changes: Changes = ()
+
+    @property
+    def method(self) -> str:
+        """The way with its settings: in a table runs with others are not taken for these."""
+        return method_name(self.way, self.changes)
 
     @property
     def runs(self) -> list[Run]:
         """What its results are called."""
-        return [Run(self.wall, self.way, self.seed, seconds) for seconds in self.times]
+        return [Run(self.wall, self.method, self.seed, seconds) for seconds in self.times]
 
     def __str__(self) -> str:
-        return f"{self.wall}, {self.way}, seed {self.seed}"
+        return f"{self.wall}, {self.method}, seed {self.seed}"
+
+
+def method_name(way: str, changes: Changes) -> str:
+    """Return what a way with settings is called in a table.
+
+    Examples
+    --------
+    >>> method_name("search", (("goal.F_AV", 24.0),))
+    'search, goal.F_AV = 24.0'
+    """
+    return f"{way}, {told(changes)}" if changes else way
 
 
 def searched(
@@ -75,7 +95,7 @@ def searched(
     """
     known = {} if settings.runs is None else read_results(settings.runs)
     tasks = [
-        Task(target.name, way.name, seed, times, settings.data, settings.quick)
+        Task(target.name, way.name, seed, times, settings.data, settings.quick, settings.changes)
         for seed in seeds
         for target, _ in walls
         for way in chosen_ways(target, settings.policies)
@@ -137,5 +157,5 @@ def do(task: Task) -> list[Result]:
     (way,) = (one for one in WAYS if one.name == task.way)
     stones = target.target.stones(settings)
     assert stones is not None  # noqa: S101 - who asks has seen them
-    looked = looked_at_times(way, stones, target, task.times, task.seed)
+    looked = looked_at_times(way, stones, target, task.times, task.seed, changes=task.changes)
     return [Result.of(one) for one in looked]

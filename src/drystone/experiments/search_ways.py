@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from drystone.experiments.exact_walls import one_pass
+from drystone.experiments.runs.changes import Changes, nested
 from drystone.experiments.search_targets import SearchTarget
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
@@ -182,6 +183,7 @@ def looked_at_times(
     times: Sequence[float],
     seed: int,
     clock: Clock = time.process_time,
+    changes: Changes = (),
 ) -> list[Looked]:
     """Look for a good wall, and say what was the best after several times.
 
@@ -202,11 +204,13 @@ def looked_at_times(
         Of all that is drawn.
     clock : callable
         Gives the time that is used up, s.
+    changes : tuple of (str, value)
+        Settings that are replaced.
     """
     started = clock()
     end = started + times[-1]
     # Another budget for every seed, so that nothing is left over from a search of another seed.
-    settings = one_pass(target.geometry, ENDLESS + seed)
+    settings = one_pass(target.geometry, ENDLESS + seed).updated(nested(changes))
     width, height = target.target.size(stones)
     site = Site.from_source(width, height, target.target.scale)
     first = Planner(stones, site, seed=seed, settings=settings)

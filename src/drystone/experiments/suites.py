@@ -25,7 +25,7 @@ SUITES = {
 """What each one is about, and the module of this package whose `run` does it."""
 
 SEARCHES = {
-    "search": ("seconds", "seeds", "only", "policy", "jobs", "runs"),
+    "search": ("seconds", "seeds", "only", "policy", "settings", "jobs", "runs"),
     "packing": ("seconds", "only"),
 }
 """Those that search, and what can be asked of them."""

@@ -4,6 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from drystone.experiments.runs.changes import Changes
+
 Cell = str | int | float | bool | None
 
 
@@ -83,6 +85,8 @@ class BenchSettings:
         How the names of walls begin that are searched; empty for all.
     policies : tuple of str
         Names of the ways to search that are compared; empty for all.
+    changes : tuple of (str, value)
+        Settings that are replaced for all of them, by names such as ``"goal.F_AH"``.
     jobs : int
         How many searches run side by side, each in a process of its own.
     runs : Path or None
@@ -99,6 +103,7 @@ class BenchSettings:
     seeds: int | None = None
     only: tuple[str, ...] = ()
     policies: tuple[str, ...] = ()
+    changes: Changes = ()
     jobs: int = 1
     runs: Path | None = None
     say: Callable[[str], None] = lambda _: None

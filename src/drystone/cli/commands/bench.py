@@ -87,6 +87,8 @@ def _settings(arguments: argparse.Namespace, suite: str) -> BenchSettings:
                 where=f"--{name}",
                 cure=f"Leave it out; it is for {' and '.join(known)}.",
             )
+    from drystone.cli.bench_public import read_changes  # noqa: PLC0415 - see _tables
+
     output = None if arguments.output is None else Path(arguments.output)
     if output is not None and suite not in PICTURED:
         raise UsageError(
@@ -106,6 +108,7 @@ def _settings(arguments: argparse.Namespace, suite: str) -> BenchSettings:
         seeds=arguments.seeds,
         only=tuple(arguments.only),
         policies=tuple(arguments.policy),
+        changes=read_changes(arguments.settings),
         jobs=arguments.jobs or 1,
         runs=None if arguments.runs is None else Path(arguments.runs),
         say=say,

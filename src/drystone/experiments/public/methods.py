@@ -1,13 +1,14 @@
 """The methods of the public benchmark by name."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import entry_points
 from typing import Any
 
 from drystone.errors import UsageError
 from drystone.experiments.public.suites import PublicWall
-from drystone.experiments.runs.source import Scalar, generated
+from drystone.experiments.runs.changes import Changes, flat
+from drystone.experiments.runs.source import generated
 from drystone.experiments.runs.spec import STRIPS, RunSpec
 from drystone.selection.policies.registry import BUILT_IN, GROUP, PAPER, RULES, rule_of
 
@@ -23,8 +24,6 @@ ABOUT = {
     STRIPS: "no policy but a yardstick, F_SF alone: strips packed without gravity (extra `bench`)",
 }
 """What each does; docs/policies.md explains the policies."""
-
-Changes = tuple[tuple[str, Scalar], ...]
 
 
 @dataclass(frozen=True)
@@ -128,17 +127,7 @@ def flat_changes(nested: Mapping[str, Any], where: str) -> Changes:
                 where=where,
                 cure="Leave it out; --policy names who chooses the stones.",
             )
-    return tuple(sorted(_flat(nested, "")))
-
-
-def _flat(nested: Mapping[str, Any], prefix: str) -> Sequence[tuple[str, Scalar]]:
-    found: list[tuple[str, Scalar]] = []
-    for name, value in nested.items():
-        if isinstance(value, Mapping):
-            found.extend(_flat(value, f"{prefix}{name}."))
-        else:
-            found.append((prefix + name, value))
-    return found
+    return flat(nested)
 
 
 def _merged(own: Changes, changes: Changes) -> Changes:

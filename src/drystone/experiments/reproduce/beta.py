@@ -6,12 +6,12 @@ from drystone.experiments.reproduce import summary, wins
 from drystone.experiments.reproduce.base import MASONS, PaperWall
 from drystone.experiments.reproduce.item import Context, Item, Output, Picture
 from drystone.experiments.reproduce.trials import (
-    Changes,
     Trials,
     all_specs,
     run_trials,
     seeds_of,
 )
+from drystone.experiments.runs.changes import Changes
 from drystone.experiments.table import Table
 from drystone.plotting.groups import group_panels
 

@@ -8,12 +8,12 @@ from drystone.experiments.reproduce.drawn import titled_wall
 from drystone.experiments.reproduce.item import Context, Item, Output, Picture
 from drystone.experiments.reproduce.trials import (
     BASE,
-    Changes,
     Trials,
     all_specs,
     run_trials,
     seeds_of,
 )
+from drystone.experiments.runs.changes import Changes
 from drystone.experiments.table import Table
 from drystone.plotting.groups import group_panels
 from drystone.plotting.wall_grid import plot_walls

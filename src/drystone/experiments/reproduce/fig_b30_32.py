@@ -7,7 +7,8 @@ from drystone.experiments.reproduce.drawn import titled_wall
 from drystone.experiments.reproduce.fig16 import SAMPLINGS, sampled
 from drystone.experiments.reproduce.item import Context, Item, Output, Picture
 from drystone.experiments.reproduce.summary import METRICS, metric_cells
-from drystone.experiments.reproduce.trials import Changes, Trials, all_specs, run_trials
+from drystone.experiments.reproduce.trials import Trials, all_specs, run_trials
+from drystone.experiments.runs.changes import Changes
 from drystone.experiments.table import Table
 from drystone.model.site import working_px
 from drystone.plotting.wall_grid import plot_walls

@@ -5,15 +5,13 @@ from dataclasses import dataclass
 
 from drystone.experiments.reproduce.base import PaperWall
 from drystone.experiments.reproduce.item import Context
+from drystone.experiments.runs.changes import Changes
 from drystone.experiments.runs.outcome import Outcome
-from drystone.experiments.runs.source import Scalar
 from drystone.experiments.runs.spec import RunSpec
 from drystone.model.wall import Wall
 
-Changes = tuple[tuple[str, Scalar], ...]
-"""Settings that replace the paper's."""
-
 BASE: Changes = ()
+"""What replaces the paper's settings: nothing."""
 
 
 @dataclass(frozen=True, eq=False)

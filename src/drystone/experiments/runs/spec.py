@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any
 
-from drystone.experiments.runs.source import Scalar, StoneSource
+from drystone.experiments.runs.changes import Changes, nested
+from drystone.experiments.runs.source import StoneSource
 from drystone.planner.settings import PlannerSettings, method_settings
 
 STRIPS = "spyrrow"
@@ -47,19 +48,12 @@ class RunSpec:
     height: float = 0.0
     scale: float = 1.0
     method: str = "paper"
-    changes: tuple[tuple[str, Scalar], ...] = ()
+    changes: Changes = ()
     seed: int = 0
 
     def settings(self) -> PlannerSettings:
         """Return the settings of the planner."""
-        nested: dict[str, Any] = {}
-        for name, value in self.changes:
-            *tables, last = name.split(".")
-            table = nested
-            for part in tables:
-                table = table.setdefault(part, {})
-            table[last] = value
-        return method_settings(self.method).updated(nested)
+        return method_settings(self.method).updated(nested(self.changes))
 
     def as_dict(self) -> dict[str, Any]:
         """Return what JSON writes."""
