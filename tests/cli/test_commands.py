@@ -311,6 +311,7 @@ def test_generate_takes_parameters(tmp_path: Path, run: Run) -> None:
         (["--set", "height_px"], "E135"),
         (["--set", "height_px=tall"], "E135"),
         (["--set", "height_px=-4"], "E130"),
+        (["--set", "aspect=1e308"], "E130"),
     ],
 )
 def test_generate_refuses_wrong_parameters(

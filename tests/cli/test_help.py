@@ -42,6 +42,13 @@ def test_every_command_explains_itself(command: str, run: Run) -> None:
     assert ran.err == ""
 
 
+def test_an_image_is_named_in_all_that_has_several(run: Run) -> None:
+    for command in ("plan", "stones"):
+        assert "annotations of several (COCO, masks of SAM)" in " ".join(
+            run(command, "--help").out.split()
+        )
+
+
 def test_all_commands_are_tested() -> None:
     assert all(f"    {command} " in build_parser().format_help() for command in COMMANDS)
     listed = build_parser().format_help().split("COMMAND\n")[1].split("\n\n")[0]

@@ -102,3 +102,56 @@ def test_plan_keeps_the_choice_that_it_begins_with(rubble: Path, tmp_path: Path,
     assert (first / "plan.json").read_bytes() == before
     # The plan itself is replaced by one that is as good at least.
     assert run(*asked, "--budget", 2, "--from", tmp_path, "--overwrite").code in (0, 4)
+
+
+def test_plan_keeps_the_settings_that_it_reads(rubble: Path, tmp_path: Path, run: Run) -> None:
+    mine = tmp_path / "settings.toml"
+    mine.write_text("mu = 0.5 # my own comment\n", encoding="utf-8")
+    asked = ("plan", rubble, *WALL, "--settings", mine)
+    ran = run(*asked, "-o", tmp_path, "--overwrite")
+    assert f"E129 {mine}: is read here" in ran.err
+    assert list(tmp_path.iterdir()) == [mine]
+    assert run(*asked, "-o", tmp_path / "out").code in (0, 4)
+    assert mine.read_text("utf-8") == "mu = 0.5 # my own comment\n"
+
+
+def test_check_keeps_stones_and_plan(
+    rubble: Path, plan_copy: Path, tmp_path: Path, run: Run
+) -> None:
+    stones = tmp_path / "mine.png"
+    shutil.copy(rubble, stones)
+    for picture in (stones, plan_copy / "wall.png"):
+        before = picture.read_bytes()
+        asked = ("check", plan_copy, "--stones", stones, "--picture", picture, "--overwrite")
+        assert f"E129 {picture}: is read here" in run(*asked).err
+        assert picture.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [("analyse", "contacts.png"), ("measure", "paths_F_AV.png"), ("craft", "craft.png")],
+)
+def test_a_wall_is_not_drawn_over(
+    command: str, name: str, plan_copy: Path, tmp_path: Path, run: Run
+) -> None:
+    wall = tmp_path / name
+    shutil.copy(plan_copy / "wall.png", wall)
+    before = wall.read_bytes()
+    ran = run(command, wall, "-o", tmp_path, "--overwrite")
+    assert ran.code == 2
+    assert f"E129 {wall}: is read here" in ran.err
+    assert wall.read_bytes() == before
+
+
+def test_export_and_demo_keep_what_they_read(plan_copy: Path, tmp_path: Path, run: Run) -> None:
+    plan = (plan_copy / "plan.json").rename(plan_copy / "poses.json")
+    before = plan.read_bytes()
+    ran = run("export", plan, "--to", "csv", "poses", "--px-per-m", 100, "--overwrite")
+    assert f"E129 {plan}: is read here" in ran.err
+    assert plan.read_bytes() == before
+    assert not (plan_copy / "steps.csv").exists()
+    mine = tmp_path / "settings.toml"
+    mine.write_text("mu = 0.5 # mine\n", encoding="utf-8")
+    ran = run("demo", "--settings", mine, "-o", tmp_path, "--overwrite")
+    assert f"E129 {mine}: is read here" in ran.err
+    assert not (tmp_path / "stones.png").exists()

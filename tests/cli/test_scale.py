@@ -5,7 +5,13 @@ from argparse import ArgumentTypeError
 
 import pytest
 
-from drystone.cli.scale import picture_size_px, refuse_outside, ruler, scale_with
+from drystone.cli.scale import (
+    picture_size_px,
+    planned_picture_px,
+    refuse_outside,
+    ruler,
+    scale_with,
+)
 from drystone.errors import UsageError
 from drystone.model.stone import Source
 
@@ -52,6 +58,15 @@ def test_where_the_size_of_a_picture_is_known() -> None:
     assert picture_size_px(Source("masks", width_px=56, height_px=46, files=("1.png",))) == (0, 0)
 
 
+def test_a_plan_knows_the_picture_of_its_stones() -> None:
+    size_px = {"width_px": 213, "height_px": 60}
+    assert planned_picture_px({"path": "stones.png", **size_px}) == (213, 60)
+    assert planned_picture_px({"path": "stones.png", "files": [], **size_px}) == (213, 60)
+    assert planned_picture_px({"path": "stones.json", **size_px}) == (0, 0)
+    # A folder, whatever it is called.
+    assert planned_picture_px({"path": "masks.png", "files": ["1.png"], **size_px}) == (0, 0)
+
+
 def test_either_may_know_the_scale() -> None:
     assert scale_with(None, None) is None
     assert scale_with(200.0, None) == scale_with(None, 200.0) == 200.0
@@ -59,5 +74,18 @@ def test_either_may_know_the_scale() -> None:
 
 
 def test_two_scales_that_differ_are_refused() -> None:
-    with pytest.raises(UsageError, match="E131"):
+    with pytest.raises(UsageError) as caught:
         scale_with(200.0, 250.0)
+    assert str(caught.value) == (
+        "E131 --px-per-m: the stones say 250 px a metre, the option 200. "
+        "Leave the option out, or correct the scale beside the stones."
+    )
+
+
+def test_who_says_another_scale_is_named() -> None:
+    with pytest.raises(UsageError) as caught:
+        scale_with(ruler("0,0,100,0=.1m"), 200.0, "plan")
+    assert str(caught.value) == (
+        "E131 --ruler: the plan says 200 px a metre, the option 1000. "
+        "Leave the option out, or plan again with another scale."
+    )

@@ -1,3 +1,5 @@
+import math
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,11 @@ def test_bricks_are_exact(aspect, width):
     assert [stone.area_px for stone in stones] == [12 * width] * 7
 
 
+def test_the_narrowest_brick():
+    stones = brick_stones(BrickSettings(count=1, aspect=1.5 / 12), np.random.default_rng(0))
+    assert [stone.mask.shape for stone in stones] == [(12, 2)]
+
+
 def test_halves_are_half_as_wide_and_lie_among_the_others():
     settings = BrickSettings(count=20, halves=8)
     stones = brick_stones(settings, np.random.default_rng(0))
@@ -22,7 +29,16 @@ def test_halves_are_half_as_wide_and_lie_among_the_others():
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"count": 0}, {"count": -1, "halves": 2}, {"height_px": 0}, {"aspect": 0.05}]
+    "wrong",
+    [
+        {"count": 0},
+        {"count": -1, "halves": 2},
+        {"height_px": 0},
+        {"aspect": 0.05},
+        {"aspect": 1.49 / 12},
+        {"aspect": -1e308},  # the product is not finite
+        {"aspect": math.nan},
+    ],
 )
 def test_impossible_settings(wrong):
     with pytest.raises(UsageError, match="E130 generate brick"):

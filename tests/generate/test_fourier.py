@@ -81,6 +81,25 @@ def test_radii_are_uniform():
     assert radii.std() == pytest.approx(40 / math.sqrt(12), abs=0.8)
 
 
+def test_no_contour_has_a_descriptor_above_two():
+    # The radius r0 (1 + cos 2 theta) touches the pole, and all that has a larger part crosses it.
+    for wrong in ({"D2": 2.01}, {"D3": 2.01}, {"alpha": 4.4}, {"beta": 2.4}):
+        with pytest.raises(UsageError, match="E130 generate fourier: D2, and what D3"):
+            FourierSettings(**wrong)
+    for allowed in ({"D2": 2.0}, {"D3": 2.0}, {"alpha": 4.3}, {"beta": 2.3}):
+        settings = FourierSettings(**allowed)
+        assert 1.6 < fourier_descriptors(settings).max() <= 2.0
+        draws = (fourier_contour(30.0, settings, np.random.default_rng(seed)) for seed in range(50))
+        assert all(contour is None for contour in draws)
+
+
+def test_descriptors_may_decay_at_once():
+    steep = FourierSettings(alpha=-1e308, beta=-1e308)
+    descriptor = fourier_descriptors(steep)
+    assert np.flatnonzero(descriptor).tolist() == [3, 8]
+    assert fourier_contour(30.0, steep, np.random.default_rng(0)) is not None
+
+
 def test_a_contour_that_would_cross_itself_is_rejected():
     assert fourier_contour(30.0, FourierSettings(D2=1.5), np.random.default_rng(0)) is None
     with pytest.raises(UsageError, match="E130"):
@@ -99,6 +118,17 @@ def test_a_contour_that_would_cross_itself_is_rejected():
         {"points": 4},
         {"harmonics": 64},
         {"harmonics": 2},
+        {"D2": 1e308},
+        {"D3": 1e308},
+        {"D8": 1e308},
+        {"D8": 2.1},
+        {"alpha": 1e308},
+        {"alpha": math.inf},
+        {"alpha": math.nan},
+        {"beta": 10**18},
+        {"beta": 1000.0},
+        {"points": 2**63 - 1},
+        {"points": 10**6},
     ],
 )
 def test_impossible_settings(wrong):

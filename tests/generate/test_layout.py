@@ -85,6 +85,12 @@ def test_stones_never_touch_each_other_or_the_edge(sizes):
         (FourierSettings, {"count": 10**9}, "largest_radius_px or count"),
         (PolygonSettings, {"height_px": 1e8}, "width_px, height_px or count"),
         (BrickSettings, {"height_px": 10**12}, "height_px, aspect or count"),
+        # No product of these is a finite number.
+        (BrickSettings, {"aspect": 1e308}, "height_px, aspect or count"),
+        (PolygonSettings, {"width_px": 1e308}, "width_px, height_px or count"),
+        (FourierSettings, {"largest_radius_px": 1e308}, "largest_radius_px or count"),
+        (RubbleSettings, {"width_px": 1e308}, "width_px, height_px or tilt_deg"),
+        (RubbleSettings, {"height_px": 1e308, "tilt_deg": 0.0}, "width_px or height_px"),
         (BrickSettings, {"halves": 10**9}, "height_px, aspect, count or halves"),
         (RubbleSettings, {"height_px": 1e8}, "width_px, height_px or tilt_deg"),
         # 280 million px of stone, in boxes of billions.

@@ -67,6 +67,10 @@ def test_lengths_scale_with_the_wall():
     assert ratio == pytest.approx([16] * 30, rel=0.06)
 
 
+def test_stones_may_lie_any_way_round():
+    assert len(rubble_stones(RubbleSettings(tilt_deg=360.0), np.random.default_rng(1))) == 30
+
+
 def test_too_many_stones_for_the_pixels():
     settings = RubbleSettings(count=12, width_px=24, height_px=8, courses=2, area_ratio=0.02)
     with pytest.raises(UsageError, match="E130 generate rubble: the stones must be large enough"):
@@ -87,6 +91,8 @@ def test_too_many_stones_for_the_pixels():
         {"pentagons": 1.1},
         {"rounding": 0.4},
         {"tilt_deg": -1.0},
+        {"tilt_deg": 361.0},
+        {"tilt_deg": 1e308},
     ],
 )
 def test_impossible_settings(wrong):

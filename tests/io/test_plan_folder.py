@@ -1,13 +1,16 @@
 """A plan from Python is a folder that every command reads."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import drystone as ds
 from drystone.cli.main import main
-from drystone.io.wall_image import read_wall_image
+from drystone.io.photo_beside import place_photo
+from drystone.io.wall_image import read_wall_image, write_labels
 from drystone.io.walls import read_wall
 from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
 
@@ -81,3 +84,66 @@ def test_stones_of_a_few_px_are_not_taken_for_blended_ids(tmp_path: Path) -> Non
     with pytest.raises(ds.DrystoneError, match="E101"):
         read_wall_image(tmp_path / "wall.png")
     assert (read_wall(tmp_path).labels == result.wall.labels).all()
+
+
+def test_what_the_stones_were_read_from_is_never_replaced(tmp_path: Path) -> None:
+    settings = greedy({"geometry": "raster"})
+    labels = ds.generate.lay_out(rubble())
+    masks = tmp_path / "masks"
+    masks.mkdir()
+    for name, stone in zip(("wall.png", "other.png"), rubble(), strict=False):
+        Image.fromarray(np.pad(stone.mask, 2)).save(masks / name)
+    for source in (tmp_path / "wall.tif", tmp_path / "wall.png", masks):
+        if not source.is_dir():
+            write_labels(labels, source)
+        result = ds.plan_wall(ds.read_stones(source), 100, 36, settings=settings, budget=1)
+        place = source if source.is_dir() else source.parent
+        before = {path.name: path.read_bytes() for path in place.iterdir() if path.is_file()}
+        with pytest.raises(ds.DrystoneError, match=r"E129 .*wall\.(tif|png)"):
+            ds.write_plan_folder(result, place)
+        assert before == {p.name: p.read_bytes() for p in place.iterdir() if p.is_file()}
+        if not source.is_dir():
+            source.unlink()
+
+
+def test_files_that_no_plan_left_stay(tmp_path: Path) -> None:
+    mine = {name: tmp_path / name for name in ("wall.tif", "blocks.json", "photo.jpg")}
+    for path in mine.values():
+        path.write_bytes(b"mine")
+    settings = greedy({"geometry": "raster"})
+    result = ds.plan_wall(rubble(), 100, 36, scale=1.0, settings=settings, budget=1)
+    ds.write_plan_folder(result, tmp_path)
+    assert {path.read_bytes() for path in mine.values()} == {b"mine"}
+
+
+def test_the_photograph_of_an_earlier_plan_goes(tmp_path: Path) -> None:
+    photo = tmp_path / "pile" / "photo.jpg"
+    photo.parent.mkdir()
+    Image.fromarray(np.zeros((8, 8, 3), np.uint8)).save(photo)
+    folder = tmp_path / "out"
+    settings = greedy({"geometry": "raster"})
+    result = ds.plan_wall(rubble(), 100, 36, scale=1.0, settings=settings, budget=1)
+    folder.mkdir()
+    _, record = place_photo(photo, folder)
+    source = {**result.plan.source, **record}
+    ds.write_plan_folder(replace(result, plan=replace(result.plan, source=source)), folder)
+    assert (folder / "photo.jpg").exists()
+    ds.write_plan_folder(result, folder)
+    assert not (folder / "photo.jpg").exists()
+
+
+def test_stones_of_a_program_can_be_checked_with_a_file_of_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    labels = ds.generate.lay_out(rubble())
+    settings = greedy({"geometry": "raster"})
+    result = ds.plan_wall(ds.read_stones(labels), 100, 36, settings=settings, budget=1)
+    ds.write_plan_folder(result, tmp_path / "out")
+    assert main(["check", str(tmp_path / "out")]) == 3
+    assert "E202" in (said := capsys.readouterr().err)
+    assert "given by a program" in said
+    write_labels(labels, tmp_path / "stones.png")
+    assert main(["check", str(tmp_path / "out"), "--stones", str(tmp_path / "stones.png")]) == 0
+    assert "there is no file to compare bytes with" in capsys.readouterr().out
+    write_labels(np.flipud(labels), tmp_path / "stones.png")
+    assert main(["check", str(tmp_path / "out"), "--stones", str(tmp_path / "stones.png")]) == 5

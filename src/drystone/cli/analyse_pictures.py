@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from drystone.cli.analyse_tables import NAMES as TABLES
+from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.modelling import Modelled
 from drystone.cli.output import prepare_files
 from drystone.statics.friction_curve import AtFriction, friction_curve
@@ -25,6 +26,7 @@ def prepare(folder: Path, arguments: argparse.Namespace) -> list[Path]:
         names.append(f"mechanism_{direction}.gif")
     paths = [folder / name for name in names]
     others = [folder / name for name in (*TABLES, FRICTION, REPORT, SCATTER)]
+    refuse_inputs(files_of_wall(Path(arguments.wall_path)), [*paths, *others])
     prepare_files([*paths, *others], overwrite=arguments.overwrite)
     for path in others:
         # One that an earlier run left would belong to another wall.

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from drystone.cli.modelling import Modelled, Shapes
-from drystone.cli.scale import scale_with
+from drystone.cli.scale import refuse_outside, scale_with, wall_picture_px
 from drystone.errors import Notice
 from drystone.io.walls import GivenWall
 from drystone.statics.contacts.scarce import scarce_contacts
@@ -21,10 +21,12 @@ def metres_per_unit(wall: GivenWall, arguments: argparse.Namespace) -> float | N
     Raises
     ------
     UsageError
-        E131 when the options give another scale than the plan has.
+        E131 when the options give another scale than the plan has; E138 for a ruler that lies
+        beyond the picture.
     """
+    refuse_outside(arguments.px_per_m, wall_picture_px(wall))
     plan = wall.plan
-    px_per_m = scale_with(arguments.px_per_m, None if plan is None else plan.px_per_m)
+    px_per_m = scale_with(arguments.px_per_m, None if plan is None else plan.px_per_m, "plan")
     if px_per_m is None:
         return None
     if plan is None:

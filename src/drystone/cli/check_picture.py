@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from drystone.cli.checked import Checked
+from drystone.cli.checked import PICTURE, Checked
 from drystone.plotting.failures import FailureView, plot_failures
 from drystone.plotting.files import save
 from drystone.plotting.mechanism import motion_of
@@ -15,8 +15,6 @@ from drystone.verify.pieces import piece_id
 from drystone.verify.replay import Stage, replay_plan
 from drystone.verify.report import Problem
 from drystone.verify.stability import wall_model
-
-PICTURE = "check.png"
 
 MISPLACED = ("E220", "E221", "E222", "E223", "E224")
 """Problems of a stone or wedge where it lies."""

@@ -10,6 +10,9 @@ from drystone.model.stone import StoneSet
 from drystone.verify.outlines import Group
 from drystone.verify.report import CheckReport
 
+PICTURE = "check.png"
+"""Beside a plan of which something fails."""
+
 NOT_BUILT = "not built there, as a step of the plan places nothing"
 
 

@@ -4,7 +4,8 @@ from pathlib import Path
 from typing import Any
 
 from drystone.cli.output import make_folder, number
-from drystone.io.plan_folder import WRITTEN, write_plan_folder
+from drystone.io.plan_folder import write_plan_folder
+from drystone.io.plan_names import WRITTEN
 from drystone.search.plan_result import PlanResult
 
 FOLDER, PICTURE = "pareto", "pareto.png"

@@ -6,6 +6,7 @@ from pathlib import Path
 from drystone.errors import UsageError
 from drystone.io.images import SUFFIXES
 from drystone.io.photo_sidecar import LABELS, read_sidecar
+from drystone.io.plan_names import WRITTEN
 
 
 def refuse_inputs(read: Iterable[Path], written: Iterable[Path]) -> None:
@@ -28,7 +29,7 @@ def refuse_inputs(read: Iterable[Path], written: Iterable[Path]) -> None:
                 "E129",
                 "is read here, and what is read is never replaced, also not with --overwrite.",
                 where=str(path),
-                cure="Choose another place with -o.",
+                cure="Choose another place for what is written.",
             )
 
 
@@ -44,3 +45,14 @@ def files_of(stones: Path) -> tuple[Path, ...]:
 def files_of_plan(plan: Path) -> tuple[Path, ...]:
     """Return the file that a plan is read from."""
     return (plan / "plan.json" if plan.is_dir() else plan,)
+
+
+def files_of_wall(wall: Path) -> tuple[Path, ...]:
+    """Return the files that a wall is read from: an image or a model, or what a plan's folder has.
+
+    Not all of them need be there.
+    """
+    if not wall.is_dir() and wall.suffix.lower() != ".json":
+        return (wall,)
+    folder = wall if wall.is_dir() else wall.parent
+    return (*files_of_plan(wall), *(folder / name for name in WRITTEN))

@@ -232,7 +232,7 @@ def _analyse(command: argparse.ArgumentParser) -> None:
 def _measure(command: argparse.ArgumentParser) -> None:
     add_wall(command)
     command.add_argument("--mu", type=not_negative, help="coefficient of friction (default .58)")
-    command.add_argument("--wall", metavar="WxH", help="wall that was to be built")
+    command.add_argument("--wall", metavar="WxH", help="wall that was to be built, px or metric")
     command.add_argument(
         "--scale", type=share, default=1.0, metavar="S", help="reduce the image by S first"
     )

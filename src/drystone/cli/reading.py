@@ -37,7 +37,9 @@ def add_reading(command: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--unit", choices=get_args(Unit)[1:], help="of a drawing or mesh that does not say its own"
     )
-    group.add_argument("--image", metavar="NAME", help="which image of a COCO file of several")
+    group.add_argument(
+        "--image", metavar="NAME", help="which image of annotations of several (COCO, masks of SAM)"
+    )
 
 
 def reading_from(arguments: argparse.Namespace) -> ReadSettings:

@@ -3,19 +3,26 @@
 import argparse
 import math
 import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal
 
 from drystone.cli.numbers import positive
 from drystone.errors import UsageError
 
-if TYPE_CHECKING:  # it would bring NumPy
+if TYPE_CHECKING:  # they would bring NumPy
+    from drystone.io.walls import GivenWall
     from drystone.model.stone import Source
 
 _NUMBER = r"\s*(-?\d+(?:\.\d*)?|-?\.\d+)\s*"
 _RULER = re.compile(rf"{_NUMBER},{_NUMBER},{_NUMBER},{_NUMBER}=\s*(\d+(?:\.\d*)?|\.\d+)(m|cm|mm)")
 _PICTURES = {".png", ".tif", ".tiff", ".bmp", ".gif", ".jpg", ".jpeg", ".npy"}
 _METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+_SAYS = {
+    "stones": ("the stones say", "or correct the scale beside the stones"),
+    "plan": ("the plan says", "or plan again with another scale"),
+}
+"""Who knows a scale: how that is said, and what else can be done when an option differs."""
 
 
 class Ruled(float):
@@ -61,15 +68,42 @@ def ruler(text: str) -> Ruled:
     return scale
 
 
+def option_of(px_per_m: float) -> str:
+    """Return the name of the option that gave a scale: both are stored as one."""
+    return "--ruler" if isinstance(px_per_m, Ruled) else "--px-per-m"
+
+
 def picture_size_px(source: "Source") -> tuple[int, int]:
     """Return width and height of the picture that stones came from; 0 where it is not known.
 
     Files of outlines and folders of masks say how far the stones reach, and a ruler lies beside
     them.
     """
-    if source.files or Path(source.path).suffix.lower() not in _PICTURES:
-        return 0, 0
-    return source.width_px, source.height_px
+    return _size_px(source.path, source.files, (source.width_px, source.height_px))
+
+
+def planned_picture_px(source: Mapping[str, Any]) -> tuple[int, int]:
+    """Return the size of the picture that the stones of a plan came from; 0 where it is not known.
+
+    Parameters
+    ----------
+    source : mapping
+        What a plan says of it (:attr:`drystone.model.plan.Plan.source`).
+    """
+    size_px = source["width_px"], source["height_px"]
+    return _size_px(source["path"], source.get("files", ()), size_px)
+
+
+def wall_picture_px(wall: "GivenWall") -> tuple[int, int]:
+    """Return the size of the picture in which a wall is measured: of a plan that of its stones."""
+    if wall.plan is not None:
+        return planned_picture_px(wall.plan.source)
+    height, width = (0, 0) if wall.labels is None else wall.labels.shape
+    return width, height
+
+
+def _size_px(path: str, files: Sequence[str], size_px: tuple[int, int]) -> tuple[int, int]:
+    return (0, 0) if files or Path(path).suffix.lower() not in _PICTURES else size_px
 
 
 def refuse_outside(px_per_m: float | None, size_px: tuple[int, int]) -> None:
@@ -95,7 +129,9 @@ def refuse_outside(px_per_m: float | None, size_px: tuple[int, int]) -> None:
             )
 
 
-def scale_with(px_per_m: float | None, of_source: float | None) -> float | None:
+def scale_with(
+    px_per_m: float | None, of_source: float | None, who: Literal["stones", "plan"] = "stones"
+) -> float | None:
     """Return the scale that was given, or that of the source; refuse two that differ (E131).
 
     Parameters
@@ -104,14 +140,17 @@ def scale_with(px_per_m: float | None, of_source: float | None) -> float | None:
         From the options.
     of_source : float or None
         What the source says itself (:attr:`drystone.model.stone.Source.px_per_m`).
+    who : {"stones", "plan"}
+        Which source that is, for the message.
     """
     if px_per_m is None or of_source is None:
         return px_per_m or of_source
     if abs(px_per_m / of_source - 1.0) > 0.01:
+        says, or_else = _SAYS[who]
         raise UsageError(
             "E131",
-            f"the stones say {of_source:.6g} px a metre, the option {px_per_m:.6g}.",
-            where="--px-per-m",
-            cure="Leave the option out, or correct the scale beside the stones.",
+            f"{says} {of_source:.6g} px a metre, the option {px_per_m:.6g}.",
+            where=option_of(px_per_m),
+            cure=f"Leave the option out, {or_else}.",
         )
     return px_per_m

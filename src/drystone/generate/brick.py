@@ -36,8 +36,10 @@ class BrickSettings:
         numbers = self.count >= 0 and self.halves >= 0 and self.count + self.halves >= 1
         check_setting(numbers, "there must be at least one brick", "brick")
         check_setting(self.height_px >= 1, "the height must be 1 px or more", "brick")
-        check_setting(self.width_px >= 2, "the width must be 2 px or more", "brick")
-        size_px = self.width_px, self.height_px
+        # Checked before it is rounded: a product that is not finite has no whole px.
+        width_px = self.height_px * self.aspect
+        check_setting(width_px >= 1.5, "the width must be 2 px or more", "brick")
+        size_px = width_px, self.height_px
         names = ("height_px", "aspect", "count") + (("halves",) if self.halves else ())
         check_room(self.count + self.halves, size_px, names, "brick")
 

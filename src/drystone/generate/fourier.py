@@ -14,6 +14,13 @@ from drystone.generate.layout import check_room, stones_of
 from drystone.generate.outlines import Outline, check_setting, draw_stone
 from drystone.model.stone import StoneSet
 
+LARGEST_DESCRIPTOR = 2.0
+"""With a larger D_n no radius is positive everywhere: r (1 - cos(n theta + phase)) would have the
+mean r0 (1 - D_n / 2)."""
+
+LARGEST_TABLE = 50_000_000
+"""Points times harmonics: with more, most machines run out of memory."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class FourierSettings:
@@ -31,11 +38,12 @@ class FourierSettings:
     D3, D8 : float
         Irregularity and roughness, positive.
     alpha, beta : float
-        Exponents by which descriptors 4 ... 7 and those above 8 decay.
+        Exponents by which descriptors 4 ... 7 and those above 8 decay; no descriptor is above 2.
     points : int
         Points on a contour, at least 8.
     harmonics : int
-        The last harmonic; below half of `points`, as more points could not show it.
+        The last harmonic; below half of `points`, as more points could not show it.  Points times
+        harmonics are 50 million at most.
     """
 
     count: int = 100
@@ -61,6 +69,15 @@ class FourierSettings:
         )
         for ok, what in ranges:
             check_setting(ok, what, "fourier")
+        table = f"points times harmonics must be at most {LARGEST_TABLE // 1_000_000} million"
+        check_setting(self.points * self.harmonics <= LARGEST_TABLE, table, "fourier")
+        # By their logarithms, as the descriptors themselves may be too large for a number.
+        largest_log2 = max(float(_log2_descriptors(self).max()), math.log2(max(self.D2, 1.0)))
+        check_setting(
+            largest_log2 <= math.log2(LARGEST_DESCRIPTOR),
+            "D2, and what D3, D8, alpha and beta make of the other descriptors, must be at most 2",
+            "fourier",
+        )
         # The radius is positive everywhere, which bounds how long a stone can be.
         size_px = 2 * largest * (1 + min(self.D2, 1)), 2 * largest
         check_room(self.count, size_px, ("largest_radius_px", "count"), "fourier")
@@ -89,10 +106,16 @@ def fourier_descriptors(settings: FourierSettings) -> NDArray[np.float64]:
     >>> fourier_descriptors(FourierSettings(D2=0.2))[[1, 2, 3, 6, 8, 16]]
     array([0.     , 0.2    , 0.05   , 0.0125 , 0.015  , 0.00375])
     """
+    return np.concatenate([[0.0, 0.0, settings.D2], 2.0 ** _log2_descriptors(settings)])
+
+
+def _log2_descriptors(settings: FourierSettings) -> NDArray[np.float64]:
+    """Return the binary logarithms of D_3 ... D_N; infinite where those are not finite."""
     n = np.arange(3, settings.harmonics + 1)
-    low = settings.alpha * np.log2(n / 3) + math.log2(settings.D3)
-    high = settings.beta * np.log2(n / 8) + math.log2(settings.D8)
-    return np.concatenate([[0.0, 0.0, settings.D2], 2.0 ** np.where(n < 8, low, high)])
+    with np.errstate(over="ignore", invalid="ignore"):
+        low = settings.alpha * np.log2(n / 3) + math.log2(settings.D3)
+        high = settings.beta * np.log2(n / 8) + math.log2(settings.D8)
+    return np.where(n < 8, low, high)
 
 
 def fourier_contour(radius_px: float, settings: FourierSettings, rng: Generator) -> Outline | None:

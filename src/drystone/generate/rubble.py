@@ -49,7 +49,7 @@ class RubbleSettings:
     rounding : float
         How much of a side is cut away at each corner; 0 ... .3.
     tilt_deg : float
-        Stones lie turned by up to this angle to either side.
+        Stones lie turned by up to this angle to either side; 0 ... 360.
     """
 
     count: int = 30
@@ -76,7 +76,7 @@ class RubbleSettings:
             (0 <= self.roughness <= 0.3, "roughness must be between 0 and .3"),
             (0 <= self.pentagons <= 1, "pentagons must be between 0 and 1"),
             (0 <= self.rounding <= 0.3, "rounding must be between 0 and .3"),
-            (self.tilt_deg >= 0, "tilt_deg must not be negative"),
+            (0 <= self.tilt_deg <= 360, "tilt_deg must be between 0 and 360"),
         )
         for ok, what in ranges:
             check_setting(ok, what, "rubble")

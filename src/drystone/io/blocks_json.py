@@ -22,11 +22,10 @@ def write_blocks(wall: Wall, model: RigidBlockModel, folder: Path) -> Path | Non
     model : RigidBlockModel
         Of the wall, in source px.
     folder : Path
-        Where the plan is.  A file of an earlier plan is removed when this one needs none.
+        Where the plan is.
     """
     path = folder / BLOCKS
     if wall.outlines is None:
-        path.unlink(missing_ok=True)
         return None
     write_atomically(path, (json.dumps(blocks_to_json(wall, model), indent=1) + "\n").encode())
     return path

@@ -41,7 +41,7 @@ class ReadSettings:
     unit : {"px", "mm", "cm", "m", "in", "ft"}
         Of a drawing or mesh that does not say its own; empty for none.
     image : str
-        File name (or id) of the image in a COCO file of several.
+        Which image of annotations of several: its file name or id in COCO, its id in masks of SAM.
 
     Examples
     --------

@@ -199,7 +199,9 @@ def _notes(
     plan: Plan, stones: StoneSet, replay: Replay, wall_labels: Labels | None, blocks: Any
 ) -> list[str]:
     notes = []
-    if not (plan.source["sha256"] and stones.source.sha256):
+    if not plan.source["path"]:
+        notes.append("The stones were given by a program: there is no file to compare bytes with.")
+    elif not (plan.source["sha256"] and stones.source.sha256):
         notes.append("The bytes of the source were not compared: one of the digests is missing.")
     if wall_labels is None:
         notes.append("wall.png was not compared.")

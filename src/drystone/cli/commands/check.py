@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from drystone.cli.check_physics import physics_of
-from drystone.cli.checked import Checked
+from drystone.cli.checked import PICTURE, Checked
+from drystone.cli.inputs import files_of, files_of_wall, refuse_inputs
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_of
 from drystone.errors import ExitCode, InputError, PlanError
@@ -34,6 +35,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         path /= "plan.json"
     plan = read_plan(path)
     source = Path(arguments.stones) if arguments.stones else _find_stones(plan, path.parent)
+    refuse_inputs((*files_of(source), *files_of_wall(path)), _drawn(arguments, path.parent))
     # The image of a plan without stones is no picture of stones.
     labels = read_image_of(plan, path.parent) if plan.steps else None
     blocks = _blocks_beside(plan, path.parent)
@@ -55,6 +57,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         drawn = [("picture", picture.words)] if picture else []
         print_table(f"{path}: {checked.verdict}", checked.rows() + drawn)
     return ExitCode.DONE if checked.ok else ExitCode.CHECK_FAILED
+
+
+def _drawn(arguments: argparse.Namespace, folder: Path) -> tuple[Path, ...]:
+    """Return what may be drawn, here or by another check before."""
+    return (Path(arguments.picture) if arguments.picture else folder / PICTURE,)
 
 
 def _picture(checked: Checked, arguments: argparse.Namespace, folder: Path) -> "Drawn | None":
@@ -88,6 +95,13 @@ def _find_stones(plan: Plan, folder: Path) -> Path:
     for path in found:
         if not digest or path.is_dir() or sha256(path.read_bytes()).hexdigest() == digest:
             return path
+    if not name:
+        raise PlanError(
+            "E202",
+            "the stones that the plan was made from were given by a program: no file is known.",
+            where=str(folder),
+            cure="Write them as a label image, and say with --stones where it is.",
+        )
     what = f"the stones {name!r} that the plan was made from are not beside it."
     cure = "Say where they are with --stones."
     if found:

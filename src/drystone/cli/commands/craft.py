@@ -2,8 +2,10 @@
 
 import argparse
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
+from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.output import prepare_files, print_json
 from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look
 from drystone.craft.look import UNSEEN
@@ -12,7 +14,6 @@ from drystone.io.walls import GivenWall, read_wall
 from drystone.statics.contacts.given import model_from_json, polygons_from_json
 from drystone.statics.contacts.pieces import notice_of_pieces
 
-SHEET = "craft.png"
 SHEET_DPI, SINGLE_DPI = 130, 150
 
 
@@ -32,7 +33,10 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     limits = {name: Limit(good, fair) for name, good, fair in arguments.limits}
     report = look(masonry, limits)
     if arguments.output is not None:
-        _draw(report, Path(arguments.output), overwrite=arguments.overwrite)
+        pictures = _pictures(report, Path(arguments.output))
+        refuse_inputs(files_of_wall(Path(arguments.wall_path)), pictures.values())
+        prepare_files([*pictures.values()], overwrite=arguments.overwrite)
+        _draw(report, pictures)
     if arguments.json:
         print_json(report.report())
     else:
@@ -113,12 +117,15 @@ def _number(finding: Finding) -> str:
     )
 
 
-def _draw(report: CraftReport, folder: Path, *, overwrite: bool) -> None:
+def _pictures(report: CraftReport, folder: Path) -> dict[str, Path]:
+    """Return where what is drawn: the sheet of all, and every rule by its name."""
+    return {name: folder / f"{name}.png" for name in ("craft", *report.findings)}
+
+
+def _draw(report: CraftReport, pictures: Mapping[str, Path]) -> None:
     from drystone.plotting.craft import plot_craft, plot_finding  # noqa: PLC0415 - slow import
     from drystone.plotting.files import save  # noqa: PLC0415
 
-    single = {name: folder / f"{name}.png" for name in report.findings}
-    prepare_files([folder / SHEET, *single.values()], overwrite=overwrite)
-    save(plot_craft(report), folder / SHEET, dpi=SHEET_DPI)
-    for name, path in single.items():
-        save(plot_finding(report, name).figure, path, dpi=SINGLE_DPI)
+    save(plot_craft(report), pictures["craft"], dpi=SHEET_DPI)
+    for name in report.findings:
+        save(plot_finding(report, name).figure, pictures[name], dpi=SINGLE_DPI)

@@ -5,15 +5,14 @@ import re
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from drystone.assembly.read import read_assembly
+from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.output import make_folder, prepare_files, print_json
-from drystone.cli.scale import picture_size_px, refuse_outside
+from drystone.cli.scale import planned_picture_px, refuse_outside
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.export.formats import FORMATS
 from drystone.export.settings import ExportSettings
-from drystone.model.stone import Source
 
 _PROJECTOR = re.compile(r"(\d+)x(\d+)@(\d+(?:\.\d*)?)")
 
@@ -37,7 +36,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         thickness_m=arguments.thickness_m,
         density_kg_m3=arguments.density_kg_m3,
     )
-    refuse_outside(arguments.px_per_m, _picture_px(assembly.plan.source))
+    refuse_outside(arguments.px_per_m, planned_picture_px(assembly.plan.source))
     asked = list(dict.fromkeys(arguments.to))
     modules = {name: FORMATS[name].exporter() for name in asked}
     for name in asked:
@@ -45,6 +44,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             assembly.require_scale(f"the format {name!r}")
     folder = Path(arguments.output) if arguments.output else _beside(path)
     names = [name for module in modules.values() for name in module.files(assembly, settings)]
+    refuse_inputs(files_of_wall(path), [folder / name for name in names])
     make_folder(folder)
     prepare_files([folder / name for name in names], overwrite=arguments.overwrite)
     written: dict[str, list[str]] = {}
@@ -60,14 +60,6 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     else:
         _print_files(written)
     return ExitCode.DONE
-
-
-def _picture_px(source: Mapping[str, Any]) -> tuple[int, int]:
-    """Return the size of the picture that the stones of a plan are from; 0 where it was none."""
-    files = tuple(source.get("files", ()))
-    return picture_size_px(
-        Source(source["path"], "", source["width_px"], source["height_px"], files)
-    )
 
 
 def _print_files(written: Mapping[str, Sequence[str]]) -> None:

@@ -5,9 +5,10 @@ import sys
 from dataclasses import asdict, replace
 from pathlib import Path
 
+from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.lengths import parse_wall
 from drystone.cli.output import number, prepare_files, print_json, print_table
-from drystone.cli.scale import scale_with
+from drystone.cli.scale import option_of, refuse_outside, scale_with, wall_picture_px
 from drystone.errors import ExitCode, UsageError
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.metrics.measure import WallMetrics, measure_labels
@@ -21,9 +22,11 @@ from drystone.statics.limit import lateral_resistance
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print F_SF, F_AV, F_AH, F_LR, T_LEVEL and E_FLUSH."""
+    _refuse_idle_scale(arguments)
     wall = read_wall(Path(arguments.wall_path), background=arguments.background)
     if wall.labels is None:
         raise UsageError("E134", "a block model has no pixels to measure.", where="measure")
+    refuse_outside(arguments.px_per_m, wall_picture_px(wall))
     # Of the picture as it was given: reducing it may part what hangs together.
     for notice in notice_of_pieces(wall.labels) if wall.blocks is None else ():
         print(f"drystone: {notice}", file=sys.stderr)
@@ -32,7 +35,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     if arguments.output is not None:
         whole = wall.plan is None and arguments.wall is None
         width_px = None if whole else metrics.width
-        _draw(labels, width_px, Path(arguments.output), overwrite=arguments.overwrite)
+        _draw(labels, width_px, arguments)
     if arguments.json:
         print_json(asdict(metrics))
         return ExitCode.DONE
@@ -50,6 +53,21 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         ],
     )
     return ExitCode.DONE
+
+
+def _refuse_idle_scale(arguments: argparse.Namespace) -> None:
+    """Refuse a scale that nothing is asked in (E138): no figure of merit has a length."""
+    if arguments.px_per_m is None:
+        return
+    asked = arguments.wall
+    # Only a wall in metres is another one at another scale.
+    if asked is None or parse_wall(asked, 1.0) == parse_wall(asked, 2.0):
+        raise UsageError(
+            "E138",
+            "would do nothing: no wall in metres is asked for, and no figure has a length.",
+            where=option_of(arguments.px_per_m),
+            cure="Leave it out, or give --wall in metres, as in 1.4mx0.4m.",
+        )
 
 
 def _measured(wall: GivenWall, labels: Labels, arguments: argparse.Namespace) -> WallMetrics:
@@ -80,7 +98,7 @@ def _size(
     None is what the picture says itself.
     """
     plan = wall.plan
-    scale = scale_with(arguments.px_per_m, None if plan is None else plan.px_per_m)
+    scale = scale_with(arguments.px_per_m, None if plan is None else plan.px_per_m, "plan")
     asked = None if arguments.wall is None else parse_wall(arguments.wall, scale)
     if plan is None:
         return None if asked is None else _reduced(asked, arguments.scale), None
@@ -96,14 +114,15 @@ def _reduced(size_px: tuple[float, float], factor: float) -> tuple[float, float]
     return size_px[0] * factor, size_px[1] * factor
 
 
-def _draw(labels: Labels, width_px: float | None, folder: Path, *, overwrite: bool) -> None:
+def _draw(labels: Labels, width_px: float | None, arguments: argparse.Namespace) -> None:
     from drystone.metrics.frame import frame_wall  # noqa: PLC0415
     from drystone.metrics.joints import joint_mask  # noqa: PLC0415
     from drystone.metrics.paths import horizontal_paths, vertical_paths  # noqa: PLC0415
     from drystone.plotting import plot_joint_paths, save  # noqa: PLC0415 - slow import
 
-    pictures = [folder / f"paths_{name}.png" for name in ("F_AV", "F_AH")]
-    prepare_files(pictures, overwrite=overwrite)
+    pictures = [Path(arguments.output) / f"paths_{name}.png" for name in ("F_AV", "F_AH")]
+    refuse_inputs(files_of_wall(Path(arguments.wall_path)), pictures)
+    prepare_files(pictures, overwrite=arguments.overwrite)
     framed = frame_wall(labels, width_px).labels
     joint = joint_mask(framed)
     both = (vertical_paths(joint), horizontal_paths(joint))

@@ -21,7 +21,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     parse_wall(arguments.wall, 1.0)  # what is no size is refused before anything is read
     source, folder = Path(arguments.stones), Path(arguments.output)
     begin = () if arguments.begin is None else files_of_plan(Path(arguments.begin))
-    refuse_inputs(files_of(source), (folder / name for name in WRITTEN))
+    own = () if arguments.settings is None else (Path(arguments.settings),)
+    refuse_inputs((*files_of(source), *own), [folder / name for name in WRITTEN])
     # A plan may be replaced by a better one, the choice of an earlier search may not.
     refuse_inputs(begin, (folder / FOLDER).glob("*/plan.json"))
     stones = read_stones(source, settings=reading_from(arguments))

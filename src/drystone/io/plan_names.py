@@ -1,0 +1,4 @@
+"""The names of the files that make a plan's folder."""
+
+WRITTEN = ("plan.json", "settings.toml", "blocks.json", "wall.png", "wall.tif")
+"""What is written with a plan, or taken out because it would belong to another wall."""

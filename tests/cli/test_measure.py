@@ -1,0 +1,90 @@
+"""`drystone measure`: sizes and scales of the wall that is measured."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from drystone.cli import main
+from drystone.io.plan_json import read_plan
+from drystone.io.wall_image import write_labels
+from tests.cli.conftest import Run
+
+
+@pytest.fixture
+def tower(tmp_path: Path) -> Path:
+    """A block of 20 x 40 px in a picture of 30 x 50 px."""
+    labels = np.zeros((50, 30), np.uint32)
+    labels[10:, 5:25] = 9
+    write_labels(labels, tmp_path / "tower.png")
+    return tmp_path / "tower.png"
+
+
+@pytest.fixture(scope="module")
+def metric(rubble: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a plan of 200 px a metre; not to be changed."""
+    folder = tmp_path_factory.mktemp("plans") / "metric"
+    asked = ["--wall", ".5mx.18m", "--px-per-m", "200", "--scale", "1", "--method", "paper"]
+    assert main(["plan", str(rubble), *asked, "-o", str(folder), "--seed", "1"]) in (0, 4)
+    return folder
+
+
+def test_a_ruler_lies_in_the_picture_of_a_wall(tower: Path, run: Run) -> None:
+    asked = ("measure", tower, "--wall", ".2mx.4m", "--json")
+    inside = run(*asked, "--ruler", "0,0,30,0=.3m").json()
+    assert inside == run(*asked, "--px-per-m", 100).json()
+    # The picture is meant as it was given, also when a smaller one is measured.
+    assert run(*asked, "--scale", ".5", "--ruler", "0,0,30,50=.3m").code == 0
+    for beyond in ("0,0,9999,0=1m", "0,0,31,0=1m", "0,0,0,51=1m"):
+        ran = run(*asked, "--ruler", beyond)
+        assert (ran.code, ran.out) == (2, "")
+        assert "E138 --ruler: the point" in ran.err
+        assert "outside the picture, which is 30 x 50 px" in ran.err
+    said = run("analyse", tower, "--ruler", "0,0,31,0=1m").err
+    assert "E138 --ruler: the point 31,0 is outside the picture" in said
+
+
+def test_a_ruler_of_a_plan_lies_in_the_picture_of_its_stones(finished: Path, run: Run) -> None:
+    asked = ("measure", finished, "--wall", "1mx.36m", "--json")
+    source = read_plan(finished).source
+    width, height = source["width_px"], source["height_px"]
+    assert (width, height) != (100, 36)
+    assert run(*asked, "--ruler", f"0,0,{width},{height}=1m").code == 0
+    ran = run(*asked, "--ruler", f"0,0,{width + 1},0=1m")
+    assert ran.code == 2
+    assert f"E138 --ruler: the point {width + 1},0 is outside" in ran.err
+    assert f"which is {width} x {height} px" in ran.err
+
+
+@pytest.mark.parametrize("wall", [(), ("--wall", "20x40")])
+@pytest.mark.parametrize(("option", "value"), [("--px-per-m", "100"), ("--ruler", "0,0,20,0=20cm")])
+def test_a_scale_that_would_do_nothing_is_refused(
+    option: str, value: str, wall: tuple[str, ...], tower: Path, run: Run
+) -> None:
+    ran = run("measure", tower, *wall, option, value)
+    assert (ran.code, ran.out) == (2, "")
+    assert f"E138 {option}: would do nothing" in ran.err
+    assert "--wall in metres" in ran.err
+    assert run("measure", tower, "--wall", "20cmx.4m", option, value).code == 0
+
+
+def test_another_scale_than_that_of_a_plan(metric: Path, run: Run) -> None:
+    asked = ("--wall", ".5mx.18m")
+    for option, value in (("--ruler", "0,0,50,0=5cm"), ("--px-per-m", "1000")):
+        for command in (("measure", metric, *asked), ("analyse", metric)):
+            ran = run(*command, option, value)
+            assert (ran.code, ran.out) == (2, "")
+            assert f"E131 {option}: the plan says 200 px a metre, the option 1000." in ran.err
+            assert "plan again" in ran.err
+    same = run("measure", metric, *asked, "--px-per-m", "200", "--json").json()
+    assert same == run("measure", metric, "--json").json()
+
+
+def test_measure_keeps_what_it_reads(tower: Path, run: Run) -> None:
+    given = Path(shutil.copy(tower, tower.with_name("paths_F_AV.png")))
+    ran = run("measure", given, "-o", tower.parent, "--overwrite")
+    assert (ran.code, ran.out) == (2, "")
+    assert f"E129 {given}: is read here" in ran.err
+    assert given.read_bytes() == tower.read_bytes()
+    assert not tower.with_name("paths_F_AH.png").exists()
