@@ -7,7 +7,7 @@ import ezdxf
 import numpy as np
 import pytest
 import shapely
-from ezdxf import units
+from ezdxf import units, xref
 
 from drystone.errors import InputError
 from drystone.io.outlines_in.dxf import read_dxf
@@ -109,6 +109,20 @@ def test_dxf_blocks_in_rows_mirrored_and_stretched():
     x, y = 3 + x * cos - y * sin, -3 * (x * sin + y * cos)
     known = shapely.Polygon(np.column_stack([10 - y, 50 + x]))
     assert half.symmetric_difference(known).area < 2e-3 * known.area
+
+
+def test_dxf_external_references_are_named():
+    """Attached or laid over, with or without what some program kept of the other drawing."""
+    document, space = with_blocks()
+    space.add_blockref("BOX", (40, 0))
+    for name, overlay in (("plan", False), ("sheet", True)):
+        flags = xref.const.BLK_XREF_OVERLAY if overlay else xref.const.BLK_XREF
+        document.add_xref_def(f"{name}.dxf", name, flags | xref.const.BLK_EXTERNAL)
+        space.add_blockref(name, (0, 0), dxfattribs={"row_count": 2, "row_spacing": 9})
+    document.blocks.get("sheet").add_circle((9, 9), 5)
+    shapes, said = outlines(document)
+    assert [shape.bounds for shape in shapes.values()] == [(40, 0, 44, 3)]
+    assert "left aside: 2 INSERT of an external reference." in said
 
 
 def test_dxf_blocks_in_each_other_are_refused():

@@ -134,17 +134,24 @@ def test_obj_names_of_several_words(tmp_path):
     assert [stone.left_px for stone in stones] == [0, 75, 150]
 
 
+WHY = "of the groups of a face the first counts, and what follows # is a comment"
+
+
 @pytest.mark.parametrize(
     ("names", "expected", "said"),
     [
         (["g Stone 2", "g Stone 1"], ["Stone 1", "Stone 2"], ""),
         (["o Stone 2 # left", "o Stone 1"], ["Stone 1", "Stone 2"], ""),
+        (["o Stone # 1", "o Stone # 2"], ["Stone # 1", "Stone # 2"], ""),
+        (["o Stone 1 # left", "o Stone 1 # right"], ["Stone 1"],
+         f"{WHY}, so Stone 1 is one stone of: Stone 1 # left, Stone 1 # right."),
+        (["g Stone # 1", "g Stone # 2"], ["Stone"],
+         f"{WHY}, so Stone is one stone of: Stone # 1, Stone # 2."),
         (["o big one", "o big other"], ["big one", "big other"], ""),
         (["g a wall", "g b wall"], ["a", "b"], ""),  # of the group and of that of all
         (["o x\ng left part", "g right part\no y"], ["x", "y"], ""),
         (["g stone_1 top", "g stone_1 side"], ["stone_1"],
-         "faces of several groups count for the first, so stone_1 is one stone of: "
-         "stone_1 top, stone_1 side."),
+         f"{WHY}, so stone_1 is one stone of: stone_1 top, stone_1 side."),
     ],
 )  # fmt: skip
 def test_obj_objects_and_groups(tmp_path, names, expected, said):

@@ -43,6 +43,7 @@ def test_svg_that_is_hidden(sheet, more):
         ".h .big{display:none} text{display:none} .other, #b{opacity:0}",
         ".h{display:none} #a{display:inline}",
         ".h{fill-opacity:0; opacity:.5} .h:hover{display:none}",
+        ".h:hover:not(.x, .y){display:none}",
         "g{visibility:hidden} rect{visibility:visible}",
     ],
 )
@@ -56,6 +57,8 @@ def test_svg_that_is_shown_for_all_its_style(sheet):
     ("sheet", "what"),
     [
         ("<style>rect:not(.b){display:none}</style>", "rect:not(.b)"),
+        ("<style>rect:not(:hover){display:none}</style>", "rect:not(:hover)."),
+        ("<style>.x:hover, .h:is(:hover, .big){opacity:0}</style>", ".h:is(:hover, .big)."),
         ("<style>@media print {.h{opacity:0}} @media print{.h{fill:red}}</style>", "@media print."),
         ("<style>@import url(a.css);</style>", "@import url(a.css)"),
         ('<style media="print">.h{display:none}</style>', "media print"),
@@ -115,3 +118,44 @@ def test_svg_is_moved_by_its_style(more, box):
 def test_svg_styles_that_move_in_other_ways_are_refused(style, why):
     with pytest.raises(InputError, match=rf"E114 .*the rect 's' cannot be used \(.*{why}"):
         bounds(f'<rect id="s" style="{style}" width="8" height="4"/>')
+
+
+@pytest.mark.parametrize(
+    ("body", "left"),
+    [
+        # Around the copy there is neither what is around the original nor what shows it.
+        ('<g>{a}</g><use href="#a" x="150"/>', [30, 150]),
+        ('<defs>{a}</defs><g><use href="#a" x="150"/></g>', [150]),
+        ('<g id="b">{a}</g><use href="#b" x="150"/>', [30, 180]),
+        ('<g><g id="b"><use href="#a" x="50"/></g>{a}</g><use href="#b" x="150"/>', [50, 30, 200]),
+        ('<symbol id="b"><g>{a}</g></symbol><g><use href="#b" x="150"/></g>', [180]),
+        ('{a}<use href="#a" x="150"/>', [0, 150]),
+    ],
+)
+def test_svg_selectors_see_no_more_than_what_a_use_shows(body, left):
+    """As Chromium 150 shows it, and SVG 2, 5.6 says: the copies are a shadow tree."""
+    sheet = "<style>g .a{transform:translate(30px,0px)}</style>"
+    a = '<rect class="a" id="a" width="8" height="4"/>'
+    assert [box[0] for box in bounds(sheet + body.format(a=a))[0]] == left
+    # What is said of the thing itself is said of all its copies.
+    everywhere = bounds(sheet.replace("g .a", ".a") + body.format(a=a))[0]
+    assert [box[0] % 50 for box in everywhere] == [30] * len(left)
+
+
+def test_svg_selectors_of_several_steps_end_at_what_a_use_shows():
+    sheet = "<style>svg g .a{transform:translate(30px,0px)}</style>"
+    group = '<g id="b"><rect class="a" width="8" height="4"/></g>'
+    boxes, _ = bounds(f'{sheet}{group}<use href="#b" x="150"/>')
+    assert [box[0] for box in boxes] == [30, 150]
+
+
+def test_svg_copies_inherit_from_where_they_are_shown():
+    sheet = "<style>.off{visibility:hidden} .odd{fill-rule:evenodd}</style>"
+    path = '<path id="a" d="M0 0H9V9H0zM1 1H3V3H1z"/>'
+    assert bounds(f'{sheet}<defs>{path}</defs><g class="off"><use href="#a"/></g>')[0] == []
+    shown = f'{sheet}<defs><g class="off odd">{path}</g></defs><use href="#a"/>'
+    assert bounds(shown)[0] == [[0, 0, 9, 9]]
+    for classes, rule in (("odd", "evenodd"), ("", "nonzero")):
+        text = f'<svg>{sheet}<defs>{path}</defs><g class="{classes}"><use href="#a"/></g></svg>'
+        (stone,) = read_svg(text.encode(), "a.svg", ReadSettings()).stones
+        assert stone.areas[0].rule == rule

@@ -203,7 +203,8 @@ def _file(
     # The one layer that all stones are on says nothing of a stone.
     shown = names if len(set(names)) > 1 or len(names) == 1 else [""] * len(names)
     stones = tuple(OutlinedStone(number_in(shown[i]), shown[i], (area,)) for i, area in found)
-    notices = left_aside(aside, "Only closed outlines are read: join lines and arcs to polylines.")
+    cure = "Only closed outlines are read: join lines and arcs to polylines, bind references."
+    notices = left_aside(aside, cure)
     if len(found) < len(rings):
         text = f"{len(rings) - len(found)} outlines lie in others and are their holes."
         cure = "If they are stones in a frame, put them on a layer STONES, or hide the frame."

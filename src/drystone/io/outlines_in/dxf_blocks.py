@@ -91,6 +91,10 @@ class _Walk:
         if block is None:
             self.aside["INSERT of a block that is not there"] += 1
             return
+        if block.block.is_xref or block.block.is_xref_overlay:
+            # What it shows is in another file; a copy of it here would be of some earlier day.
+            self.aside["INSERT of an external reference"] += 1
+            return
         # Definitions of attributes are not drawn, only the attributes of the block reference.
         entities = [entity for entity in block if entity.dxftype() != "ATTDEF"]
         for one in insert.multi_insert() if insert.mcount > 1 else [insert]:

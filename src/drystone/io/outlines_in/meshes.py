@@ -51,7 +51,7 @@ class Body:
     faces : sequence of integer arrays
         Positions in `vertices`, three or more a face.
     said : tuple of str
-        What the file says of its groups, each once; only of an OBJ.
+        All that the file says of it after o or g, each once; only of an OBJ.
     """
 
     name: str
@@ -116,7 +116,8 @@ def read_mesh(kind: str, data: bytes, where: str, settings: ReadSettings) -> Out
 
 def _united(body: Body) -> Notice:
     shown = ", ".join(body.said[:_SHOWN]) + (" …" if len(body.said) > _SHOWN else "")
-    text = f"faces of several groups count for the first, so {body.name} is one stone of: {shown}."
+    why = "of the groups of a face the first counts, and what follows # is a comment"
+    text = f"{why}, so {body.name} is one stone of: {shown}."
     return Notice("W119", text, "Give every stone an object (o) of its own if they are several.")
 
 
@@ -224,12 +225,15 @@ def _part(line: str) -> tuple[_Part, str]:
 
     An object has one name, be there spaces in it.  A group line lists groups that its faces all
     belong to, the one of the thing itself first (then of its parents, or its colour), unless the
-    words together are the number of a stone.
+    words together are the number of a stone.  Such a number may have a comment after it; any
+    other # is of the name, as programs that write OBJ put no comments there.
     """
-    kind, *words = line.partition(" # ")[0].split()
+    kind, *words = line.split()
     title = " ".join(words)
-    whole = kind == "o" or not words or number_in(title) is not None
-    return _Part(kind, title if whole else words[0]), title if kind == "g" else ""
+    numbered = title.partition(" # ")[0]
+    if number_in(numbered) is not None:
+        return _Part(kind, numbered), title
+    return _Part(kind, title if kind == "o" or not words else words[0]), title
 
 
 def _face(words: list[str], count: int) -> NDArray[np.int64]:

@@ -17,6 +17,7 @@ from drystone.io.outlines_in.model import (
     left_aside,
     number_in,
 )
+from drystone.io.outlines_in.svg_geometry import check_viewport, root_geometry, with_geometry
 from drystone.io.outlines_in.svg_shapes import SHAPES, Matrix, lines_of, moved, user_units
 from drystone.io.outlines_in.svg_style import Styles, tag
 from drystone.io.outlines_in.svg_transform import moves
@@ -54,6 +55,8 @@ class _Place:
     name: str = ""
     depth: int = 0
     visible: bool = True
+    top: ET.Element | None = None
+    """What the innermost use around it shows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,9 +94,9 @@ def read_svg(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
         ) from error  # fmt: skip
     if tag(root) != "svg":
         raise damaged(where, f"its root element is {tag(root)}, not svg")
-    with entry(where, "the element svg"):
-        page = page_of(root, settings)
     walk = _Walk(root, where)
+    with entry(where, "the element svg"):
+        page = page_of(root_geometry(walk.styles.of(root), root.attrib), settings)
     shapes = list(walk.shapes(page))
     if any(shape.place.stones for shape in shapes):
         outside = [shape for shape in shapes if not shape.place.stones]
@@ -145,18 +148,21 @@ class _Walk:
         self.count += 1
         if self.count > _MOST or place.depth > _DEEPEST:
             raise damaged(self.where, "elements use each other too often or too deeply")
-        style = self.styles.of(element)
+        style = self.styles.of(element, place.top)
         if _vanishes(element, style):
             self.aside[_UNSEEN] += 1
         elif kind in SHAPES:
             with entry(self.where, _what(element, kind)):
-                yield from self._shape(element, kind, self._within(element, place, style))
+                yield from self._shape(element, self._within(element, place, style), style)
         elif kind in _GROUPS or is_symbol:
             yield from self._group(element, self._viewport(element, place, style, use))
         elif kind == "use":
             with entry(self.where, _what(element, kind)):
                 here = self._within(element, place, style)
-            yield from self._use(element, here)
+                target = self._shown(element, style)
+            named = number_in(target.get("id", "")) is not None
+            name = target.get("id", "") if named else here.name
+            yield from self._draw(target, replace(here, name=name, top=target), element)
         else:
             self.aside[kind] += 1
 
@@ -167,14 +173,15 @@ class _Walk:
         for child in element:
             yield from self._draw(child, place)
 
-    def _use(self, element: ET.Element, place: _Place) -> Iterator[_Shape]:
+    def _shown(self, element: ET.Element, style: Style) -> ET.Element:
+        """Return what a use shows."""
         link = element.get("href") or element.get(_XLINK) or ""
         target = self.known.get(link.removeprefix("#")) if link.startswith("#") else None
         if target is None:
             raise damaged(self.where, f"{_what(element, 'use')} is of {link!r}, which is not there")
-        named = number_in(target.get("id", "")) is not None
-        inner = replace(place, name=target.get("id", "") if named else place.name)
-        yield from self._draw(target, inner, element)
+        if tag(target) in {"svg", "symbol"}:
+            check_viewport("use", style, element.attrib)
+        return target
 
     def _viewport(
         self, element: ET.Element, place: _Place, style: Style, use: ET.Element | None
@@ -185,6 +192,7 @@ class _Walk:
             here = self._within(element, place, style)
             if kind not in {"svg", "symbol"}:
                 return here
+            check_viewport(kind, style, element.attrib)
             found = inner_view(element, use, place.view)
             if found is None:
                 return None
@@ -193,29 +201,30 @@ class _Walk:
     def _within(self, element: ET.Element, place: _Place, style: Style) -> _Place:
         matrix = place.matrix @ moves(style, element.attrib, place.view)
         if tag(element) == "use":
-            shift = np.eye(3)
-            shift[:2, 2] = [user_units(element.attrib, name, place.view) for name in ("x", "y")]
+            shift, at = np.eye(3), with_geometry("use", style, element.attrib)
+            shift[:2, 2] = [user_units(at, name, place.view) for name in ("x", "y")]
             matrix = matrix @ shift
         own = (element.get("id", ""), element.get(_LABEL, ""))
         words = {word.lower() for word in (*own, *element.get("class", "").split())}
         # Named by a use that places it, else by itself, else by the groups around it.
         name = place.name if number_in(place.name) else (own[1] or own[0] or place.name)
         seen = _styled(element, style, "visibility")
-        return _Place(
-            matrix,
-            place.view,
-            _styled(element, style, "fill-rule") or place.rule,
-            place.stones or (_LAYER in words and tag(element) == "g"),
-            name if tag(element) not in {"g", "svg"} or number_in(name) else place.name,
-            place.depth + 1,
-            _VISIBLE.get(seen, place.visible),
+        return replace(
+            place,
+            matrix=matrix,
+            rule=_styled(element, style, "fill-rule") or place.rule,
+            stones=place.stones or (_LAYER in words and tag(element) == "g"),
+            name=name if tag(element) not in {"g", "svg"} or number_in(name) else place.name,
+            depth=place.depth + 1,
+            visible=_VISIBLE.get(seen, place.visible),
         )
 
-    def _shape(self, element: ET.Element, kind: str, place: _Place) -> Iterator[_Shape]:
+    def _shape(self, element: ET.Element, place: _Place, style: Style) -> Iterator[_Shape]:
+        kind = tag(element)
         if not place.visible:
             self.aside[_UNSEEN] += 1
             return
-        lines = lines_of(kind, element.attrib, place.view)
+        lines = lines_of(kind, with_geometry(kind, style, element.attrib), place.view)
         closed = [line.points for line in lines if line.closed and len(line.points) > 2]
         if len(closed) < len(lines):
             self.aside[f"open lines in {kind}"] += len(lines) - len(closed)

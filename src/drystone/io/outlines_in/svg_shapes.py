@@ -39,6 +39,19 @@ def length(text: str) -> tuple[float, str]:
     return bounded(found[1]), found[2]
 
 
+def css_length(text: str) -> tuple[float, str]:
+    """Split a length of CSS, which needs a unit, unless it is 0; ValueError when it has none.
+
+    Browsers ignore what has none, other programs do not, so there is no telling what was meant.
+    """
+    value, unit = length(text)
+    if len(text.split()) > 1:
+        raise ValueError(f"{text!r} is no length")
+    if value and not unit:
+        raise ValueError(f"{text} in CSS has no unit (px)")
+    return value, unit
+
+
 def transform(text: str) -> Matrix:
     """Return the (3, 3) matrix of the attribute ``transform``.
 
@@ -113,7 +126,10 @@ def lines_of(
         return [Subpath(points, closed)]
     if kind == "rect":
         return [Subpath(_rectangle(attributes, view), closed=True)]
-    rx, ry = (user_units(attributes, "r" if kind == "circle" else n, view) for n in ("rx", "ry"))
+    if kind == "circle":
+        rx = ry = user_units(attributes, "r", view)
+    else:
+        rx, ry = _radii(attributes, view)
     angles = np.arange(CORNERS_OF_CIRCLE) * (2.0 * math.pi / CORNERS_OF_CIRCLE)
     circle = np.column_stack([rx * np.cos(angles), ry * np.sin(angles)])
     middle = np.array([user_units(attributes, "cx", view), user_units(attributes, "cy", view)])
@@ -123,9 +139,7 @@ def lines_of(
 def _rectangle(attributes: Mapping[str, str], view: tuple[float, float] | None) -> Points:
     names = ("x", "y", "width", "height")
     x, y, width, height = (user_units(attributes, name, view) for name in names)
-    given = [user_units(attributes, name, view) for name in ("rx", "ry") if name in attributes]
-    # One radius counts for both.
-    rx, ry = (min(given[0], width / 2), min(given[-1], height / 2)) if given else (0.0, 0.0)
+    rx, ry = np.minimum(_radii(attributes, view), (width / 2, height / 2)).tolist()
     if rx <= 0.0 or ry <= 0.0:
         return np.array([(x, y), (x + width, y), (x + width, y + height), (x, y + height)])
     corners = []
@@ -138,6 +152,12 @@ def _rectangle(attributes: Mapping[str, str], view: tuple[float, float] | None) 
         start = np.array([x0, y0])
         corners += [start[None], arc(start, [rx, ry, 0.0, 0.0, 1.0], np.array([x1, y1]))]
     return np.concatenate(corners)
+
+
+def _radii(attributes: Mapping[str, str], view: tuple[float, float] | None) -> tuple[float, float]:
+    """Return rx and ry, of which one counts for both."""
+    given = [user_units(attributes, name, view) for name in ("rx", "ry") if name in attributes]
+    return (given[0], given[-1]) if given else (0.0, 0.0)
 
 
 def user_units(attributes: Mapping[str, str], name: str, view: tuple[float, float] | None) -> float:

@@ -7,10 +7,11 @@ from typing import NamedTuple
 from xml.etree import ElementTree as ET
 
 from drystone.errors import Notice
+from drystone.io.outlines_in.svg_geometry import GEOMETRY
 from drystone.io.outlines_in.svg_transform import MOVES
 
-_CONCERN = frozenset({"display", "visibility", "opacity", "fill-rule"}) | MOVES
-_SAID = re.compile(rf"(?<![\w-])(?:-webkit-)?(?:{'|'.join(sorted(_CONCERN))})\s*:")
+_CONCERN = frozenset({"display", "visibility", "opacity", "fill-rule"}) | MOVES | GEOMETRY
+_SAID = re.compile(rf"(?<![\w.#-])(?:-webkit-)?(?:{'|'.join(sorted(_CONCERN))})\s*:", re.IGNORECASE)
 _COMMENT = re.compile(r"/\*.*?(?:\*/|$)|<!--|-->", re.DOTALL)
 _COMPOUND = re.compile(r"(>?)([\w-]+|\*)?((?:[#.][\w-]+)*)")
 _NEVER = re.compile(
@@ -65,11 +66,21 @@ class Styles:
             if tag(element) == "style":
                 self._read(element)
 
-    def of(self, element: ET.Element) -> dict[str, str]:
-        """Return the properties of an element that decide whether and where it is shown."""
+    def of(self, element: ET.Element, top: ET.Element | None = None) -> dict[str, str]:
+        """Return the properties of an element that decide whether and where it is shown.
+
+        Parameters
+        ----------
+        element : Element
+            Any one of the drawing.
+        top : Element, optional
+            What a ``use`` shows, when the element is shown by that.  Selectors see nothing
+            around it, neither where it stands nor where it is shown (SVG 2, 5.6: the tree that
+            is shown is a shadow tree with its own copies of the style sheets).
+        """
         best: dict[str, _Said] = {}
         own = _Rule((), (1 << 30, 0, 0), _declared(element.get("style", "")))
-        fitting = [rule for rule in self.rules if self._fits(element, rule.steps)]
+        fitting = [rule for rule in self.rules if self._fits(element, rule.steps, top)]
         for place, rule in enumerate([*fitting, own]):
             for name, (value, important) in rule.declared.items():
                 said = _Said(important, rule.weight, place, value)
@@ -96,9 +107,10 @@ class Styles:
                 self._leave(prelude, "display:" if prelude.startswith("@import") else body)
                 continue
             declared = _declared(body)
-            for selector in prelude.split(",") if declared else ():
-                if not _NEVER.search(selector):
-                    self._rule(selector.strip(), declared, body)
+            for selector in _selectors(prelude) if declared else ():
+                # What is in parentheses may be about what is not (:not), or one of several (:is).
+                if not _NEVER.search(_outside(selector)):
+                    self._rule(selector, declared, body)
 
     def _rule(self, selector: str, declared: Mapping[str, tuple[str, bool]], body: str) -> None:
         steps = _steps(selector)
@@ -116,20 +128,20 @@ class Styles:
         if _SAID.search(body):
             self.unread.append(" ".join(what.split())[:60])
 
-    def _fits(self, element: ET.Element, steps: tuple[_Step, ...]) -> bool:
+    def _fits(self, element: ET.Element, steps: tuple[_Step, ...], top: ET.Element | None) -> bool:
         *before, step = steps
         classes = element.get("class", "").split()
         if step.tag not in {"", "*", tag(element)} or not set(step.classes) <= set(classes):
             return False
         if any(name != element.get("id") for name in step.id_names):
             return False
-        around = list(self._around(element)) if before else []
+        around = list(self._around(element, top)) if before else []
         return not before or any(
-            self._fits(one, tuple(before)) for one in (around[:1] if step.child else around)
+            self._fits(one, tuple(before), top) for one in (around[:1] if step.child else around)
         )
 
-    def _around(self, element: ET.Element) -> Iterator[ET.Element]:
-        while (parent := self.parents.get(element)) is not None:
+    def _around(self, element: ET.Element, top: ET.Element | None) -> Iterator[ET.Element]:
+        while element is not top and (parent := self.parents.get(element)) is not None:
             yield parent
             element = parent
 
@@ -160,6 +172,26 @@ def _blocks(text: str) -> Iterator[tuple[str, str]]:
         yield prelude, text[start:]
 
 
+def _selectors(prelude: str) -> Iterator[str]:
+    """Yield the selectors of a rule, which have commas between them, and may have some within."""
+    depth, start = 0, 0
+    for found in re.finditer(r"[(),]", prelude):
+        if found[0] == "," and depth == 0:
+            yield prelude[start : found.start()].strip()
+            start = found.end()
+        elif found[0] != ",":
+            depth += 1 if found[0] == "(" else -1
+    yield prelude[start:].strip()
+
+
+def _outside(selector: str) -> str:
+    """Return a selector without all that is in parentheses."""
+    count = 1
+    while count:
+        selector, count = re.subn(r"\([^()]*\)", "", selector)
+    return selector
+
+
 def _steps(selector: str) -> tuple[_Step, ...]:
     """Return the elements of a selector; none when it is not read."""
     steps: list[_Step] = []
@@ -183,5 +215,7 @@ def _declared(body: str) -> dict[str, tuple[str, bool]]:
         value, mark, _ = value.partition("!")
         is_more = bool(mark) or not declared.get(name, ("", False))[1]
         if name in _CONCERN and value.strip() and is_more:
-            declared[name] = (value.strip().lower(), bool(mark))
+            # Of path data capital letters are other commands.
+            value = value.strip() if name == "d" else value.strip().lower()
+            declared[name] = (value, bool(mark))
     return declared

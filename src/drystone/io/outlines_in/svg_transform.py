@@ -10,6 +10,7 @@ from drystone.io.outlines_in.svg_path import bounded
 from drystone.io.outlines_in.svg_shapes import (
     TRANSFORM,
     Matrix,
+    css_length,
     length,
     matrix_of,
     transform,
@@ -69,8 +70,7 @@ def moves(
 def css_transform(text: str, view: tuple[float, float] | None = None) -> Matrix:
     """Return the (3, 3) matrix of the CSS property ``transform``.
 
-    Lengths and angles need a unit, as in CSS: browsers ignore them without one, other programs
-    do not, so there is no telling what was meant.
+    Lengths and angles need a unit, as in CSS (see `css_length`).
 
     Examples
     --------
@@ -125,9 +125,8 @@ def _origin(text: str, view: tuple[float, float] | None, *, bare: bool) -> Matri
 
 
 def _length(text: str, axis: str, view: tuple[float, float] | None, *, bare: bool = False) -> float:
-    value, unit = length(text)
-    if not unit and value and not bare:
-        raise ValueError(f"{text} in CSS has no unit (px)")
+    if not bare:
+        css_length(text)
     return user_units({axis: text}, axis, view)
 
 

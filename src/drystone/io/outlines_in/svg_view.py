@@ -1,7 +1,7 @@
 """Viewports of SVG: what width, height, viewBox and preserveAspectRatio make of user units."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree as ET
 
@@ -42,8 +42,16 @@ class Page:
     view: View | None
 
 
-def page_of(root: ET.Element, settings: ReadSettings) -> Page:
-    """Read width, height and viewBox of the root; ValueError when they cannot be used."""
+def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
+    """Read width, height and viewBox of the root; ValueError when they cannot be used.
+
+    Parameters
+    ----------
+    root : mapping
+        Its attributes.
+    settings : ReadSettings
+        Of which the unit counts.
+    """
     sides = [length(root.get(name, "100%")) for name in ("width", "height")]
     physical = all(unit in UNITS_M for _, unit in sides)
     if not physical and any(unit not in {"", "px", "%"} for _, unit in sides):
@@ -91,7 +99,7 @@ def inner_view(
     (Matrix, (float, float) or None) or None
         None when nothing of it can be seen.
     """
-    said, box, size = dict(element.attrib), view_box(element), None
+    said, box, size = dict(element.attrib), view_box(element.attrib), None
     for name in ("width", "height"):
         given = (one.get(name, "auto") for one in (use, element) if one is not None)
         said[name] = next((text for text in given if text != "auto"), "100%")
@@ -108,9 +116,9 @@ def inner_view(
     return matrix @ fitted(box, size, said.get("preserveAspectRatio", "")), (box[2], box[3])
 
 
-def view_box(element: ET.Element) -> list[float]:
+def view_box(attributes: Mapping[str, str]) -> list[float]:
     """Return the four numbers of a viewBox; none when there is none, ValueError for others."""
-    text = element.get("viewBox", "").strip()
+    text = attributes.get("viewBox", "").strip()
     box = [bounded(word) for word in re.split(r"[\s,]+", text) if word]
     if box and (len(box) != 4 or not min(box[2:]) > 0.0):
         raise ValueError(f"its viewBox is {text!r}")
