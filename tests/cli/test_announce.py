@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from drystone.cli import announce
-from drystone.cli.announce import read_line, scale_notice
+from drystone.cli.announce import read_line
 from drystone.io.plan_json import read_plan
 from drystone.model.stone import Stone, StoneSet
 from tests.cli.conftest import WALL, Run
@@ -32,22 +32,6 @@ def test_sizes_are_metres_centimetres_or_px() -> None:
     )
     assert "largest 3.10 x 1.20 m" in read_line(three, (280.0, 80.0), 20.0, None)
     assert read_line(StoneSet(()), (280.0, 80.0), None, None) == "Read 0 stones, wall 280 x 80 px"
-
-
-@pytest.mark.parametrize(
-    ("px_per_m", "said"), [(25_000, "1.6 mm"), (10, "4 m"), (4_001, "10 mm"), (19.9, "2.01 m")]
-)
-def test_a_scale_that_makes_no_building_stones_is_asked_about(px_per_m: float, said: str) -> None:
-    notice = scale_notice(stones((40, 20)), px_per_m)
-    assert notice is not None
-    assert notice.code == "W123"
-    assert f"is {said} long" in notice.message
-
-
-@pytest.mark.parametrize("px_per_m", [None, 20.0, 200.0, 4_000.0])
-def test_others_are_not(px_per_m: float | None) -> None:
-    assert scale_notice(stones((40, 20)), px_per_m) is None
-    assert scale_notice(StoneSet(()), 1.0) is None
 
 
 def test_a_plan_begins_and_ends_with_what_is_read_and_written(

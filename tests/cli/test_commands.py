@@ -42,6 +42,8 @@ def test_stones(rubble: Path, tmp_path: Path, run: Run) -> None:
     assert summary["stones"] == 8
     assert len(summary["sha256"]) == 64
     assert set(summary["clusters"]) == {str(stone_id) for stone_id in range(1, 9)}
+    assert summary["notices"] == []
+    assert "W123" in run("stones", rubble, "--px-per-m", 20_000).out
     with Image.open(tmp_path / "new" / "stones.png") as picture:
         assert min(picture.size) > 100
 

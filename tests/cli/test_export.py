@@ -270,3 +270,12 @@ def test_files_of_another_plan_in_a_folder_of_its_own_are_named(run: Run, plan: 
     assert again.code == 0
     assert "W180 not of this plan: stl/stone_999.stl, in" in again.err
     assert (plan.parent / "stl" / "stone_999.stl").exists()
+
+
+def test_a_scale_that_makes_no_building_stones_is_asked_about(run: Run, plan: Path) -> None:
+    usual = run("export", plan, "--to", "csv", "--px-per-m", 200, "--json")
+    assert "W123" not in usual.err
+    odd = run("export", plan, "--to", "csv", "--px-per-m", 20_000, "--overwrite", "--json")
+    assert "W123" in odd.err
+    # What has no scale has no odd one.
+    assert "W123" not in run("export", plan, "--to", "csv", "-o", plan.parent / "px").err

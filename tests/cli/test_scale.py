@@ -10,6 +10,7 @@ from drystone.cli.scale import (
     planned_picture_px,
     refuse_outside,
     ruler,
+    scale_notice,
     scale_with,
 )
 from drystone.errors import UsageError
@@ -89,3 +90,18 @@ def test_who_says_another_scale_is_named() -> None:
         "E131 --ruler: the plan says 200 px a metre, the option 1000. "
         "Leave the option out, or plan again with another scale."
     )
+
+
+@pytest.mark.parametrize(
+    ("px_per_m", "said"), [(25_000, "1.6 mm"), (10, "4 m"), (4_001, "10 mm"), (19.9, "2.01 m")]
+)
+def test_a_scale_that_makes_no_building_stones_is_asked_about(px_per_m: float, said: str) -> None:
+    notice = scale_notice(40.0, px_per_m)
+    assert notice is not None
+    assert notice.code == "W123"
+    assert f"is {said} long" in notice.message
+
+
+@pytest.mark.parametrize("px_per_m", [None, 20.0, 200.0, 4_000.0])
+def test_usual_ones_are_not(px_per_m: float | None) -> None:
+    assert scale_notice(40.0, px_per_m) is None

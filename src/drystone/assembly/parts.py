@@ -92,6 +92,13 @@ class Part:
         width, height = np.ptp(self.own_corners, axis=0).tolist()
         return width, height
 
+    @property
+    def length(self) -> float:
+        """Longer side of the smallest rectangle around it, turned in any way."""
+        around = shapely.oriented_envelope(shapely.Polygon(self.corners))
+        sides = np.diff(shapely.get_coordinates(around), axis=0)[:2]
+        return float(np.hypot(*sides.T).max())
+
     @cached_property
     def grip(self) -> tuple[float, float]:
         """Least width between parallel jaws, and the direction across them.

@@ -18,9 +18,6 @@ WRITTEN = (
 FILM_STONES = 100
 """Walls of more stones get a film by `drystone export` alone: a frame a stone takes its time."""
 
-LEAST_M, MOST_M = 0.01, 2.0
-"""Median stones that people build with, metres."""
-
 
 def read_line(
     stones: StoneSet, wall: tuple[float, float], px_per_m: float | None, seconds: float | None
@@ -51,26 +48,11 @@ def read_line(
     said = f"Read {len(stones)} stone{'' if len(stones) == 1 else 's'}"
     if len(stones):
         biggest = sides_px(max(stones, key=lambda stone: stone.area_px).mask)
-        median = _median(stones)
+        median = median_sides(sides_px(stone.mask) for stone in stones)
         said += f" (largest {_size(*biggest, px_per_m)}, median "
         said += f"{_size(*median, px_per_m)})"
     said += f", wall {_size(*wall, px_per_m)}"
     return said if seconds is None else f"{said}, estimate {max(seconds, 1.0):.0f} s"
-
-
-def scale_notice(stones: StoneSet, px_per_m: float | None) -> Notice | None:
-    """Say when a scale makes stones that nobody builds with (W123); None when it does not."""
-    if px_per_m is None or not len(stones):
-        return None
-    longer = _median(stones)[0] / px_per_m
-    if LEAST_M <= longer <= MOST_M:
-        return None
-    said = f"{1000 * longer:.2g} mm" if longer < LEAST_M else f"{longer:.3g} m"
-    return Notice(
-        "W123",
-        f"the median stone is {said} long with {px_per_m:g} px in a metre.",
-        "Is that scale right? All lengths of the plan go by it.",
-    )
 
 
 def write_film(result: PlanResult, folder: Path) -> None:
@@ -103,11 +85,6 @@ def say_written(folder: Path) -> None:
     """Name the files of a plan."""
     first, *others = (name for name in WRITTEN if (folder / name).exists())
     print(f"drystone: wrote {' '.join([str(folder / first), *others])}", file=sys.stderr)
-
-
-def _median(stones: StoneSet) -> tuple[float, float]:
-    """Return the medians of the longer and of the shorter sides, source px."""
-    return median_sides(sides_px(stone.mask) for stone in stones)
 
 
 def _size(width: float, height: float, px_per_m: float | None) -> str:

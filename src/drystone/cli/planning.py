@@ -13,7 +13,6 @@ from drystone.cli.announce import (
     exports_notice,
     read_line,
     say_written,
-    scale_notice,
     write_film,
 )
 from drystone.cli.beginning import plan_to_begin_with
@@ -27,7 +26,7 @@ from drystone.cli.output import prepare_folder, print_json
 from drystone.cli.plan_photo import check_photo, with_photo
 from drystone.cli.plan_summary import print_summary, summary, summary_of_plan
 from drystone.cli.progress import step_bar
-from drystone.cli.scale import picture_size_px, refuse_outside
+from drystone.cli.scale import picture_size_px, refuse_outside, scale_notice
 from drystone.cli.settings import recorded_method, search_seconds, settings_from
 from drystone.cli.timing import print_profile, profile_summary
 from drystone.errors import ExitCode, UsageError
@@ -36,6 +35,7 @@ from drystone.io.plan_json import read_plan
 from drystone.model.plan import Plan
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
+from drystone.model.stone_size import median_sides, sides_px
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.planner.workshop import fitting_stones
 from drystone.search.plan_result import PlanResult
@@ -166,7 +166,8 @@ def _announce(
             f"{arguments.method} is left; the plan names the method custom",
             file=sys.stderr,
         )
-    notice = scale_notice(stones, arguments.px_per_m)
+    median_px, _ = median_sides(sides_px(stone.mask) for stone in stones)
+    notice = scale_notice(median_px, arguments.px_per_m)
     if notice is not None:
         print(f"drystone: {notice}", file=sys.stderr)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from drystone.cli.numbers import positive
-from drystone.errors import UsageError
+from drystone.errors import Notice, UsageError
 
 if TYPE_CHECKING:  # they would bring NumPy
     from drystone.io.walls import GivenWall
@@ -23,6 +23,9 @@ _SAYS = {
     "plan": ("the plan says", "or plan again with another scale"),
 }
 """Who knows a scale: how that is said, and what else can be done when an option differs."""
+
+LEAST_M, MOST_M = 0.01, 2.0
+"""Median stones that people build with, metres."""
 
 
 class Ruled(float):
@@ -154,3 +157,28 @@ def scale_with(
             cure=f"Leave the option out, {or_else}.",
         )
     return px_per_m
+
+
+def scale_notice(median_px: float, px_per_m: float | None) -> Notice | None:
+    """Say when a scale makes stones that nobody builds with (W123); None when it does not.
+
+    Parameters
+    ----------
+    median_px : float
+        Length of the median stone, source px.
+    px_per_m : float or None
+        Scale, if there is one.
+
+    Examples
+    --------
+    >>> print(scale_notice(40.0, 10.0).message)
+    the median stone is 4 m long with 10 px in a metre.
+    """
+    if px_per_m is None or LEAST_M <= (length := median_px / px_per_m) <= MOST_M:
+        return None
+    said = f"{1000 * length:.2g} mm" if length < LEAST_M else f"{length:.3g} m"
+    return Notice(
+        "W123",
+        f"the median stone is {said} long with {px_per_m:g} px in a metre.",
+        "Is that scale right? All lengths go by it.",
+    )

@@ -5,11 +5,13 @@ import re
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from statistics import median
 
+from drystone.assembly.parts import Assembly
 from drystone.assembly.read import read_assembly
 from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.output import make_folder, prepare_files, print_json
-from drystone.cli.scale import planned_picture_px, refuse_outside
+from drystone.cli.scale import planned_picture_px, refuse_outside, scale_notice
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.export.formats import FORMATS
 from drystone.export.settings import ExportSettings
@@ -50,8 +52,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     written: dict[str, list[str]] = {}
     for name, module in modules.items():
         written[name] = [str(file) for file in module.write(assembly, folder, settings)]
-    if (left := _left_over(folder, names)) is not None:
-        print(f"drystone: {left}", file=sys.stderr)
+    for said in _notices(assembly, folder, names):
+        print(f"drystone: {said}", file=sys.stderr)
     if any(FORMATS[name].metric for name in asked) and arguments.thickness_m is None:
         said = f"no --thickness: parts are {assembly.thickness:.3g} m thick"
         print(f"drystone: {said}", file=sys.stderr)
@@ -83,6 +85,19 @@ def settings_from(arguments: argparse.Namespace) -> ExportSettings:
         projector_px_per_m=float(found[3]),
         seconds_per_step=arguments.seconds_per_step,
     )
+
+
+def _notices(assembly: Assembly, folder: Path, names: Sequence[str]) -> list[str]:
+    found = _left_over(folder, names), _odd_scale(assembly)
+    return [str(notice) for notice in found if notice is not None]
+
+
+def _odd_scale(assembly: Assembly) -> Notice | None:
+    """Say when the scale makes stones that nobody builds with (W123)."""
+    lengths = [stone.length for stone in assembly.stones]
+    if assembly.px_per_m is None or not lengths:
+        return None
+    return scale_notice(median(lengths) * assembly.px_per_m, assembly.px_per_m)
 
 
 def _left_over(folder: Path, names: Sequence[str]) -> Notice | None:

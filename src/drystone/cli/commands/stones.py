@@ -7,7 +7,7 @@ from pathlib import Path
 from drystone.cli.inputs import files_of, refuse_inputs
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_from
-from drystone.cli.scale import picture_size_px, refuse_outside, scale_with
+from drystone.cli.scale import picture_size_px, refuse_outside, scale_notice, scale_with
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode
 from drystone.io.read_stones import read_stones
@@ -33,6 +33,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         from drystone.plotting import plot_stones, save  # noqa: PLC0415 - matplotlib is slow
 
         save(plot_stones(stones, clusters).figure, picture)
+    median = median_sides(sides.values())
+    odd = scale_notice(median[0], px_per_m)
+    notices = [str(notice) for notice in (*stones.notices, odd) if notice is not None]
     if arguments.json:
         print_json(
             {
@@ -45,11 +48,10 @@ def run(arguments: argparse.Namespace) -> ExitCode:
                 "total_area_px": stones.total_area_px,
                 "median_area_px": statistics.median(areas),
                 "clusters": {str(stone.id): clusters[stone.id] for stone in stones},
-                "notices": [str(notice) for notice in stones.notices],
+                "notices": notices,
             }
         )
         return ExitCode.DONE
-    median = median_sides(sides.values())
     print_table(
         f"{stones.source.path}: {len(stones)} stones",
         [
@@ -59,7 +61,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             ("median stone", f"{_size(median, px_per_m)}, {statistics.median(areas):g} px²"),
             ("largest stone", f"{largest.id}: {_size(sides[largest.id], px_per_m)}"),
             ("clusters", str(max(clusters.values()))),
-            *[("notice", str(notice)) for notice in stones.notices],
+            *[("notice", notice) for notice in notices],
         ],
     )
     return ExitCode.DONE
