@@ -1,6 +1,7 @@
 """A search: the same budget gives the same wall, and a larger one none that is worse."""
 
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -12,9 +13,12 @@ from drystone.model.site import Site
 from drystone.planner.events import Callbacks, Incumbent
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import UNLIMITED
-from drystone.search.anytime import Progress, searching
+from drystone.planner.solves import Solves
+from drystone.search.anytime import PROMISING, Progress, _links, _shared, searching
 from drystone.search.chain import in_cycle, wedged
-from drystone.search.found import Found
+from drystone.search.course_plan import CoursePlan
+from drystone.search.first_walls import PROMISE
+from drystone.search.found import Courses, Found
 from drystone.search.packed import Packed, found_again
 from drystone.search.plan_wall import plan_wall, run_to_end
 from drystone.search.processes import processes
@@ -63,6 +67,32 @@ def test_walls_get_better_and_are_complete(geometry: str) -> None:
     again = Found.measured(best.build, planner.workshop, planner.settings)
     assert again.figures == best.figures
     assert again.merit == best.merit
+
+
+@pytest.mark.parametrize("geometry", ["raster", "exact"])
+def test_the_best_first_wall_counts_though_chains_begin_with_what_promises_more(
+    geometry: str,
+) -> None:
+    found = searched(first(9, geometry, seed=5))
+    assert all(a.best.merit <= b.best.merit for a, b in pairwise(found))
+
+
+def test_chains_go_on_from_planned_walls_that_promise_more_until_they_are_long() -> None:
+    def packed(merit: float, planned: bool) -> Packed:
+        courses = Courses(CoursePlan((), 0.0), (0,)) if planned else None
+        return Packed((), None, merit, Solves(), courses)
+
+    alone, planned = packed(1.0, planned=False), packed(0.9, planned=True)
+    links = _links([alone, planned, packed(0.2, planned=True)], 2)
+    assert [link.best for link in links] == [planned, alone]
+    assert _shared(list(links))[1].now is planned
+    long = [replace(link, done=PROMISING) for link in links]
+    assert _shared(long)[0].now is alone
+    # Half of the promise is as much as they are apart, and a little more.
+    nearly = packed(1.0 - 0.4 * PROMISE, planned=True)
+    half = [replace(link, done=PROMISING // 2) for link in _links([alone, nearly], 2)]
+    assert _shared(half)[1].best is nearly
+    assert _shared(half[:1] * 2) == half[:1] * 2
 
 
 def test_the_first_wall_is_wedged_as_the_others_are() -> None:

@@ -18,11 +18,14 @@ from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.archive import archived
 from drystone.search.chain import wedged
-from drystone.search.first_walls import batches, planned_share, stale
+from drystone.search.first_walls import next_batch, promised
 from drystone.search.found import Found
 from drystone.search.operators import Credits
 from drystone.search.packed import Packed
 from drystone.search.work import Job, PackedLink, more_links, one_pass
+
+PROMISING = 32
+"""Walls of a chain after which planned walls are worth no more than their merit."""
 
 Result = TypeVar("Result")
 
@@ -93,18 +96,16 @@ def searching(
     # budget 1, which is the wall without them.
     found = [Packed.of(wedged(first, workshop, settings))]
     kept = archived((), found)
-    for batch in batches(min(search.passes, search.budget)):
-        if stale(found):
-            break
-        share = planned_share(found, settings.geometry)
-        for wall in _mapped(executor, one_pass, [(job, number, share) for number in batch]):
+    while (batch := next_batch(found, search, settings.geometry)) is not None:
+        numbers, share = batch
+        for wall in _mapped(executor, one_pass, [(job, number, share) for number in numbers]):
             if wall is None:
                 return
             found.append(wall)
             kept = archived(kept, [wall])
             yield Progress(len(found), _best(found), _all_solves(found), kept)
     links = _links(found, search.chains)
-    walls, before = len(found), _all_solves(found)
+    walls, before, best = len(found), _all_solves(found), _best(found)
     while walls < search.budget:
         counts = _shares(search.budget - walls, search.chains, search.share_every)
         tasks = [(job, link, count) for link, count in zip(links, counts, strict=True) if count]
@@ -114,7 +115,7 @@ def searching(
             built = link.done - links[k].done
             links[k] = link
             walls += built
-            best = _best([one.best for one in links])
+            best = _best([best, link.best])
             kept = archived(kept, link.kept)
             yield Progress(walls, best, before + _all_solves(links), kept)
             if built < counts[k]:
@@ -133,7 +134,7 @@ def _all_solves(walls: Sequence[Packed] | Sequence[PackedLink]) -> Solves:
 
 def _links(found: Sequence[Packed], chains: int) -> list[PackedLink]:
     """Begin a chain from each of the best walls; from the best again where there are too few."""
-    order = sorted(range(len(found)), key=lambda k: (-found[k].merit, k))
+    order = sorted(range(len(found)), key=lambda k: (-promised(found[k]), k))
     starts = [found[order[k] if k < len(order) else order[0]] for k in range(chains)]
     return [PackedLink(k, 0, start, start, Solves()) for k, start in enumerate(starts)]
 
@@ -151,9 +152,10 @@ def _knowing(links: list[PackedLink]) -> list[PackedLink]:
 
 def _shared(links: list[PackedLink]) -> list[PackedLink]:
     """Let the chain that is furthest behind go on from the best wall."""
-    best = _best([link.best for link in links])
-    last = min(range(len(links)), key=lambda k: (links[k].best.merit, -k))
-    if links[last].best.merit < best.merit:
+    worth = [promised(link.best, max(0.0, 1.0 - link.done / PROMISING)) for link in links]
+    first, last = worth.index(max(worth)), worth.index(min(worth))
+    if worth[last] < worth[first]:
+        best = links[first].best
         links[last] = replace(links[last], now=best, best=best)
     return links
 

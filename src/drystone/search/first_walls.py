@@ -1,13 +1,14 @@
 """The first walls of a search: how many, and which of them are planned course by course."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
+from drystone.planner.search_settings import SearchSettings
 from drystone.search.packed import Packed
 
 BATCH = 4
 """Walls after which it is looked how the planned ones do: however many processes there are."""
 
-SHARE = {"exact": 0.5, "raster": 0.9}
+SHARE = {"exact": 0.75, "raster": 0.9}
 """The share of the first walls that are planned before anything is known, on each geometry: a pass
 on pixels takes up to twice as long as a plan."""
 
@@ -17,25 +18,56 @@ WEIGHT = 2.0
 STALE = 8
 """After so many first walls that are not better than one that was not planned there are no more."""
 
+PROMISE = 0.6
+"""So much more than others, in units of merit, planned walls win by the changes of chains."""
 
-def batches(count: int) -> Iterator[range]:
-    """List the numbers of the walls after the very first one, batch by batch.
 
-    Examples
-    --------
-    >>> [list(batch) for batch in batches(7)]
-    [[1, 2, 3], [4, 5, 6]]
+def promised(wall: Packed, share: float = 1.0) -> float:
+    """Return what a wall is worth as a start.
+
+    Parameters
+    ----------
+    wall : Packed
+        One that is found.
+    share : float
+        Of what a planned wall promises beyond its merit that is still to come.
     """
-    for start in range(0, count, BATCH):
-        yield range(max(1, start), min(start + BATCH, count))
+    return wall.merit + (0.0 if wall.courses is None else share * PROMISE)
+
+
+def next_batch(
+    found: Sequence[Packed], search: SearchSettings, geometry: str
+) -> tuple[range, float] | None:
+    """Return the numbers of the next first walls, and which share of them is planned.
+
+    Parameters
+    ----------
+    found : sequence of Packed
+        All first walls so far.
+    search : SearchSettings
+        How many there are at most.
+    geometry : {"exact", "raster"}
+        Of their stones.
+
+    Returns
+    -------
+    (range, float) or None
+        None when there are enough, and it is time to improve the best of them.
+    """
+    done = len(found)
+    if done >= search.passes or stale(found):
+        return None
+    # The very first wall is of the first batch.
+    end = min(done - done % BATCH + BATCH, search.passes, search.budget)
+    return (range(done, end), planned_share(found, geometry)) if end > done else None
 
 
 def stale(found: Sequence[Packed]) -> bool:
     """Say whether it is time to improve the best wall, as the last were none better.
 
-    Asked after each batch.  Never of a planned wall: improving it wins less than another plan may.
+    Never of a planned wall: improving it wins less than another plan may.
     """
-    best = max(range(len(found)), key=lambda k: (found[k].merit, -k))
+    best = max(range(len(found)), key=lambda k: (promised(found[k]), -k))
     return found[best].courses is None and len(found) - 1 - best >= STALE
 
 
@@ -56,7 +88,7 @@ def planned_share(found: Sequence[Packed], geometry: str) -> float:
     float
         In (0, 1).
     """
-    order = sorted(range(len(found)), key=lambda k: (-found[k].merit, k))
+    order = sorted(range(len(found)), key=lambda k: (-promised(found[k]), k))
     better = [found[k] for k in order[: (len(found) + 1) // 2]] if len(found) > 1 else []
     planned = sum(wall.courses is not None for wall in better)
     return (planned + SHARE[geometry] * WEIGHT) / (len(better) + WEIGHT)
