@@ -133,7 +133,7 @@ def _all_solves(walls: Sequence[Packed] | Sequence[PackedLink]) -> Solves:
 
 
 def _links(found: Sequence[Packed], chains: int) -> list[PackedLink]:
-    """Begin a chain from each of the best walls; from the best again where there are too few."""
+    """Begin a chain from each of the most promising; from the first again where there are few."""
     order = sorted(range(len(found)), key=lambda k: (-promised(found[k]), k))
     starts = [found[order[k] if k < len(order) else order[0]] for k in range(chains)]
     return [PackedLink(k, 0, start, start, Solves()) for k, start in enumerate(starts)]
@@ -151,7 +151,7 @@ def _knowing(links: list[PackedLink]) -> list[PackedLink]:
 
 
 def _shared(links: list[PackedLink]) -> list[PackedLink]:
-    """Let the chain that is furthest behind go on from the best wall."""
+    """Let the chain that is furthest behind go on from the wall that is best or promises most."""
     worth = [promised(link.best, max(0.0, 1.0 - link.done / PROMISING)) for link in links]
     first, last = worth.index(max(worth)), worth.index(min(worth))
     if worth[last] < worth[first]:
