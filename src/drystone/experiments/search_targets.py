@@ -80,8 +80,7 @@ UNSEEN = (
     Target("rubble, 120", _fixed(_rubble_120, 9205), 1437, 450, 0.45),
     Target("bricks, 48", _fixed(_bricks, 9206), 550, 144, 0.6),
 )
-"""Sets that no setting was tuned on, drawn anew after the last change of the search; walls of their
-area over .8."""
+"""Sets that no setting had been tuned on when they were measured; walls of their area over .8."""
 
 
 def search_targets(settings: BenchSettings) -> tuple[SearchTarget, ...]:
