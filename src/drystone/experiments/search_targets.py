@@ -73,12 +73,12 @@ def _bricks(rng: Generator) -> StoneSet:
 
 
 UNSEEN = (
-    Target("Fourier, 45", _fixed(_fourier, 9201), 577, 200, 0.6),
-    Target("polygons 20 %, 40", _fixed(_polygons(0.2), 9202), 1462, 400, 0.3),
-    Target("polygons 60 %, 40", _fixed(_polygons(0.6), 9203), 1462, 400, 0.25),
-    Target("rubble, 60", _fixed(_rubble_60, 9204), 990, 300, 0.5),
-    Target("rubble, 120", _fixed(_rubble_120, 9205), 1437, 450, 0.45),
-    Target("bricks, 48", _fixed(_bricks, 9206), 550, 144, 0.6),
+    Target("Fourier, 45", _fixed(_fourier, 9301), 621, 200, 0.6),
+    Target("polygons 20 %, 40", _fixed(_polygons(0.2), 9302), 1462, 400, 0.3),
+    Target("polygons 60 %, 40", _fixed(_polygons(0.6), 9303), 1462, 400, 0.25),
+    Target("rubble, 60", _fixed(_rubble_60, 9304), 990, 300, 0.5),
+    Target("rubble, 120", _fixed(_rubble_120, 9305), 1437, 450, 0.45),
+    Target("bricks, 48", _fixed(_bricks, 9306), 550, 144, 0.6),
 )
 """Sets that no setting had been tuned on when they were measured; walls of their area over .8."""
 
