@@ -14,6 +14,7 @@ from drystone.planner.events import Callbacks, Incumbent
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.solves import Solves
+from drystone.search import anytime, work
 from drystone.search.anytime import PROMISING, Progress, _links, _shared, searching
 from drystone.search.chain import in_cycle, wedged
 from drystone.search.course_plan import CoursePlan
@@ -22,7 +23,7 @@ from drystone.search.found import Courses, Found
 from drystone.search.packed import Packed, found_again
 from drystone.search.plan_wall import plan_wall, run_to_end
 from drystone.search.processes import processes
-from drystone.search.work import planned_first
+from drystone.search.work import Job, PackedLink, planned_first
 from drystone.verify.check import check_plan
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble
 
@@ -30,8 +31,9 @@ SMALL = {"passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
 """A search that does everything within ten walls."""
 
 
-def first(budget: int, geometry: str = "exact", seed: int = 1) -> Planner:
-    settings = greedy({"geometry": geometry, "search": {"budget": budget, **SMALL}})
+def first(budget: int, geometry: str = "exact", seed: int = 1, patience: int = 12) -> Planner:
+    search = {"budget": budget, "patience": patience, **SMALL}
+    settings = greedy({"geometry": geometry, "search": search})
     return finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings))
 
 
@@ -83,14 +85,14 @@ def test_chains_go_on_from_planned_walls_that_promise_more_until_they_are_long()
         return Packed((), None, merit, Solves(), courses)
 
     alone, planned = packed(1.0, planned=False), packed(0.9, planned=True)
-    links = _links([alone, planned, packed(0.2, planned=True)], 2)
+    links = _links([alone, planned, packed(0.2, planned=True)], 0, 2)
     assert [link.best for link in links] == [planned, alone]
     assert _shared(list(links))[1].now is planned
     long = [replace(link, done=PROMISING) for link in links]
     assert _shared(long)[0].now is alone
     # Half of the promise is as much as they are apart, and a little more.
     nearly = packed(1.0 - 0.4 * PROMISE, planned=True)
-    half = [replace(link, done=PROMISING // 2) for link in _links([alone, nearly], 2)]
+    half = [replace(link, done=PROMISING // 2) for link in _links([alone, nearly], 0, 2)]
     assert _shared(half)[1].best is nearly
     assert _shared(half[:1] * 2) == half[:1] * 2
 
@@ -114,6 +116,44 @@ def test_a_part_of_a_search_is_a_search_with_a_smaller_budget() -> None:
         again = searched(first(part.walls))[-1] if part.walls > 1 else whole[0]
         assert again.walls == part.walls
         assert same(again.best, part.best)
+
+
+def test_after_many_walls_in_vain_other_first_walls_begin_another_round(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    begun: list[int] = []
+    chained: list[tuple[int, int]] = []
+
+    def one_pass(job: Job, number: int, share: float) -> Packed | None:
+        begun.append(number)
+        return work.one_pass(job, number, share)
+
+    def more_links(job: Job, link: PackedLink, count: int) -> PackedLink | None:
+        chained.append((link.number, link.done))
+        return work.more_links(job, link, count)
+
+    monkeypatch.setattr(anytime, "one_pass", one_pass)
+    monkeypatch.setattr(anytime, "more_links", more_links)
+    whole = searched(first(25, patience=1))
+    assert len(begun) > 3
+    assert begun == list(range(1, len(begun) + 1))
+    assert chained[:2] == [(0, 0), (1, 0)]
+    # The chains of another round draw anew.
+    assert (2, 0) in chained
+    assert (3, 0) in chained
+    assert all(a.walls < b.walls for a, b in pairwise(whole))
+    assert whole[-1].walls == 25
+    # What earlier rounds have found is not lost.
+    assert all(a.best.merit <= b.best.merit for a, b in pairwise(whole))
+    assert all(any(same(p.best, kept) for kept in p.kept) for p in whole)
+
+
+def test_a_part_of_several_rounds_is_a_search_with_a_smaller_budget() -> None:
+    for part in searched(first(21, patience=1))[-4::3]:
+        again = searched(first(part.walls, patience=1))[-1]
+        assert again.walls == part.walls
+        assert same(again.best, part.best)
+        assert again.solves == part.solves
 
 
 class Ticks:
@@ -146,7 +186,7 @@ def test_what_was_built_in_time_counts_even_where_a_chain_was_cut_off(ticks: int
 
 
 def test_processes_change_nothing() -> None:
-    one, two = searched(first(9)), searched(first(9), jobs=2)
+    one, two = searched(first(16, patience=1)), searched(first(16, patience=1), jobs=2)
     assert [p.walls for p in one] == [p.walls for p in two]
     assert all(same(a.best, b.best) for a, b in zip(one, two, strict=True))
 

@@ -76,6 +76,9 @@ class SearchSettings:
         Temperatures of annealing, in units of merit, at the start and at the end of each cycle.
     cycle : int
         Walls of a chain in its first cycle; every further one is twice as long.
+    patience : int
+        After so many walls for each of its stones in which the best hardly gets better, the search
+        begins again with other first walls.
     """
 
     budget: int = 1
@@ -90,10 +93,14 @@ class SearchSettings:
     warm: float = 0.15
     cold: float = 0.01
     cycle: int = 64
+    patience: int = 12
 
     def __post_init__(self) -> None:
-        if min(self.budget, self.passes, self.chains, self.share_every, self.cycle) < 1:
-            raise ValueError("budget, passes, chains, share_every and cycle must be positive")
+        counts = (self.budget, self.passes, self.chains, self.share_every, self.cycle)
+        if min(*counts, self.patience) < 1:
+            raise ValueError(
+                "budget, passes, chains, share_every, cycle and patience must be positive"
+            )
         if not 0 < self.largest <= 1 or self.spread < 0:
             raise ValueError("largest must be in (0, 1], spread not negative")
         if not 0 < self.cold <= self.warm:

@@ -43,7 +43,7 @@ def next_batch(
     Parameters
     ----------
     found : sequence of Packed
-        All first walls so far.
+        All first walls so far, of this round.
     search : SearchSettings
         How many there are at most.
     geometry : {"exact", "raster"}
@@ -55,7 +55,7 @@ def next_batch(
         None when there are enough, and it is time to improve the best of them.
     """
     done = len(found)
-    if done >= search.passes or stale(found):
+    if done >= search.passes or (found and stale(found)):
         return None
     # The very first wall is of the first batch.
     end = min(done - done % BATCH + BATCH, search.passes, search.budget)
