@@ -20,6 +20,8 @@ class GoalSettings:
     resistance, vertical, horizontal, level, flush : float
         Weights of F_LR (up to 1), F_AV, F_AH, T_LEVEL and E_FLUSH; the last three count against
         a wall.
+    enough : float
+        F_AV beyond which more of it counts nothing, where it has no aim; 0 is none.
     F_SF, F_LR, F_AV, F_AH : float
         Aims: what is better than its aim counts no more than the aim; 0 is none.
     urgent : float
@@ -32,6 +34,7 @@ class GoalSettings:
     horizontal: float = 0.25
     level: float = 0.5
     flush: float = 0.25
+    enough: float = 0.0
     F_SF: float = 0.0
     F_LR: float = 0.0
     F_AV: float = 0.0
@@ -41,8 +44,8 @@ class GoalSettings:
     def __post_init__(self) -> None:
         if not self.urgent > 0:
             raise ValueError("urgent must be positive")
-        if min(self.F_SF, self.F_LR, self.F_AV, self.F_AH) < 0:
-            raise ValueError("aims must not be negative")
+        if min(self.F_SF, self.F_LR, self.F_AV, self.F_AH, self.enough) < 0:
+            raise ValueError("aims and what is enough must not be negative")
 
 
 @dataclass(frozen=True, kw_only=True)
