@@ -189,7 +189,9 @@ METHODS: Mapping[str, PlannerSettings] = types.MappingProxyType(
             stabilise=StabiliseSettings(margin=0.1, min_wedge_px=1),
             score=ScoreSettings(thickness=1.5, llc=4.0),
             search=SearchSettings(budget=16),
-            goal=GoalSettings(filling=20.0, horizontal=0.5, level=0.75, flush=0.5, enough=40.0),
+            goal=GoalSettings(
+                filling=20.0, resistance=1.25, horizontal=0.5, level=0.75, flush=0.5, enough=40.0
+            ),
         ),
     }
 )
