@@ -15,6 +15,7 @@ from drystone.experiments.search_runs import Task, chosen_ways, searched
 from drystone.experiments.search_targets import SearchTarget
 from drystone.experiments.search_ways import WAYS, Way
 from drystone.experiments.table import BenchSettings
+from drystone.planner.settings import method_settings
 
 TARGET = SearchTarget(QUICK[0], "raster")
 STONES = QUICK[0].stones(BenchSettings())
@@ -79,7 +80,8 @@ def test_settings_are_what_a_way_goes_by() -> None:
     task = Task(TARGET.name, "restarts", 1, (1e-6,), None, True)
     (plain,) = search_runs.do(task)
     (halved,) = search_runs.do(replace(task, changes=(("goal.filling", 0.0),)))
-    lost = 15.0 * plain.figures["F_SF"] / plain.possible
+    weight = method_settings("best").goal.filling
+    lost = weight * plain.figures["F_SF"] / plain.possible
     assert halved.figures["merit"] == pytest.approx(plain.figures["merit"] - lost)
 
 
