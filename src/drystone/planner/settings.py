@@ -190,7 +190,7 @@ METHODS: Mapping[str, PlannerSettings] = types.MappingProxyType(
             score=ScoreSettings(thickness=1.5, llc=4.0),
             search=SearchSettings(budget=16),
             goal=GoalSettings(
-                filling=20.0, resistance=1.25, horizontal=0.5, level=0.75, flush=0.5, enough=40.0
+                filling=20.0, resistance=1.25, horizontal=0.5, level=0.75, flush=1.0, enough=40.0
             ),
         ),
     }
