@@ -55,6 +55,16 @@ def test_a_pile_comes_down_from_the_stone_on() -> None:
     assert with_all_above(pile, frozenset({high})) == {high}
 
 
+def test_joint_paths_are_those_of_the_wall_not_of_the_air_above_it() -> None:
+    settings = greedy({"search": {"budget": 2}})
+    stones = blocks(dict.fromkeys(range(1, 6), (20, 10)))
+    pile = finish(Planner(stones, Site(20, 300), settings=settings)).build
+    *lower, highest = (p.stone_id for p in pile.wall.placements)
+    draws = [RUINS["joint"](pile, 1, np.random.default_rng(seed)) for seed in range(40)]
+    assert set().union(*draws) == {*lower, highest}
+    assert draws.count(frozenset({highest})) < 20
+
+
 def test_what_stays_is_where_it_was(planner: Planner) -> None:
     build = planner.build
     first = build.wall.placements[0].stone_id

@@ -39,7 +39,7 @@ def with_the_rest(planner: Planner, best: Packed) -> tuple[Planner, Stopped, boo
     """Return a planner with the best wall of a search, and why nothing more is placed on it.
 
     The passes of a search have weights of their own: a stone that found no place by those may
-    find one by the settings'.  As many stay as make the wall best.
+    find one by the weights of the first wall.  As many stay as make the wall best.
 
     Parameters
     ----------

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.random import Generator
 
+from drystone.metrics.frame import frame_wall
 from drystone.metrics.joints import joint_mask
 from drystone.metrics.paths import vertical_paths
 from drystone.planner.build import Build
@@ -95,13 +96,15 @@ def end(build: Build, count: int, rng: Generator) -> Ids:
 
 def joint(build: Build, count: int, rng: Generator) -> Ids:
     """Take the stones around a piece of one of the shortest vertical joint paths (F_AV)."""
-    paths = vertical_paths(joint_mask(build.wall.labels))[:5]
+    site, labels = build.wall.site, build.wall.labels
+    above = int(np.flatnonzero(labels.any(axis=1))[0])
+    paths = vertical_paths(joint_mask(frame_wall(labels, site.width_px).labels))[:5]
     if not paths:
         return disc(build, count, rng)
     pixels = paths[int(rng.integers(len(paths)))].pixels
     row, col = pixels[int(rng.integers(len(pixels)))].tolist()
-    # The joint image has a pixel more on the left and on top.
-    return _nearest(build, np.array([col - 0.5, build.wall.site.height_px - row + 0.5]), count)
+    # The joint image has a pixel more on the left and on top, and no rows above the wall.
+    return _nearest(build, np.array([col - 0.5, site.height_px - above - row + 0.5]), count)
 
 
 def step(build: Build, count: int, rng: Generator) -> Ids:
