@@ -26,6 +26,7 @@ from drystone.search.plan_result import finish
 from drystone.statics.grown import Grown
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify.check import check_plan
+from tests.planner import scenes
 from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
 
 Change = Callable[[Found, Workshop, PlannerSettings, Generator], Found | None]
@@ -157,7 +158,7 @@ def test_nothing_can_be_planned_without_stones(settings: PlannerSettings) -> Non
     small = type(RUBBLE_SITE)(6, 6)
     workshop = Workshop.prepare(rubble(), small, settings)
     assert newly_planned(workshop, settings, np.random.default_rng(0)) is None
-    assert Planner(rubble(), small, settings=settings).build.actions == ()
+    assert scenes.finish(Planner(rubble(), small, settings=settings)).build.actions == ()
 
 
 @pytest.mark.parametrize("change", [newly_planned, relaid, recreated])

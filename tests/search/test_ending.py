@@ -11,8 +11,9 @@ from drystone import generate
 from drystone.planner.events import Callbacks, Step, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
-from drystone.search.ending import as_found, insisted, with_the_rest
+from drystone.search.ending import as_found, with_the_rest
 from drystone.search.found import Found
+from drystone.search.interrupts import insisted
 from drystone.search.packed import Packed
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
@@ -101,6 +102,23 @@ def test_an_interrupt_while_others_are_finished_keeps_the_best(
     result = plan_wall(rubble(), 100, 36, scale=1.0, seed=1, settings=settings, choice=True)
     assert result.plan == whole.plan
     assert [one.plan for one in result.choice] == [whole.plan]
+    assert [notice.code for notice in result.notices] == ["W125"]
+
+
+def test_what_the_solver_gave_up_on_at_the_end_is_counted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    settings = greedy({"search": {"budget": 4, "passes": 4, "chains": 2, "share_every": 2}})
+
+    def with_trouble(first: Planner, best: Packed) -> tuple[Planner, Stopped, bool]:
+        last, stopped, cut = with_the_rest(first, best)
+        last.failed_solves += 5
+        return last, stopped, cut
+
+    monkeypatch.setattr("drystone.search.plan_wall.with_the_rest", with_trouble)
+    result = plan_wall(rubble(), 100, 36, scale=1.0, seed=1, settings=settings)
+    assert result.solves.failed == 5
+    assert "W303" in [notice.code for notice in result.notices]
 
 
 def score(result: PlanResult) -> tuple[float, ...]:

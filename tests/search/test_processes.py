@@ -1,8 +1,14 @@
 import os
 import time
-from concurrent.futures import Executor
+from collections.abc import Callable
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import AbstractContextManager
+from typing import Any
 
-from drystone.search.processes import processes
+import pytest
+from loky import ProcessPoolExecutor
+
+from drystone.search.processes import processes, threads
 
 GROWTH_BYTES = 350_000_000
 """More than what loky takes for a leak if it is not told otherwise."""
@@ -16,6 +22,30 @@ def test_a_process_that_remembers_much_is_kept() -> None:
         both_at_work(workers)
         grown = set(workers.map(grow, range(2)))
         assert grown <= both_at_work(workers)
+
+
+@pytest.mark.parametrize(
+    ("start", "pool"), [(processes, ProcessPoolExecutor), (threads, ThreadPoolExecutor)]
+)
+def test_an_interrupt_while_they_end_loses_nothing(
+    start: Callable[[int], AbstractContextManager[Executor | None]],
+    pool: type[Executor],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ended, calls = pool.shutdown, []
+
+    def impatient(self: Executor, *args: Any, **options: Any) -> None:
+        calls.append(1)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        ended(self, *args, **options)
+
+    monkeypatch.setattr(pool, "shutdown", impatient)
+    with start(2) as workers:
+        assert workers is not None
+    assert len(calls) == 2
+    with pytest.raises(RuntimeError, match="shutdown"):
+        workers.submit(int)
 
 
 def both_at_work(workers: Executor) -> set[int]:

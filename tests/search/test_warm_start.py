@@ -3,8 +3,11 @@
 import pytest
 
 from drystone.model.wall import Wall
+from drystone.planner.build import Build
 from drystone.planner.planner import Planner
+from drystone.planner.replay import Replayed
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.solves import Solves
 from drystone.search.plan_wall import plan_wall
 from drystone.search.warm_start import begin_with
 from drystone.verify.check import check_plan
@@ -49,6 +52,18 @@ def test_banned_stones_are_taken_out_with_what_falls_then(geometry: str) -> None
     # Some fall without what carried them, and later ones that stand without these stay.
     assert fell
     assert stayed
+
+
+def test_steps_that_the_solver_gave_up_on_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    old = built()
+
+    def trouble(start: Build, *_args: object, **_options: object) -> Replayed:
+        return Replayed(start, (), Solves(failed=2, cold=3))
+
+    monkeypatch.setattr("drystone.search.warm_start.replayed", trouble)
+    planner = new(old.settings)
+    begin_with(planner, old.build.wall, {})
+    assert (planner.failed_solves, planner.cold_solves) == (2, 3)
 
 
 def test_in_a_given_order_only_what_ascends_is_used() -> None:

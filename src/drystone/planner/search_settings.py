@@ -104,6 +104,10 @@ class SearchSettings:
             raise ValueError(
                 "budget, passes, chains, share_every, cycle and patience must be positive"
             )
+        if not 0 <= self.polish <= 1:
+            raise ValueError("polish must be in [0, 1]")
+        if self.wedges < 0 or self.wedge_below < 0:
+            raise ValueError("wedges and wedge_below must not be negative")
         if not 0 < self.largest <= 1 or self.spread < 0:
             raise ValueError("largest must be in (0, 1], spread not negative")
         if not 0 < self.cold <= self.warm:

@@ -1,24 +1,12 @@
 """The walls that a search ends with, and why nothing more is placed on them."""
 
-from collections.abc import Callable
-from typing import TypeVar
-
 from drystone.planner.events import Stopped
 from drystone.planner.planner import Planner
 from drystone.search.found import Found
+from drystone.search.interrupts import insisted
 from drystone.search.packed import Packed, found_again
 
-Result = TypeVar("Result")
-
 _FOUND = Stopped("search", "kept as the search found it")
-
-
-def insisted(work: Callable[[], Result]) -> Result:
-    """Do some work in spite of one interrupt, so that a search is not lost at its end."""
-    try:
-        return work()
-    except KeyboardInterrupt:
-        return work()
 
 
 def as_found(planner: Planner, wall: Packed) -> tuple[Planner, Stopped]:

@@ -18,6 +18,7 @@ def planning_notices(
     left_out: Sequence[int],
     *,
     lost: bool = False,
+    fallen: Sequence[int] = (),
     interrupted_after: int | None = None,
 ) -> tuple[Notice, ...]:
     """Return the notices of a plan.
@@ -32,12 +33,15 @@ def planning_notices(
         Stones of the wall that was begun with that were not used.
     lost : bool
         A process of the search died.
+    fallen : sequence of int
+        Stones after which the wall to begin with does not stand.
     interrupted_after : int, optional
-        So many walls the search had built when it was interrupted.
+        So many walls the search had built when it was interrupted, or what was done after it.
     """
     missing = _missing(missing_stones(built))
     cut = _interrupted(interrupted_after)
-    return (*_left_out(left_out), *missing, *_lost(lost=lost), *cut, *_solves(asked))
+    begun = (*_left_out(left_out), *_fallen(fallen))
+    return (*begun, *missing, *_lost(lost=lost), *cut, *_solves(asked))
 
 
 def _left_out(stone_ids: Sequence[int]) -> Iterator[Notice]:
@@ -46,6 +50,16 @@ def _left_out(stone_ids: Sequence[int]) -> Iterator[Notice]:
             "W121",
             f"stones {', '.join(map(str, stone_ids))} of the plan to begin with were taken out: "
             "banned, out of their turn, or not standing without the others or with these settings.",
+        )
+
+
+def _fallen(stone_ids: Sequence[int]) -> Iterator[Notice]:
+    if stone_ids:
+        yield Notice(
+            "W126",
+            "the wall that is built already does not stand after stones "
+            f"{', '.join(map(str, stone_ids))}; no better wall was looked for.",
+            "Take down the first of them and what rests on it, and plan again.",
         )
 
 
@@ -71,7 +85,7 @@ def _interrupted(walls: int | None) -> Iterator[Notice]:
     if walls is not None:
         yield Notice(
             "W125",
-            f"the search was interrupted after {walls} walls; this is the best of them.",
+            f"planning was interrupted after {walls} walls; this is the best of them.",
             "To look for a better one from here, give this plan to --from.",
         )
 

@@ -3,9 +3,8 @@
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import nullcontext
 from dataclasses import replace
 from importlib.metadata import version
 from typing import NamedTuple
@@ -19,17 +18,19 @@ from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame
 from drystone.planner.events import Callbacks, Incumbent, Stopped
 from drystone.planner.planner import Planner
+from drystone.planner.replay import stands
 from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.planner.solves import Solves
 from drystone.search.anytime import Progress, searching
 from drystone.search.archive import archived
-from drystone.search.ending import as_found, insisted, with_the_rest
+from drystone.search.ending import as_found, with_the_rest
 from drystone.search.found import Found
+from drystone.search.interrupts import insisted
 from drystone.search.notices import planning_notices
 from drystone.search.packed import Packed
 from drystone.search.plan_result import PlanResult, finish
-from drystone.search.processes import processes
+from drystone.search.processes import processes, threads
 from drystone.search.warm_start import begin_with
 from drystone.search.work import forget
 
@@ -118,8 +119,8 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     Raises
     ------
     UsageError
-        E138: the seed is negative; E123: the budget is less than 1; E120 to E127, E137, E145: the
-        wall, the scale or the stones make no sense together.
+        E138: the seed is negative, or both `built` and `begin` are given; E123: the budget is less
+        than 1; E120 to E127, E137, E145: the wall, the scale or the stones make no sense together.
 
     Examples
     --------
@@ -137,6 +138,13 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         )
     if seed < 0:
         raise UsageError("E138", f"{seed} is no seed.", where="--seed", cure="Give 0 or more.")
+    if built is not None and begin is not None:
+        raise UsageError(
+            "E138",
+            "a wall that is built already and one to begin with exclude each other.",
+            where="built, begin",
+            cure="Give the one that is built, or the one to begin with.",
+        )
     method = method or ("custom" if settings else "best")
     settings = _searched(settings or method_settings(method), budget, seconds)
     scale = working_scale(stones) if scale is None else float(scale)
@@ -150,14 +158,14 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     frame = Frame(width, height, Site.from_source(width, height, scale, px_per_m))
     started = time.perf_counter()
     single = settings.search.budget == 1
-    own = ThreadPoolExecutor(n_jobs) if executor is None and n_jobs > 1 and single else None
-    with own or nullcontext(), processes(1 if single else n_jobs) as workers:
+    own = threads(n_jobs if executor is None and single else 1)
+    with own as pool, processes(1 if single else n_jobs) as workers:
         first = Planner(
             stones,
             frame.site,
             seed=seed,
             settings=settings,
-            executor=executor or own,
+            executor=executor or pool,
             callbacks=callbacks,
         )
         if built is not None:
@@ -177,6 +185,9 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         return finish(planner, frame, stopped, provenance, took)
 
     best = insisted(lambda: finished(ended.planner, ended.stopped))
+    to_choose = ended.kept if choice else ()
+    others = tuple(_others(first, to_choose[1:], finished))
+    interrupted = ended.interrupted or len(others) < len(to_choose[1:])
     return replace(
         best,
         notices=planning_notices(
@@ -184,10 +195,11 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             ended.planner,
             left_out,
             lost=ended.lost,
-            interrupted_after=ended.walls if ended.interrupted else None,
+            fallen=ended.fallen,
+            interrupted_after=ended.walls if interrupted else None,
         ),
         solves=Solves(first.failed_solves, first.cold_solves),
-        choice=(best, *_others(first, ended.kept[1:], finished)) if choice and ended.kept else (),
+        choice=(best, *others) if to_choose else (),
     )
 
 
@@ -224,6 +236,8 @@ class Ended(NamedTuple):
         Walls that none beats in every figure of merit, the best first; none of a single pass.
     lost, interrupted : bool
         A process of the search died, or somebody had enough, and it ended there.
+    fallen : tuple of int
+        Stones after which the wall to begin with does not stand, so that nothing was looked for.
     """
 
     planner: Planner
@@ -232,6 +246,7 @@ class Ended(NamedTuple):
     kept: tuple[Packed, ...]
     lost: bool = False
     interrupted: bool = False
+    fallen: tuple[int, ...] = ()
 
 
 def run_to_end(
@@ -266,6 +281,9 @@ def run_to_end(
     workshop, settings = planner.workshop, planner.settings
     if settings.search.budget == 1:
         return Ended(planner, planner.stopped, 1, ())
+    fallen = tuple(one.stone_id for one in planner.build.actions if not stands(one))
+    if fallen:
+        return Ended(planner, planner.stopped, 1, (), fallen=fallen)
     left = seconds - (time.perf_counter() - started)
     best: Packed | None = None
     walls, lost, interrupted = 1, False, False
@@ -289,8 +307,10 @@ def run_to_end(
     if best is None:
         return Ended(planner, planner.stopped, 1, (), lost, interrupted)
     last, stopped, cut = with_the_rest(planner, best)
+    planner.failed_solves += last.failed_solves
+    planner.cold_solves += last.cold_solves
     if len(last.build.actions) > len(best.groups):
-        kept = archived(kept, [Packed.of(Found.of(last))])
+        kept = insisted(lambda: archived(kept, [Packed.of(Found.of(last))]))
     return Ended(last, stopped, walls, kept, lost, interrupted or cut)
 
 

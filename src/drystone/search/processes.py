@@ -1,9 +1,11 @@
-"""Processes that work for a search."""
+"""Processes that work for a search, and threads that work for a single wall."""
 
 import signal
 from collections.abc import Iterator
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
+
+from drystone.search.interrupts import insisted
 
 MUCH_MEMORY = {"LOKY_MAX_MEMORY_LEAK_SIZE": "4e9"}
 """Variables that let a process keep what it has prepared, B.
@@ -32,7 +34,20 @@ def processes(count: int) -> Iterator[Executor | None]:
     try:
         yield executor
     finally:
-        executor.shutdown(wait=True, kill_workers=True)
+        insisted(lambda: executor.shutdown(wait=True, kill_workers=True))
+
+
+@contextmanager
+def threads(count: int) -> Iterator[Executor | None]:
+    """Start threads that evaluate candidates; with 1, nothing is started and None is given."""
+    if count == 1:
+        yield None
+        return
+    executor = ThreadPoolExecutor(count)
+    try:
+        yield executor
+    finally:
+        insisted(executor.shutdown)
 
 
 def _left_alone() -> None:

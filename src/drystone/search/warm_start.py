@@ -34,8 +34,10 @@ def begin_with(
         if stone_id in allowed and (settings.order == "free" or stone_id > last):
             groups.append(group)
             last = stone_id
-    planner.build, _, _ = replayed(
+    planner.build, _, solves = replayed(
         planner.build, groups, course_heights_px, workshop, settings, strict=False
     )
+    planner.failed_solves += solves.failed
+    planner.cold_solves += solves.cold
     used = {action.stone_id for action in planner.build.actions}
     return tuple(p.stone_id for p in wall.placements if p.stone_id not in used)

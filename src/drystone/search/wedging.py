@@ -19,6 +19,7 @@ from drystone.planner.replay import replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
+from drystone.search.found import course_heights
 from drystone.search.wedge_draft import Draft
 from drystone.search.wedge_places import Motion, WedgePlace
 from drystone.settle.wedge import WedgeLimits
@@ -150,12 +151,7 @@ def wedged_up(
     """
     if build.wall.outlines is None:
         raise ValueError("only walls of outlines are wedged up")
-    heights = {
-        action.stone_id: action.course_height_px
-        for action in build.actions
-        if action.course_height_px is not None
-    }
-    yard = _Yard(workshop, settings, limits, heights)
+    yard = _Yard(workshop, settings, limits, course_heights(build))
     begun = _with_states(build, yard)
     wall = begun if begun is None or not begun.actions else _wedged(begun, yard, most)
     solves = sum(yard.trouble, Solves())
