@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import OptimizeResult
 
 from drystone.craft import Masonry, pins, wedge_loads
 from drystone.statics.contacts.given import model_from_json
+from drystone.statics.limit import lateral_resistance
 from tests.craft.walls import box
 
 
@@ -91,6 +93,28 @@ def test_a_slab_that_only_its_neighbours_hold_is_said():
     found = pins.find(modelled(loops, {9}))
     assert found.note == "The wall stands only by pressure in upright joints, which was counted on."
     assert found.number is not None
+
+
+def test_a_wedge_that_friction_may_pull_down_carries_nothing():
+    """Between leaning faces the force on it has no least value: pressure holds it up or down."""
+    lean = 0.06666
+    blocks = [
+        {"id": 1, "polygon": [[-1, 0], [0, 0], [lean, 1], [-1, 1]], "fixed": True},
+        {"id": 9, "polygon": [[0, 0], [1, 0], [1 + lean, 1], [lean, 1]]},
+        {"id": 2, "polygon": [[1, 0], [2, 0], [2, 1], [1 + lean, 1]], "fixed": True},
+    ]
+    model = model_from_json({"blocks": blocks})
+    assert lateral_resistance(model).stable
+    assert wedge_loads.least_wedge_loads(model, frozenset({9})) == {9: 0.0}
+
+
+def test_a_solver_that_gives_up_is_no_wall_that_falls(monkeypatch):
+    loops = {1: box(0, 0, 1, 1), 8: box(0, 1, 4, 1), 9: box(3.5, 0, 0.5, 1)}
+    gave_up = OptimizeResult(success=False, status=4)
+    monkeypatch.setattr(wedge_loads, "linprog", lambda *_, **__: gave_up)
+    found = pins.find(modelled(loops, {9}))
+    assert found.number is None
+    assert found.note == "What the wedges carry is not known: the solver gave up."
 
 
 def test_without_wedges_or_contacts_nothing_is_judged():

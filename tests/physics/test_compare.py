@@ -102,3 +102,5 @@ def test_walls_that_fall_at_rest_have_no_alpha() -> None:
     assert result.fell_at_rest
     assert (result.alpha, result.low, result.high, result.alphas) == (None, None, None, ())
     assert TiltComparison(result, 0.3, None).inside(0.3) is None
+    some = TiltResult("right", (trial(None), trial(0.3)), ("", ""))
+    assert TiltComparison(some, 0.3, None).inside(0.3) is None

@@ -10,7 +10,7 @@ from drystone.statics import asking
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance, limit_load
-from drystone.statics.loads import Loads, weight
+from drystone.statics.loads import Loads, point_load, weight
 from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LimitStatus
 from drystone.statics.solvers import clarabel, highs
@@ -392,6 +392,40 @@ def test_many_blocks_are_solved_by_the_interior_point_method(monkeypatch):
     assert found.left.solver == "Clarabel"
     assert found.value == pytest.approx(expected.value, abs=1e-9)
     assert lateral_resistance(model, mechanism=True).left.solver == "HiGHS simplex"
+
+
+def test_a_few_blocks_are_asked_of_one_solver(monkeypatch):
+    made = []
+
+    def counted(*given):
+        made.append(given)
+        return HighsSession(*given)
+
+    monkeypatch.setattr(asking, "HighsSession", counted)
+    assert lateral_resistance(model_from_labels(stacked((20, 20, 0))).model).stable
+    assert len(made) == 1
+
+
+@pytest.mark.parametrize("solver", ["auto", "highs", "highs-ipm", "clarabel"])
+def test_a_wall_that_falls_carries_no_load_in_spite_of_self_stress(solver):
+    """Between abutments a bond carries any live load; a stone of it in the air still falls."""
+    blocks = [[x + 0.5 * (row % 2), row * 1.0, 1, 1] for row in range(8) for x in range(1, 8)]
+    piers = ([0, 0, 1, 8], [8.5, 0, 1, 8])
+    boxes = [*blocks, [3, 8.3, 1, 1]]
+    free = [{"id": i, "polygon": corners(*box)} for i, box in enumerate(boxes, 1)]
+    fixed = [{"id": 90 + i, "polygon": corners(*p), "fixed": True} for i, p in enumerate(piers)]
+    model = model_from_json({"blocks": [*free, *fixed]})
+    assert len(boxes) >= asking.MANY_BLOCKS
+    loads = Loads(weight(model), point_load(model, 4, (4.5, 0.5), (1.0, 0.0)))
+    both = lateral_resistance(model, loads, solver=solver)
+    assert LimitStatus.UNBOUNDED not in statuses(both)
+    assert not both.stable
+    if solver in ("auto", "highs"):
+        assert statuses(both) == (LimitStatus.UNSTABLE, LimitStatus.UNSTABLE)
+
+
+def corners(x, y, width, height):
+    return [[x, y], [x + width, y], [x + width, y + height], [x, y + height]]
 
 
 def test_a_wall_stands_where_nothing_limits_the_load():

@@ -40,6 +40,9 @@ def test_sweep_is_everything_above_the_lowest_points(corners: Points, seed: int)
     [
         (box(2, 12, 8, 16), True),
         (box(2, -9, 8, -0.01), False),  # it stands on it
+        (box(-5, -9, 15, 0.0), False),
+        (box(-5, -9, 15, 0.04), False),  # as deep in its bed as it may be
+        (box(-5, -9, 15, 0.2), True),
         (box(-9, 0, -0.01, 16), False),  # beside it, and higher
         (box(-9, 12, 0.9, 16), False),  # a sliver above it
         (box(-9, 12, 1.1, 16), True),

@@ -66,7 +66,8 @@ class ScatterCard:
         share = self.scatter.falling_share
         if share is not None:
             said = f"{counts[LimitStatus.UNSTABLE]} walls, {100 * share:.0f} %"
-            rows.append(("  do not stand", f"{said}; the figures above are of those that stand"))
+            which = "have a limit" if counts[LimitStatus.UNBOUNDED] else "stand"
+            rows.append(("  do not stand", f"{said}; the figures above are of those that {which}"))
         for status, name in ((LimitStatus.UNBOUNDED, "unbounded"), (LimitStatus.FAILED, "failed")):
             if counts[status]:
                 rows.append((f"  {name}", f"{counts[status]} walls, without a number"))

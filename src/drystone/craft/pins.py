@@ -11,6 +11,9 @@ from drystone.craft.masonry import Masonry
 from drystone.craft.wedge_loads import least_wedge_loads
 from drystone.statics.contacts.joints import is_head_joint, loose_blocks
 from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LimitStatus
+
+UNKNOWN = "What the wedges carry is not known"
 
 RULE = Rule(
     "pins",
@@ -72,18 +75,18 @@ def _loads(masonry: Masonry, wedges: frozenset[int]) -> tuple[Mapping[int, float
     Stones squeezed between their neighbours could hang on the upright joints, in theory with any
     force; a mason does not count on it.
     """
-    model = masonry.model
-    if model is not None and not loose_blocks(model):
-        loads = least_wedge_loads(_open_heads(model), wedges)
-        if loads is not None:
-            return loads, ""
+    model, fallen = masonry.model, "the wall does not stand as it is drawn."
+    if model is None or loose_blocks(model):
+        return None, f"{UNKNOWN}: {fallen}"
+    loads = least_wedge_loads(_open_heads(model), wedges)
+    if not isinstance(loads, LimitStatus):
+        return loads, ""
+    if loads is LimitStatus.UNSTABLE:
         loads = least_wedge_loads(model, wedges)
-        if loads is not None:
-            return (
-                loads,
-                "The wall stands only by pressure in upright joints, which was counted on.",
-            )
-    return None, "What the wedges carry is not known: the wall does not stand as it is drawn."
+    if not isinstance(loads, LimitStatus):
+        return loads, "The wall stands only by pressure in upright joints, which was counted on."
+    gave_up = loads is LimitStatus.FAILED
+    return None, f"{UNKNOWN}: {'the solver gave up.' if gave_up else fallen}"
 
 
 def _open_heads(model: RigidBlockModel) -> RigidBlockModel:

@@ -4,15 +4,20 @@ from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
+from scipy.optimize import OptimizeResult, linprog
+from scipy.sparse import csr_array, hstack
 
 from drystone.statics.model import GROUND, RigidBlockModel
-from drystone.statics.program import assemble
+from drystone.statics.program import EquilibriumProgram, assemble
+from drystone.statics.result import LimitStatus
+
+INFEASIBLE = 2
+"""Status of scipy's linprog when there are no forces in equilibrium."""
 
 
 def least_wedge_loads(
     model: RigidBlockModel, wedge_ids: frozenset[int]
-) -> Mapping[int, float] | None:
+) -> Mapping[int, float] | LimitStatus:
     """Return the least load that each wedge passes on while the wall stands by its own weight.
 
     The forces between dry stones are not known from their weights alone.  For each wedge the
@@ -28,9 +33,9 @@ def least_wedge_loads(
 
     Returns
     -------
-    mapping of int to float, or None
-        By id, the vertical force from what lies on the wedge, in weights of the model; None when
-        the wall does not stand by its own weight.
+    mapping of int to float, or LimitStatus
+        By id, the vertical force from what lies on the wedge, in weights of the model; UNSTABLE
+        when the wall does not stand by its own weight, FAILED when the solver gave up.
 
     Examples
     --------
@@ -46,14 +51,30 @@ def least_wedge_loads(
     program = assemble(model)
     loads = {}
     for wedge in sorted(wedge_ids):
-        cost = _vertical(model, wedge)
-        found = linprog(
-            cost, A_eq=program.matrix[:, 1:], b_eq=program.rhs, bounds=(0, None), method="highs"
-        )
+        found = _least_above_zero(_vertical(model, wedge), program)
         if not found.success:
-            return None
-        loads[wedge] = max(0.0, float(found.fun)) * program.weight
+            return LimitStatus.UNSTABLE if found.status == INFEASIBLE else LimitStatus.FAILED
+        loads[wedge] = float(found.fun) * program.weight
     return loads
+
+
+def _least_above_zero(costs: NDArray[np.float64], program: EquilibriumProgram) -> OptimizeResult:
+    """Minimise what is the greater: 0, or costs . forces in equilibrium.
+
+    A wedge between steep faces may be pulled down by friction as hard as one likes, so the costs
+    alone need not have a least value.
+    """
+    forces = program.matrix[:, 1:]
+    nothing = csr_array((forces.shape[0], 1))
+    return linprog(
+        np.append(np.zeros(len(costs)), 1.0),
+        A_ub=csr_array(np.append(costs, -1.0)[None]),
+        b_ub=[0.0],
+        A_eq=hstack((forces, nothing)),
+        b_eq=program.rhs,
+        bounds=(0, None),
+        method="highs",
+    )
 
 
 def _vertical(model: RigidBlockModel, wedge: int) -> NDArray[np.float64]:

@@ -50,10 +50,11 @@ class TiltComparison:
         Returns
         -------
         bool or None
-            None when there is no prediction, or it never happened.
+            None when there is no prediction, it never happened, or some trial fell on the level
+            table: its scatter is then as wide as one likes.
         """
         interval = self.simulated.interval(event)
-        if predicted is None or interval is None:
+        if predicted is None or interval is None or self.simulated.fell_at_rest:
             return None
         return interval[0] <= predicted <= interval[1]
 

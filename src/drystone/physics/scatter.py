@@ -126,12 +126,12 @@ class TiltResult:
 
     @property
     def low(self) -> float | None:
-        """Greatest tilt that the weakest trial stood; None when no trial has an alpha."""
+        """Greatest tilt that the weakest trial with an alpha stood; None when none has one."""
         return None if (found := self.interval("fall")) is None else found[0]
 
     @property
     def high(self) -> float | None:
-        """Least tilt that brought the strongest trial down; None when no trial has an alpha."""
+        """Least tilt that brought the strongest one with an alpha down; None when none has one."""
         return None if (found := self.interval("fall")) is None else found[1]
 
     def interval(self, event: Event) -> tuple[float, float] | None:

@@ -105,8 +105,8 @@ def _words(scatter: Scatter) -> list[str]:
     lines = [f"{len(scatter.status)} walls, shaken: {', '.join(shaken) or 'nothing'}"]
     falling, share = counts[LimitStatus.UNSTABLE], scatter.falling_share
     if share is not None:
-        known = falling + counts[LimitStatus.OPTIMAL]
-        said = f"{falling} of {known} ({100 * share:.3g} %) do not stand under their own weight"
+        said = f"{falling} of {scatter.known} ({100 * share:.3g} %) do not stand"
+        said += " under their own weight"
         lines.append(said if falling else "All of them stand under their own weight")
     if counts[LimitStatus.FAILED]:
         lines[-1] += f"; the solver gave up on {counts[LimitStatus.FAILED]}"

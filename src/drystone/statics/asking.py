@@ -1,5 +1,6 @@
 """Asking solvers for the ends of the range of alpha until an answer is certified."""
 
+import itertools
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,7 +8,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from drystone.statics.certificate import certify
+from drystone.statics.certificate import certify, in_equilibrium
 from drystone.statics.program import EquilibriumProgram, Floats
 from drystone.statics.result import Certificate, LimitStatus
 from drystone.statics.solvers.highs import HighsSession
@@ -59,7 +60,7 @@ def extremes(
     greatest, session = _certified(program, _made(chain), 1.0)
     if greatest.status is LimitStatus.UNSTABLE:
         return greatest, greatest
-    least, _ = _certified(program, (session, *_made(chain)), -1.0)
+    least, _ = _certified(program, itertools.chain([session], _made(chain)), -1.0)
     return least, greatest
 
 
@@ -107,4 +108,21 @@ def answered(program: EquilibriumProgram, session: Session, sign: float) -> Answ
     costs = np.zeros(program.column_count)
     costs[0] = -sign
     solution = session.minimise(costs)
+    if solution.status is LimitStatus.UNBOUNDED:
+        return _unlimited(program, session, solution, sign)
     return Answer(solution, certify(program, solution, sign))
+
+
+def _unlimited(
+    program: EquilibriumProgram, session: Session, growing: Solution, sign: float
+) -> Answer:
+    """Return the answer that any live load is carried, if the dead load is carried at all.
+
+    A growing state of self-stress tells nothing of the dead load: of a wall that falls by itself
+    an interior point method may find that one as well as the fall.
+    """
+    held = session.minimise(np.zeros(program.column_count))
+    if held.status is LimitStatus.UNSTABLE:
+        return Answer(held, certify(program, held, sign))
+    proven = held.status is LimitStatus.OPTIMAL and in_equilibrium(program, held)
+    return Answer(growing, certify(program, growing, sign) if proven else None)

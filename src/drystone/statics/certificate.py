@@ -4,7 +4,7 @@ import numpy as np
 
 from drystone.kernels.certificate import Figures
 from drystone.statics.program import EquilibriumProgram, Floats
-from drystone.statics.result import Certificate, LimitStatus
+from drystone.statics.result import CERTIFIED, Certificate, LimitStatus
 from drystone.statics.solvers.solution import Solution
 
 
@@ -44,6 +44,14 @@ def certify(program: EquilibriumProgram, solution: Solution, sign: float) -> Cer
     if solution.status is LimitStatus.UNBOUNDED and solution.columns is not None:
         return _of_growth(program, solution.columns, sign)
     return None
+
+
+def in_equilibrium(program: EquilibriumProgram, solution: Solution) -> bool:
+    """Say whether the forces of an optimal solution balance the loads within friction."""
+    assert solution.columns is not None  # noqa: S101 - an optimal solution has them
+    residual = _largest(np.abs(program.matrix @ solution.columns - program.rhs))
+    violation = _largest(-solution.columns[1:])
+    return residual <= CERTIFIED and violation <= CERTIFIED
 
 
 def of_fall(program: EquilibriumProgram, velocity: Floats) -> Certificate:

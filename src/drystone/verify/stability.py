@@ -11,9 +11,11 @@ from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, RigidBlockModel
-from drystone.statics.result import LateralResistance
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify.replay import Stage
 from drystone.verify.report import PrefixAlpha, Problem, contradicted
+
+UNKNOWN = "the solver gave up, and it is not known whether the wall stands"
 
 ALPHA_TOLERANCE = 1e-7
 """Between load multipliers claimed and found: two solvers' optima of one program."""
@@ -30,8 +32,8 @@ class Standing:
     models : tuple of RigidBlockModel or None
         Of the same walls.
     problems : tuple of Problem
-        E230: it does not stand; E231: another load multiplier is claimed; E237: a wall of
-        outlines stands by friction that it should not need.
+        E230: it does not stand, or the solver gave up; E231: another load multiplier is claimed;
+        E237: a wall of outlines stands by friction that it should not need.
     """
 
     resistances: tuple[LateralResistance | None, ...]
@@ -103,13 +105,21 @@ def _not_sturdy(stage: Stage, settings: PlannerSettings) -> list[Problem]:
     outlines = stage.after.outlines
     if outlines is None:
         return []
-    model = sturdy_model_of(outlines, settings.mu, settings.settle)
-    if lateral_resistance(model).stable:
+    found = lateral_resistance(sturdy_model_of(outlines, settings.mu, settings.settle))
+    if found.stable:
         return []
+    if found.failed:
+        return [Problem("E230", stage.last.step, f"{UNKNOWN} with less friction and contact.")]
     message = (
         "the wall needs friction of upright faces, or friction or gaps at their limit, to stand."
     )
     return [Problem("E237", stage.last.step, message)]
+
+
+def _not_told(result: LimitResult) -> str:
+    if result.status is LimitStatus.FAILED:
+        return f"{UNKNOWN}: {result.direction} {result.status.value}."
+    return f"the wall does not stand: {result.direction} {result.status.value}."
 
 
 def _judge(stage: Stage, resistance: LateralResistance | None) -> list[Problem]:
@@ -117,9 +127,9 @@ def _judge(stage: Stage, resistance: LateralResistance | None) -> list[Problem]:
     if resistance is None:
         return [Problem("E230", last.step, "nothing of the wall stands on the ground.")]
     problems = [
-        Problem("E230", last.step, f"the wall does not stand: {r.direction} {r.status.value}.")
-        for r in (resistance.left, resistance.right)
-        if not r.success
+        Problem("E230", last.step, _not_told(result))
+        for result in (resistance.left, resistance.right)
+        if result.status in (LimitStatus.UNSTABLE, LimitStatus.FAILED)
     ]
     if problems:
         return problems

@@ -189,6 +189,13 @@ def test_the_spread_says_what_the_reach_decides():
     assert settled.chosen.name == "stones settled"
 
 
+def test_without_friction_the_spread_of_gaps_has_no_number():
+    stack = np.kron([[1], [0], [2]], np.ones((2, 8), int))
+    words = closed_gap_spread(stack, 2, mu=0.0).words()
+    assert words.startswith("F_LR not defined with gaps up to 2 px closed")
+    assert "optimal" not in words
+
+
 def test_pixels_that_lie_apart_are_counted_and_said():
     labels = np.zeros((6, 9), np.uint32)
     labels[:3, :3], labels[3, 3], labels[5, 6:8], labels[0, 8] = 7, 7, 7, 2

@@ -1,5 +1,6 @@
 import math
 
+import numpy as np
 import pytest
 
 from drystone.errors import InputError
@@ -109,6 +110,23 @@ def test_a_closed_polygon_and_repeated_corners_are_read():
     polygon.insert(1, polygon[1])
     model = model_from_json({"blocks": [{"id": 1, "polygon": polygon}]})
     assert told(model) == [(1, GROUND, [(0, 0), (2, 0)], (0, 1))]
+
+
+@pytest.mark.parametrize("last", [(-1e-17, 0.0), (0.0, 1e-13), (-1e-16, 1e-16)])
+def test_a_closing_corner_but_for_rounding_is_read(last):
+    """Each of both was on the line through the other, and the block lost half of its area."""
+    polygon = [*square(0, 0), last]
+    model = model_from_json({"blocks": [{"id": 1, "polygon": polygon}]})
+    assert model.blocks[0].area == pytest.approx(4.0)
+    assert lateral_resistance(model).value == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("angle_deg", range(1, 90, 4))
+def test_a_turned_square_that_is_closed_by_its_angle_is_whole(angle_deg):
+    angles = math.radians(angle_deg) + np.pi / 2 * np.arange(5)
+    corners = np.column_stack((np.cos(angles), 2.0 + np.sin(angles)))
+    model = model_from_json({"blocks": [{"id": 1, "polygon": corners.tolist()}]})
+    assert model.blocks[0].area == pytest.approx(2.0)
 
 
 def test_no_blocks_is_a_model():

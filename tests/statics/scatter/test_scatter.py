@@ -223,6 +223,20 @@ def test_a_wall_that_never_stands_is_a_result():
     assert not found.unshaken.stable
 
 
+def test_walls_that_carry_any_load_stand():
+    fixed = [
+        {"id": 1, "polygon": [[0, 0], [1, 0], [1, 2], [0, 2]], "fixed": True},
+        {"id": 3, "polygon": [[2, 0], [3, 0], [3, 2], [2, 2]], "fixed": True},
+    ]
+    between = {"id": 2, "polygon": [[1, 1], [2, 1], [2, 2], [1, 2]]}
+    model = model_from_json({"blocks": [*fixed, between]})
+    found = scatter(model, ScatterSettings(samples=60, mu=(0.0, 0.05), outline_noise=0.05))
+    fallen = found.counts[LimitStatus.UNSTABLE]
+    assert fallen > 0
+    assert found.counts[LimitStatus.UNBOUNDED] > 0
+    assert found.falling_share == fallen / 60
+
+
 def test_no_blocks_tell_nothing():
     found = scatter(RigidBlockModel((), ()), ScatterSettings(samples=3, outline_noise=1.0))
     assert found.counts[LimitStatus.UNBOUNDED] == 3

@@ -146,7 +146,7 @@ def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
     held = entry.get("held", [])
     if not isinstance(held, list | tuple) or not all(one in FREEDOMS for one in held):
         raise bad(f"held is {held!r}.", where, 'List what is held: "x", "y", "turn".')
-    corners = read_numbers(entry["polygon"], (-1, 2), where)
+    corners = _apart(read_numbers(entry["polygon"], (-1, 2), where))
     shape = shapely.Polygon(corners) if len(corners) >= 3 else shapely.Polygon()
     if shape.is_empty or not shape.is_valid or shape.area <= 0:
         raise bad("its polygon has no area or crosses itself.", where, "Correct its corners.")
@@ -155,6 +155,18 @@ def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
         line = line[::-1].copy()
     line = _without_straight_corners(line)
     return Block(block_id, 0.0, (0.0, 0.0), density, fixed, tuple(held)), line
+
+
+def _apart(corners: Points) -> Points:
+    """Drop corners that are the next one but for rounding, as one that closes a line may be.
+
+    Each of both would be on the line through the other, and neither a corner.
+    """
+    if not len(corners):
+        return corners
+    steps = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
+    kept: Points = corners[steps > STRAIGHT * np.ptp(corners, axis=0).max()]
+    return kept
 
 
 def _without_straight_corners(line: Points) -> Points:

@@ -8,7 +8,7 @@ from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.gaps import model_with_closed_gaps, settle_gaps
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LateralResistance
+from drystone.statics.result import LateralResistance, LimitStatus
 
 
 @dataclass(frozen=True)
@@ -102,4 +102,7 @@ def _variant(name: str, both: LateralResistance) -> GapVariant:
 
 
 def _said(variant: GapVariant) -> str:
-    return variant.status if variant.f_lr is None else f"{variant.f_lr:.3f}".removeprefix("0")
+    if variant.f_lr is not None:
+        return f"{variant.f_lr:.3f}".removeprefix("0")
+    # Without friction F_LR, which is over mu, is not defined.
+    return "not defined" if variant.status == LimitStatus.OPTIMAL else variant.status

@@ -65,11 +65,18 @@ class Scatter:
     def falling_share(self) -> float | None:
         """Share of the walls that do not stand, in [0, 1]; None when no analysis told.
 
-        Samples on which the solver gave up tell neither, and do not count.
+        Samples on which the solver gave up tell neither, and do not count; those that carry any
+        load stand.
         """
         counts = self.counts
-        known = counts[LimitStatus.OPTIMAL] + counts[LimitStatus.UNSTABLE]
-        return counts[LimitStatus.UNSTABLE] / known if known else None
+        if not counts[LimitStatus.OPTIMAL] + counts[LimitStatus.UNSTABLE]:
+            return None
+        return counts[LimitStatus.UNSTABLE] / self.known
+
+    @property
+    def known(self) -> int:
+        """How many samples an analysis told of: all but those on which the solver gave up."""
+        return len(self.status) - self.counts[LimitStatus.FAILED]
 
     @property
     def standing_mu(self) -> Floats:
