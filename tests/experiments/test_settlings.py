@@ -43,6 +43,14 @@ def test_parts_are_in_the_time_of_the_whole(tables):
     assert sum(row[part] for part in parts) <= row["1 thread"]
 
 
+def test_a_machine_with_one_core_has_all_columns(monkeypatch):
+    for cores in (1, None):
+        monkeypatch.setattr(settlings.os, "cpu_count", lambda cores=cores: cores)
+        whole = settlings.run(SETTINGS)
+        assert all(len(row) == len(table.columns) for table in whole for row in table.rows)
+        assert whole[1].records()[0]["1 threads"] > 0
+
+
 def test_what_is_let_go_is_in_the_scene_and_ends_alike_without_compiled_kernels(attempts):
     assert len({len(one.scene.polygons) for one in attempts}) == 3  # every third step of nine
     for one in attempts[::7]:

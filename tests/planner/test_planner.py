@@ -9,8 +9,10 @@ from drystone.errors import UsageError
 from drystone.model.site import Site
 from drystone.planner.attempt import Attempt
 from drystone.planner.events import Callbacks, Step, Stopped
+from drystone.planner.measured import MeasuredPose
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings, StopSettings
+from drystone.search.plan_result import result_of
 from tests.planner.scenes import (
     RUBBLE_SITE,
     blocks,
@@ -183,6 +185,31 @@ def test_a_restored_wall_goes_on_as_if_never_interrupted(
     again = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
     again.restore(first.build.wall, heights)
     assert same(finish(again), whole)
+
+
+def test_why_it_stopped_is_of_the_wall_that_is_there() -> None:
+    planner = finish(Planner(bricks(3), Site(60, 20)))
+    whole = planner.build
+    poses = {
+        placement.stone_id: MeasuredPose(*placement.centroid(20), placement.posed.angle_deg)
+        for placement in whole.wall.placements
+    }
+    planner.observe(poses)
+    assert planner.stopped == Stopped("stones", "all stones placed")
+    *left, _ = poses
+    planner.observe({i: poses[i] for i in left})
+    assert planner.stopped is None
+    assert result_of(planner).status == "interrupted"
+    finish(planner)
+    planner.restore(whole.wall, {})
+    assert planner.stopped is None
+
+
+def test_a_lost_stone_is_one_fewer_to_stop_for() -> None:
+    planner = finish(Planner(bricks(8), Site(60, 20)))
+    unused = planner.workshop.remaining(planner.build)
+    planner.observe(planner.build.wall.labels, lost=unused[:1])
+    assert planner.stopped is None
 
 
 def test_the_result_does_not_depend_on_the_executor() -> None:

@@ -82,7 +82,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         ),
         Table(
             "Seconds of a whole pass, and where they go (one thread)",
-            ("wall", "stones", "poses tried", "1 thread", f"{os.cpu_count()} threads",
+            ("wall", "stones", "poses tried", "1 thread", f"{os.cpu_count() or 1} threads",
              "placement", "stabilisation", "contacts", "limit analysis", "indices"),
             tuple(_whole(target, stones) for target, stones in found),
         ),
@@ -156,13 +156,13 @@ def _least_ms(one: Attempted, kernel: Callable[..., Settling], repeats: int = RE
 
 
 def _whole(target: Target, stones: StoneSet) -> tuple[Cell, ...]:
-    seconds, planner = {}, _planner(target, stones)
+    seconds, planner = [], _planner(target, stones)
     for threads in (1, os.cpu_count() or 1):
         with ThreadPoolExecutor(threads) if threads > 1 else nullcontext() as executor:
             planner = _planner(target, stones, executor)
             started = time.perf_counter()
             stones_placed = len(list(planner.steps()))
-            seconds[threads] = time.perf_counter() - started
+            seconds.append(time.perf_counter() - started)
             if threads == 1:
                 alone = planner
     parts: tuple[Part, ...] = (
@@ -172,7 +172,7 @@ def _whole(target: Target, stones: StoneSet) -> tuple[Cell, ...]:
         target.name,
         stones_placed,
         sum(step.candidates for step in alone.profile.steps),
-        *seconds.values(),
+        *seconds,
         *(alone.profile.total(part) for part in parts),
     )
 

@@ -7,10 +7,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.errors import InputError, Notice, UsageError
+from drystone.errors import Notice, UsageError
 from drystone.model.placement import Placement
 from drystone.model.site import Site
-from drystone.planner.as_measured import Measured, put_as_measured
 from drystone.planner.build import Build
 from drystone.planner.measured import (
     MeasuredPose,
@@ -19,7 +18,8 @@ from drystone.planner.measured import (
     places_of,
     require_known,
 )
-from drystone.planner.replay import replayed, stands
+from drystone.planner.rebuilt import far_from, rebuilt
+from drystone.planner.replay import stands
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
@@ -79,7 +79,8 @@ class Observation:
     stands : bool
         Whether the wall stands after every stone, as the planner judges it.
     notices : tuple of Notice
-        W124: the stones after which it does not.
+        W124: the stones after which it does not.  W127: the stones that the planner has elsewhere
+        than they were measured.
     """
 
     poses: Mapping[int, MeasuredPose]
@@ -153,7 +154,7 @@ def observed(
     added = sorted(set(places) - set(groups), key=lambda i: (places[i].y_px, i))
     now = build
     if added or len(order) < len(groups) or not all(places[i].as_planned for i in order):
-        now = _built(start, build, [*order, *added], places, workshop, settings)
+        now = rebuilt(start, build, order, added, places, workshop, settings)
     unsteady = tuple(action.stone_id for action in now.actions if not stands(action))
     observation = Observation(
         poses={i: _pose(places[i], workshop.site) for i in (*order, *added)},
@@ -162,7 +163,7 @@ def observed(
         lost=missing,
         added=tuple(added),
         stands=not unsteady,
-        notices=_notices(unsteady),
+        notices=(*_unsteady(unsteady), *_moved(far_from(now, places))),
     )
     return now, observation
 
@@ -213,50 +214,6 @@ def _lost(lost: Iterable[int], places: Mapping[int, Place], workshop: Workshop) 
     return missing
 
 
-def _built(
-    start: Build,
-    before: Build,
-    order: Iterable[int],
-    places: Mapping[int, Place],
-    workshop: Workshop,
-    settings: PlannerSettings,
-) -> Build:
-    """Build the wall again, stone by stone, each where it was measured."""
-    keep = settings.search.budget > 1
-    groups = {group.placement.stone_id: group for group in before.wall.groups}
-    heights = {
-        action.stone_id: action.course_height_px
-        for action in before.actions
-        if action.course_height_px is not None
-    }
-    build = start
-    for stone_id in order:
-        planned, place = groups.get(stone_id), places[stone_id]
-        if planned is not None and place.as_planned:
-            again = replayed(build, [planned], heights, workshop, settings, keep=keep)
-            if not again.left_out:
-                build = again.build
-                continue
-        side = "left" if planned is None else planned.placement.side
-        one = Measured(workshop.stones.by_id(stone_id), place, side, planned)
-        action = put_as_measured(build, one, workshop, settings, heights)
-        if action is None:
-            raise _no_room(one)
-        build = build.add(action, keep=keep)
-    return build
-
-
-def _no_room(one: Measured) -> InputError:
-    place = one.place
-    return InputError(
-        "E198",
-        f"stone {one.stone.id}, measured at ({place.x_px:.1f}, {place.y_px:.1f}) source px, "
-        f"{place.angle_deg:.1f} degrees, overlaps others, and there is no room near it.",
-        where="observe",
-        cure="Measure again; poses that are this far off are of another stone or frame.",
-    )
-
-
 def _deviations(planned: Build, now: Build, places: Mapping[int, Place]) -> tuple[Deviation, ...]:
     site = planned.wall.site
     here = {placement.stone_id: placement for placement in now.wall.placements}
@@ -284,7 +241,7 @@ def _pose(place: Place, site: Site) -> MeasuredPose:
     return MeasuredPose(place.x_px / px, place.y_px / px, place.angle_deg)
 
 
-def _notices(unsteady: tuple[int, ...]) -> tuple[Notice, ...]:
+def _unsteady(unsteady: tuple[int, ...]) -> tuple[Notice, ...]:
     if not unsteady:
         return ()
     named = ", ".join(map(str, unsteady))
@@ -294,5 +251,20 @@ def _notices(unsteady: tuple[int, ...]) -> tuple[Notice, ...]:
             f"as measured, the wall does not stand after stones {named}.",
             "Measure again, or take down the first of them and what lies on it: nothing is "
             "planned on a wall that does not stand.",
+        ),
+    )
+
+
+def _moved(far: tuple[int, ...]) -> tuple[Notice, ...]:
+    if not far:
+        return ()
+    named = ", ".join(map(str, far))
+    return (
+        Notice(
+            "W127",
+            f"stones {named} are taken to be more than a tenth of their size from where they were "
+            "measured: there they overlap others, hang in the air or would fall.",
+            "Measure again, or see whether they would fall: planning goes on from where they are "
+            "taken to be.",
         ),
     )

@@ -192,15 +192,18 @@ class Planner:
         for group in wall.groups:
             build = self._added(build, judged(build, group, course_heights_px, evaluator))
         self.build = build
+        self.stopped = None  # that was of another wall
 
     def observe(self, measured: Measurement, *, lost: Iterable[int] = ()) -> Observation:
         """Go on from the wall as it was really built.
 
-        Stones are put where they were measured, in their order of placement.  Measured poses are
-        never exact: a stone that would overlap others, or float, is brought apart from them and
-        lowered until it rests, from where it was measured; one that was planned on wedges gets
-        a wedge that fits there.  A stone that is where it was planned stays as it is; when all
-        are, nothing changes.
+        Stones are put where they were measured, in their order of placement, those that were not
+        planned last; where some do not stand so, or are far off, and others were not planned, it
+        is tried from below as well.  Measured poses are never exact: a stone that would overlap
+        others, float or fall is brought apart from them and lowered until it rests, from where it
+        was measured; one that was planned on wedges gets a wedge that fits there.  A stone that is
+        where it was planned stays as it is if the wall stands so; when all are, nothing changes,
+        otherwise :attr:`stopped` is None again.
 
         Parameters
         ----------
@@ -213,7 +216,7 @@ class Planner:
         Returns
         -------
         observation : Observation
-            How far the wall is from the plan, and whether it stands.
+            How far the wall is from the plan, and whether it stands; W124, W127.
 
         Raises
         ------
@@ -245,6 +248,8 @@ class Planner:
             self.workshop, self.settings = without(observation.lost, self.workshop, self.settings)
             ban, pin = self.settings.ban, self.settings.pin
             self._weighted = replace(self._weighted, ban=ban, pin=pin)
+        if lost or build is not self.build:
+            self.stopped = None  # that was of another wall, or of more stones
         self.build = build
         return observation
 

@@ -125,6 +125,44 @@ def test_few_pairs_show_nothing_and_it_is_said():
     assert apart == "placed, F_SF, F_AV, F_AH, F_LR"
 
 
+def f_sf_table(found):
+    return next(table for table in pair_tables(found) if table.title.startswith("F_SF"))
+
+
+def test_copies_are_no_evidence():
+    """Five seeds that change nothing on either of two walls are two pairs, not ten."""
+    found = results({"a": [0.70] * 5 + [0.80] * 5, "b": [0.71] * 5 + [0.82] * 5})
+    table = f_sf_table(found)
+    (row,) = table.records()
+    assert (row["pairs"], row["mean"], row["shows"]) == (2, -0.015, "b?")
+    assert row["p"] == 1.0
+    assert any("do not depend on the seed count once" in note for note in table.notes)
+    assert "With 2 pairs and 5 tests no p can be below 1: use more walls" in table.notes[-1]
+    assert not any("lack a value" in note for note in table.notes)
+
+
+def test_walls_count_for_those_two_methods_that_depend_on_the_seed():
+    still, moved = [0.7, 0.7, 0.7, 0.8, 0.8, 0.8], [0.7, 0.6, 0.7, 0.8, 0.8, 0.8]
+    rows = f_sf_table(results({"a": still, "b": still, "c": moved})).records()
+    # Of the third method one wall depends on it.
+    assert {(row["first"], row["second"]): row["pairs"] for row in rows} == {
+        ("a", "b"): 2, ("a", "c"): 4, ("b", "c"): 4,
+    }  # fmt: skip
+
+
+def test_ties_of_one_figure_are_pairs():
+    found = Results(
+        tuple(
+            result(WALLS[0], method, seed, F_SF=0.5, F_AV=value + seed)
+            for method, value in (("a", 7.0), ("b", 8.0))
+            for seed in range(3)
+        )
+    )
+    table = f_sf_table(found)
+    assert table.records()[0]["pairs"] == 3
+    assert not any("depend on the seed" in note for note in table.notes)
+
+
 def test_a_figure_that_none_has_tells_nobody_apart():
     found = pair_tables(results({"a": [None, None], "b": [None, None]}))[-1].records()
     assert "F_SF" in found[0]["not told apart from the next in"]

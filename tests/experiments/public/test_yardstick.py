@@ -1,6 +1,7 @@
 """The yardstick of the public benchmark: strips packed without gravity."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -8,6 +9,7 @@ from drystone.errors import UsageError
 from drystone.experiments import packing
 from drystone.experiments.public import bench
 from drystone.experiments.public.bench import PublicSettings, run_public
+from drystone.experiments.public.history import history_table, medians_of
 from drystone.experiments.public.methods import known_methods, method_named
 from drystone.experiments.public.store import BenchStore, Stamp
 from drystone.experiments.public.suites import walls_of
@@ -62,9 +64,17 @@ def test_it_is_in_tables_but_in_no_pairs(monkeypatch: pytest.MonkeyPatch, tmp_pa
     kept = {run.method: run for run in BenchStore(tmp_path).runs()}
     assert (kept["spyrrow"].F_SF, kept["spyrrow"].F_LR) == (row[6] and kept["spyrrow"].F_SF, None)
     assert kept["spyrrow"].F_SF == pytest.approx(row[6], abs=1e-4)
+    # It builds no wall, so a history of it has no share of the stones, not 0.
+    shares = {row["method"]: row["placed share"] for row in history(tmp_path)}
+    assert shares["spyrrow"] is None
+    assert shares["paper"] > 0.5
     # What is kept is not packed again.
     monkeypatch.setattr(strips, "packed_width_px", None)
     assert run_public(settings)[0].rows == walls.rows
+
+
+def history(folder: Path) -> list[dict[str, Any]]:
+    return history_table(medians_of(BenchStore(folder).runs())).records()
 
 
 def test_it_packs_real_strips() -> None:

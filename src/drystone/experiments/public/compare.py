@@ -72,6 +72,9 @@ def _cells(figures: Sequence[str], walls: Sequence[Sequence[Result]]) -> tuple[C
     return tuple(cells)
 
 
+_NOT_SHAKEN = "nothing was built, or it does not stand at rest in the engine"
+
+
 def _undefined(results: Results) -> tuple[str, ...]:
     """Say how many walls have no value of a figure, which is left out of means and never 0."""
     notes = []
@@ -83,7 +86,7 @@ def _undefined(results: Results) -> tuple[str, ...]:
                 for method, count in counts.items()
                 if count
             )
-            why = "they do not stand at rest in the engine; " if figure == SHAKE else ""
+            why = f"{_NOT_SHAKEN}; " if figure == SHAKE else ""
             notes.append(
                 f"{figure} is not defined for walls of {said}: {why}left out of means, never 0."
             )

@@ -8,6 +8,7 @@ from statistics import median
 from matplotlib.figure import Figure
 
 from drystone.experiments.public.store import KeptRun
+from drystone.experiments.runs.spec import STRIPS
 from drystone.experiments.table import Cell, Table
 from drystone.plotting.bench_history import history_panels
 
@@ -145,7 +146,8 @@ _LETTERS = {"post": 2}
 
 def _value(run: KeptRun, name: str) -> Value:
     if name == "placed share":
-        return run.placed / run.stones if run.stones else None
+        # The yardstick builds no wall: what is kept as 0 is no share.
+        return run.placed / run.stones if run.stones and run.method != STRIPS else None
     return {
         "F_SF": run.F_SF, "F_AV": run.F_AV, "F_AH": run.F_AH, "F_LR": run.F_LR,
         "PGA, g": run.pga_g, "wall, s": run.seconds,

@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, compress
 from statistics import fmean
 
 import numpy as np
 from scipy.stats import rankdata, wilcoxon
 
 from drystone.experiments.paired import COVERED, RESAMPLES
-from drystone.experiments.public.results import HIGHER_IS_BETTER, Results
+from drystone.experiments.public.results import DECIMALS, HIGHER_IS_BETTER, Results
 from drystone.experiments.table import Cell, Table
 
 LEVEL = 1 - COVERED
@@ -17,9 +17,6 @@ LEVEL = 1 - COVERED
 
 EXACT = 50
 """Differences up to which the distribution of signed ranks is counted out."""
-
-DECIMALS = 9
-"""Values that agree so far are equal: they differ by rounding errors of sums."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +26,7 @@ class Compared:
     Parameters
     ----------
     pairs : int
-        Walls, each with a seed, for which both have a value.
+        Walls, each with a seed that counts, for which both have a value.
     left_out : int
         Those for which one or both have none.
     mean : float
@@ -135,18 +132,16 @@ def pair_tables(results: Results) -> tuple[Table, ...]:
     """
     if len(results.methods) < 2:
         return ()
+    counting = {pair: results.counting(*pair) for pair in combinations(results.methods, 2)}
     found = {
-        (figure, one, other): compared(
-            results.values(one, figure),
-            results.values(other, figure),
-            higher=HIGHER_IS_BETTER[figure],
-        )
+        (figure, *pair): _compared(results, figure, pair, counts)
         for figure in results.figures
-        for one, other in combinations(results.methods, 2)
+        for pair, counts in counting.items()
     }
     known = {key: pair for key, pair in found.items() if pair is not None}
     p = dict(zip(known, holm([pair.p for pair in known.values()]), strict=True))
-    tables = tuple(_pairs_table(figure, known, p) for figure in results.figures)
+    copies = not all(map(all, counting.values()))
+    tables = tuple(_pairs_table(figure, known, p, copies=copies) for figure in results.figures)
     return (*tables, _ranking(results, known, p))
 
 
@@ -154,7 +149,16 @@ Key = tuple[str, str, str]
 """Figure, first method, second method."""
 
 
-def _pairs_table(figure: str, known: dict[Key, Compared], p: dict[Key, float]) -> Table:
+def _compared(
+    results: Results, figure: str, pair: tuple[str, str], counting: Sequence[bool]
+) -> Compared | None:
+    first, second = (list(compress(results.values(name, figure), counting)) for name in pair)
+    return compared(first, second, higher=HIGHER_IS_BETTER[figure])
+
+
+def _pairs_table(
+    figure: str, known: dict[Key, Compared], p: dict[Key, float], *, copies: bool
+) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for key, pair in known.items():
         if key[0] != figure:
@@ -176,18 +180,23 @@ def _pairs_table(figure: str, known: dict[Key, Compared], p: dict[Key, float]) -
             f"{LEVEL:.2g}; a name with a question mark has the interval alone, which is no proof "
             "where so many are looked at.",
             *(() if not less else (f"{less} pairs lack a value of one or both and are left out.",)),
-            *_too_few(most, len(known)),
+            *(() if not copies else (_COPIES,)),
+            *_too_few(most, len(known), copies=copies),
         ),
     )  # fmt: skip
 
 
-def _too_few(pairs: int, tests: int) -> tuple[str, ...]:
+_COPIES = "Walls on which two methods do not depend on the seed count once for these two."
+
+
+def _too_few(pairs: int, tests: int, *, copies: bool) -> tuple[str, ...]:
     """Say when no p of so few pairs can reach the level of significance."""
     least = min(1.0, tests * 2.0 ** (1 - pairs)) if pairs else 1.0
     if least < LEVEL:
         return ()
+    more = "walls, or --seeds where they change something" if copies else "--seeds"
     return (
-        f"With {pairs} pairs and {tests} tests no p can be below {least:.2g}: use more --seeds.",
+        f"With {pairs} pairs and {tests} tests no p can be below {least:.2g}: use more {more}.",
     )
 
 

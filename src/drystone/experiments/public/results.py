@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from types import MappingProxyType
 
 from drystone.experiments.public.suites import PublicWall
@@ -18,6 +19,9 @@ amplitude that a wall stands on a shaking table, in g, where it was shaken."""
 
 FIGURES = tuple(name for name in HIGHER_IS_BETTER if name != SHAKE)
 """Of walls that were not shaken."""
+
+DECIMALS = 9
+"""Values that agree so far are equal: they differ by rounding errors of sums."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +106,31 @@ class Results:
     ) -> tuple[float | None, ...]:
         """Return a figure of the results of a method, as :meth:`of` orders them."""
         return tuple(result.figures[figure] for result in self.of(method, wall))
+
+    def counting(self, one: str, other: str) -> tuple[bool, ...]:
+        """Say which results of two methods, as :meth:`of` orders them, count as pairs.
+
+        On a wall where neither method depends on the seed all pairs are copies of one, which
+        counts once: they are no more evidence than it.
+
+        Parameters
+        ----------
+        one, other : str
+            Names of methods.
+        """
+        counts: list[bool] = []
+        pairs = zip(self.of(one), self.of(other), strict=True)
+        for _, group in groupby(pairs, key=lambda pair: pair[0].wall):
+            figures = [(_rounded(first), _rounded(second)) for first, second in group]
+            copies = len(set(figures)) == 1
+            counts += [number == 0 or not copies for number in range(len(figures))]
+        return tuple(counts)
+
+
+def _rounded(result: Result) -> tuple[float | None, ...]:
+    """Return the figures without the rounding errors of sums."""
+    figures = (result.figures[name] for name in sorted(result.figures))
+    return tuple(None if value is None else round(value, DECIMALS) for value in figures)
 
 
 def best_of(values: Sequence[float], figure: str) -> float:

@@ -53,7 +53,8 @@ class KeptRun:
     pga_g : float or None
         Amplitude that the wall stands on the shaking table, g.
     shaken : str
-        "yes"; "no" when it was not asked for; "falls" when it does not stand at rest there.
+        "yes"; "no" when it was not asked for; "falls" when nothing was built, or it does not
+        stand at rest there.
     made_at : str
         Date and time, UTC.
     platform : str
