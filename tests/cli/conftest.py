@@ -5,7 +5,7 @@ import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import pytest
 
@@ -21,9 +21,13 @@ class Ran:
     err: str
 
     def json(self) -> dict[str, Any]:
-        """The one JSON object on stdout."""
-        value: dict[str, Any] = json.loads(self.out)
+        """The one JSON object on stdout; NaN and infinities are none."""
+        value: dict[str, Any] = json.loads(self.out, parse_constant=_refuse_constant)
         return value
+
+
+def _refuse_constant(name: str) -> NoReturn:
+    raise ValueError(f"{name} is no JSON number")
 
 
 Run = Callable[..., Ran]

@@ -152,6 +152,17 @@ def test_no_picture_of_an_earlier_wall_is_left(tower: Path, run: Run, tmp_path: 
     assert not left & {"scatter.png", "friction.png", "report.html", "blocks.csv", "contacts.csv"}
 
 
+def test_an_analysis_that_is_refused_leaves_the_one_before(
+    tower: Path, run: Run, tmp_path: Path
+) -> None:
+    asked = ("analyse", tower, "--associative-only", "-o", tmp_path / "out", "--overwrite")
+    assert run(*asked).code == 0
+    before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+    for more in (("--load", "points"), ("--dead", "9@0,0:1,0"), ("--load", "gravity", "--tilt", 3)):
+        assert run(*asked, *more).code in (2, 3)
+        assert {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()} == before
+
+
 def test_cases_that_are_ranges(tower: Path, bridge: Path, run: Run) -> None:
     report = run("analyse", bridge, "--json", "--settle", "2").json()
     assert report["alpha_least"] == pytest.approx(1 / 3)

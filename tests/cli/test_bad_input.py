@@ -23,6 +23,7 @@ def inputs(tmp_path: Path, rubble: Path) -> Path:
     (folder / "cut.json").write_text('{"schema": "drystone-', encoding="utf-8")
     (folder / "old.json").write_text('{"schema": "drystone-plan/0"}', encoding="utf-8")
     (folder / "bytes.json").write_bytes(b"\xff\xfe\x00")
+    (folder / "deep.json").write_text("[" * 100_000, encoding="utf-8")
     (folder / "text.png").write_text("no picture", encoding="utf-8")
     blocks = {"blocks_xywh": [[0, 0, 2, 2], [1, 1, 2, 2]]}
     (folder / "overlap.json").write_text(json.dumps(blocks), encoding="utf-8")
@@ -43,6 +44,8 @@ def inputs(tmp_path: Path, rubble: Path) -> Path:
         ("analyse", "empty", "E132"),
         ("analyse", "cut.json", "E132"),
         ("analyse", "bytes.json", "E132"),
+        ("analyse", "deep.json", "E132"),
+        ("measure", "deep.json", "E132"),
         ("analyse", "other.json", "E204"),
         ("analyse", "list.json", "E204"),
         ("analyse", "overlap.json", "E304"),
@@ -72,6 +75,19 @@ def test_bad_input(
     assert ran.err.count("\n") == 1
     assert ran.err.rstrip().endswith((".", ")", "?"))
     assert not out.exists()
+
+
+@pytest.mark.parametrize("command", ["check", "measure", "analyse", "craft", "export"])
+@pytest.mark.parametrize("made", ["plan_copy", "settled_copy"])
+def test_a_byte_order_mark_is_no_fault(
+    command: str, made: str, tmp_path: Path, run: Run, request: pytest.FixtureRequest
+) -> None:
+    plan: Path = request.getfixturevalue(made)
+    for path in plan.glob("*.json"):
+        path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    more = ("--to", "csv", "-o", tmp_path / "out") if command == "export" else ()
+    ran = run(command, plan, *more)
+    assert ran.code == 0, ran.err
 
 
 def test_stones_that_are_not_there_are_not_a_failed_check(plan_copy: Path, run: Run) -> None:

@@ -279,3 +279,11 @@ def test_a_scale_that_makes_no_building_stones_is_asked_about(run: Run, plan: Pa
     assert "W123" in odd.err
     # What has no scale has no odd one.
     assert "W123" not in run("export", plan, "--to", "csv", "-o", plan.parent / "px").err
+
+
+def test_nothing_is_written_when_a_step_is_too_long_for_a_gif(plan: Path, run: Run) -> None:
+    before = tree(plan.parent)
+    ran = run("export", plan, "--to", "csv", "gif", "--seconds-per-step", 1000)
+    assert (ran.code, ran.out) == (2, "")
+    assert "E138 --seconds-per-step" in ran.err
+    assert tree(plan.parent) == before

@@ -104,6 +104,28 @@ def test_plan_keeps_the_choice_that_it_begins_with(rubble: Path, tmp_path: Path,
     assert run(*asked, "--budget", 2, "--from", tmp_path, "--overwrite").code in (0, 4)
 
 
+@pytest.mark.parametrize("command", ["plan", "demo"])
+def test_a_choice_that_is_read_is_kept(
+    command: str, rubble: Path, plan_copy: Path, run: Run
+) -> None:
+    """A new plan takes out the choice of an earlier search."""
+    place = plan_copy / "pareto" / "01"
+    place.mkdir(parents=True)
+    for name in ("plan.json", "settings.toml"):
+        shutil.copy(plan_copy / name, place)
+    stones = shutil.copy(rubble, place / "wall.png")
+    before = (place / "settings.toml").read_bytes()
+    more = ("--settings", place / "settings.toml", "-o", plan_copy, "--overwrite")
+    asked = ("plan", rubble, *WALL) if command == "plan" else ("demo",)
+    assert "settings.toml: is read here" in run(*asked, *more).err
+    if command == "plan":
+        assert "wall.png: is read here" in run("plan", stones, *WALL, *more[2:]).err
+        picture = shutil.copy(rubble, plan_copy / "pareto.png")
+        assert "pareto.png: is read here" in run("plan", picture, *WALL, *more[2:]).err
+    assert (place / "settings.toml").read_bytes() == before
+    assert Path(stones).read_bytes() == rubble.read_bytes()
+
+
 def test_plan_keeps_the_settings_that_it_reads(rubble: Path, tmp_path: Path, run: Run) -> None:
     mine = tmp_path / "settings.toml"
     mine.write_text("mu = 0.5 # my own comment\n", encoding="utf-8")
@@ -155,3 +177,63 @@ def test_export_and_demo_keep_what_they_read(plan_copy: Path, tmp_path: Path, ru
     ran = run("demo", "--settings", mine, "-o", tmp_path, "--overwrite")
     assert f"E129 {mine}: is read here" in ran.err
     assert not (tmp_path / "stones.png").exists()
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+
+
+@pytest.mark.parametrize(
+    "options", [("--load", "points"), ("--load", "gravity"), ("--associative-only",)]
+)
+@pytest.mark.parametrize("name", ["", "plan.json", "wall.png"])
+def test_analyse_keeps_what_plan_drew(
+    name: str, options: tuple[str, ...], plan_copy: Path, run: Run
+) -> None:
+    before = contents(plan_copy)
+    ran = run("analyse", plan_copy / name, "-o", plan_copy, "--overwrite", *options)
+    assert ran.code == 2
+    assert "E129" in ran.err
+    assert "belongs to the plan" in ran.err
+    assert contents(plan_copy) == before
+
+
+@pytest.fixture
+def masks(tmp_path: Path) -> Path:
+    """A folder of four masks of 20 x 10 px."""
+    folder = tmp_path / "masks"
+    folder.mkdir()
+    for number in range(4):
+        mask = np.pad(np.full((10, 20), 255, np.uint8), 3)
+        Image.fromarray(mask).save(folder / f"{number}.png")
+    return folder
+
+
+def test_nothing_is_drawn_among_masks(masks: Path, tmp_path: Path, run: Run) -> None:
+    before = contents(masks)
+    wall = ("--wall", "40x20", "--scale", "1", "--method", "paper")
+    assert run("plan", masks, *wall, "-o", tmp_path / "out").code in (0, 4)
+    for asked in (
+        ("stones", masks, "-o", masks / "preview.png"),
+        ("plan", masks, *wall, "-o", masks, "--overwrite"),
+        ("check", tmp_path / "out", "--stones", masks, "--picture", masks / "check.png"),
+    ):
+        ran = run(*asked)
+        assert (ran.code, ran.out) == (2, "")
+        assert "E129" in ran.err
+        assert "among the masks" in ran.err
+        assert contents(masks) == before
+    # A folder of its own is no stone.
+    assert run("stones", masks, "-o", masks / "drawn" / "preview.png").code == 0
+    assert run("stones", masks).code == 0
+    assert contents(masks) == before
+
+
+def test_pictures_may_lie_beside_the_stones_of_a_photograph(
+    rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    shutil.copy(rubble, tmp_path / LABELS)
+    with Image.open(rubble) as picture:
+        write_sidecar(PhotoSidecar(*picture.size), tmp_path)
+    assert run("stones", tmp_path, "-o", tmp_path / "drawn.png").code == 0
+    assert run("stones", tmp_path).code == 0

@@ -128,6 +128,18 @@ def test_a_file_that_is_not_there_says_what_to_give(rubble: Path, tmp_path: Path
     assert "Give a TOML file, such as the settings.toml" in ran.err
 
 
+def test_a_settings_file_may_have_a_byte_order_mark_but_no_abyss(
+    rubble: Path, tmp_path: Path, run: Run
+) -> None:
+    toml = tmp_path / "mine.toml"
+    asked = ("plan", rubble, *WALL, "--settings", toml, "-o", tmp_path / "out")
+    toml.write_text("mu = " + "[" * 100_000, encoding="utf-8")
+    ran = run(*asked)
+    assert (ran.code, "E128" in ran.err) == (3, True)
+    toml.write_text("mu = 0.5\n", encoding="utf-8-sig")
+    assert run(*asked).code in (0, 4)
+
+
 def parsed(*options: object) -> argparse.Namespace:
     """A command line of `plan` with some options."""
     words = ["plan", "stones.png", "--wall", "100x36", "-o", "out", *map(str, options)]

@@ -91,15 +91,29 @@ def test_resume_without_a_plan_starts(
 
 def test_a_finished_plan_is_left_as_it_is(rubble: Path, tmp_path: Path, run: Run) -> None:
     plan = ["plan", rubble, *WALL, "-o", tmp_path / "out"]
-    assert run(*plan).code in (0, 4)
+    first = run(*plan)
+    assert first.code in (0, 4)
     before = {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()}
     ran = run(*plan, "--resume")
-    assert ran.code == 0
+    assert ran.code == first.code
     assert "finished" in ran.err
+    assert "going on" not in ran.err
     told = run(*plan, "--resume", "--json").json()
     assert (told["status"], told["shortfall"], told["seconds"]) == ("finished", None, None)
     assert told["placed"] == len(read_plan(tmp_path / "out").stone_steps)
     assert {p.name: p.read_bytes() for p in (tmp_path / "out").iterdir()} == before
+
+
+def test_a_finished_wall_that_is_incomplete_stays_so(
+    bricks: Path, tmp_path: Path, run: Run
+) -> None:
+    plan = ("plan", bricks, "--wall", "80x60", "--scale", "1", "--method", "paper")
+    for code, more in ((4, ()), (0, ("--wall", "60x20"))):
+        asked = (*plan, *more, "-o", tmp_path / str(code))
+        first, again = run(*asked), run(*asked, "--resume")
+        assert (first.code, again.code) == (code, code)
+        assert ("incomplete: the top is at" in again.err) == (code == 4)
+        assert run(*asked, "--resume", "--json").code == code
 
 
 def test_a_search_goes_on_from_an_interrupted_first_wall(

@@ -1,9 +1,11 @@
 """build.gif, read back with Pillow, and checked against the outlines with Shapely."""
 
 import numpy as np
+import pytest
 import shapely
 from PIL import Image, ImageSequence
 
+from drystone.errors import UsageError
 from drystone.export import gif
 from drystone.export.film import PLACING_COLOUR, Film
 from drystone.export.settings import ExportSettings
@@ -90,3 +92,14 @@ def test_captions_name_steps_as_the_numbers_in_the_picture_do() -> None:
     film = Film(assembly())
     assert film._caption(film.assembly.parts[1]) == "step 2 of 7: wedge under 1"
     assert film._caption(film.assembly.parts[2]) == "step 3 of 7"
+
+
+def test_steps_that_are_too_long_for_a_gif_are_refused(tmp_path) -> None:
+    wall = assembly()
+    longest = ExportSettings(seconds_per_step=gif.LONGEST_S, film_px=200)
+    assert gif.files(wall, longest) == ("build.gif",)
+    (path,) = gif.write(wall, tmp_path, longest)
+    assert {duration for _, duration in frames(path)} == {655_000}
+    for seconds in (656.0, 1e308):
+        with pytest.raises(UsageError, match="E138"):
+            gif.files(wall, ExportSettings(seconds_per_step=seconds))

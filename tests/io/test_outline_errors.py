@@ -25,6 +25,7 @@ def read(tmp_path, content, name="stones.json"):
     [
         ("{", r"cannot be read, it may be cut short"),
         ("[" * 100_000, r"cannot be read"),
+        ({"type": ["object", "null"]}, r"its keys are 'type'"),
         ({"a": 1, "b": 2}, r"its keys are 'a', 'b'.*labelme.*COCO.*SAM.*GeoJSON"),
         ([1, 2], r"none of the known forms.*labelme"),
         ([{"bbox": [1, 2]}], r"none of the known forms"),

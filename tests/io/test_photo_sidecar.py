@@ -122,6 +122,13 @@ def test_a_damaged_plan_owns_no_photograph(tmp_path: Path, text: str) -> None:
     assert (tmp_path / "photo.png").read_bytes() == b"mine"
 
 
+def test_a_sidecar_may_have_a_byte_order_mark(tmp_path: Path) -> None:
+    write_sidecar(PhotoSidecar(640, 480, 200.0), tmp_path)
+    path = tmp_path / "stones.json"
+    path.write_text(path.read_text("utf-8"), encoding="utf-8-sig")
+    assert read_sidecar(tmp_path / "stones.png") == PhotoSidecar(640, 480, 200.0)
+
+
 def test_the_name_of_a_photograph_leads_nowhere_else(tmp_path: Path) -> None:
     folder = tmp_path / "found"
     folder.mkdir()

@@ -1,3 +1,5 @@
+import os
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -84,6 +86,19 @@ def test_a_gif_loops_and_repeats_to_the_byte(tmp_path):
         assert image.n_frames == 6
         assert image.info["loop"] == 0
         assert image.info["duration"] == FRAME_MS
+
+
+def test_an_animation_is_whole_or_as_it_was(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    path = tmp_path / "fall.gif"
+    path.write_bytes(b"good")
+    monkeypatch.setattr(os, "replace", full)
+    with pytest.raises(OSError, match="No space left") as caught:
+        save_mechanism_animation(path, TALL, rocking(), None, frames=2)
+    assert caught.value.filename == str(path)
+    assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [(path.name, b"good")]
 
 
 def test_few_colours_are_close_to_the_picture(tmp_path):

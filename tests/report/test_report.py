@@ -1,5 +1,6 @@
 import base64
 import json
+import os
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -8,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from drystone.errors import Notice
+from drystone.errors import Notice, PlanError
 from drystone.model.plan import PlanMetrics
 from drystone.plotting import write_pictures
 from drystone.report import view_of_result, view_of_wall, write_report
@@ -20,6 +21,7 @@ from drystone.report.content import (
     weaker_direction,
 )
 from drystone.report.embedding import viewer_frame, viewer_page, viewer_script, viewer_style
+from drystone.report.notebook import Shown
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
 from tests.plotting import examples
@@ -215,6 +217,33 @@ def test_same_arguments_same_bytes(tmp_path, pictures):
         for name in ("one.html", "two.html")
     )
     assert first == second
+
+
+def test_a_report_is_whole_or_as_it_was(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    path = tmp_path / "report.html"
+    path.write_bytes(b"good")
+    monkeypatch.setattr(os, "replace", full)
+    for write in (
+        lambda: write_report(path, example_view()),
+        lambda: Shown(example_view()).write(path),
+    ):
+        with pytest.raises(PlanError, match="E206"):
+            write()
+        assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [
+            (path.name, b"good")
+        ]
+
+
+def test_half_a_pair_of_characters_ends_no_report(tmp_path):
+    """Bytes of a file name that are no UTF-8 come as such, from whoever forgot them."""
+    notice = {"code": "W117", "message": "left aside: \udcdcbersicht.", "cure": ""}
+    view = {**example_view(), "notices": [notice]}
+    path = write_report(tmp_path / "report.html", view)
+    assert "?bersicht" in path.read_text("utf-8")
+    assert "?bersicht" in Shown(view).write(tmp_path / "view.html").read_text("utf-8")
 
 
 def test_lengths_in_metres_have_millimetres(tmp_path):

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from drystone.cli.analyse_tables import NAMES as TABLES
-from drystone.cli.inputs import files_of_wall, refuse_inputs
+from drystone.cli.inputs import files_of_wall, refuse_inputs, refuse_plans_own
 from drystone.cli.modelling import Modelled
 from drystone.cli.output import prepare_files
 from drystone.statics.friction_curve import AtFriction, friction_curve
@@ -25,13 +25,24 @@ def prepare(folder: Path, arguments: argparse.Namespace) -> list[Path]:
         names += [f"{kind}_{direction}.png" for kind in ("mechanism", "forces")]
         names.append(f"mechanism_{direction}.gif")
     paths = [folder / name for name in names]
-    others = [folder / name for name in (*TABLES, FRICTION, REPORT, SCATTER)]
-    refuse_inputs(files_of_wall(Path(arguments.wall_path)), [*paths, *others])
-    prepare_files([*paths, *others], overwrite=arguments.overwrite)
-    for path in others:
-        # One that an earlier run left would belong to another wall.
-        path.unlink(missing_ok=True)
+    wall, written = Path(arguments.wall_path), [*paths, *_others(folder)]
+    refuse_inputs(files_of_wall(wall), written)
+    refuse_plans_own(wall, written)
+    prepare_files(written, overwrite=arguments.overwrite)
     return paths
+
+
+def clear(folder: Path) -> None:
+    """Take out what an earlier run left and not every run writes: it belongs to another wall.
+
+    Not before there is an answer to put in its place.
+    """
+    for path in _others(folder):
+        path.unlink(missing_ok=True)
+
+
+def _others(folder: Path) -> list[Path]:
+    return [folder / name for name in (*TABLES, FRICTION, REPORT, SCATTER)]
 
 
 def draw(paths: list[Path], wall: Modelled, loads: Loads, ends: Sequence[LimitResult]) -> None:

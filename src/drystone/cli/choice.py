@@ -3,7 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from drystone.cli.output import make_folder, number
+from drystone.cli.output import make_folder, number, refuse_file
+from drystone.io.atomic import refuse_existing
 from drystone.io.plan_folder import write_plan_folder
 from drystone.io.plan_names import WRITTEN
 from drystone.search.plan_result import PlanResult
@@ -16,6 +17,20 @@ FIGURES = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 3}
 def walls_to_choose_from(result: PlanResult) -> tuple[PlanResult, ...]:
     """Return the walls that none beats in every figure; a single pass has one."""
     return result.choice or (result,)
+
+
+def files_of_choice(folder: Path) -> tuple[Path, ...]:
+    """Return what lies where the choice of a search is: a plan replaces it, or takes it out."""
+    return (folder / PICTURE, *(folder / FOLDER).glob("*/*"))
+
+
+def prepare_choice(folder: Path) -> None:
+    """Refuse what would be in the way of a choice, before one is searched for (E129)."""
+    refuse_existing(folder / PICTURE, overwrite=True)
+    for place in (folder / FOLDER, *(folder / FOLDER).glob("[0-9][0-9]")):
+        refuse_file(place)
+        for name in WRITTEN:
+            refuse_existing(place / name, overwrite=True)
 
 
 def write_choice(result: PlanResult, folder: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from drystone.errors import UsageError
 from drystone.io.images import SUFFIXES
 from drystone.io.photo_sidecar import LABELS, read_sidecar
-from drystone.io.plan_names import WRITTEN
+from drystone.io.plan_names import DRAWN, WRITTEN
 
 
 def refuse_inputs(read: Iterable[Path], written: Iterable[Path]) -> None:
@@ -28,6 +28,63 @@ def refuse_inputs(read: Iterable[Path], written: Iterable[Path]) -> None:
             raise UsageError(
                 "E129",
                 "is read here, and what is read is never replaced, also not with --overwrite.",
+                where=str(path),
+                cure="Choose another place for what is written.",
+            )
+
+
+def refuse_plans_own(wall: Path, written: Iterable[Path]) -> None:
+    """Refuse to write over what `plan` drew of a wall, when the wall is in that plan's folder.
+
+    Parameters
+    ----------
+    wall : Path
+        The file of the wall, or the folder of its plan.
+    written : iterable of Path
+        Files.
+
+    Raises
+    ------
+    UsageError
+        E129.
+    """
+    folder = wall if wall.is_dir() else wall.parent
+    if not (folder / "plan.json").is_file():
+        return
+    drawn = [path for name in DRAWN if (path := folder / name).exists()]
+    for path in written:
+        if path.exists() and any(path.samefile(own) for own in drawn):
+            raise UsageError(
+                "E129",
+                "belongs to the plan, and is not replaced by what is made of its wall.",
+                where=str(path),
+                cure="Choose another folder with -o.",
+            )
+
+
+def refuse_among_masks(stones: Path, written: Iterable[Path]) -> None:
+    """Refuse to put pictures into a folder of masks that is read: each would be one more stone.
+
+    Parameters
+    ----------
+    stones : Path
+        What stones are read from.
+    written : iterable of Path
+        Files.
+
+    Raises
+    ------
+    UsageError
+        E129.
+    """
+    if not stones.is_dir() or read_sidecar(stones / LABELS) is not None:
+        return
+    for path in written:
+        among = path.parent.is_dir() and path.parent.samefile(stones)
+        if among and path.suffix.lower() in SUFFIXES:
+            raise UsageError(
+                "E129",
+                "would lie among the masks that are read here, and be read as one of them.",
                 where=str(path),
                 cure="Choose another place for what is written.",
             )

@@ -1,19 +1,40 @@
 """Folders, files, tables and JSON on the way out."""
 
+import codecs
 import json
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
-from drystone.errors import UsageError
+from drystone.errors import PlanError, UsageError
 from drystone.io.atomic import refuse_existing
 
 _PICTURES = (".png", ".pdf", ".svg")
 
 
-def prepare_folder(path: Path, *, overwrite: bool) -> Path:
-    """Make a folder to write into; refuse one that has files, unless told otherwise (E129)."""
+def prepare_folder(path: Path, names: Sequence[str], *, overwrite: bool) -> Path:
+    """Make a folder to write into, before the work: what cannot be written is refused now.
+
+    Parameters
+    ----------
+    path : Path
+        The folder.
+    names : sequence of str
+        Of files that will be written.
+    overwrite : bool
+        Whether it may have files.
+
+    Raises
+    ------
+    UsageError
+        E129: it has files, or a folder of the name of a file.
+    PlanError
+        E206: nothing can be written there.
+    """
+    for name in names:
+        refuse_existing(path / name, overwrite=True)
     make_folder(path)
     if any(path.iterdir()) and not overwrite:
         raise UsageError(
@@ -22,6 +43,15 @@ def prepare_folder(path: Path, *, overwrite: bool) -> Path:
             where=str(path),
             cure="Choose another with -o, or add --overwrite; nothing else in it is touched.",
         )
+    try:
+        TemporaryFile(dir=path).close()
+    except OSError as error:
+        raise PlanError(
+            "E206",
+            f"no file can be written there ({error.strerror}).",
+            where=str(path),
+            cure="Choose another folder with -o, one that has room and may be written to.",
+        ) from error
     return path
 
 
@@ -47,7 +77,12 @@ def prepare_picture(path: Path, *, overwrite: bool) -> None:
 
 def print_json(value: Mapping[str, Any]) -> None:
     """Print one JSON object."""
-    print(json.dumps(value, indent=2, ensure_ascii=False))
+    print(json.dumps(value, indent=2, ensure_ascii=not _prints_utf8()))
+
+
+def _prints_utf8() -> bool:
+    """Say whether stdout is UTF-8, as JSON has to be; elsewhere letters are escaped."""
+    return codecs.lookup(sys.stdout.encoding or "ascii").name == "utf-8"
 
 
 def print_table(title: str, rows: Sequence[tuple[str, str]]) -> None:
@@ -65,6 +100,12 @@ def number(value: float | None, digits: int = 3) -> str:
 
 def make_folder(path: Path) -> None:
     """Make a folder, with those that it lies in; refuse where a file is in the way (E129)."""
+    refuse_file(path)
+    path.mkdir(parents=True, exist_ok=True)
+
+
+def refuse_file(path: Path) -> None:
+    """Refuse a file where a folder is to be, or one that it lies in (E129)."""
     for place in (path, *path.parents):
         if place.exists() and not place.is_dir():
             raise UsageError(
@@ -73,7 +114,6 @@ def make_folder(path: Path) -> None:
                 where=str(place),
                 cure="Choose another folder with -o, or move the file away.",
             )
-    path.mkdir(parents=True, exist_ok=True)
 
 
 def say(text: str) -> None:

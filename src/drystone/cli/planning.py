@@ -3,13 +3,10 @@
 import argparse
 import math
 import sys
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from drystone.cli.announce import (
+    WRITTEN,
     exports_notice,
     read_line,
     say_written,
@@ -19,20 +16,20 @@ from drystone.cli.beginning import plan_to_begin_with
 from drystone.cli.choice import (
     choice_summary,
     clear_choice,
+    prepare_choice,
     print_choice,
     write_choice,
 )
 from drystone.cli.output import prepare_folder, print_json
 from drystone.cli.plan_photo import check_photo, with_photo
-from drystone.cli.plan_summary import print_summary, summary, summary_of_plan
+from drystone.cli.plan_summary import print_summary, summary
 from drystone.cli.progress import step_bar
+from drystone.cli.resuming import course_heights, partial_plan, tell_finished
 from drystone.cli.scale import picture_size_px, refuse_outside, scale_notice
 from drystone.cli.settings import recorded_method, search_seconds, settings_from
 from drystone.cli.timing import print_profile, profile_summary
 from drystone.errors import ExitCode, UsageError
 from drystone.io.plan_folder import write_plan_folder
-from drystone.io.plan_json import read_plan
-from drystone.model.plan import Plan
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.stone_size import median_sides, sides_px
@@ -58,20 +55,17 @@ def plan_and_write(
     """Plan a wall of given size in source px, write all files, print the summary."""
     folder = Path(arguments.output)
     settings, method = settings_from(arguments), recorded_method(arguments)
-    partial = _partial_plan(folder, stones, wall, arguments, settings)
+    partial = partial_plan(folder, stones, wall, arguments, settings)
     if partial is not None and partial.stopped != "interrupted":
-        print(
-            "drystone: this plan is finished, there is nothing to go on with;"
-            " --from begins a search with it",
-            file=sys.stderr,
-        )
-        if arguments.json:
-            print_json(summary_of_plan(partial, folder) | {"status": "finished"})
-        return ExitCode.DONE
+        return _EXIT[tell_finished(partial, stones, settings, arguments)]
+    if partial is not None:
+        print(f"drystone: going on after {len(partial.stone_steps)} stones", file=sys.stderr)
     begin = plan_to_begin_with(stones, wall, arguments, settings)
     _check_stones(stones, wall, arguments, settings)
     check_photo(photo, stones, folder)
-    prepare_folder(folder, overwrite=arguments.overwrite or partial is not None)
+    if arguments.pareto:
+        prepare_choice(folder)
+    prepare_folder(folder, WRITTEN, overwrite=arguments.overwrite or partial is not None)
     seconds = search_seconds(method_settings(arguments.method), len(stones), arguments)
     _announce(stones, wall, arguments, seconds if settings.search.budget > 1 else None)
     with step_bar(
@@ -89,7 +83,7 @@ def plan_and_write(
             n_jobs=arguments.jobs,
             callbacks=callbacks,
             built=None if partial is None else rebuild_wall(partial, stones),
-            course_heights_px=_course_heights(partial or begin),
+            course_heights_px=course_heights(partial or begin),
             begin=None if begin is None else rebuild_wall(begin, stones),
             choice=arguments.pareto,
         )
@@ -184,57 +178,3 @@ def write_result(
     write_pictures(folder, result.wall, result.clusters, resistance=result.resistance)
     view = view_of_result(result, photo=photo, notices=(*stones.notices, *result.notices))
     write_report(folder / "report.html", view, pictures=folder)
-
-
-def _partial_plan(
-    folder: Path,
-    stones: StoneSet,
-    wall: tuple[float, float],
-    arguments: argparse.Namespace,
-    settings: PlannerSettings,
-) -> Plan | None:
-    """Return the plan to go on from; refuse one that was made of or for something else (E136)."""
-    path = folder / "plan.json"
-    if not getattr(arguments, "resume", False) or not path.exists():
-        return None
-    plan = read_plan(path)
-    px_per_m = arguments.px_per_m or 1.0
-    scale = arguments.scale or working_scale(stones)
-    size = plan.width * px_per_m, plan.height * px_per_m
-    equal = {
-        "stones": plan.source["sha256"] == stones.source.sha256,
-        "reading": plan.source.get("reading", {}) == dict(stones.source.reading),
-        "--wall": np.allclose(size, wall, rtol=0, atol=1e-6),
-        "--px-per-m": plan.px_per_m == arguments.px_per_m,
-        "--scale": plan.working_scale == scale,
-        "--seed": plan.seed == arguments.seed,
-        "--method": plan.method in (recorded_method(arguments), arguments.method),
-        "settings": _without_budget(plan.settings) == _without_budget(settings.as_dict()),
-    }
-    different = [name for name, same in equal.items() if not same]
-    if different:
-        raise UsageError(
-            "E136",
-            f"the partial plan was made with other {', '.join(different)}.",
-            where=str(path),
-            cure="Give the same command again with --resume added, or plan into another folder.",
-        )
-    print(f"drystone: going on after {len(plan.stone_steps)} stones", file=sys.stderr)
-    return plan
-
-
-def _without_budget(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Leave out how many walls a search builds: an interrupted plan says how many it had built."""
-    search = {name: value for name, value in settings["search"].items() if name != "budget"}
-    return {**settings, "search": search}
-
-
-def _course_heights(plan: Plan | None) -> dict[int, float]:
-    if plan is None:
-        return {}
-    to_px = plan.working_scale * (plan.px_per_m or 1.0)
-    return {
-        step.stone: step.course_height * to_px
-        for step in plan.stone_steps
-        if step.course_height is not None
-    }

@@ -191,7 +191,7 @@ def _check_geometry(geometry: str, arguments: argparse.Namespace) -> None:
 def read_toml(path: Path) -> dict[str, Any]:
     """Read a TOML file; a missing or broken one is an InputError (E128)."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise InputError(
             "E128",
@@ -199,7 +199,7 @@ def read_toml(path: Path) -> dict[str, Any]:
             where=str(path),
             cure="Give a TOML file, such as the settings.toml that is written with every plan.",
         ) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise InputError(
             "E128",
             f"is no TOML: {error}.",

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from drystone.assembly.parts import Assembly
+from drystone.errors import UsageError
 from drystone.export.film import Film, durations_ms, palette
 from drystone.export.settings import ExportSettings
 from drystone.io.atomic import write_atomically
@@ -10,9 +11,19 @@ from drystone.plotting.gif import gif_bytes
 
 NAME = "build.gif"
 
+LONGEST_S = 655.0
+"""A GIF counts hundredths of a second, in 16 bits."""
+
 
 def files(assembly: Assembly, settings: ExportSettings) -> tuple[str, ...]:  # noqa: ARG001
-    """Return the names that will be written."""
+    """Return the names that will be written; E138 for steps that are longer than a GIF has."""
+    if settings.seconds_per_step > LONGEST_S:
+        raise UsageError(
+            "E138",
+            f"a step of {settings.seconds_per_step:g} s is too long for {NAME}.",
+            where="--seconds-per-step",
+            cure=f"Give {LONGEST_S:g} s at most (seconds_per_step in Python), or export an mp4.",
+        )
     return (NAME,)
 
 

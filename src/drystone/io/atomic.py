@@ -1,10 +1,10 @@
 """Files that are either whole or not there, and none that is replaced unasked."""
 
 import os
-import uuid
 from pathlib import Path
 
 from drystone.errors import PlanError, UsageError
+from drystone.whole_files import write_whole
 
 
 def write_atomically(path: Path, data: bytes) -> None:
@@ -22,16 +22,13 @@ def write_atomically(path: Path, data: bytes) -> None:
     PlanError
         E206: the folder is missing, full or not writable; an existing file is unchanged.
     """
-    part = path.with_name(f".{path.name}.{uuid.uuid4().hex}.part")
     try:
-        part.write_bytes(data)
-        os.replace(part, path)  # noqa: PTH105 - Path.replace says the same, os.replace says atomic
+        write_whole(path, data)
     except OSError as error:
-        part.unlink(missing_ok=True)
         raise PlanError(
             "E206",
             f"the file cannot be written ({error.strerror}).",
-            where=str(path),
+            where=os.fspath(path),
             cure="Give a folder that exists, has room and may be written to.",
         ) from error
 

@@ -14,6 +14,7 @@ from PIL import Image, ImageOps, JpegImagePlugin, PngImagePlugin, TiffImagePlugi
 from drystone.errors import InputError, Notice
 from drystone.io import tiff
 from drystone.io.images import DAMAGE, check_size, several_pages
+from drystone.model.stone import writable
 
 MAX_PX = 200_000_000
 """Larger photographs are refused."""
@@ -87,14 +88,15 @@ def read_photo(path: str | Path, max_px: int = MAX_PX) -> Photo:
             "E106", f"the file is damaged or cut short ({error}).", where=str(path),
             cure="Copy or export it again.",
         ) from error  # fmt: skip
+    name = writable(path.name)
     rgb, notices = _to_rgb(values, str(path))
     if deep:
         notices = (Notice("W174", "16 bits a channel were scaled to 8."), *notices)
     if orientation in _TURNS:
         rgb = _turned(rgb, orientation)
-        said = f"{path.name} was {_TURNS[orientation]}, as its EXIF data say."
+        said = f"{name} was {_TURNS[orientation]}, as its EXIF data say."
         notices = (*notices, Notice("W173", said))
-    return Photo(rgb, path.name, hashlib.sha256(data).hexdigest(), notices)
+    return Photo(rgb, name, hashlib.sha256(data).hexdigest(), notices)
 
 
 def _bytes_of(path: Path) -> bytes:

@@ -74,7 +74,7 @@ def read_sidecar(labels: Path) -> PhotoSidecar | None:
     if not path.is_file():
         return None
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        data = json.loads(path.read_text(encoding="utf-8-sig"))
         if not isinstance(data, dict) or data.get("schema") != SCHEMA:
             return None
         scale = data["px_per_m"]

@@ -30,7 +30,7 @@ from drystone.io.patches import Patch, cut
 from drystone.io.photo_sidecar import LABELS, SIDECAR, PhotoSidecar, read_sidecar
 from drystone.io.read_outlines import check_no_image, check_unit, stones_of
 from drystone.io.read_settings import ReadSettings
-from drystone.model.stone import Source, StoneSet
+from drystone.model.stone import Source, StoneSet, writable
 
 __all__ = ["ReadSettings", "read_stones"]
 
@@ -81,22 +81,22 @@ def read_stones(
         if read_sidecar(labels) is None:
             return _read_folder(path, settings)
         path = labels
-    data = _bytes_of(path)
-    reader = outline_reader(data, path.name)
+    data, name = _bytes_of(path), writable(path.name)
+    reader = outline_reader(data, name)
     if reader is not None:
-        return stones_of(reader, data, path.name, settings)
+        return stones_of(reader, data, name, settings)
     sidecar = read_sidecar(path)
     if is_npz(data):
-        arrays = read_npz(data, path.name, _max_px(settings))
+        arrays = read_npz(data, name, _max_px(settings))
         if isinstance(arrays, OutlineFile):
-            return stones_of(lambda *_: arrays, data, path.name, settings)
+            return stones_of(lambda *_: arrays, data, name, settings)
         picture = Picture(arrays)
     else:
-        picture = decode(data, path.name, _max_px(settings))
+        picture = decode(data, name, _max_px(settings))
     scale = None if sidecar is None else _scale_beside(sidecar, picture, path)
     digest = hashlib.sha256(data).hexdigest()
     del data  # as large as the picture when it is not compressed
-    return _read_picture(picture, Source(path.name, digest, px_per_m=scale), settings)
+    return _read_picture(picture, Source(name, digest, px_per_m=scale), settings)
 
 
 def _scale_beside(sidecar: PhotoSidecar, picture: Picture, path: Path) -> float | None:
@@ -217,7 +217,7 @@ def _stone_ids(values: NDArray[np.int64], background: int, where: str) -> NDArra
 
 def _read_folder(folder: Path, settings: ReadSettings) -> StoneSet:
     """Read one-stone masks, numbered from 1 in natural file order."""
-    name = _name_of(folder)
+    name = writable(_name_of(folder))
     check_no_plan(folder, name)
     entries = [entry for entry in folder.iterdir() if not entry.name.startswith(".")]
     files = [entry for entry in entries if entry.is_file() and entry.suffix.lower() in SUFFIXES]
@@ -230,20 +230,20 @@ def _read_folder(folder: Path, settings: ReadSettings) -> StoneSet:
     ignored = sorted({entry.name for entry in entries} - {file.name for file in files})
     notices = []
     if ignored:
-        notices.append(Notice("W117", f"not pictures, left aside: {', '.join(ignored)}."))
+        notices.append(Notice("W117", f"not pictures, left aside: {writable(', '.join(ignored))}."))
     digest, patches, sizes = hashlib.sha256(), [], []
-    for number, file in enumerate(files, start=1):
+    names = tuple(writable(file.name) for file in files)
+    for number, (file, own) in enumerate(zip(files, names, strict=True), start=1):
         data = _bytes_of(file)
         digest.update(hashlib.sha256(data).digest())
-        where = f"{name}/{file.name}"
+        where = f"{name}/{own}"
         patch, size, notice = _read_one(decode(data, where, _max_px(settings)), where, settings)
         sizes.append(size)
         notices += [notice] if notice else []
-        patches += cut(patch.astype(np.int32), np.array([number]), file.name) or [
-            Patch(number, np.zeros((1, 1), bool), 0, 0, size[0], name=file.name)
+        patches += cut(patch.astype(np.int32), np.array([number]), own) or [
+            Patch(number, np.zeros((1, 1), bool), 0, 0, size[0], name=own)
         ]
     height, width = (max(size[axis] for size in sizes) for axis in (0, 1))
-    names = tuple(file.name for file in files)
     reading = _of_px(settings, name)
     source = Source(name, digest.hexdigest(), width, height, names, reading)
     return stone_set(Found(patches, notices, name), source, settings)
@@ -256,7 +256,8 @@ def _name_of(folder: Path) -> str:
 
 def _natural_order(path: Path) -> tuple[list[str | int], str]:
     parts = re.split(r"([0-9]+)", path.name.casefold())
-    return [int(part) if part.isdecimal() else part for part in parts], path.name
+    # Numbers are every other part; between them there may be digits of other scripts.
+    return [int(part) if i % 2 else part for i, part in enumerate(parts)], path.name
 
 
 def _read_one(

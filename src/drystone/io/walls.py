@@ -250,9 +250,9 @@ def _read_json(
     path: Path, cure: str = "Give a label image, the plan.json of a plan, or a block model."
 ) -> Any:
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        return json.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         what = f"cannot be read ({error.strerror})."
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         what = f"is no JSON ({error})."
     raise InputError("E132", what, where=str(path), cure=cure)

@@ -55,7 +55,7 @@ class Stone:
             raise ValueError("mask must be a two-dimensional array with at least one pixel")
         mask.flags.writeable = False
         object.__setattr__(self, "mask", mask)
-        object.__setattr__(self, "name", _writable(self.name))
+        object.__setattr__(self, "name", writable(self.name))
 
     def __repr__(self) -> str:
         height, width = self.mask.shape
@@ -160,12 +160,12 @@ class Source:
     px_per_m: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "path", _writable(self.path))
-        object.__setattr__(self, "files", tuple(_writable(name) for name in self.files))
+        object.__setattr__(self, "path", writable(self.path))
+        object.__setattr__(self, "files", tuple(writable(name) for name in self.files))
 
 
-def _writable(name: str) -> str:
-    """Return a name that a plan can hold: bytes of one that is no UTF-8 become question marks."""
+def writable(name: str) -> str:
+    """Return a name that files can hold: bytes of one that is no UTF-8 become question marks."""
     return name.encode("utf-8", "replace").decode()
 
 

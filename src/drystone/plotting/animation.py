@@ -19,6 +19,7 @@ from drystone.plotting.mechanism import COLOURS, Motion, motion_of, plot_mechani
 from drystone.plotting.outlines import Loop
 from drystone.statics.model import Direction
 from drystone.statics.result import Mechanism
+from drystone.whole_files import write_whole
 
 FRAME_MS = 80
 """How long a frame is shown."""
@@ -96,11 +97,13 @@ def save_mechanism_animation(
     ------
     ValueError
         When the path ends otherwise, and as :func:`mechanism_frames` does.
+    OSError
+        When the file cannot be written; an existing one is as it was.
     """
     if Path(path).suffix.lower() != ".gif":
         raise ValueError(f"{path}: animations end in .gif")
     pictures = mechanism_frames(wall, mechanism, direction, alpha, frames=frames, **options)
-    Path(path).write_bytes(gif_bytes(pictures, _few_colours(), FRAME_MS))
+    write_whole(Path(path), gif_bytes(pictures, _few_colours(), FRAME_MS))
 
 
 def _move(ax: Axes, motion: Motion, amplitude: float) -> None:

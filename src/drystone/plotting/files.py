@@ -1,6 +1,7 @@
 """Pictures as files, with the same bytes for the same picture."""
 
 from collections.abc import Mapping
+from io import BytesIO
 from pathlib import Path
 
 import matplotlib as mpl
@@ -12,6 +13,7 @@ from drystone.plotting.outlines import Loop, source_outlines
 from drystone.plotting.wall import plot_wall
 from drystone.statics.model import Direction
 from drystone.statics.result import LateralResistance, LimitStatus
+from drystone.whole_files import write_whole
 
 PICTURE = "picture.png"
 MECHANISMS: dict[Direction, str] = {"left": "mechanism_left.png", "right": "mechanism_right.png"}
@@ -28,6 +30,8 @@ _UNDATED: dict[str, dict[str, None]] = {
 def save(figure: Figure | SubFigure, path: str | Path, dpi: float = DPI) -> None:
     """Write a figure as PNG, PDF or SVG, without dates or versions in the file.
 
+    The file is whole or not there at any time.
+
     Parameters
     ----------
     figure : Figure or SubFigure
@@ -41,21 +45,25 @@ def save(figure: Figure | SubFigure, path: str | Path, dpi: float = DPI) -> None
     ------
     ValueError
         When the ending is another one.
+    OSError
+        When the file cannot be written; an existing one is as it was.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in _UNDATED:
         raise ValueError(f"{path}: pictures end in {', '.join(_UNDATED)}")
     whole = figure.get_figure(root=True)
     # SVG files name their parts by a hash with a random salt unless one is given.
-    with mpl.rc_context({"svg.hashsalt": "drystone"}):
+    with mpl.rc_context({"svg.hashsalt": "drystone"}), BytesIO() as file:
         whole.savefig(
-            path,
+            file,
+            format=suffix[1:],
             dpi=dpi,
             bbox_inches="tight",
             pad_inches=0.08,
             facecolor="white",
             metadata=_UNDATED[suffix],
         )
+        write_whole(Path(path), file.getvalue())
 
 
 def write_pictures(

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ from drystone.photo.layout import (
     single_position_m,
 )
 from drystone.plotting.canvas import block_path
+from drystone.whole_files import write_whole
 
 _MM_PER_INCH = 25.4
 _LINE_MM = 5.5
@@ -68,13 +70,16 @@ def write_marker_sheets(sheets: MarkerSheets, path: str | Path) -> None:
     ------
     UsageError
         E174: they do not fit on the page, or the family has no such markers; E305 without OpenCV.
+    OSError
+        When the file cannot be written; an existing one is as it was.
     """
-    # All pages are made before the file is: an error leaves none behind.
-    figures = [marker_page(sheets, ids) for ids in sheets.pages]
     undated = {"CreationDate": None, "Producer": None, "Creator": None}
-    with PdfPages(path, metadata=undated) as pdf:
-        for figure in figures:
-            pdf.savefig(figure)
+    with BytesIO() as file:
+        with PdfPages(file, metadata=undated) as pdf:
+            for ids in sheets.pages:
+                pdf.savefig(marker_page(sheets, ids))
+        # All pages are made before the file is: an error leaves none behind.
+        write_whole(Path(path), file.getvalue())
 
 
 def marker_page(sheets: MarkerSheets, ids: Sequence[int]) -> Figure:

@@ -7,6 +7,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from drystone.io.atomic import write_atomically
 from drystone.report.experiments_words import about, heading, lead, made_rows, part, shown
 
 PAGE = "index.html"
@@ -204,5 +205,5 @@ def _write(path: Path, **content: object) -> Path:
         lstrip_blocks=True,
     )
     text = environment.get_template(TEMPLATE).render(**content)
-    path.write_text(text, encoding="utf-8", newline="\n")
+    write_atomically(path, text.encode("utf-8", "replace"))
     return path

@@ -3,6 +3,7 @@
 import base64
 from pathlib import Path
 
+from drystone.io.atomic import write_atomically
 from drystone.plotting.files import MECHANISMS, PICTURE
 from drystone.report import content
 from drystone.report.embedding import (
@@ -37,6 +38,11 @@ def write_report(path: str | Path, view: View, *, pictures: str | Path | None = 
     -------
     path : Path
         The file.
+
+    Raises
+    ------
+    PlanError
+        E206 when it cannot be written; an existing one is as it was.
     """
     path = Path(path)
     folder = None if pictures is None else Path(pictures)
@@ -56,7 +62,7 @@ def write_report(path: str | Path, view: View, *, pictures: str | Path | None = 
             digits=1 if view["unit"] == "px" else 3,
         )
     )
-    path.write_text(text, encoding="utf-8", newline="\n")
+    write_atomically(path, text.encode("utf-8", "replace"))
     return path
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
-from drystone.cli.analyse_pictures import REPORT, draw, draw_friction, prepare
+from drystone.cli.analyse_pictures import REPORT, clear, draw, draw_friction, prepare
 from drystone.cli.analyse_scatter import noise_unit, scatter_of, wants_scatter
 from drystone.cli.analyse_size import metres_per_unit, scarcity, size_words
 from drystone.cli.analyse_tables import write_tables
@@ -83,6 +83,7 @@ def _write_all(
     from drystone.cli.analyse_report import write_analysis  # noqa: PLC0415 - slow import
 
     ends = (card.resistance.left, card.resistance.right)
+    clear(folder)
     draw(pictures, wall, loads, ends)
     write_tables(folder, card.model, ends, per_unit_m)
     curve = draw_friction(folder, card.model, loads)
@@ -179,6 +180,7 @@ def _print_range(wall: Modelled, arguments: argparse.Namespace, pictures: list[P
         remarks=wall.remarks,
     )
     if pictures:
+        clear(pictures[0].parent)
         draw(pictures, wall, loads, ends)
     if arguments.json:
         print_json(card.report())

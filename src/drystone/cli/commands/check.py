@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from drystone.cli.check_physics import physics_of
 from drystone.cli.checked import PICTURE, Checked
-from drystone.cli.inputs import files_of, files_of_wall, refuse_inputs
+from drystone.cli.inputs import files_of, files_of_wall, refuse_among_masks, refuse_inputs
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_of
 from drystone.errors import ExitCode, InputError, PlanError
@@ -36,6 +36,8 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     plan = read_plan(path)
     source = Path(arguments.stones) if arguments.stones else _find_stones(plan, path.parent)
     refuse_inputs((*files_of(source), *files_of_wall(path)), _drawn(arguments, path.parent))
+    if arguments.picture:
+        refuse_among_masks(source, [Path(arguments.picture)])
     # The image of a plan without stones is no picture of stones.
     labels = read_image_of(plan, path.parent) if plan.steps else None
     blocks = _blocks_beside(plan, path.parent)

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from drystone.cli.announce import WRITTEN
+from drystone.cli.choice import files_of_choice
 from drystone.cli.inputs import refuse_inputs
 from drystone.cli.output import prepare_folder
 from drystone.cli.planning import plan_and_write
@@ -24,10 +25,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     settings_from(arguments)  # wrong options are refused before anything is written
     folder = Path(arguments.output)
     own = () if arguments.settings is None else (Path(arguments.settings),)
-    refuse_inputs(own, [folder / name for name in (STONES, *WRITTEN)])
+    names = (STONES, *WRITTEN)
+    refuse_inputs(own, [*(folder / name for name in names), *files_of_choice(folder)])
     settings = RubbleSettings(count=24, width_px=1120, height_px=320)
     made = rubble_stones(settings, np.random.default_rng(arguments.seed))
-    prepare_folder(folder, overwrite=arguments.overwrite)
+    prepare_folder(folder, names, overwrite=arguments.overwrite)
     # The stones lie beside the plan, so that `drystone check` finds them.
     write_labels(lay_out(made), folder / STONES)
     arguments.overwrite = True

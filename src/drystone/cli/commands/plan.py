@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 
 from drystone.cli.announce import WRITTEN
-from drystone.cli.choice import FOLDER
-from drystone.cli.inputs import files_of, files_of_plan, refuse_inputs
+from drystone.cli.choice import files_of_choice
+from drystone.cli.inputs import files_of, files_of_plan, refuse_among_masks, refuse_inputs
 from drystone.cli.lengths import parse_wall
 from drystone.cli.planning import plan_and_write
 from drystone.cli.reading import reading_from
@@ -22,9 +22,11 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     source, folder = Path(arguments.stones), Path(arguments.output)
     begin = () if arguments.begin is None else files_of_plan(Path(arguments.begin))
     own = () if arguments.settings is None else (Path(arguments.settings),)
-    refuse_inputs((*files_of(source), *own), [folder / name for name in WRITTEN])
+    read, written = (*files_of(source), *own), [folder / name for name in WRITTEN]
+    refuse_inputs(read, written)
     # A plan may be replaced by a better one, the choice of an earlier search may not.
-    refuse_inputs(begin, (folder / FOLDER).glob("*/plan.json"))
+    refuse_inputs((*read, *begin), files_of_choice(folder))
+    refuse_among_masks(source, written)
     stones = read_stones(source, settings=reading_from(arguments))
     for notice in stones.notices:
         print(f"drystone: {notice}", file=sys.stderr)

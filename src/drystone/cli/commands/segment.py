@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
             "E131", "an area in cm2 needs the scale of the photograph.", where="--min-area",
             cure="Give it with --aruco, --px-per-m or --ruler, or give the area in px.",
         )  # fmt: skip
-    prepare_folder(folder, overwrite=arguments.overwrite)
+    prepare_folder(folder, WRITTEN, overwrite=arguments.overwrite)
     result = segment_photo(
         photo.values, scale, settings, arguments.min_area, max_px=round(arguments.mpx * 1e6)
     )

@@ -4,7 +4,7 @@ import argparse
 import statistics
 from pathlib import Path
 
-from drystone.cli.inputs import files_of, refuse_inputs
+from drystone.cli.inputs import files_of, refuse_among_masks, refuse_inputs
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_from
 from drystone.cli.scale import picture_size_px, refuse_outside, scale_notice, scale_with
@@ -21,6 +21,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     source = Path(arguments.stones)
     if picture is not None:
         refuse_inputs(files_of(source), [picture])
+        refuse_among_masks(source, [picture])
         prepare_picture(picture, overwrite=arguments.overwrite)
     stones = read_stones(source, settings=reading_from(arguments))
     refuse_outside(arguments.px_per_m, picture_size_px(stones.source))

@@ -28,7 +28,8 @@ _DEGREES = ("CRS84", "4326", "WGS84")
 
 def is_geojson(content: object) -> bool:
     """Tell GeoJSON by its type."""
-    return isinstance(content, Mapping) and content.get("type") in _KINDS
+    kind = content.get("type") if isinstance(content, Mapping) else None
+    return isinstance(kind, str) and kind in _KINDS
 
 
 def read_geojson(content: Mapping[str, Any], where: str, settings: ReadSettings) -> OutlineFile:

@@ -1,0 +1,35 @@
+"""Files that are either whole or not there."""
+
+import os
+import uuid
+from contextlib import suppress
+from pathlib import Path
+
+
+def write_whole(path: Path, data: bytes) -> None:
+    """Write a file beside its place and move it there, so that no reader ever sees half of it.
+
+    Whatever stops it, an interrupt too, leaves an existing file as it was and no other behind.
+
+    Parameters
+    ----------
+    path : Path
+        Where to; an existing file is replaced.
+    data : bytes
+        All of it.
+
+    Raises
+    ------
+    OSError
+        Of the system, with the path: a full disk names no file by itself.
+    """
+    part = path.with_name(f".{path.name}.{uuid.uuid4().hex}.part")
+    try:
+        part.write_bytes(data)
+        os.replace(part, path)  # noqa: PTH105 - Path.replace says the same, os.replace says atomic
+    except BaseException as error:
+        with suppress(OSError):
+            part.unlink()
+        if isinstance(error, OSError):
+            raise OSError(error.errno, error.strerror or str(error), str(path)) from error
+        raise

@@ -1,0 +1,92 @@
+"""What cannot be written is refused before the work, and JSON is JSON on any stdout."""
+
+import io
+import json
+import sys
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from drystone.cli import main, output, planning
+from drystone.cli.commands import segment
+from tests.cli.conftest import WALL, Run
+
+
+def refuse_to_work(*_: object, **__: object) -> NoReturn:
+    raise AssertionError("it was planned before the folder was looked at")
+
+
+@pytest.mark.parametrize(
+    ("folders", "files", "said"),
+    [
+        (["report.html"], [], "report.html: is a folder"),
+        (["wall.tif"], [], "wall.tif: is a folder"),
+        (["pareto.png"], [], "pareto.png: is a folder"),
+        ([], ["pareto"], "pareto: is a file"),
+        (["pareto"], ["pareto/02"], "02: is a file"),
+        (["pareto/01/plan.json"], [], "plan.json: is a folder"),
+    ],
+)
+def test_what_is_in_the_way_is_said_before_the_search(
+    folders: list[str], files: list[str], said: str, rubble: Path, tmp_path: Path, run: Run,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    out = tmp_path / "out"
+    for name in folders:
+        (out / name).mkdir(parents=True)
+    out.mkdir(exist_ok=True)
+    for name in files:
+        (out / name).write_bytes(b"mine")
+    before = sorted(out.rglob("*"))
+    monkeypatch.setattr(planning, "plan_wall", refuse_to_work)
+    ran = run("plan", rubble, *WALL, "--pareto", "-o", out, "--overwrite")
+    assert (ran.code, ran.out) == (2, "")
+    assert "E129" in ran.err
+    assert said in ran.err
+    assert sorted(out.rglob("*")) == before
+
+
+def test_a_folder_that_cannot_be_written_into_is_said_before_the_search(
+    rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def read_only(**_: object) -> NoReturn:
+        raise OSError(30, "Read-only file system")
+
+    monkeypatch.setattr(output, "TemporaryFile", read_only)
+    monkeypatch.setattr(planning, "plan_wall", refuse_to_work)
+    out = tmp_path / "out"
+    ran = run("plan", rubble, *WALL, "-o", out)
+    assert ran.code == 3
+    assert f"E206 {out}: no file can be written there (Read-only file system)" in ran.err
+    assert list(out.iterdir()) == []
+
+
+def test_segment_looks_at_its_folder_before_the_photograph(
+    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    photo = tmp_path / "photo.jpg"
+    Image.fromarray(np.full((40, 40, 3), 90, np.uint8)).save(photo)
+    (tmp_path / "out" / "stones.json").mkdir(parents=True)
+    monkeypatch.setattr(segment, "segment_photo", refuse_to_work)
+    ran = run("segment", photo, "-o", tmp_path / "out", "--overwrite")
+    assert ran.code == 2
+    assert "stones.json: is a folder" in ran.err
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "utf-8", "ascii", "utf-16"])
+def test_json_is_json_on_any_stdout(
+    encoding: str, rubble: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    named = tmp_path / "Stäine 🪨.png"
+    named.write_bytes(rubble.read_bytes())
+    out = io.BytesIO()
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(out, encoding=encoding))
+    assert main(["stones", str(named), "--json"]) == 0
+    printed = out.getvalue().decode(encoding)
+    if encoding == "utf-8":
+        assert named.name in printed
+    told: dict[str, Any] = json.loads(printed)
+    assert told["source"] == named.name
