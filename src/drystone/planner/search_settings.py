@@ -22,6 +22,8 @@ class GoalSettings:
         a wall.
     enough : float
         F_AV beyond which more of it counts nothing, where it has no aim; 0 is none.
+    weak, firm : float
+        Further weight of what F_LR is short of `firm`, where it has no aim.
     F_SF, F_LR, F_AV, F_AH : float
         Aims: what is better than its aim counts no more than the aim; 0 is none.
     urgent : float
@@ -35,6 +37,8 @@ class GoalSettings:
     level: float = 0.5
     flush: float = 0.25
     enough: float = 0.0
+    weak: float = 0.0
+    firm: float = 0.9
     F_SF: float = 0.0
     F_LR: float = 0.0
     F_AV: float = 0.0
@@ -44,8 +48,8 @@ class GoalSettings:
     def __post_init__(self) -> None:
         if not self.urgent > 0:
             raise ValueError("urgent must be positive")
-        if min(self.F_SF, self.F_LR, self.F_AV, self.F_AH, self.enough) < 0:
-            raise ValueError("aims and what is enough must not be negative")
+        if min(self.F_SF, self.F_LR, self.F_AV, self.F_AH, self.enough, self.firm) < 0:
+            raise ValueError("aims, what is enough and what is firm must not be negative")
 
 
 @dataclass(frozen=True, kw_only=True)
