@@ -49,28 +49,6 @@ def test_nothing_is_gained_beyond_an_aim(
     assert merit(aim) > merit(short)
 
 
-def test_interlocking_beyond_what_is_enough_counts_nothing_unless_it_has_an_aim() -> None:
-    def merit(value: float, goal: GoalSettings) -> float:
-        return merit_of(replace(WALL, F_AV=value), 1.0, goal)
-
-    enough = replace(GOAL, enough=30.0)
-    assert merit(35.0, enough) == merit(30.0, enough) == merit(30.0, GOAL)
-    assert merit(29.0, enough) == merit(29.0, GOAL) < merit(30.0, GOAL)
-    aimed = replace(enough, F_AV=33.0)
-    assert merit(35.0, aimed) == merit(33.0, aimed) == merit(33.0, replace(GOAL, F_AV=33.0))
-    assert merit(33.0, aimed) > merit(30.0, aimed)
-
-
-def test_what_a_weak_wall_is_short_of_counts_more_unless_resistance_has_an_aim() -> None:
-    def merit(value: float, goal: GoalSettings) -> float:
-        return merit_of(replace(WALL, F_LR=value), 1.0, goal)
-
-    firm = replace(GOAL, weak=2.0, firm=0.8)
-    assert merit(0.9, firm) == merit(0.9, GOAL)
-    assert merit(0.6, GOAL) - merit(0.6, firm) == pytest.approx(2.0 * 0.2)
-    assert merit(0.6, replace(firm, F_LR=0.7)) == merit(0.6, replace(GOAL, F_LR=0.7))
-
-
 def test_an_empty_wall_is_the_worst() -> None:
     assert merit_of(None, 0.9, GOAL) == -math.inf
 
@@ -87,7 +65,7 @@ def test_figures_are_those_of_the_wall() -> None:
     assert figures_of(empty.build) is None
 
 
-@pytest.mark.parametrize("wrong", [{"urgent": 0.0}, {"F_AH": -1.0}, {"enough": -1.0}, {"firm": -0.1}])
+@pytest.mark.parametrize("wrong", [{"urgent": 0.0}, {"F_AH": -1.0}])
 def test_goals_that_mean_nothing_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ValueError, match=r"urgent|aims"):
         GoalSettings(**wrong)

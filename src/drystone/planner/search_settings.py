@@ -20,10 +20,6 @@ class GoalSettings:
     resistance, vertical, horizontal, level, flush : float
         Weights of F_LR (up to 1), F_AV, F_AH, T_LEVEL and E_FLUSH; the last three count against
         a wall.
-    enough : float
-        F_AV beyond which more of it counts nothing, where it has no aim; 0 is none.
-    weak, firm : float
-        Further weight of what F_LR is short of `firm`, where it has no aim.
     F_SF, F_LR, F_AV, F_AH : float
         Aims: what is better than its aim counts no more than the aim; 0 is none.
     urgent : float
@@ -36,9 +32,6 @@ class GoalSettings:
     horizontal: float = 0.25
     level: float = 0.5
     flush: float = 0.25
-    enough: float = 0.0
-    weak: float = 0.0
-    firm: float = 0.9
     F_SF: float = 0.0
     F_LR: float = 0.0
     F_AV: float = 0.0
@@ -48,8 +41,8 @@ class GoalSettings:
     def __post_init__(self) -> None:
         if not self.urgent > 0:
             raise ValueError("urgent must be positive")
-        if min(self.F_SF, self.F_LR, self.F_AV, self.F_AH, self.enough, self.firm) < 0:
-            raise ValueError("aims, what is enough and what is firm must not be negative")
+        if min(self.F_SF, self.F_LR, self.F_AV, self.F_AH) < 0:
+            raise ValueError("aims must not be negative")
 
 
 @dataclass(frozen=True, kw_only=True)

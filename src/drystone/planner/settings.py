@@ -188,17 +188,7 @@ METHODS: Mapping[str, PlannerSettings] = types.MappingProxyType(
             placement=PlacementSettings(rule="snug", reach="above", tries=4, compare=True),
             stabilise=StabiliseSettings(margin=0.1, min_wedge_px=1),
             score=ScoreSettings(thickness=1.5, llc=4.0),
-            search=SearchSettings(budget=16, wedge_below=0.3),
-            goal=GoalSettings(
-                filling=25.0,
-                resistance=1.25,
-                vertical=0.02,
-                horizontal=0.5,
-                level=0.75,
-                flush=1.0,
-                enough=40.0,
-                weak=1.75,
-            ),
+            search=SearchSettings(budget=16),
         ),
     }
 )

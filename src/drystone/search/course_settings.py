@@ -85,9 +85,9 @@ class CourseSettings:
     high: float = 6.0
     flush: float = 1.0
     left_out: float = 8.0
-    across: float = 0.12
+    across: float = 0.08
     down: float = 0.012
-    target: float = 65.0
+    target: float = 100.0
     apart: float = 0.01
     evaluations: int = 3_000
     most_evaluations: int = 1_000_000

@@ -94,26 +94,13 @@ def merit_of(figures: Figures | None, possible: float, goal: GoalSettings) -> fl
         [
             goal.filling * _up(figures.F_SF, goal.F_SF, goal.urgent) / possible,
             goal.resistance * _up(min(1.0, figures.F_LR), goal.F_LR, goal.urgent),
-            -goal.weak * _weakness(figures, goal),
-            goal.vertical * _interlocking(figures, goal),
+            goal.vertical * _up(figures.F_AV, goal.F_AV, goal.urgent),
             -goal.horizontal * _down(figures.F_AH, goal.F_AH, goal.urgent),
             -goal.level * figures.T_LEVEL,
             -goal.flush * figures.E_FLUSH,
             -MISSING * figures.missing,
         ]
     )
-
-
-def _interlocking(figures: Figures, goal: GoalSettings) -> float:
-    """Return what F_AV counts: without an aim no more than what is enough."""
-    if goal.F_AV == 0.0 and goal.enough > 0.0:
-        return min(figures.F_AV, goal.enough)
-    return _up(figures.F_AV, goal.F_AV, goal.urgent)
-
-
-def _weakness(figures: Figures, goal: GoalSettings) -> float:
-    """Return what F_LR is short of being firm: a wall that is weak is no good otherwise."""
-    return 0.0 if goal.F_LR > 0.0 else max(0.0, goal.firm - figures.F_LR)
 
 
 def _up(value: float, aim: float, urgent: float) -> float:
