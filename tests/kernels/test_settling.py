@@ -304,3 +304,17 @@ def test_mirror_images_of_exact_coordinates_give_the_same_bits(settle):
 def test_what_is_not_a_number_does_not_rest(settle):
     for pose in ((math.nan, 9.0, 0.0), (50.0, math.nan, 0.0), (50.0, 9.0, math.nan)):
         assert let_go(settle, BRICK, pose).status != Status.RESTS
+
+
+@pytest.mark.parametrize(
+    "fast", [pytest.param(True, id="compiled", marks=absent), pytest.param(False, id="python")]
+)
+@pytest.mark.parametrize("mu", [0.0, -0.5, math.nan])
+def test_without_friction_there_is_no_margin(fast, mu, monkeypatch):
+    if not fast:
+        monkeypatch.setattr(module, "_fast", None)
+        monkeypatch.setattr(module, "_firm", None)
+    with pytest.raises(ValueError, match="mu must be positive"):
+        module.rest_margin(at(BRICK, 50.0, 5.02), (50.0, 5.02), no_polygons(), 200.0, mu, 0.1)
+    with pytest.raises(ValueError, match="mu must be positive"):
+        let_go(module.settle, BRICK, (50.0, 9.0, 0.0), mu=mu)

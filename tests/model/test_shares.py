@@ -78,15 +78,10 @@ def test_fresh_cells_are_those_that_become_part_of_the_image(
     block_id, new, left, bottom = made[-1]
     appear = (shares.labels == 0) & (shares.added(block_id, new, left, bottom).labels > 0)
     fresh = shares.fresh(new, left, bottom)
-    outside = {
-        (left + col, bottom + len(new) - 1 - row) for row, col in np.argwhere(new >= 0.5).tolist()
-    }
-    outside = {(x, y) for x, y in outside if not (0 <= x < width and 0 <= y < height)}
     if fresh is None:
-        assert outside or not appear.any()
+        assert not appear.any()
         return
     mask, row, col = fresh
-    assert not outside
     image = np.zeros((height, width), bool)
     image[row : row + mask.shape[0], col : col + mask.shape[1]] = mask
     np.testing.assert_array_equal(image, appear)
@@ -139,6 +134,13 @@ def test_a_block_beside_the_site_adds_nothing() -> None:
         beside = shares.added(5, np.ones((1, 2)), left, bottom)
         assert beside.total.sum() == 0.0
         assert shares.fresh(np.ones((1, 2)), left, bottom) is None
+
+
+def test_fresh_cells_are_cropped_to_the_site() -> None:
+    shares = Shares.empty(2, 3)
+    fresh = shares.fresh(np.array([[0.7, 0.9, 0.8], [0.6, 0.2, 1.0]]), 2, 1)
+    assert fresh is not None
+    assert (fresh[0].tolist(), fresh[1:]) == ([[True]], (0, 2))
 
 
 def test_fresh_is_in_rows_from_the_top() -> None:

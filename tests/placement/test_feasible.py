@@ -113,10 +113,12 @@ def test_a_stone_larger_than_the_site_fits_nowhere(reach: Reach) -> None:
 
 
 @repeatable()
-@given(landscapes(), masks())
-def test_what_can_be_lowered_is_what_reach_above_finds(occupied: Mask, mask: Mask) -> None:
+@given(landscapes(), masks(), st.integers(0, 3))
+def test_what_can_be_lowered_is_what_reach_above_finds(
+    occupied: Mask, mask: Mask, clearance: int
+) -> None:
     landscape = Landscape(occupied, ())
     posed = PosedStone(Stone(1, mask), 0.0, 1.0, mask.copy(), (0.5, 0.5))
-    lowered = {tuple(p) for p in feasible_positions(landscape, posed, "above").tolist()}
+    lowered = {tuple(p) for p in feasible_positions(landscape, posed, "above", clearance).tolist()}
     for row, col in feasible_positions(landscape, posed, "any").tolist():
-        assert can_be_lowered(landscape, posed, row, col) == ((row, col) in lowered)
+        assert can_be_lowered(landscape, posed, row, col, clearance) == ((row, col) in lowered)

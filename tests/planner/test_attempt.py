@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from drystone.model.landscape import Landscape
+from drystone.model.placement import Placement
 from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone.planner.attempt import Attempt
@@ -15,6 +16,7 @@ from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import RasterProposer, Spotted, Trial
 from drystone.planner.settings import PlannerSettings
+from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.growing import GrowingAnalysis
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
 
@@ -153,3 +155,18 @@ def test_a_stone_that_turns_out_of_reach_from_above_is_not_proposed(
     assert proposer.stabilised(proposer.spotted(trial)) is not None
     monkeypatch.setattr("drystone.planner.proposing.can_be_lowered", lambda *_: False)
     assert proposer.stabilised(proposer.spotted(trial)) is None
+
+
+@pytest.mark.parametrize(("clearance_px", "proposed"), [(0, True), (1, True), (2, False)])
+def test_a_stone_that_turns_keeps_its_clearance(clearance_px: int, proposed: bool) -> None:
+    """From where it is stabilised it moves into a slot with one px to spare on both sides."""
+    placing = {"reach": "above", "clearance_px": clearance_px}
+    settings = greedy({"geometry": "raster", "placement": placing})
+    planner = Planner(blocks({1: (20, 10), 2: (20, 10)}), Site(60, 40), settings=settings)
+    proposer = RasterProposer(planner.workshop, settings, planner.build, Profile())
+    posed = planner.workshop.poses(1)[0]
+    assert posed.mask.shape == (10, 20)
+    slot = np.zeros((40, 60), bool)
+    slot[10:, :19] = slot[10:, 41:] = True
+    turned = Stabilised(Placement(posed, 30, 20, "left", 1))
+    assert proposer._reached(Landscape(slot, ()), turned) is proposed

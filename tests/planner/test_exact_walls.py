@@ -28,7 +28,7 @@ from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall, run_to_end
 from drystone.settle.rest import placed_outline
 from drystone.verify import check_plan
-from tests.planner.scenes import finish, greedy, outlines, same
+from tests.planner.scenes import finish, greedy, outlines, rubble, same
 from tests.strategies import repeatable
 
 Case = tuple[StoneSet, tuple[float, float], float, PlannerSettings]
@@ -194,3 +194,15 @@ def test_walls_of_a_search_are_true() -> None:
     check(result, stones)
     check_outlines(result, WEDGES, SITE)
     assert result.wall.wedges
+
+
+def test_walls_that_are_no_whole_number_of_columns_take_stones_from_both_ends() -> None:
+    # The last .45 px of the wall have no column, and stones at its end fill half of one there.
+    stones, site = rubble(2, 10), Site.from_source(100.45, 36.0)
+    result = plan_wall(stones, 100.45, 36.0, seed=1, settings=greedy())
+    check(result, stones)
+    check_outlines(result, greedy(), site)
+    assert result.wall.labels.shape == (36, 100)
+    corners = [p.settled.corners for p in result.wall.placements if p.settled is not None]
+    assert max(float(one[:, 0].max()) for one in corners) > 100.5
+    assert sum(p.side == "right" for p in result.wall.placements) > 1

@@ -73,22 +73,37 @@ def test_what_is_there_helps_to_fill_pixels() -> None:
 
 @pytest.mark.parametrize(
     "corners",
-    [
-        box(5.1, 0.0, 5.5, 0.9),
-        box(-0.6, 0.0, 4.0, 3.0),
-        box(8.0, 0.0, 12.6, 3.0),
-        box(2.0, 5.0, 4.0, 8.6),
-    ],
-    ids=["too thin", "left", "right", "top"],
+    [box(5.1, 0.0, 5.5, 0.9), box(12.0, 0.0, 14.0, 3.0)],
+    ids=["too thin", "beside the wall"],
 )
-def test_no_pixel_or_one_outside_is_no_placement(corners: Points) -> None:
+def test_no_pixel_of_the_wall_is_no_placement(corners: Points) -> None:
     assert placed(Site(12, 8), corners) is None
 
 
-def test_a_little_over_the_edge_is_no_pixel() -> None:
-    made = placed(Site(12, 8), box(-0.25, 0.0, 12.25, 8.25))
+@pytest.mark.parametrize("over", [0.25, 0.6])
+def test_over_the_edge_there_are_no_pixels(over: float) -> None:
+    made = placed(Site(12, 8), box(-over, 0.0, 12.0 + over, 8.0 + over))
     assert made is not None
     assert (made.row, made.col, made.posed.mask.shape) == (0, 0, (8, 12))
+    assert made.posed.anchor == pytest.approx((6.0, 4.0 + over / 2.0))
+
+
+@pytest.mark.parametrize(
+    ("corners", "at", "shape"),
+    [
+        (box(-0.6, 0.0, 4.0, 3.0), (5, 0), (3, 4)),
+        (box(8.0, 0.0, 12.6, 3.0), (5, 8), (3, 4)),
+        (box(2.0, 5.0, 4.0, 8.6), (0, 2), (3, 2)),
+    ],
+    ids=["left", "right", "top"],
+)
+def test_pixels_are_cropped_to_the_wall(
+    corners: Points, at: tuple[int, int], shape: tuple[int, int]
+) -> None:
+    made = placed(Site(12, 8), corners)
+    assert made is not None
+    assert ((made.row, made.col), made.posed.mask.shape) == (at, shape)
+    assert made.posed.mask.all()
 
 
 def test_wedges() -> None:

@@ -7,7 +7,7 @@ from hypothesis import given
 
 from drystone.kernels.crevice import crevice
 from drystone.kernels.polygons import Points, Polygons, no_polygons, on_grid
-from drystone.settle.wedge import PLACES, rests, wedges_below
+from drystone.settle.wedge import PLACES, gridded, rests, wedges_below
 from drystone.settle.wedge_spans import Slabs, WedgeLimits, all_spans
 from tests.settle.piles import WIDTH, piles
 from tests.settle.test_wedge import box
@@ -62,6 +62,29 @@ def test_the_stone_is_no_obstacle_to_its_own_wedges() -> None:
         tuple(on_grid(np.array(span)).tolist()) for span in spans(LIMITS)
     }
     assert list(wedges_below(wall, 0, LIMITS)) == []
+
+
+def test_the_grid_makes_no_two_corners_one() -> None:
+    # Where the highest wedge may end, the floor has a corner a third of a step of the grid off.
+    stone = box(10.0, 10.0, 30.0, 13.0)
+    slab = on_grid(np.array([[8.0, 0.01], [34.0, 0.01], [34.0, 7.0], [14.0, 9.0], [8.0, 9.6]]))
+    wall = no_polygons().added([slab, stone])
+    floor = crevice(stone, wall.leading(1), 0.01).floor
+    k = int(np.argmin(np.abs(floor[:, 0] - 14.0)))
+    (before_x, before_y), (x, y) = floor[k - 1].tolist(), floor[k].tolist()
+    fall = (before_y - y) / (x - before_x)
+    smallest = 9.99 - y - 3e-7 * fall
+    limits = WedgeLimits(smallest_px=smallest, largest_px=6.0, contact_px=0.05)
+    wedges = list(wedges_below(wall, 1, limits))
+    assert any(np.abs(wedge[:, 0] - x).min() < 1e-6 for wedge in wedges)
+    for wedge in wedges:
+        assert (wedge != np.roll(wedge, 1, axis=0)).any(axis=1).all()
+
+
+def test_corners_that_the_grid_makes_one_are_one() -> None:
+    tiny = 1e-7
+    corners = np.array([[0, tiny], [0, 0], [2, 0], [2, tiny], [2, 2 * tiny], [2, 1], [0, 1]])
+    assert gridded(corners).tolist() == [[0, 0], [2, 0], [2, 1], [0, 1]]
 
 
 def test_a_wedge_rests_or_falls() -> None:

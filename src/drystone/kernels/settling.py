@@ -52,7 +52,13 @@ def settle(
         Of the wall; its ends at x = 0 and `width` stop the stone, but carry nothing.
     rules : Rules
         How.
+
+    Raises
+    ------
+    ValueError
+        When mu is not positive.
     """
+    _require_friction(rules.mu)
     if _fast is None:
         return settle_python(outline, edges, pose, around, width, rules)
     numbers = np.array(rules[:14], np.float64)
@@ -86,7 +92,7 @@ def rest_margin(  # noqa: PLR0913, PLR0917 - as many facts as it takes
     width : float
         Of the wall; its ends carry nothing.
     mu : float
-        Coefficient of friction.
+        Coefficient of friction, positive: margins are shares of it.
     tolerance : float
         Gaps up to this one touch.
     corner, steep : float
@@ -96,7 +102,13 @@ def rest_margin(  # noqa: PLR0913, PLR0917 - as many facts as it takes
     -------
     margin : float
         -1 when it does not rest; 10 or more counts as 10.
+
+    Raises
+    ------
+    ValueError
+        When mu is not positive.
     """
+    _require_friction(mu)
     edges = polygon_edges(corners)
     if _firm is None:
         friction = Friction(mu, tolerance, corner, steep)
@@ -107,3 +119,8 @@ def rest_margin(  # noqa: PLR0913, PLR0917 - as many facts as it takes
             width, mu, tolerance, corner, steep,
         )
     )  # fmt: skip
+
+
+def _require_friction(mu: float) -> None:
+    if not mu > 0.0:
+        raise ValueError(f"mu must be positive, not {mu}")

@@ -27,7 +27,7 @@ class Rules(NamedTuple):
     stop : float
         Stop as soon as the stone rests with this margin; below 0: only where nothing is gained.
     mu : float
-        Coefficient of friction of the rest test.
+        Coefficient of friction of the rest test, above 0.
     clearance : float
         Gap that is left, above 0.
     tolerance : float

@@ -88,9 +88,11 @@ class Shares:
         row, col : int
             Its top-left corner in the site image.
 
-        None when there is none, or when one of them is outside of the site.
+        None when there is none.
         """
-        return newly_filled(self.total, shares, self._row(shares, bottom), left)
+        # A site that is no whole number of cells may lack one that a stone at its end half fills.
+        inside, part = windows(self.total.shape, shares.shape, self._row(shares, bottom), left)
+        return newly_filled(self.total, shares[part], inside[0].start, inside[1].start)
 
     def _row(self, shares: Grid, bottom: int) -> int:
         """Return the row of the site image in which the top of some shares is."""

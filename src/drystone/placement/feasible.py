@@ -3,6 +3,7 @@
 from typing import Literal
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from drystone.kernels.lowering import Positions, lowered_positions
 from drystone.model.landscape import Landscape
@@ -46,7 +47,35 @@ def feasible_positions(
     return landscape.bits.resting(posed.silhouette)
 
 
-def can_be_lowered(landscape: Landscape, posed: PosedStone, row: int, col: int) -> bool:
-    """Say whether nothing stands above a place, so that the stone can be lowered in from above."""
+def can_be_lowered(
+    landscape: Landscape, posed: PosedStone, row: int, col: int, clearance_px: int = 0
+) -> bool:
+    """Say whether nothing stands above a place, so that the stone can be lowered in from above.
+
+    Parameters
+    ----------
+    landscape : Landscape
+        What is built, in its view.
+    posed : PosedStone
+        The stone, in the same view.
+    row, col : int
+        Of its mask's top-left corner.
+    clearance_px : int
+        As for :func:`feasible_positions`.
+    """
     tops = landscape.skyline[col : col + posed.width_px]
-    return bool(np.all(tops > row + posed.bottom))
+    if not np.all(tops > row + posed.bottom):
+        return False
+    return clearance_px == 0 or _has_clearance(landscape, posed, (row, col), clearance_px)
+
+
+def _has_clearance(
+    landscape: Landscape, posed: PosedStone, at: tuple[int, int], clearance_px: int
+) -> bool:
+    """Say whether a stone comes down to one own height above a place with room on both sides."""
+    row, col = at
+    # Beyond its ends the landscape is free down to the ground.
+    tops = np.pad(landscape.skyline, clearance_px, constant_values=landscape.height_px)
+    tops = tops[col : col + posed.width_px + 2 * clearance_px]
+    near = sliding_window_view(tops, 2 * clearance_px + 1).min(axis=1)
+    return bool(np.all(near > row - posed.height_px + posed.bottom))

@@ -21,7 +21,7 @@ from drystone.planner.evaluate import Evaluator
 from drystone.planner.measured import Place
 from drystone.planner.replay import judged, stands
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.settled import settled_in
+from drystone.planner.settled import settled_in, stands_out_px
 from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
 from drystone.settle.rest import Repose, Scene, Turned, come_to_rest, lay, placed_outline
@@ -161,6 +161,7 @@ def _on_outlines(
     turned = workshop.outlines.hung(one.stone, one.place.angle_deg, one.side).turned
     limits = wedge_limits(settings, workshop.stock, wall.site.scale)
     starts = _starts(turned, one.place, scene, settle.clearance_px)
+    taken_in = partial(_taken_in, build, one, workshop, settle.beyond_px)
 
     def held(start: tuple[float, float]) -> Rested | None:
         found = wedged(turned, scene, start, settle, limits)
@@ -176,16 +177,16 @@ def _on_outlines(
 
     first = (held if one.on_wedges else laid)(starts[0])
     if first is not None and _moved(one, first) <= ENOUGH_PX:
-        yield from _taken_in(build, one, workshop, *first)
+        yield from taken_in(*first)
     tried = [way(start) for way in (laid, settled) for start in starts]
     tried += [held(start) for start in starts[:WEDGED]]
     rested = [found for found in tried if found is not None]
     for found in _different(sorted(rested, key=partial(_moved, one))):
         if _moved(one, found) <= one.reach_px:
-            yield from _taken_in(build, one, workshop, *found)
+            yield from taken_in(*found)
     for start in starts:
         if not crosses_any(turned.corners + np.array(start), scene.polygons):
-            yield from _taken_in(build, one, workshop, _as_it_is(turned, scene, start), None)
+            yield from taken_in(_as_it_is(turned, scene, start), None)
             return
 
 
@@ -202,9 +203,18 @@ def _different(rested: Iterable[Rested]) -> Iterator[Rested]:
 
 
 def _taken_in(
-    build: Build, one: Measured, workshop: Workshop, repose: Repose, wedge: Points | None
+    build: Build,
+    one: Measured,
+    workshop: Workshop,
+    beyond_px: float,
+    repose: Repose,
+    wedge: Points | None,
 ) -> Iterator[Stabilised]:
-    """Give a stone with the pixels that it fills, unless it fills none."""
+    """Give a stone with the pixels that it fills, unless it fills none or leaves the wall."""
+    # Measured stones are not where they were planned: half a working px is allowed at least.
+    allowed_px = max(beyond_px, 0.5 / build.wall.site.scale)
+    if stands_out_px(repose.settled.corners, build.wall.site) >= allowed_px:
+        return
     number = workshop.next_wedge(build)
     found = settled_in(build.wall, one.stone, one.side, repose, wedge, wedge_id=number)
     if found is not None:

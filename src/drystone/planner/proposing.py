@@ -232,11 +232,13 @@ class RasterProposer:
 
     def _reached(self, landscape: Landscape, stabilised: Stabilised) -> bool:
         """Say whether a stone that was turned can still be put where it is."""
-        if self._settings.placement.reach == "any":
+        settings = self._settings.placement
+        if settings.reach == "any":
             return True
         placement = stabilised.placement
         posed, col = placement.posed, landscape.view_col(placement.posed, placement.col)
-        return can_be_lowered(landscape, landscape.view(posed), placement.row, col)
+        view = landscape.view(posed)
+        return can_be_lowered(landscape, view, placement.row, col, settings.clearance_px)
 
     def _proposal(self, trial: Trial, trial_angle_deg: float, stabilised: Stabilised) -> Proposal:
         with self._profile.part("indices"):

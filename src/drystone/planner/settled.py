@@ -2,6 +2,7 @@
 
 from drystone.kernels.polygons import Points
 from drystone.model.placement import Side
+from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Wall, outlined
 from drystone.settle.placing import settled_placement, settled_wedge
@@ -19,6 +20,8 @@ def settled_in(
     wedge_id: int,
 ) -> Stabilised | None:
     """Return a stone and its wedge with the pixels that they fill; None when it fills none.
+
+    Whether it leaves the wall is not asked: :func:`stands_out_px` says it.
 
     Parameters
     ----------
@@ -50,3 +53,29 @@ def settled_in(
     with_stone = wall.outlines.added(outlined(placement, ()), wall.site.scale)
     under = settled_wedge(with_stone, wall.site, wedge_id, stone.id, wedge)
     return Stabilised(placement, (under,))
+
+
+def stands_out_px(corners: Points, site: Site) -> float:
+    """Return how far an outline stands out over the ends or the top of a wall, source px.
+
+    Parameters
+    ----------
+    corners : (n, 2) float array
+        In the wall frame, source px.
+    site : Site
+        Of the wall.
+
+    Returns
+    -------
+    out_px : float
+        Below 0 where it stays within them.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> stands_out_px(np.array([[1.0, 0.0], [8.5, 0.0], [8.5, 3.0]]), Site(8, 4))
+    0.5
+    """
+    (left, _), (right, top) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+    width, height = site.extent_px
+    return float(max(-left, right - width, top - height))

@@ -27,6 +27,7 @@ def settled_placement(
     """Return the placement of a settled stone; None when it fills no pixel of the wall.
 
     Its pixels are those that become half full by it (DESIGN 4.9): they depend on what is there.
+    Whether it leaves the wall is not asked: where it stands out, it has no pixels.
 
     Parameters
     ----------

@@ -32,6 +32,7 @@ from drystone.settle.wedge_spans import (
 __all__ = [
     "WedgeLimits",
     "falling_side",
+    "gridded",
     "in_order",
     "met_below",
     "rests",
@@ -111,7 +112,29 @@ def wedges_below(polygons: Polygons, stone: int, limits: WedgeLimits) -> Iterato
     for span in all_spans(Slabs.of(space), PLACES, limits):
         wedge = between(space, *span)
         if wedge is not None:
-            yield on_grid(wedge)
+            yield gridded(wedge)
+
+
+def gridded(wedge: Points) -> Points:
+    """Return a wedge with its corners on the grid, of which no two in a row are the same.
+
+    Parameters
+    ----------
+    wedge : (n, 2) float array
+        Its corners.
+
+    Returns
+    -------
+    wedge : (m, 2) float array
+        Those that are less than a step of the grid apart may have become one.
+
+    Examples
+    --------
+    >>> gridded(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1e-7], [2.0, 1.0]])).tolist()
+    [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]]
+    """
+    corners = on_grid(wedge)
+    return np.asarray(corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)])
 
 
 def rests(wedge: Points, around: Polygons, width: float, limits: WedgeLimits) -> bool:

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
-from drystone.kernels.polygons import Points, mirrored_polygon, on_grid
+from drystone.kernels.polygons import Points, mirrored_polygon
 from drystone.settle.rest import Repose, Scene, Turned, touch_down
 from drystone.settle.settings import SettleSettings
-from drystone.settle.wedge import WedgeLimits, wedge_under
+from drystone.settle.wedge import WedgeLimits, gridded, wedge_under
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,4 +71,4 @@ def held(repose: Repose, scene: Scene, limits: WedgeLimits) -> Wedged | None:
         return None
     if scene.side == "right":
         wedge = mirrored_polygon(wedge, scene.width_px)
-    return Wedged(repose, on_grid(wedge))
+    return Wedged(repose, gridded(wedge))

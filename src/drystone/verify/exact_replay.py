@@ -70,7 +70,7 @@ class ExactCanvas:
         problems = self._overlaps(step, shape_of(corners))
         item = self._item(step, place)
         if item is None and not problems:
-            message = f"{piece_name(step)} fills no px of the wall, or one beside it."
+            message = f"{piece_name(step)} fills no px of the wall."
             problems.append(Problem("E220", step.step, message))
         self._outlines = self._outlines.added([(piece_id(step), corners)], self._site.scale)
         return Piece(step, item, corners), problems
