@@ -22,15 +22,23 @@ def refuse_inputs(read: Iterable[Path], written: Iterable[Path]) -> None:
     UsageError
         E129.
     """
-    sources = [path for path in read if path.exists()]
+    path = _first_of(read, written)
+    if path is not None:
+        raise UsageError(
+            "E129",
+            "is read here, and what is read is never replaced, also not with --overwrite.",
+            where=str(path),
+            cure="Choose another place for what is written.",
+        )
+
+
+def _first_of(kept: Iterable[Path], written: Iterable[Path]) -> Path | None:
+    """Return the first file to be written that is one of those to be kept, by any name."""
+    there = [path for path in kept if path.exists()]
     for path in written:
-        if path.exists() and any(path.samefile(source) for source in sources):
-            raise UsageError(
-                "E129",
-                "is read here, and what is read is never replaced, also not with --overwrite.",
-                where=str(path),
-                cure="Choose another place for what is written.",
-            )
+        if path.exists() and any(path.samefile(one) for one in there):
+            return path
+    return None
 
 
 def refuse_plans_own(wall: Path, written: Iterable[Path]) -> None:
@@ -51,15 +59,14 @@ def refuse_plans_own(wall: Path, written: Iterable[Path]) -> None:
     folder = wall if wall.is_dir() else wall.parent
     if not (folder / "plan.json").is_file():
         return
-    drawn = [path for name in DRAWN if (path := folder / name).exists()]
-    for path in written:
-        if path.exists() and any(path.samefile(own) for own in drawn):
-            raise UsageError(
-                "E129",
-                "belongs to the plan, and is not replaced by what is made of its wall.",
-                where=str(path),
-                cure="Choose another folder with -o.",
-            )
+    path = _first_of([folder / name for name in DRAWN], written)
+    if path is not None:
+        raise UsageError(
+            "E129",
+            "belongs to the plan, and is not replaced by what is made of its wall.",
+            where=str(path),
+            cure="Choose another folder with -o.",
+        )
 
 
 def refuse_among_masks(stones: Path, written: Iterable[Path]) -> None:

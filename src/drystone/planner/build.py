@@ -214,6 +214,14 @@ class Build:
             states.append(before)
         return tuple(reversed(states))
 
+    def course_heights_px(self) -> dict[int, float]:
+        """Return what Eq. 8 compared the stones with that began a course, by their ids."""
+        return {
+            action.stone_id: action.course_height_px
+            for action in self.actions
+            if action.course_height_px is not None
+        }
+
     def count(self, side: Side) -> int:
         """How many stones were placed from a side."""
         return sum(action.side == side for action in self.actions)

@@ -105,11 +105,7 @@ def _built(
     """Put stone after stone where it was measured."""
     keep = settings.search.budget > 1
     groups = {group.placement.stone_id: group for group in before.wall.groups}
-    heights = {
-        action.stone_id: action.course_height_px
-        for action in before.actions
-        if action.course_height_px is not None
-    }
+    heights = before.course_heights_px()
     build = start
     for stone_id in order:
         planned, place = groups.get(stone_id), places[stone_id]

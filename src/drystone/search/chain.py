@@ -22,7 +22,7 @@ from drystone.planner.workshop import Workshop
 from drystone.search.archive import archived
 from drystone.search.built_up import built_up
 from drystone.search.by_courses import newly_planned, relaid, replanned
-from drystone.search.found import Found, course_heights
+from drystone.search.found import Found
 from drystone.search.operators import NEW, RECREATED, REPLANNED, Credits, shares
 from drystone.search.packed import Packed, found_again
 from drystone.search.ruin import RUINS, taken_down
@@ -215,4 +215,4 @@ def without(
     first = next((k for k, g in enumerate(groups) if g.placement.stone_id in gone), len(groups))
     kept = [g for g in groups[first:] if g.placement.stone_id not in gone]
     start = build.states()[first]
-    return replayed(start, kept, course_heights(build), workshop, settings, strict=False)
+    return replayed(start, kept, build.course_heights_px(), workshop, settings, strict=False)

@@ -72,12 +72,3 @@ class Found:
         figures = figures_of(build, settings.pin)
         merit = merit_of(figures, possible_filling(workshop), settings.goal)
         return cls(build, figures, merit, solves or Solves(), courses)
-
-
-def course_heights(build: Build) -> dict[int, float]:
-    """Return what Eq. 8 compared the stones with that began a course."""
-    return {
-        action.stone_id: action.course_height_px
-        for action in build.actions
-        if action.course_height_px is not None
-    }

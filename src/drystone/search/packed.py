@@ -14,7 +14,7 @@ from drystone.planner.replay import replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
-from drystone.search.found import Courses, Found, course_heights
+from drystone.search.found import Courses, Found
 from drystone.search.goal import Figures
 
 UNSEEN: Mask = np.ones((1, 1), bool)
@@ -79,7 +79,7 @@ class Packed:
     @classmethod
     def of(cls, found: Found) -> "Packed":
         """Pack a wall."""
-        heights = course_heights(found.build)
+        heights = found.build.course_heights_px()
         groups = tuple(_packed_group(group, heights) for group in found.build.wall.groups)
         return cls(groups, found.figures, found.merit, found.solves, found.courses)
 

@@ -19,7 +19,6 @@ from drystone.planner.replay import replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
-from drystone.search.found import course_heights
 from drystone.search.wedge_draft import Draft
 from drystone.search.wedge_places import Motion, WedgePlace
 from drystone.settle.wedge import WedgeLimits
@@ -151,7 +150,7 @@ def wedged_up(
     """
     if build.wall.outlines is None:
         raise ValueError("only walls of outlines are wedged up")
-    yard = _Yard(workshop, settings, limits, course_heights(build))
+    yard = _Yard(workshop, settings, limits, build.course_heights_px())
     begun = _with_states(build, yard)
     wall = begun if begun is None or not begun.actions else _wedged(begun, yard, most)
     solves = sum(yard.trouble, Solves())
