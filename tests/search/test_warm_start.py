@@ -66,6 +66,22 @@ def test_steps_that_the_solver_gave_up_on_are_counted(monkeypatch: pytest.Monkey
     assert (planner.failed_solves, planner.cold_solves) == (2, 3)
 
 
+def test_what_stands_out_further_than_now_allowed_is_taken_out() -> None:
+    # A course may use all of 1 px; begun again with a smaller allowance, check would refuse it.
+    old = built()
+    corners = [action.stabilised.placement.settled.corners for action in old.build.actions]
+    width, height = RUBBLE_SITE.extent_px
+    out = [max(-c[:, 0].min(), c[:, 0].max() - width, c[:, 1].max() - height) for c in corners]
+    before = [action.stone_id for action in old.build.actions]
+    furthest = max(out)
+    assert furthest > 0.0
+    planner = new(old.settings.updated({"settle": {"beyond_px": furthest - 1e-3}}))
+    gone = begin_with(planner, old.build.wall, {})
+    assert before[out.index(furthest)] in gone
+    planner = new(old.settings.updated({"settle": {"beyond_px": furthest}}))
+    assert begin_with(planner, old.build.wall, {}) == ()
+
+
 def test_in_a_given_order_only_what_ascends_is_used() -> None:
     old = built()
     ids = [action.stone_id for action in old.build.actions]

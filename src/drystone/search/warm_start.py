@@ -2,9 +2,12 @@
 
 from collections.abc import Mapping
 
-from drystone.model.wall import Wall
+from drystone.model.wall import Group, Wall, outlined
 from drystone.planner.planner import Planner
 from drystone.planner.replay import replayed
+
+EDGE_PX = 1e-6
+"""What rounding may add to `settle.beyond_px`, source px."""
 
 
 def begin_with(
@@ -25,13 +28,15 @@ def begin_with(
     -------
     left_out : tuple of int
         Ids of the stones of the wall that were taken out: banned, out of their turn in a given
-        order, or not standing with these settings, as when what carried them is left out.
+        order, standing out of the wall by more than `settle.beyond_px` allows now, or not standing
+        with these settings, as when what carried them is left out.
     """
     workshop, settings = planner.workshop, planner.settings
     allowed, groups, last = set(workshop.fitting), [], -1
     for group in wall.groups:
         stone_id = group.placement.stone_id
-        if stone_id in allowed and (settings.order == "free" or stone_id > last):
+        in_turn = settings.order == "free" or stone_id > last
+        if stone_id in allowed and in_turn and _within(wall, group, settings.settle.beyond_px):
             groups.append(group)
             last = stone_id
     planner.build, _, solves = replayed(
@@ -41,3 +46,15 @@ def begin_with(
     planner.cold_solves += solves.cold
     used = {action.stone_id for action in planner.build.actions}
     return tuple(p.stone_id for p in wall.placements if p.stone_id not in used)
+
+
+def _within(wall: Wall, group: Group, beyond_px: float) -> bool:
+    """Say whether outlines stand out over the ends and the top by no more than they may."""
+    if wall.outlines is None:
+        return True
+    least = -beyond_px - EDGE_PX
+    width, height = wall.site.extent_px
+    return all(
+        min(x.min(), width - x.max(), height - y.max()) >= least
+        for x, y in (corners.T for _, corners in outlined(group.placement, group.wedges))
+    )
