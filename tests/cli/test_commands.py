@@ -304,6 +304,24 @@ def test_generate_takes_parameters(tmp_path: Path, run: Run) -> None:
     run("generate", "brick", "-o", path, "--count", 2, "--set", "height_px=6", "--set", "aspect=2")
     labels = read_wall_image(path)
     assert [int((labels == stone).sum()) for stone in (1, 2)] == [72, 72]
+    # Numbers are written as everywhere else, which TOML alone does not read.
+    first, other = tmp_path / "first.png", tmp_path / "other.png"
+    run(
+        "generate", "brick", "-o", first, "--count", 2, "--set", "height_px=6", "--set", "aspect=.5"
+    )
+    run(
+        "generate",
+        "brick",
+        "-o",
+        other,
+        "--count",
+        2,
+        "--set",
+        "height_px=6",
+        "--set",
+        "aspect=0.5",
+    )
+    assert first.read_bytes() == other.read_bytes()
 
 
 @pytest.mark.parametrize(

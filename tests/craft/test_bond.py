@@ -89,6 +89,15 @@ def test_a_joint_with_a_step_smaller_than_the_offset_runs_on():
     assert running_joints.find(Masonry(near, settings=strict)).number == 1.0
 
 
+@pytest.mark.parametrize("thickness", [0.08, 0.1, 0.2, 0.3, 1.0])
+def test_a_slab_across_a_joint_ends_it(thickness):
+    top = 1.0 + thickness
+    loops = {1: box(0, 0, 2, 1), 2: box(2, 0, 2, 1), 3: box(0, 1, 4, thickness)}
+    wall = Masonry(loops | {4: box(0, top, 2, 1), 5: box(2, top, 2, 1)})
+    assert running_joints.find(wall).number == 1.0
+    assert cross_joints.find(wall).cases == ()
+
+
 def test_heights_that_differ_on_both_sides_are_a_t_not_a_plus():
     loops = {1: box(0, 0, 2, 1.5), 2: box(2, 0, 2, 1), 3: box(0, 1.5, 2, 1.5), 4: box(2, 1, 2, 2)}
     wall = Masonry(loops)

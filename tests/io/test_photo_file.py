@@ -7,7 +7,7 @@ import tifffile
 from PIL import Image
 
 from drystone.errors import InputError
-from drystone.io.photo_file import read_photo
+from drystone.io.photo_file import MAX_SIDE_PX, read_photo
 
 PICTURE = np.random.default_rng(3).integers(0, 256, (6, 9, 3), dtype=np.uint8)
 
@@ -133,6 +133,30 @@ def test_cut_short_missing_large_and_several(tmp_path):
     assert caught.value.code == "E110"
     assert "nearest neighbour" not in str(caught.value)
     assert "only in Python can the limit be raised (max_px)" in str(caught.value)
+
+
+def test_a_side_too_long_for_opencv_is_refused(tmp_path):
+    saved(tmp_path / "most.png", np.zeros((1, MAX_SIDE_PX), np.uint8))
+    assert read_photo(tmp_path / "most.png").size_px == (MAX_SIDE_PX, 1)
+    saved(tmp_path / "wide.png", np.zeros((1, MAX_SIDE_PX + 1), np.uint8))
+    with pytest.raises(InputError, match=r"E110.*32767 x 1 px; the limit of a side"):
+        read_photo(tmp_path / "wide.png")
+
+
+@pytest.mark.parametrize(("dtype", "channels"), [(np.uint8, 1), (np.uint16, 1), (np.uint16, 2)])
+def test_white_is_zero_is_light_all_the_same(tmp_path, dtype, channels):
+    light = np.array([[0, 51, 255], [10, 20, 30]], np.uint8)
+    white = np.iinfo(dtype).max
+    values = (255 - light).astype(dtype) * dtype(white // 255)
+    more: dict[str, object] = {}
+    if channels == 2:
+        values = np.stack([values, np.full_like(values, white)], axis=-1)
+        more = {"extrasamples": ["unassalpha"], "planarconfig": "contig"}
+    path = tmp_path / "negative.tif"
+    tifffile.imwrite(path, values, photometric="miniswhite", **more)
+    read = read_photo(path)
+    assert (read.values == light[..., None]).all()
+    assert not any("ransparency" in notice.message for notice in read.notices)
 
 
 def test_orientations_in_any_compression_and_in_xmp_are_said(tmp_path):

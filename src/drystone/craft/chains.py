@@ -98,20 +98,35 @@ def _links(masonry: Masonry) -> list[tuple[tuple[float, float], int, int]]:
     near = (aside <= settings.offset * height + slack) & (up <= settings.hole * height + slack)
     # The ends of two joints that meet overlap by the rounding of stones to lines of the scan.
     near &= up >= -2.5 * masonry.rows.spacing
-    stones = shapely.union_all(list(masonry.shapes.values()))
-    allowed = settings.offset * height + 2.5 * masonry.rows.spacing
     found = []
     for lower, upper in np.argwhere(near).tolist():
         if lower == upper or not _climbs(heads[lower], heads[upper]):
             continue
         way = shapely.LineString([tops[lower], bottoms[upper]])
-        if shapely.intersection(stones, way).length <= allowed:
+        if not _crossed(masonry, way, heads[lower], heads[upper]):
             cost = (
                 round(float(aside[lower, upper]) / height, 6),
                 round(float(abs(up[lower, upper])) / height, 6),
             )
             found.append((cost, lower, upper))
     return found
+
+
+def _crossed(masonry: Masonry, way: shapely.LineString, lower: Joint, upper: Joint) -> bool:
+    """Whether a stone lies on the way from one joint to the other.
+
+    The way may cut corners of the stones of the joints, as far to the side as they may be apart.
+    Any other stone on it lies between them, as far as the scan tells it from a touch: each end of
+    the way may lie half a line too high or low.
+    """
+    four = {lower.first, lower.second, upper.first, upper.second}
+    spacing = masonry.rows.spacing
+    of_joints = masonry.settings.offset * masonry.mean_height + 2.5 * spacing
+    own = shapely.union_all([masonry.shapes[i] for i in four])
+    if shapely.intersection(own, way).length > of_joints:
+        return True
+    others = [shape for i, shape in masonry.shapes.items() if i not in four]
+    return bool((shapely.length(shapely.intersection(others, way)) > 0.75 * spacing).any())
 
 
 def _climbs(lower: Joint, upper: Joint) -> bool:

@@ -19,6 +19,9 @@ from drystone.model.stone import writable
 MAX_PX = 200_000_000
 """Larger photographs are refused."""
 
+MAX_SIDE_PX = 32_766
+"""Wider or higher ones too: OpenCV turns none that are."""
+
 _ORIENTATION = 0x0112
 """Tag of EXIF and TIFF: how the camera was held."""
 
@@ -131,8 +134,20 @@ def _decode(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int, bo
     )  # fmt: skip
 
 
+def _check(width: int, height: int, where: str, max_px: int) -> None:
+    """Refuse photographs that would fill the memory, or that OpenCV cannot turn (E110)."""
+    check_size(width, height, where, max_px, _REDUCE)
+    if max(width, height) > MAX_SIDE_PX:
+        raise InputError(
+            "E110",
+            f"{width} x {height} px; the limit of a side is {MAX_SIDE_PX} px.",
+            where=where,
+            cure="Reduce it or crop it.",
+        )
+
+
 def _by_pillow(image: Image.Image, where: str, max_px: int) -> tuple[NDArray[Any], int]:
-    check_size(*image.size, where, max_px, _REDUCE)
+    _check(*image.size, where, max_px)
     orientation = int(image.getexif().get(_ORIENTATION, 1))
     if image.mode in ("1", "CMYK", "YCbCr", "LAB", "HSV"):
         return np.asarray(image.convert("RGB")), orientation
@@ -147,10 +162,10 @@ def _by_pillow(image: Image.Image, where: str, max_px: int) -> tuple[NDArray[Any
 
 def _tiff(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int]:
     page = tiff.inspect(data)
-    check_size(page.width, page.height, where, max_px, _REDUCE)
+    _check(page.width, page.height, where, max_px)
     if page.pages > 1:
         raise several_pages(f"{page.pages} pages", where)
-    bits, orientation = _tiff_tags(data)
+    bits, orientation, negative = _tiff_tags(data)
     if bits <= 8:
         # Pillow turns a TIFF by itself when it reads it: taken back, so that it is said.
         image = TiffImagePlugin.TiffImageFile(io.BytesIO(data))
@@ -166,15 +181,22 @@ def _tiff(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int]:
             "E107", f"TIFF of {bits} bits a channel in {page.colours} cannot be read.", where=where,
             cure="Export it in RGB, or with 8 bits a channel.",
         )  # fmt: skip
-    return tiff.values(data), orientation
+    values = tiff.values(data)
+    # Pillow takes this back for 8 bits; ids keep the numbers of the file, light does not.
+    if negative and values.dtype == np.uint16:
+        grey = np.atleast_3d(values)[..., :1]
+        np.subtract(65535, grey, out=grey)
+    return values, orientation
 
 
-def _tiff_tags(data: bytes) -> tuple[int, int]:
-    """Return bits of a channel, and the orientation."""
+def _tiff_tags(data: bytes) -> tuple[int, int, bool]:
+    """Return bits of a channel, the orientation, and whether 0 is white."""
     with tifffile.TiffFile(io.BytesIO(data)) as file:
         page: Any = file.pages[0]
         tag = page.tags.get(_ORIENTATION)
-        return int(page.bitspersample), 1 if tag is None else int(tag.value)
+        turned = 1 if tag is None else int(tag.value)
+        negative = page.photometric == tifffile.PHOTOMETRIC.MINISWHITE
+        return int(page.bitspersample), turned, negative
 
 
 _BACK = {6: 8, 8: 6}

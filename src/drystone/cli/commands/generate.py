@@ -1,6 +1,7 @@
 """`drystone generate`: synthetic stone sets."""
 
 import argparse
+import re
 import tomllib
 from dataclasses import fields
 from pathlib import Path
@@ -39,10 +40,12 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
 
 def _changes(items: list[str], settings_type: type[Any]) -> dict[str, Any]:
-    """Turn NAME=VALUE into values; VALUE is written as in TOML."""
+    """Turn NAME=VALUE into values; VALUE is written as in TOML, or as .2."""
     changes: dict[str, Any] = {}
     for item in items:
         name, sign, text = item.partition("=")
+        # TOML wants a digit before the point.
+        text = re.sub(r"^\s*([+-]?)\.(?=\d)", r"\g<1>0.", text)
         try:
             changes[name] = tomllib.loads(f"value = {text}")["value"]
         except tomllib.TOMLDecodeError:

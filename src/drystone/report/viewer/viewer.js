@@ -792,7 +792,7 @@ class Viewer {
   }
 
   touching(part) {
-    if (part.step === null) return [["Touches", this.links(part.neighbours)]];
+    if (part.step === null) return [["Touches", part.neighbours.length ? this.links(part.neighbours) : "nothing"]];
     const placed = (id) => id === 0 || (this.parts.get(id)?.step ?? Infinity) < part.step;
     const now = part.neighbours.filter(placed);
     const later = part.neighbours.filter((id) => !placed(id));
