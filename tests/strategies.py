@@ -22,8 +22,8 @@ Draw = Callable[[st.SearchStrategy[Any]], Any]
 
 
 def repeatable(max_examples: int = 60) -> settings:
-    """The same examples in every run, without a clock."""
-    return settings(max_examples=max_examples, deadline=None, derandomize=True)
+    """The profile of `conftest.py` with another number of examples."""
+    return settings(max_examples=max_examples)
 
 
 def whole(pixels: NDArray[np.bool_]) -> Mask:

@@ -145,7 +145,7 @@ def test_a_wedge_is_part_of_the_bed():
 COURSE = st.lists(st.sampled_from([1.0, 1.25, 1.5, 1.75, 2.0]), min_size=3, max_size=6)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.lists(COURSE, min_size=2, max_size=4))
 def test_coursed_walls_against_sums_of_widths(widths):
     """Joints by exact positions, laps by intervals: no lines, no outlines."""
@@ -177,7 +177,7 @@ def test_coursed_walls_against_sums_of_widths(widths):
     assert all(value == pytest.approx(expected[key], abs=0.03) for key, value in short.items())
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 @given(st.lists(COURSE, min_size=2, max_size=4))
 def test_a_mirrored_wall_has_mirrored_joints(widths):
     loops = courses(widths)

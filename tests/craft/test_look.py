@@ -37,7 +37,7 @@ def test_walls_of_next_to_nothing_are_judged(masonry):
         assert report.findings["running_joints"].verdict == "not judged"
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(npst.arrays(np.uint8, st.tuples(st.integers(1, 9), st.integers(1, 12)),
                    elements=st.integers(0, 5)))  # fmt: skip
 def test_any_picture_of_ids_can_be_looked_at(labels):

@@ -47,7 +47,7 @@ def test_the_one_post_is_named(place):
     assert found.verdict == "fair"
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.floats(-89.0, 89.0), st.floats(1.3, 4.0))
 def test_a_turned_stone_stands_on_end_beyond_45_degrees(angle, length):
     loop = turn(box(-length / 2, -0.5, length, 1.0), angle)

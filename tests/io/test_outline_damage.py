@@ -38,11 +38,7 @@ FILES = {
 
 
 @pytest.mark.parametrize("name", list(FILES))
-@settings(
-    max_examples=25,
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture],
-)
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
 def test_damage(tmp_path, name, data):
     content = bytearray(FILES[name].encode())
