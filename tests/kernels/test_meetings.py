@@ -21,6 +21,8 @@ spike = np.array([[0.0, 0.0], [5.0, 30.0], [-5.0, 30.0]])
 notch = np.array([[-40.0, 5.0], [40.0, 5.0], [40.0, 80.0], [0.0, 40.0], [-40.0, 80.0]])
 diamond = turn(np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]]), 45.0)
 
+SETBACKS = st.sampled_from([0.0, 0.01, 0.1, 0.4])
+
 only_compiled = pytest.mark.parametrize("version", ["compiled"], indirect=True)
 
 
@@ -82,7 +84,8 @@ def heaps(draw: Draw):
         for _ in range(draw(st.integers(0, 4)))
     ]
     corners = draw(simple_polygons()) + at(draw(step), 4.0 + draw(step))
-    return corners, no_polygons().added(around), draw(st.sampled_from([0.02, 0.1, 0.7]))
+    tolerance, setback = draw(st.sampled_from([0.02, 0.1, 0.7])), draw(SETBACKS)
+    return corners, no_polygons().added(around), tolerance, setback
 
 
 def same(one, other):
@@ -100,16 +103,16 @@ def test_both_versions_are_the_same_to_the_last_bit(heap):
 
 
 @only_compiled
-@given(pairs())
+@given(pairs(), SETBACKS)
 @repeatable(300)
-def test_both_versions_are_the_same_for_polygons_that_touch(pair):
-    heap = (pair[0], no_polygons().added([pair[1]]), TOLERANCE)
+def test_both_versions_are_the_same_for_polygons_that_touch(pair, setback):
+    heap = (pair[0], no_polygons().added([pair[1]]), TOLERANCE, setback)
     assert same(module.Meetings(*compiled("meetings").meetings(*parts(heap))), python(heap))
 
 
 def parts(heap):
-    corners, around, tolerance = heap
-    return corners, around.corners, around.first, around.boxes, tolerance
+    corners, around, tolerance, setback = heap
+    return corners, around.corners, around.first, around.boxes, tolerance, setback
 
 
 def python(heap):

@@ -12,8 +12,9 @@ import numpy as np
 
 from drystone.kernels.polygons import Points, polygon_edges
 
-Contact = tuple[int, float, int, float, float, float, float, float, float]
-"""Edge, how far along it, number of points, x and y of both points, normal into the polygon."""
+Contact = tuple[int, float, int, float, float, float, float, float, float, int]
+"""Edge, how far along it, number of points, x and y of both points, normal into the polygon, and
+edge of the other polygon."""
 
 Common = tuple[float, float, float, float, float, float]
 """See :func:`_common`."""
@@ -35,6 +36,9 @@ EQUAL = 0.01
 
 LEVEL = 1e-6
 """How much more level, by the cosine, a face must be to be preferred."""
+
+SHARP = 0.577
+"""A face ends where the outline has turned away from it by more than 30 degrees (tangent)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +87,26 @@ class Sides:
         )
 
 
+def set_back_by(p: Sides, q: Sides | None, tolerance: float, setback: float) -> float:
+    """Return by how much the contacts of a polygon with another, or the ground, are set back.
+
+    0 stands for not at all.
+    """
+    if setback == 0.0:
+        return 0.0
+    size = sqrt(_area(p) if q is None else min(_area(p), _area(q)))
+    return max(tolerance, setback * size)
+
+
+def _area(s: Sides) -> float:
+    """Return the area, about the first corner; summed as the compiled twin does."""
+    doubled = 0.0
+    for k in range(1, len(s.x) - 1):
+        x, y = s.x[k] - s.x[0], s.y[k] - s.y[0]
+        doubled += x * (s.y[k + 1] - s.y[0]) - y * (s.x[k + 1] - s.x[0])
+    return doubled / 2.0 if doubled > 0.0 else 0.0
+
+
 def facing_edges(p: Sides, i: int, q: Sides, j: int, tolerance: float) -> Contact | None:
     """Return the contact along edges that face each other; one point where it is short."""
     common = _common(p, i, q, j, tolerance)
@@ -109,7 +133,7 @@ def facing_edges(p: Sides, i: int, q: Sides, j: int, tolerance: float) -> Contac
         middle = (ends[0] + ends[1]) / 2.0
         ends = middle, middle
     (x0, y0), (x1, y1) = _on_edge(p, i, ends[0]), _on_edge(p, i, ends[1])
-    return i, ends[0], count, x0, y0, x1, y1, normal_x / length, normal_y / length
+    return i, ends[0], count, x0, y0, x1, y1, normal_x / length, normal_y / length, j
 
 
 def corner_on_edge(p: Sides, i: int, q: Sides, j: int, tolerance: float) -> Contact | None:
@@ -120,7 +144,7 @@ def corner_on_edge(p: Sides, i: int, q: Sides, j: int, tolerance: float) -> Cont
     if _common(p, before, q, j, tolerance) or _common(p, i, q, j, tolerance):
         return None
     x, y = p.x[i], p.y[i]
-    return i, 0.0, 1, x, y, x, y, q.along_y[j], -q.along_x[j]
+    return i, 0.0, 1, x, y, x, y, q.along_y[j], -q.along_x[j], j
 
 
 def edge_on_corner(p: Sides, i: int, q: Sides, j: int, tolerance: float) -> Contact | None:
@@ -132,7 +156,7 @@ def edge_on_corner(p: Sides, i: int, q: Sides, j: int, tolerance: float) -> Cont
     if _common(p, i, q, before, tolerance) or _common(p, i, q, j, tolerance):
         return None
     x, y = _on_edge(p, i, along)
-    return i, along, 1, x, y, x, y, -p.along_y[i], p.along_x[i]
+    return i, along, 1, x, y, x, y, -p.along_y[i], p.along_x[i], j
 
 
 def corner_on_corner(p: Sides, i: int, q: Sides, j: int, tolerance: float) -> Contact | None:
@@ -160,12 +184,40 @@ def corner_on_corner(p: Sides, i: int, q: Sides, j: int, tolerance: float) -> Co
     if abs(apart) > tolerance or not (along >= 0.0 or near):
         return None
     if place < 2:
-        return i, 0.0, 1, p.x[i], p.y[i], p.x[i], p.y[i], out_x, out_y
+        face_of = behind if place == 0 else j
+        return i, 0.0, 1, p.x[i], p.y[i], p.x[i], p.y[i], out_x, out_y, face_of
     edge, start = i, 0.0
     if along > 0.0:
         edge, start = (i, along) if place == 3 else (before, p.length[before] - along)
     x, y = _on_edge(p, edge, start)
-    return edge, start, 1, x, y, x, y, -out_x, -out_y
+    return edge, start, 1, x, y, x, y, -out_x, -out_y, j
+
+
+def set_back(p: Sides, q: Sides, contact: Contact, by: float, tolerance: float) -> Contact | None:
+    """Return what is left of a contact where edges are rounded, break and crush (DESIGN 4.8).
+
+    A piece ends no nearer than `by` to the end of either face; one that is no longer than the
+    tolerance then is a point in its middle.  A point counts where one of the two faces goes on
+    for `by` to both sides of it.
+    """
+    i, start, count, x0, y0, x1, y1, normal_x, normal_y, j = contact
+    if count == 2:
+        end = start + (x1 - x0) * p.along_x[i] + (y1 - y0) * p.along_y[i]
+        at_start, at_end = _projected(q, j, x0, y0), _projected(q, j, x1, y1)
+        # The other polygon runs the other way.
+        first = start + by - min(_runs_on(p, i, start, by, -1), _runs_on(q, j, at_start, by, 1))
+        last = end - by + min(_runs_on(p, i, end, by, 1), _runs_on(q, j, at_end, by, -1))
+        if last - first > tolerance:
+            (x0, y0), (x1, y1) = _on_edge(p, i, first), _on_edge(p, i, last)
+            return i, first, 2, x0, y0, x1, y1, normal_x, normal_y, j
+        start = (first + last) / 2.0
+        start = 0.0 if start < 0.0 else p.length[i] if start > p.length[i] else start
+        x0, y0 = _on_edge(p, i, start)
+    across = _projected(q, j, x0, y0)
+    if min(_runs_on(p, i, start, by, -1), _runs_on(p, i, start, by, 1)) < by:
+        if min(_runs_on(q, j, across, by, -1), _runs_on(q, j, across, by, 1)) < by:
+            return None
+    return i, start, 1, x0, y0, x0, y0, normal_x, normal_y, j
 
 
 def without_repeats(found: list[Contact], tolerance: float) -> list[Contact]:
@@ -199,6 +251,32 @@ def _after(s: Sides, i: int) -> int:
 def _on_edge(s: Sides, i: int, along: float) -> tuple[float, float]:
     """Return the point that is so far along an edge."""
     return s.x[i] + along * s.along_x[i], s.y[i] + along * s.along_y[i]
+
+
+def _projected(s: Sides, i: int, x: float, y: float) -> float:
+    """Return how far along an edge a point is beside it; its ends for what is beyond them."""
+    along = (x - s.x[i]) * s.along_x[i] + (y - s.y[i]) * s.along_y[i]
+    return 0.0 if along < 0.0 else s.length[i] if along > s.length[i] else along
+
+
+def _runs_on(s: Sides, i: int, along: float, enough: float, sense: int) -> float:
+    """Return how far a face goes on from a point of edge `i`, at most `enough`.
+
+    It ends at a corner where the outline turns away; at one where it turns towards the other
+    polygon there is stone enough behind it.
+    """
+    run = s.length[i] - along if sense > 0 else along
+    edge = i
+    for _ in range(len(s.x) - 1):
+        if run >= enough:
+            return enough
+        edge = _after(s, edge) if sense > 0 else _before(s, edge)
+        dot = s.along_x[i] * s.along_x[edge] + s.along_y[i] * s.along_y[edge]
+        away = sense * (s.along_x[i] * s.along_y[edge] - s.along_y[i] * s.along_x[edge])
+        if abs(away) > SHARP * dot:
+            return run if away >= 0.0 else enough
+        run += s.length[edge]
+    return run if run < enough else enough
 
 
 def _common(p: Sides, i: int, q: Sides, j: int, tolerance: float) -> Common | None:

@@ -19,6 +19,8 @@ from drystone.kernels.meeting_rules import (
     corner_on_edge,
     edge_on_corner,
     facing_edges,
+    set_back,
+    set_back_by,
     without_repeats,
 )
 from drystone.kernels.polygons import Points, Polygons
@@ -54,7 +56,9 @@ class Meetings(NamedTuple):
         return len(self.others)
 
 
-def meetings(corners: Points, around: Polygons, tolerance: float) -> Meetings:
+def meetings(
+    corners: Points, around: Polygons, tolerance: float, setback: float = 0.0
+) -> Meetings:
     """Find all contacts of one placed polygon with others and with the ground, y = 0.
 
     Parameters
@@ -65,6 +69,9 @@ def meetings(corners: Points, around: Polygons, tolerance: float) -> Meetings:
         The others.
     tolerance : float
         Gap or overlap up to which there is contact, above 0; edges are longer as a rule.
+    setback : float
+        Share of the size (root of the area) of the smaller polygon by which contacts stay away
+        from the ends of faces, and by the tolerance at least; 0 leaves them as they are.
 
     Returns
     -------
@@ -92,6 +99,10 @@ def meetings(corners: Points, around: Polygons, tolerance: float) -> Meetings:
     The normal is that of the edge that a corner stands on; for a piece, at the end with the
     smaller gap.
 
+    Edges of stones are rounded, break and crush.  So with a set-back a piece stays away from the
+    ends of both faces, and a point counts only where one of them goes on to both sides of it: a
+    corner on a corner, or a lap of less than twice the set-back, carries nothing.
+
     Examples
     --------
     >>> from drystone.kernels.polygons import no_polygons
@@ -106,12 +117,18 @@ def meetings(corners: Points, around: Polygons, tolerance: float) -> Meetings:
         raise ValueError("a polygon has three corners (x, y) or more")
     if not tolerance > 0.0:
         raise ValueError("the tolerance must be above 0")
+    if not setback >= 0.0:
+        raise ValueError("the set-back must not be below 0")
     if _fast is None:
-        return meetings_numpy(corners, around, tolerance)
-    return Meetings(*_fast.meetings(corners, around.corners, around.first, around.boxes, tolerance))
+        return meetings_numpy(corners, around, tolerance, setback)
+    return Meetings(
+        *_fast.meetings(corners, around.corners, around.first, around.boxes, tolerance, setback)
+    )
 
 
-def meetings_numpy(corners: Points, around: Polygons, tolerance: float) -> Meetings:
+def meetings_numpy(
+    corners: Points, around: Polygons, tolerance: float, setback: float = 0.0
+) -> Meetings:
     """Twin of :func:`meetings` without compiled code; inputs are taken as they are."""
     reach = BESIDE * tolerance
     left, bottom = corners.min(axis=0).tolist()
@@ -120,16 +137,19 @@ def meetings_numpy(corners: Points, around: Polygons, tolerance: float) -> Meeti
     others: list[int] = []
     found: list[Contact] = []
     if bottom - reach <= 0.0:
-        found += _contacts(sides, Sides.of(_ground(left, right, tolerance)), tolerance)
+        by = set_back_by(sides, None, tolerance, setback)
+        found += _contacts(sides, Sides.of(_ground(left, right, tolerance)), tolerance, by)
         others += [GROUND_PLACE] * len(found)
     boxes = around.boxes
     near = (boxes[:, 0] <= right + reach) & (boxes[:, 2] >= left - reach)
     near &= (boxes[:, 1] <= top + reach) & (boxes[:, 3] >= bottom - reach)
     for index in np.flatnonzero(near).tolist():
-        new = _contacts(sides, Sides.of(around.polygon(index)), tolerance)
+        other = Sides.of(around.polygon(index))
+        by = set_back_by(sides, other, tolerance, setback)
+        new = _contacts(sides, other, tolerance, by)
         found += new
         others += [index] * len(new)
-    table = np.array([contact[2:] for contact in found], np.float64).reshape(-1, 7)
+    table = np.array([contact[2:9] for contact in found], np.float64).reshape(-1, 7)
     return Meetings(
         np.array(others, np.int32),
         table[:, 0].astype(np.int32),
@@ -151,7 +171,7 @@ def _ground(left: float, right: float, tolerance: float) -> Points:
     )
 
 
-def _contacts(sides: Sides, other: Sides, tolerance: float) -> list[Contact]:
+def _contacts(sides: Sides, other: Sides, tolerance: float, by: float) -> list[Contact]:
     """Return the contacts of two polygons, in order along the first."""
     reach = BESIDE * tolerance
     mine, theirs = sides.boxes[:, None], other.boxes[None]
@@ -164,4 +184,8 @@ def _contacts(sides: Sides, other: Sides, tolerance: float) -> list[Contact]:
             contact = rule(sides, i, other, j, tolerance)
             if contact is not None:
                 found.append(contact)
-    return without_repeats(found, tolerance)
+    kept = without_repeats(found, tolerance)
+    if by == 0.0:
+        return kept
+    left = (set_back(sides, other, contact, by, tolerance) for contact in kept)
+    return [contact for contact in left if contact is not None]

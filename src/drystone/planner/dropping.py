@@ -187,6 +187,7 @@ def wedge_limits(settings: PlannerSettings, stock: Stock, scale: float) -> Wedge
         mu=settings.mu,
         clearance_px=settle.clearance_px,
         contact_px=0.5 * settle.contact_px,
+        setback=settle.setback,
         rest=settle.margin,
         steep=settle.steep,
     )

@@ -132,8 +132,10 @@ class Evaluator:
         outlines, analysis = build.wall.outlines, build.analysis
         assert outlines is not None  # noqa: S101 - its caller knows
         with self.profile.part("contacts"):
-            tolerance_px = self.settings.settle.contact_px
-            model = model_with_outlines(analysis.model, blocks, outlines, tolerance_px)
+            settle = self.settings.settle
+            model = model_with_outlines(
+                analysis.model, blocks, outlines, settle.contact_px, settle.setback
+            )
         with self.profile.part("limit analysis"):
             return Loaded(model, analysis.resistance_with(model))
 

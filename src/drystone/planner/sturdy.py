@@ -34,7 +34,9 @@ def sturdy_model_with(
     settings : SettleSettings
         Contact tolerance, and which faces are upright.
     """
-    added = model_with_outlines(model, blocks, outlines, 0.5 * settings.contact_px).added
+    added = model_with_outlines(
+        model, blocks, outlines, 0.5 * settings.contact_px, settings.setback
+    ).added
     assert added is not None  # noqa: S101 - it was made by adding
     return model.with_added(added.blocks, _slippery(added.interfaces, model.mu, settings))
 
@@ -51,7 +53,7 @@ def sturdy_model_of(outlines: Outlines, mu: float, settings: SettleSettings) -> 
     settings : SettleSettings
         Contact tolerance, and which faces are upright.
     """
-    model = model_of_outlines(outlines, mu, 0.5 * settings.contact_px)
+    model = model_of_outlines(outlines, mu, 0.5 * settings.contact_px, settings.setback)
     return replace(model, interfaces=_slippery(model.interfaces, mu, settings))
 
 

@@ -110,8 +110,9 @@ class Draft:
 
     def model_with(self, number: int, place: WedgePlace) -> RigidBlockModel:
         """Return the model of the wall with one more wedge, whose id is given."""
+        new, limits = [(number, place.corners)], self.limits
         return model_with_outlines(
-            self.analysis.model, [(number, place.corners)], self.placed, self.limits.contact_px
+            self.analysis.model, new, self.placed, limits.contact_px, limits.setback
         )
 
     def wedged(self, number: int, place: WedgePlace, model: RigidBlockModel) -> "Draft":

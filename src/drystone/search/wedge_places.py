@@ -51,10 +51,10 @@ class WedgePlace:
 
     @classmethod
     def of(
-        cls, step: int, corners: Points, placed: PlacedPolygons, contact_px: float
+        cls, step: int, corners: Points, placed: PlacedPolygons, limits: WedgeLimits
     ) -> "WedgePlace":
         """Find what a wedge touches of all blocks of a wall."""
-        found = meetings(corners, placed.polygons, contact_px)
+        found = meetings(corners, placed.polygons, limits.contact_px, limits.setback)
         ids = [placed.ids[other] if other >= 0 else GROUND for other in found.others.tolist()]
         # A contact at a point comes twice, which changes no rate.
         return cls(
@@ -99,7 +99,7 @@ def wedge_places(
     before = placed.polygons.leading(first)
     for corners in wedges_below(placed.polygons, first, limits):
         if rests(corners, before, width, limits):
-            yield WedgePlace.of(step, corners, placed, limits.contact_px)
+            yield WedgePlace.of(step, corners, placed, limits)
 
 
 @dataclass(frozen=True, eq=False)

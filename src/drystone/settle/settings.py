@@ -24,6 +24,9 @@ class SettleSettings:
         Gap that settled stones are left, and keep at least half of.
     contact_px : float
         Gaps up to this one are contacts, in the rest test and in the limit analysis.
+    setback : float
+        Contacts of the limit analysis stay away from the ends of faces by this share of the size
+        of the smaller stone (DESIGN 4.8).
     lean : float
         Gravity to the building side over gravity downwards, for ``"energy"``.
     margin : float
@@ -56,6 +59,7 @@ class SettleSettings:
     outline_px: float = 0.35
     clearance_px: float = 0.01
     contact_px: float = 0.1
+    setback: float = 0.01
     lean: float = 0.3
     margin: float = 0.2
     steep: float = 0.3
@@ -76,6 +80,8 @@ class SettleSettings:
         # Beyond these a plan would no longer speak of the stones of the picture.
         if not 0 < self.outline_px <= 0.5 or not 0 <= self.beyond_px <= 1:
             raise ValueError("outline_px must be in (0, .5], beyond_px in [0, 1]")
+        if not 0 <= self.setback <= 0.1:
+            raise ValueError("setback must be in [0, .1]")
         if not 0 <= self.steep < 1:
             raise ValueError("steep must be in [0, 1)")
         if (

@@ -36,6 +36,8 @@ class WedgeLimits:
         Gap that is left above and below.
     contact_px : float
         Gaps up to this one touch.
+    setback : float
+        See :class:`drystone.settle.settings.SettleSettings`.
     rest : float
         How far gravity may lean until the wedged stone moves, over mu, at least.
     steep : float
@@ -48,6 +50,7 @@ class WedgeLimits:
     mu: float = 0.58
     clearance_px: float = 0.01
     contact_px: float = 0.1
+    setback: float = 0.01
     rest: float = 0.0
     steep: float = -1.0
 

@@ -66,7 +66,8 @@ def wall_model(wall: Wall, settings: PlannerSettings) -> RigidBlockModel | None:
         if not stands_on_ground(wall.labels):
             return None
         return model_from_labels(wall.labels, settings.mu).model
-    model = model_of_outlines(wall.outlines, settings.mu, settings.settle.contact_px)
+    settle = settings.settle
+    model = model_of_outlines(wall.outlines, settings.mu, settle.contact_px, settle.setback)
     grounded = any(interface.other == GROUND for interface in model.interfaces)
     return model if grounded else None
 

@@ -34,8 +34,9 @@ def box(left, bottom, width, height):
     return np.array(corners) + np.array([left, bottom])
 
 
-def model_of(*polygons, mu=MU, tolerance=0.1):
-    return model_of_outlines(PlacedPolygons.of(enumerate(polygons, start=1)), mu, tolerance)
+def model_of(*polygons, mu=MU, tolerance=0.1, setback=0.0):
+    placed = PlacedPolygons.of(enumerate(polygons, start=1))
+    return model_of_outlines(placed, mu, tolerance, setback)
 
 
 def alphas(model):
@@ -154,7 +155,7 @@ def test_blocks_and_interfaces_do_not_depend_on_how_they_are_added():
     for place in range(0, len(placed), 2):  # a stone and its wedge at a time
         around = PlacedPolygons.of(list(zip(ids, placed, strict=True))[:place])
         blocks = list(zip(ids, placed, strict=True))[place : place + 2]
-        grown = model_with_outlines(grown, blocks, around, 0.1)
+        grown = model_with_outlines(grown, blocks, around, 0.1, 0.0)
     assert grown.blocks == whole.blocks
     assert told(grown) == told(whole)
     assert all(i.block > i.other for i in whole.interfaces)

@@ -8,9 +8,10 @@ from libc.string cimport memset
 
 import numpy as np
 
-from drystone.kernels.meeting_rules import BESIDE, EQUAL, LEAN, LEVEL, SAME
+from drystone.kernels.meeting_rules import BESIDE, EQUAL, LEAN, LEVEL, SAME, SHARP
 
 cdef double LEAN_C = LEAN, SAME_C = SAME, BESIDE_C = BESIDE, EQUAL_C = EQUAL, LEVEL_C = LEVEL
+cdef double SHARP_C = SHARP
 
 
 cdef struct Side:
@@ -26,7 +27,7 @@ cdef struct Sides:
 
 
 cdef struct Contact:
-    Py_ssize_t edge
+    Py_ssize_t edge, facing
     double start
     int32_t count, other
     double x0, y0, x1, y1, normal_x, normal_y
@@ -53,6 +54,7 @@ def meetings(
     const int32_t[::1] first,
     const double[:, ::1] boxes,
     double tolerance,
+    double setback,
 ):
     """Return others, counts, points and normals of the contacts."""
     cdef Py_ssize_t most = 4, k
@@ -70,7 +72,7 @@ def meetings(
         if not (mine.of and theirs.of and found.of):
             raise MemoryError
         with nogil:
-            meet_all(&mine, &theirs, corners, others, first, boxes, tolerance, &found)
+            meet_all(&mine, &theirs, corners, others, first, boxes, tolerance, setback, &found)
         if found.lost:
             raise MemoryError
         return told(&found)
@@ -106,6 +108,7 @@ cdef void meet_all(
     const int32_t[::1] first,
     const double[:, ::1] boxes,
     double tolerance,
+    double setback,
     Contacts* found,
 ) noexcept nogil:
     """Find the contacts with the ground and with every polygon that is near."""
@@ -125,7 +128,7 @@ cdef void meet_all(
         ground[5] = ground[7] = 0.0
         theirs.count = 4
         set_sides(theirs, ground)
-        meet(mine, theirs, -1, tolerance, found)
+        meet(mine, theirs, -1, tolerance, set_back_by(mine, NULL, tolerance, setback), found)
     for k in range(boxes.shape[0]):
         if not (boxes[k, 0] <= right + reach and boxes[k, 2] >= left - reach):
             continue
@@ -133,7 +136,10 @@ cdef void meet_all(
             continue
         theirs.count = first[k + 1] - first[k]
         set_sides(theirs, &others[first[k], 0])
-        meet(mine, theirs, <int32_t>k, tolerance, found)
+        meet(
+            mine, theirs, <int32_t>k, tolerance,
+            set_back_by(mine, theirs, tolerance, setback), found,
+        )
 
 
 cdef void set_sides(Sides* sides, const double* corners) noexcept nogil:
@@ -159,7 +165,7 @@ cdef void set_sides(Sides* sides, const double* corners) noexcept nogil:
 
 
 cdef void meet(
-    Sides* p, Sides* q, int32_t other, double tolerance, Contacts* found
+    Sides* p, Sides* q, int32_t other, double tolerance, double by, Contacts* found
 ) noexcept nogil:
     """Add the contacts of two polygons, in order along the first."""
     cdef double reach = BESIDE_C * tolerance
@@ -188,6 +194,13 @@ cdef void meet(
     if found.lost:
         return
     without_repeats(found, begin, tolerance)
+    if by > 0.0:
+        j = begin
+        for i in range(begin, found.count):
+            if set_back(p, q, found.of + i, by, tolerance):
+                found.of[j] = found.of[i]
+                j += 1
+        found.count = j
     for i in range(begin, found.count):
         found.of[i].other = other
 
@@ -209,6 +222,7 @@ cdef Contact* new_contact(Contacts* found) noexcept nogil:
 cdef void add_point(
     Contacts* found,
     Py_ssize_t edge,
+    Py_ssize_t facing,
     double start,
     double x,
     double y,
@@ -218,7 +232,7 @@ cdef void add_point(
     """Add a contact at a point."""
     cdef Contact* contact = new_contact(found)
     if contact:
-        contact.edge, contact.start, contact.count = edge, start, 1
+        contact.edge, contact.facing, contact.start, contact.count = edge, facing, start, 1
         contact.x0 = contact.x1 = x
         contact.y0 = contact.y1 = y
         contact.normal_x, contact.normal_y = normal_x, normal_y
@@ -252,7 +266,7 @@ cdef void facing_edges(
     contact = new_contact(found)
     if not contact:
         return
-    contact.edge, contact.count = i, 2
+    contact.edge, contact.facing, contact.count = i, j, 2
     if not end - start > tolerance:
         start = end = (start + end) / 2.0
         contact.count = 1
@@ -274,7 +288,7 @@ cdef void corner_on_edge(
         return
     if common(p, before(p, i), q, j, tolerance, &c) or common(p, i, q, j, tolerance, &c):
         return
-    add_point(found, i, 0.0, e.x, e.y, f.along_y, -f.along_x)
+    add_point(found, i, j, 0.0, e.x, e.y, f.along_y, -f.along_x)
 
 
 cdef void edge_on_corner(
@@ -291,6 +305,7 @@ cdef void edge_on_corner(
     add_point(
         found,
         i,
+        j,
         along,
         e.x + along * e.along_x,
         e.y + along * e.along_y,
@@ -327,7 +342,10 @@ cdef void corner_on_corner(
     if not (along >= 0.0 or away_x * away_x + away_y * away_y <= tolerance * tolerance):
         return
     if place < 2:
-        add_point(found, i, 0.0, p.of[i].x, p.of[i].y, faces[place].out_x, faces[place].out_y)
+        add_point(
+            found, i, j if place else behind, 0.0, p.of[i].x, p.of[i].y, faces[place].out_x,
+            faces[place].out_y,
+        )
         return
     if along > 0.0 and place == 3:
         start = along
@@ -336,12 +354,98 @@ cdef void corner_on_corner(
     add_point(
         found,
         edge,
+        j,
         start,
         p.of[edge].x + start * p.of[edge].along_x,
         p.of[edge].y + start * p.of[edge].along_y,
         -faces[place].out_x,
         -faces[place].out_y,
     )
+
+
+cdef double set_back_by(
+    const Sides* p, const Sides* q, double tolerance, double setback
+) noexcept nogil:
+    """Return by how much contacts are set back; q is NULL for the ground."""
+    cdef double size
+    if setback == 0.0:
+        return 0.0
+    size = area(p)
+    if q:
+        size = min(size, area(q))
+    return max(tolerance, setback * sqrt(size))
+
+
+cdef double area(const Sides* s) noexcept nogil:
+    """Return the area of a polygon."""
+    cdef Py_ssize_t k
+    cdef double doubled = 0.0, x, y
+    for k in range(1, s.count - 1):
+        x, y = s.of[k].x - s.of.x, s.of[k].y - s.of.y
+        doubled += x * (s.of[k + 1].y - s.of.y) - y * (s.of[k + 1].x - s.of.x)
+    return doubled / 2.0 if doubled > 0.0 else 0.0
+
+
+cdef bint set_back(
+    const Sides* p, const Sides* q, Contact* c, double by, double tolerance
+) noexcept nogil:
+    """Set a contact back from the ends of faces; return whether anything is left of it."""
+    cdef const Side* e = p.of + c.edge
+    cdef double end, first, last, across
+    if c.count == 2:
+        end = c.start + (c.x1 - c.x0) * e.along_x + (c.y1 - c.y0) * e.along_y
+        first = c.start + by - min(
+            runs_on(p, c.edge, c.start, by, -1),
+            runs_on(q, c.facing, projected(q, c.facing, c.x0, c.y0), by, 1),
+        )
+        last = end - by + min(
+            runs_on(p, c.edge, end, by, 1),
+            runs_on(q, c.facing, projected(q, c.facing, c.x1, c.y1), by, -1),
+        )
+        if last - first > tolerance:
+            c.start = first
+            c.x0, c.y0 = e.x + first * e.along_x, e.y + first * e.along_y
+            c.x1, c.y1 = e.x + last * e.along_x, e.y + last * e.along_y
+            return True
+        c.start = (first + last) / 2.0
+        c.start = 0.0 if c.start < 0.0 else e.length if c.start > e.length else c.start
+        c.x0, c.y0 = e.x + c.start * e.along_x, e.y + c.start * e.along_y
+    c.count, c.x1, c.y1 = 1, c.x0, c.y0
+    if min(runs_on(p, c.edge, c.start, by, -1), runs_on(p, c.edge, c.start, by, 1)) >= by:
+        return True
+    across = projected(q, c.facing, c.x0, c.y0)
+    return min(runs_on(q, c.facing, across, by, -1), runs_on(q, c.facing, across, by, 1)) >= by
+
+
+cdef double projected(const Sides* s, Py_ssize_t i, double x, double y) noexcept nogil:
+    """Return how far along an edge a point is beside it; its ends for what is beyond them."""
+    cdef const Side* e = s.of + i
+    cdef double along = (x - e.x) * e.along_x + (y - e.y) * e.along_y
+    return 0.0 if along < 0.0 else e.length if along > e.length else along
+
+
+cdef double runs_on(
+    const Sides* s, Py_ssize_t i, double along, double enough, int sense
+) noexcept nogil:
+    """Return how far a face goes on from a point of edge `i`, at most `enough`."""
+    cdef const Side* e = s.of + i
+    cdef const Side* f
+    cdef double run = e.length - along if sense > 0 else along, dot, away
+    cdef Py_ssize_t edge = i, k
+    for k in range(s.count - 1):
+        if run >= enough:
+            return enough
+        if sense > 0:
+            edge = edge + 1 if edge + 1 < s.count else 0
+        else:
+            edge = before(s, edge)
+        f = s.of + edge
+        dot = e.along_x * f.along_x + e.along_y * f.along_y
+        away = sense * (e.along_x * f.along_y - e.along_y * f.along_x)
+        if fabs(away) > SHARP_C * dot:
+            return run if away >= 0.0 else enough
+        run += f.length
+    return run if run < enough else enough
 
 
 cdef void without_repeats(Contacts* found, Py_ssize_t begin, double tolerance) noexcept nogil:
