@@ -58,7 +58,7 @@ def random_case(seed: int) -> Case:
     placed = int(rng.integers(1, count + 1))
     ends = np.sort(rng.choice(np.arange(1, placed), int(rng.integers(0, min(4, placed))), False))
     sizes = np.diff([0, *ends, placed]).astype(np.int32)
-    gaps = np.array([rng.integers(1, max(1, n - 1) + 1) for n in sizes], np.int32)
+    gaps = np.array([rng.integers(-1 - n, n + 1) for n in sizes], np.int32)
     turns = rng.integers(0, 4, count, np.int32)
     plan = Arrangement(rng.permutation(count).astype(np.int32), turns, sizes, gaps)
     return poses, plan, random_ground(rng, columns, width), random_rules(rng, count)
@@ -247,7 +247,7 @@ def test_changes_keep_every_stone_and_say_where_they_begin(case: Case, seed: int
         assert min(draft.sizes) >= 1
         assert sum(draft.sizes) <= len(draft.order)
         for size, gap in zip(draft.sizes, draft.gaps, strict=True):
-            assert 1 <= gap <= max(1, size - 1)
+            assert -1 - size <= gap <= size
         assert len(draft.sizes) <= rules.courses
         if lowest == NOTHING:
             assert draft == before

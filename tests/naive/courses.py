@@ -117,7 +117,9 @@ def positions(poses, posed, gap, width, rules):
         apart.append(max(a - b for a, b in zip(rights, lefts, strict=False)) + rules.joint)
     room = width - sum(apart) - int(poses.width[posed[-1]])
     xs = [sum(apart[:i]) for i in range(len(posed))]
-    xs = [x + (room if i >= gap else 0) for i, x in enumerate(xs)]
+    away = 2 * room // 5 if gap < 0 < room else 0
+    from_left = range(gap if gap >= 0 else -1 - gap)
+    xs = [x + (away if i in from_left else room - away) for i, x in enumerate(xs)]
     ends = [width - int(poses.width[pose]) for pose in posed]
     return [min(max(0, x), end) for x, end in zip(xs, ends, strict=True)], room
 

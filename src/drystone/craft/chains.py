@@ -1,13 +1,16 @@
 """Head joints that go on above each other."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
 from drystone.craft.finding import Line
 from drystone.craft.joints import Joint
-from drystone.craft.masonry import Masonry
+
+if TYPE_CHECKING:
+    from drystone.craft.masonry import Masonry
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +53,7 @@ class Chain:
         )
 
 
-def chains(masonry: Masonry) -> tuple[Chain, ...]:
+def chains(masonry: "Masonry") -> tuple[Chain, ...]:
     """Join the head joints that go on above each other.
 
     A joint goes on when the next one begins no farther to the side than the offset of the
@@ -84,7 +87,7 @@ def chains(masonry: Masonry) -> tuple[Chain, ...]:
     return tuple(found)
 
 
-def _links(masonry: Masonry) -> list[tuple[tuple[float, float], int, int]]:
+def _links(masonry: "Masonry") -> list[tuple[tuple[float, float], int, int]]:
     """Return how far apart two joints are that may be one, and their indices, lower first."""
     heads = masonry.heads
     if not heads:
@@ -112,7 +115,7 @@ def _links(masonry: Masonry) -> list[tuple[tuple[float, float], int, int]]:
     return found
 
 
-def _crossed(masonry: Masonry, way: shapely.LineString, lower: Joint, upper: Joint) -> bool:
+def _crossed(masonry: "Masonry", way: shapely.LineString, lower: Joint, upper: Joint) -> bool:
     """Whether a stone lies on the way from one joint to the other.
 
     The way may cut corners of the stones of the joints, as far to the side as they may be apart.

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from drystone.craft.chains import Chain, chains
+from drystone.craft.chains import Chain
 from drystone.craft.finding import Case, Finding, Limit, Line, Rule
 from drystone.craft.joints import Joint
 from drystone.craft.masonry import Masonry
@@ -44,7 +44,7 @@ def find(masonry: Masonry, limit: Limit = RULE.limit) -> Finding:
     """
     if not masonry.heads:
         return Finding(RULE, limit, None, "not judged", note="There are no upright joints.")
-    cases = tuple(case for chain in chains(masonry) for case in _crosses(masonry, chain))
+    cases = tuple(case for chain in masonry.chains for case in _crosses(masonry, chain))
     number = 10.0 * len(cases) / len(masonry.stones)
     worst = sorted(cases, key=lambda case: case.value)
     figures = {"points": float(len(cases))}

@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from drystone.craft.chains import Chain, chains
 from drystone.craft.joints import Joint, joints
 from drystone.craft.scans import Scan, scan
 from drystone.craft.settings import CraftSettings
@@ -166,6 +167,11 @@ class Masonry:
         """Head joints: between a stone and the one to the right of it."""
         widest = self.settings.joint * self.mean_height
         return joints(self.rows, 0, widest, frozenset(self.wedge_ids))
+
+    @cached_property
+    def chains(self) -> tuple[Chain, ...]:
+        """The head joints, those that go on above each other joined to one."""
+        return chains(self)
 
     @cached_property
     def beds(self) -> tuple[Joint, ...]:

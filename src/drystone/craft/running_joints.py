@@ -1,6 +1,6 @@
 """Running joints: head joints that go on through several courses."""
 
-from drystone.craft.chains import Chain, chains
+from drystone.craft.chains import Chain
 from drystone.craft.finding import Case, Finding, Limit, Rule
 from drystone.craft.masonry import Masonry
 
@@ -38,7 +38,7 @@ def find(masonry: Masonry, limit: Limit = RULE.limit) -> Finding:
     >>> found.number, found.cases[0].stones
     (2.0, (1, 3, 2, 4))
     """
-    every = chains(masonry)
+    every = masonry.chains
     if not every:
         return Finding(RULE, limit, None, "not judged", note="There are no upright joints.")
     height = masonry.mean_height

@@ -74,20 +74,27 @@ def scan(outlines: Mapping[int, Points], axis: int, spacing: float) -> Scan:
     places = low + (np.arange(count) + 0.5) * (high - low) / count
     found: list[list[Run]] = [[] for _ in places]
     for block, loop in outlines.items():
-        ahead = np.roll(loop, -1, axis=0)
-        first, last = np.searchsorted(places, [loop[:, across].min(), loop[:, across].max()])
-        for line in range(int(first), min(int(last) + 1, count)):
-            found[line] += _runs(block, loop, ahead, axis, float(places[line]))
+        ends = loop[:, across].min(), loop[:, across].max()
+        first, last = np.searchsorted(places, ends).tolist()
+        lines, along = _crossings(loop, axis, places[first : last + 1])
+        for line, begin, end in zip(lines[::2], along[::2], along[1::2], strict=True):
+            found[first + line].append(Run(block, begin, end))
     rows = tuple(tuple(sorted(line, key=lambda run: run.begin + run.end)) for line in found)
     return Scan((high - low) / count, places, rows)
 
 
-def _runs(block: int, loop: Points, ahead: Points, axis: int, place: float) -> list[Run]:
-    """Cut one outline by one line; a corner on the line belongs to the side above it."""
-    across = 1 - axis
-    a, b = loop[:, across], ahead[:, across]
-    crossing = np.flatnonzero((a <= place) != (b <= place))
-    share = (place - a[crossing]) / (b[crossing] - a[crossing])
-    along = loop[crossing, axis] + share * (ahead[crossing, axis] - loop[crossing, axis])
-    ends = np.sort(along).tolist()
-    return [Run(block, x0, x1) for x0, x1 in zip(ends[::2], ends[1::2], strict=True)]
+def _crossings(
+    loop: Points, axis: int, places: NDArray[np.float64]
+) -> tuple[list[int], list[float]]:
+    """Return which lines cross an outline and where, in order; an even number of times each.
+
+    A corner on a line belongs to the side above it.
+    """
+    ahead = np.roll(loop, -1, axis=0)
+    a, b = loop[:, 1 - axis], ahead[:, 1 - axis]
+    above = places[:, None] >= loop[:, 1 - axis]
+    lines, edges = np.nonzero(above != np.roll(above, -1, axis=1))
+    share = (places[lines] - a[edges]) / (b[edges] - a[edges])
+    along = loop[edges, axis] + share * (ahead[edges, axis] - loop[edges, axis])
+    order = np.lexsort((along, lines))
+    return lines[order].tolist(), along[order].tolist()

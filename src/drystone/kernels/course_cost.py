@@ -21,6 +21,7 @@ from drystone.kernels.course_paths import (
 from drystone.kernels.course_types import (
     COLUMN_BITS,
     COLUMN_UNITS,
+    INSET,
     PARTS,
     SLOPE_BITS,
     SLOPE_ONE,
@@ -33,6 +34,7 @@ from drystone.kernels.course_types import (
     Longs,
     Poses,
     Rules,
+    left_of,
 )
 
 
@@ -188,7 +190,7 @@ def lay_course(
     posed : list of int
         Poses of the course's stones from left to right, at least one.
     gap : int
-        How many are laid from the left end.
+        How many are laid from the left end; see :class:`~.course_types.Arrangement`.
     below : Below
         What is there.
     ground : Ground
@@ -241,12 +243,14 @@ def side_by_side(
     count = len(posed)
     apart = [nest(poses, posed[i], posed[i + 1]) + rules.joint for i in range(count - 1)]
     room = width - int(poses.width[posed[-1]]) - sum(apart)
-    x = [0] * count
-    for i in range(1, gap):
+    inset = 0 if gap >= 0 or room < 0 else room * INSET[0] // INSET[1]
+    from_left = left_of(gap)
+    x = [inset] * count
+    for i in range(1, from_left):
         x[i] = x[i - 1] + apart[i - 1]
-    if gap < count:
-        x[-1] = width - int(poses.width[posed[-1]])
-        for i in range(count - 2, gap - 1, -1):
+    if from_left < count:
+        x[-1] = width - int(poses.width[posed[-1]]) - inset
+        for i in range(count - 2, from_left - 1, -1):
             x[i] = x[i + 1] - apart[i]
     for i in range(count):
         x[i] = max(0, min(x[i], width - int(poses.width[posed[i]])))

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from drystone.kernels.course_types import Arrangement
+from drystone.kernels.course_types import Arrangement, left_of
 
 NOTHING: Final = -1
 """A change that could not be made."""
@@ -93,9 +93,11 @@ class Draft:
             course += 1
         return course
 
-    def mend_gap(self, course: int) -> None:
-        """Bring the gap of a course in between its stones."""
-        self.gaps[course] = max(1, min(self.gaps[course], self.sizes[course] - 1))
+    def move_gap(self, course: int, by: int) -> None:
+        """Let so many more stones of a course be laid from the left end, as many as there are."""
+        gap = self.gaps[course]
+        from_left = min(left_of(gap) + by, self.sizes[course])
+        self.gaps[course] = from_left if gap >= 0 else -1 - from_left
 
 
 def change(draft: Draft, dice: Dice, courses: int) -> int:
@@ -174,8 +176,7 @@ def move(draft: Draft, dice: Dice) -> int:
         to -= to > course
     elif not left_out:
         draft.sizes[course] -= 1
-        draft.gaps[course] -= inside < draft.gaps[course]
-        draft.mend_gap(course)
+        draft.move_gap(course, -(inside < left_of(draft.gaps[course])))
     insert(draft, dice, stone, to)
     return min(course, to, len(draft.sizes) - 1)
 
@@ -189,16 +190,15 @@ def insert(draft: Draft, dice: Dice, stone: int, course: int) -> None:
     inside = dice.below(draft.sizes[course] + 1)
     draft.order.insert(start + inside, stone)
     draft.sizes[course] += 1
-    draft.gaps[course] += inside < draft.gaps[course]
-    draft.mend_gap(course)
+    draft.move_gap(course, inside < left_of(draft.gaps[course]))
 
 
 def shift_gap(draft: Draft, dice: Dice) -> int:
-    """Put the gap of a course somewhere else."""
+    """Put the gap of a course somewhere else; of one in four it keeps away from the ends."""
     course = dice.below(len(draft.sizes))
-    if draft.sizes[course] < 3:
-        return NOTHING
-    gap = 1 + dice.below(draft.sizes[course] - 1)
+    gap = dice.below(draft.sizes[course] + 1)
+    if dice.below(4) == 0:
+        gap = -1 - gap
     if gap == draft.gaps[course]:
         return NOTHING
     draft.gaps[course] = gap
@@ -244,8 +244,6 @@ def split(draft: Draft, dice: Dice, courses: int) -> int:
     draft.gaps[course] = (lower + 1) // 2
     draft.sizes.insert(course + 1, size - lower)
     draft.gaps.insert(course + 1, (size - lower + 1) // 2)
-    draft.mend_gap(course)
-    draft.mend_gap(course + 1)
     return course
 
 

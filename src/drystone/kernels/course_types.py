@@ -29,8 +29,17 @@ SLOPE_ONE: Final = 1 << SLOPE_BITS
 PARTS: Final = 4
 """So many heights of a stone's top are compared with those of its neighbours."""
 
+INSET: Final = (2, 5)
+"""A course that keeps away from the ends does so by this share of its room: an end stone that is
+as wide as the room, in the course above, still has its centroid on it."""
+
 TERMS: Final = 16
 """Terms of the cost, in the order of :class:`Weights`."""
+
+
+def left_of(gap: int) -> int:
+    """Return how many stones of a course are laid from the left end."""
+    return gap if gap >= 0 else -1 - gap
 
 
 class Weights(NamedTuple):
@@ -203,8 +212,9 @@ class Arrangement(NamedTuple):
     sizes : (courses,) int32 array
         How many stones there are in each course, none empty.
     gaps : (courses,) int32 array
-        How many of them are laid from the left end, the others from the right end: at least one
-        each where there are two.
+        How many of them are laid from the left end, the others from the right end.  Below 0 it
+        is -1 less that number, and the course keeps away from both ends of the wall
+        (:data:`INSET`): so whole bricks are bonded in a wall that fits so many.
     """
 
     order: Ints

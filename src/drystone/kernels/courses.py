@@ -111,7 +111,7 @@ def check(poses: Poses, plan: Arrangement, ground: Ground, rules: Rules) -> None
         raise ValueError("an arrangement has every stone once")
     if not 1 <= courses <= rules.courses or plan.sizes.min() < 1 or placed > stones:
         raise ValueError("courses must not be empty, nor too many")
-    if plan.gaps.size != courses or (plan.gaps < 1).any() or (plan.gaps > plan.sizes).any():
+    if plan.gaps.size != courses or not (abs(plan.gaps + 0.5) < plan.sizes + 1).all():
         raise ValueError("a gap must be in its course")
     if ((plan.turns < 0) | (plan.turns > 3)).any():
         raise ValueError("turns are quarters, 0 to 3")

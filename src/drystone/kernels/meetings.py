@@ -56,9 +56,7 @@ class Meetings(NamedTuple):
         return len(self.others)
 
 
-def meetings(
-    corners: Points, around: Polygons, tolerance: float, setback: float = 0.0
-) -> Meetings:
+def meetings(corners: Points, around: Polygons, tolerance: float, setback: float = 0.0) -> Meetings:
     """Find all contacts of one placed polygon with others and with the ground, y = 0.
 
     Parameters

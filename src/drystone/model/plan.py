@@ -95,8 +95,10 @@ FIGURES = ("F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH")
 class PlanMetrics:
     """The figures of merit of a finished wall (§5.2); None when one cannot be computed.
 
-    F_LR of a wall of outlines is that at the contact tolerance of its settings; F_LR_half and
-    F_LR_double are those at half and at twice this tolerance (DESIGN 4.9), None for pixels.
+    F_LR of a wall of outlines is that at the contact tolerance and the set-back of its settings.
+    F_LR_half and F_LR_double are those at half and at twice this tolerance, F_LR_no_setback is
+    that with contacts up to the ends of faces (DESIGN 4.8, 4.9); None for pixels.  F_LR_coulomb is
+    the least that was found without dilatancy; None where nothing was found or looked for.
     """
 
     F_SF: float
@@ -110,6 +112,8 @@ class PlanMetrics:
     wedge_area: float
     F_LR_half: float | None = None
     F_LR_double: float | None = None
+    F_LR_no_setback: float | None = None
+    F_LR_coulomb: float | None = None
 
     def __str__(self) -> str:
         shown = {name: getattr(self, name) for name in FIGURES}

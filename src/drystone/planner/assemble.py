@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -84,7 +85,7 @@ def plan_metrics(
     build: Build,
     frame: Frame,
     resistance: LateralResistance,
-    by_tolerance: tuple[float | None, float | None] = (None, None),
+    others: Mapping[str, float | None] = MappingProxyType({}),
 ) -> PlanMetrics:
     """Return the figures of merit of what is built (DESIGN 5).
 
@@ -96,8 +97,8 @@ def plan_metrics(
         Lengths.
     resistance : LateralResistance
         Of the wall.
-    by_tolerance : (float or None, float or None)
-        F_LR at half and at twice the contact tolerance, of a wall of outlines.
+    others : mapping of str to float or None
+        F_LR by other rules, by the names of :class:`drystone.model.plan.PlanMetrics`.
     """
     scale = frame.site.scale
     wall = build.wall
@@ -121,8 +122,7 @@ def plan_metrics(
         alpha_left=resistance.left.alpha,
         alpha_right=resistance.right.alpha,
         wedge_area=wedge_area(wall) / (frame.site.px_per_m or 1.0) ** 2,
-        F_LR_half=by_tolerance[0],
-        F_LR_double=by_tolerance[1],
+        **others,
     )
 
 

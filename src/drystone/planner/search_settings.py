@@ -18,8 +18,10 @@ class GoalSettings:
     filling : float
         Weight of F_SF over the largest that the stones allow.
     resistance, vertical, horizontal, level, flush : float
-        Weights of F_LR (up to 1), F_AV, F_AH, T_LEVEL and E_FLUSH; the last three count against
-        a wall.
+        Weights of F_LR (the smaller one of both flow rules, up to 1), F_AV, F_AH, T_LEVEL and
+        E_FLUSH; the last three count against a wall.
+    bond : float
+        Weight of faults of the bond for each stone (:func:`drystone.craft.bond.bond_faults`).
     F_SF, F_LR, F_AV, F_AH : float
         Aims: what is better than its aim counts no more than the aim; 0 is none.
     urgent : float
@@ -32,6 +34,7 @@ class GoalSettings:
     horizontal: float = 0.25
     level: float = 0.5
     flush: float = 0.25
+    bond: float = 1.0
     F_SF: float = 0.0
     F_LR: float = 0.0
     F_AV: float = 0.0

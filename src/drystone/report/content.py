@@ -69,6 +69,14 @@ class Strength(Protocol):
         """At twice the contact tolerance; None where there is none."""
 
     @property
+    def F_LR_no_setback(self) -> float | None:  # noqa: N802
+        """With contacts up to the ends of faces; None where there is none."""
+
+    @property
+    def F_LR_coulomb(self) -> float | None:  # noqa: N802
+        """Without dilatancy; None where it is not known."""
+
+    @property
     def alpha_left(self) -> float | None:
         """Load multiplier to the left."""
 
@@ -86,6 +94,8 @@ class Resisted:
     alpha_right: float | None
     F_LR_half: float | None = None
     F_LR_double: float | None = None
+    F_LR_no_setback: float | None = None
+    F_LR_coulomb: float | None = None
 
     @classmethod
     def of(cls, resistance: LateralResistance) -> "Resisted":
@@ -249,7 +259,7 @@ def strength_cards(metrics: Strength, load_case: str = TILTING) -> tuple[Card, .
             number(metrics.F_LR),
             "higher",
             "The smaller load multiplier over the coefficient of friction. "
-            f"{of_one}{_by_tolerance(metrics)}",
+            f"{of_one}{_by_other_rules(metrics)}",
         ),
         Card(
             f"{ALPHA} left",
@@ -289,12 +299,17 @@ def _multiplier_means(load_case: str, side: str) -> str:
     )
 
 
-def _by_tolerance(metrics: Strength) -> str:
-    """Say what it is with other contact tolerances, where there is a tolerance."""
+def _by_other_rules(metrics: Strength) -> str:
+    """Say what it is without dilatancy and with other contacts, where that is known."""
+    said = ""
+    if metrics.F_LR_coulomb is not None:
+        said += f" {number(metrics.F_LR_coulomb)} without dilatancy, the least that was found."
     half, double = metrics.F_LR_half, metrics.F_LR_double
-    if half is None and double is None:
-        return ""
-    return f" {number(half)} and {number(double)} at half and twice the contact tolerance."
+    if half is not None or double is not None:
+        said += f" {number(half)} and {number(double)} at half and twice the contact tolerance."
+    if metrics.F_LR_no_setback is not None:
+        said += f" {number(metrics.F_LR_no_setback)} with contacts up to the ends of faces."
+    return said
 
 
 def weaker_direction(metrics: Strength) -> str:

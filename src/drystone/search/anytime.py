@@ -94,6 +94,7 @@ def searching(
     """
     tools = pickle.dumps((workshop.stones, workshop.site, settings))
     job = Job(tools, seed, clock() + seconds, clock)
+    first = first.judged(workshop, settings)
     search, start = settings.search, Packed.of(first)
     yield Progress(1, start, start.solves, archived((), [start]))
     if search.budget == 1 or job.late():

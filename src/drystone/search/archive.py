@@ -8,7 +8,7 @@ from drystone.search.packed import Packed
 MOST = 12
 """So many walls are kept."""
 
-STEPS = {"F_SF": 0.005, "F_AV": 1.0, "F_AH": -0.1, "F_LR": 0.02}
+STEPS = {"F_SF": 0.005, "F_AV": 1.0, "F_AH": -0.1, "carried": 0.02}
 """Differences of figures that count; below 0 where less is better."""
 
 

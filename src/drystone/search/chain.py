@@ -107,10 +107,15 @@ def lengthened(
         aside = planned and operator == RECREATED
         base = found_again(link.best, workshop, settings) if aside else link.now
         found = _changed(base, operator, workshop, settings, rng)
-        if found.merit > link.best.merit - search.wedge_below:
-            found = wedged(found, workshop, settings)
         now = link.now
-        if not aside and _accepted(found, now, position / length, search, rng):
+        floor = math.inf if aside else _floor(now, position / length, search, rng)
+        worth_wedges = link.best.merit - search.wedge_below
+        # What a wall carries without dilatancy takes long to find, and only lowers its merit.
+        if found.merit > min(floor, worth_wedges):
+            found = found.judged(workshop, settings)
+        if found.merit > worth_wedges:
+            found = wedged(found, workshop, settings)
+        if found.merit >= floor:
             now = found
         link = Link(
             link.number,
@@ -140,7 +145,11 @@ def _changed(
 
 
 def wedged(found: Found, workshop: Workshop, settings: PlannerSettings) -> Found:
-    """Put small wedges into the gaps of a wall of outlines, where that makes it better."""
+    """Put small wedges into the gaps of a wall of outlines, where that makes it better.
+
+    The wall is judged by both flow rules.
+    """
+    found = found.judged(workshop, settings)
     wedges = settings.search.wedges
     may = settings.stabilise.method in ("both", "wedge")
     if found.build.wall.outlines is None or not (wedges and may and found.build.actions):
@@ -151,6 +160,8 @@ def wedged(found: Found, workshop: Workshop, settings: PlannerSettings) -> Found
     if build is found.build:
         return found
     again = Found.measured(build, workshop, settings, found.solves, found.courses)
+    if again.merit > found.merit:
+        again = again.judged(workshop, settings)
     return again if again.merit > found.merit else found
 
 
@@ -169,13 +180,10 @@ def in_cycle(done: int, first: int) -> tuple[int, int]:
     return done, length
 
 
-def _accepted(
-    found: Found, now: Found, share: float, search: SearchSettings, rng: Generator
-) -> bool:
-    """Say whether a chain goes on from a wall that it found."""
+def _floor(now: Found, share: float, search: SearchSettings, rng: Generator) -> float:
+    """Draw the merit from which on a chain goes on from a wall that it finds (Metropolis)."""
     temperature = search.warm * (search.cold / search.warm) ** share
-    loss = now.merit - found.merit
-    return loss <= 0 or bool(rng.random() < math.exp(-loss / temperature))
+    return now.merit + temperature * math.log(1.0 - float(rng.random()))
 
 
 def recreated(found: Found, workshop: Workshop, settings: PlannerSettings, rng: Generator) -> Found:

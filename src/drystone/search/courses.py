@@ -12,11 +12,13 @@ import numpy as np
 from drystone.kernels.course_moves import Dice
 from drystone.kernels.course_types import (
     COLUMN_UNITS,
+    INSET,
     SLOPE_ONE,
     Arrangement,
     Cooling,
     Layout,
     Poses,
+    left_of,
 )
 from drystone.kernels.courses import anneal, evaluate
 from drystone.kernels.raster import turn
@@ -186,9 +188,8 @@ def flat(poses: Poses, stone: int, dice: Dice) -> int:
 def arrangement(
     order: list[int], turns: list[int], sizes: list[int], gaps: list[int]
 ) -> Arrangement:
-    """Return an arrangement of lists, its gaps between stones."""
-    inside = [max(1, min(gap, size - 1)) for gap, size in zip(gaps, sizes, strict=True)]
-    return Arrangement(*(np.array(part, np.int32) for part in (order, turns, sizes, inside)))
+    """Return an arrangement of lists."""
+    return Arrangement(*(np.array(part, np.int32) for part in (order, turns, sizes, gaps)))
 
 
 def resumed(task: Task, courses: Sequence[Sequence[PlannedStone]]) -> Arrangement | None:
@@ -196,7 +197,7 @@ def resumed(task: Task, courses: Sequence[Sequence[PlannedStone]]) -> Arrangemen
 
     Courses above those that a plan of the other stones may have are left out.
     """
-    quarters = task.quarters
+    quarters, width_px = task.quarters, task.ground.width * task.unit_px
     number = {stone.id: i for i, stone in enumerate(quarters.stones)}
     order: list[int] = []
     turns = [0] * len(number)
@@ -217,11 +218,19 @@ def resumed(task: Task, courses: Sequence[Sequence[PlannedStone]]) -> Arrangemen
             turns[i] = quarters.angles_deg[i].index(stone.angle_deg)
         if there:
             sizes.append(len(there))
-            gaps.append(sum(stone.side == "left" for stone in there))
+            from_left = sum(stone.side == "left" for stone in there)
+            gaps.append(-1 - from_left if keeps_away(there, width_px) else from_left)
     if not sizes:
         return None
     order += [i for i in range(len(number)) if i not in set(order)]
     return arrangement(order, turns, sizes, gaps)
+
+
+def keeps_away(course: Sequence[PlannedStone], width_px: float) -> bool:
+    """Say whether a course, from left to right, keeps away from both ends of the wall."""
+    free = width_px - sum(stone.right_px - stone.left_px for stone in course)
+    ends = course[0].left_px, width_px - course[-1].right_px
+    return min(ends) > 0.5 * INSET[0] / INSET[1] * free > 0.0
 
 
 def stones_looked_at(task: Task) -> int:
@@ -250,8 +259,9 @@ def placed(task: Task, plan: Arrangement, layout: Layout) -> CoursePlan:
     """Return an arrangement as a plan in the wall frame, source px."""
     courses, start = [], 0
     for size, gap in zip(plan.sizes.tolist(), plan.gaps.tolist(), strict=True):
-        left = [planned(task, plan, layout, start + i, "left") for i in range(gap)]
-        right = [planned(task, plan, layout, start + i, "right") for i in range(gap, size)]
+        sides: list[Side] = ["left" if i < left_of(gap) else "right" for i in range(size)]
+        stones = [planned(task, plan, layout, start + i, side) for i, side in enumerate(sides)]
+        left, right = stones[: left_of(gap)], stones[left_of(gap) :]
         courses.append((*left, *right[::-1]))
         start += size
     return CoursePlan(tuple(courses), layout.cost)

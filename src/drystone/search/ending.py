@@ -1,12 +1,44 @@
 """The walls that a search ends with, and why nothing more is placed on them."""
 
+from collections.abc import Iterable
+from itertools import islice
+
 from drystone.planner.events import Stopped
 from drystone.planner.planner import Planner
 from drystone.search.found import Found
 from drystone.search.interrupts import insisted
 from drystone.search.packed import Packed, found_again
+from drystone.statics.flow.flow_search import NonassociativeSettings
 
 _FOUND = Stopped("search", "kept as the search found it")
+
+THOROUGH = NonassociativeSettings()
+"""How the load without dilatancy is looked for at the end."""
+
+JUDGED_AGAIN = 4
+"""So many of the best walls of a search are looked at thoroughly at most."""
+
+
+def surest(planner: Planner, walls: Iterable[Packed]) -> Packed:
+    """Return the best of some walls once their load without dilatancy is looked for thoroughly.
+
+    Parameters
+    ----------
+    planner : Planner
+        Of the first wall.
+    walls : iterable of Packed
+        From a search, at least one, the best first.
+    """
+    workshop, settings = planner.workshop, planner.settings
+    best: Packed | None = None
+    for wall in islice(walls, JUDGED_AGAIN):
+        if best is not None and wall.merit <= best.merit:
+            break
+        again = found_again(wall, workshop, settings).judged(workshop, settings, THOROUGH)
+        if best is None or again.merit > best.merit:
+            best = Packed.of(again)
+    assert best is not None  # noqa: S101 - there is at least one
+    return best
 
 
 def as_found(planner: Planner, wall: Packed) -> tuple[Planner, Stopped]:
@@ -49,9 +81,11 @@ def with_the_rest(planner: Planner, best: Packed) -> tuple[Planner, Stopped, boo
     build, merit, interrupted = last.build, best.merit, False
     try:
         for _ in last.steps():
-            now = Found.of(last).merit
-            if now > merit:
-                build, merit = last.build, now
+            now = Found.of(last)
+            if now.merit > merit:
+                now = now.judged(planner.workshop, planner.settings, THOROUGH)
+            if now.merit > merit:
+                build, merit = last.build, now.merit
     except KeyboardInterrupt:
         interrupted = True
     if last.stopped is not None and last.build is build:

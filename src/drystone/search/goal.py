@@ -2,15 +2,25 @@
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from drystone.craft.bond import bond_faults
+from drystone.craft.masonry import Masonry
+from drystone.craft.settings import CraftSettings
 from drystone.metrics.measure import measure_labels
 from drystone.planner.build import Build
 from drystone.planner.search_settings import GoalSettings
 from drystone.planner.workshop import Workshop
+from drystone.statics.flow.flow_search import NonassociativeSettings
+from drystone.statics.flow.nonassociative import nonassociative_resistance
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LimitStatus
 
 MISSING = 10.0
 """Units of merit that a pinned stone counts which is not in the wall."""
+
+SCANNED = CraftSettings(sample=0.07)
+"""Bond is looked at along fewer lines than `craft` does, for every wall of a search."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +35,11 @@ class Figures:
         As :class:`drystone.metrics.measure.WallMetrics`; 0 where a figure is not defined.
     missing : int
         How many pinned stones it lacks.
+    bond : float
+        Faults of its bond (:func:`drystone.craft.bond.bond_faults`); 0 for a wall of pixels.
+    F_LR_coulomb : float or None
+        F_LR without dilatancy, 0 where the wall can fall by itself; None where it was not asked
+        for (:func:`with_coulomb`).
     """
 
     stones: int
@@ -35,16 +50,27 @@ class Figures:
     T_LEVEL: float
     E_FLUSH: float
     missing: int = 0
+    bond: float = 0.0
+    F_LR_coulomb: float | None = None
+
+    @property
+    def carried(self) -> float:
+        """The smaller of both lateral resistances, as far as they are known."""
+        return self.F_LR if self.F_LR_coulomb is None else min(self.F_LR, self.F_LR_coulomb)
 
 
 def figures_of(build: Build, pinned: Collection[int] = ()) -> Figures | None:
     """Measure a wall, and count the pinned stones that it lacks; None when it is empty."""
     if not build.actions:
         return None
-    site = build.wall.site
+    site, outlines = build.wall.site, build.wall.outlines
+    wedges = {wedge.id for wedge in build.wall.wedges}
+    bond = 0.0
+    if outlines is not None:
+        bond = bond_faults(Masonry(dict(outlines.blocks), None, wedges, settings=SCANNED))
     measured = measure_labels(
         build.wall.labels,
-        wedge_ids={wedge.id for wedge in build.wall.wedges},
+        wedge_ids=wedges,
         wall_px=(site.width_px, site.height_px),
     )
     return Figures(
@@ -56,7 +82,25 @@ def figures_of(build: Build, pinned: Collection[int] = ()) -> Figures | None:
         T_LEVEL=measured.T_LEVEL,
         E_FLUSH=measured.E_FLUSH,
         missing=len(set(pinned) - {action.stone_id for action in build.actions}),
+        bond=bond,
     )
+
+
+def with_coulomb(
+    figures: Figures, model: RigidBlockModel, settings: NonassociativeSettings
+) -> Figures:
+    """Add what a wall carries without dilatancy, the least that is found (DESIGN 4.8).
+
+    Where nothing is found the associative value stands, above which none can be.
+    """
+    found = nonassociative_resistance(model, settings=settings)
+    least = figures.F_LR
+    for end in (found.left, found.right):
+        if end.status is LimitStatus.UNSTABLE:
+            least = 0.0
+        elif end.alpha is not None:
+            least = min(least, end.alpha / found.mu)
+    return replace(figures, F_LR_coulomb=least)
 
 
 def usable_area_px(workshop: Workshop) -> int:
@@ -93,11 +137,12 @@ def merit_of(figures: Figures | None, possible: float, goal: GoalSettings) -> fl
     return math.fsum(
         [
             goal.filling * _up(figures.F_SF, goal.F_SF, goal.urgent) / possible,
-            goal.resistance * _up(min(1.0, figures.F_LR), goal.F_LR, goal.urgent),
+            goal.resistance * _up(min(1.0, figures.carried), goal.F_LR, goal.urgent),
             goal.vertical * _up(figures.F_AV, goal.F_AV, goal.urgent),
             -goal.horizontal * _down(figures.F_AH, goal.F_AH, goal.urgent),
             -goal.level * figures.T_LEVEL,
             -goal.flush * figures.E_FLUSH,
+            -goal.bond * figures.bond,
             -MISSING * figures.missing,
         ]
     )

@@ -20,6 +20,9 @@ from drystone.stabilise.settings import Method
 
 Place = tuple[float, float]
 
+CLOSED_UP = 0.25
+"""A stone may come to rest nearer to its end of the wall than planned, by so many mean heights."""
+
 SAME_PX, SAME_DEG = 1.0, 0.05
 """Stones that rest so near to each other rest alike."""
 
@@ -144,7 +147,10 @@ class Hand:
         """Return what it costs to be at some places."""
         cost = self.settings.top * np.abs(top_px - aim.top_px)
         if aim.left_px is not None:
-            cost += self.settings.width * np.maximum(left_px - aim.left_px, 0.0)
+            aside = left_px - aim.left_px
+            # Closing up is welcome, but much nearer to the end joints come to lie above joints.
+            lost = np.maximum(aside, -aside - CLOSED_UP * aim.unit_px)
+            cost += self.settings.width * np.maximum(lost, 0.0)
         return np.asarray(cost / aim.unit_px)
 
     def resting(

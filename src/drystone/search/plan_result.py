@@ -22,6 +22,7 @@ from drystone.planner.solves import Solves
 from drystone.search.goal import usable_area_px
 from drystone.search.notices import missing_stones
 from drystone.statics.contacts.settled import model_of_outlines
+from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
@@ -31,6 +32,10 @@ FILLED = 0.99
 
 FILLED_TOP = 0.9
 """A plan is incomplete when its mean top stays below this share of the wall's height."""
+
+
+MOST_WITHOUT_DILATANCY = 150
+"""Twelve starts take some ten seconds for so many blocks, and the time grows with their square."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,9 +120,8 @@ def finish(
     """Judge what a planner has built and write the plan."""
     build = planner.build
     resistance = lateral_resistance(build.model, mechanism=True)
-    metrics = plan_metrics(
-        build, frame, resistance, resistance_by_tolerance(build, planner.settings)
-    )
+    others = other_resistances(build, resistance, planner.settings)
+    metrics = plan_metrics(build, frame, resistance, others)
     plan = assemble_plan(planner.workshop, frame, build, stopped, metrics, provenance)
     interrupted = stopped.reason == "interrupted"
     shortfall = "" if interrupted else _shortfall(planner, metrics)
@@ -183,19 +187,36 @@ def _shortfall(planner: Planner, metrics: PlanMetrics) -> str:
     return ""
 
 
-def resistance_by_tolerance(
-    build: Build, settings: PlannerSettings
-) -> tuple[float | None, float | None]:
-    """Return F_LR at half and at twice the contact tolerance; None for a wall of pixels."""
-    outlines = build.wall.outlines
-    if outlines is None:
-        return None, None
-    models = [
-        model_of_outlines(outlines, settings.mu, share * settings.settle.contact_px)
-        for share in (0.5, 2.0)
-    ]
-    half, double = (lateral_resistance(model).value for model in models)
-    return half, double
+def other_resistances(
+    build: Build, resistance: LateralResistance, settings: PlannerSettings
+) -> dict[str, float | None]:
+    """Return F_LR by other rules, by the names of a plan's metrics.
+
+    Without dilatancy it is looked for in walls of up to :data:`MOST_WITHOUT_DILATANCY` blocks, and
+    where the wall stands.
+
+    Parameters
+    ----------
+    build : Build
+        The wall.
+    resistance : LateralResistance
+        Of it.
+    settings : PlannerSettings
+        Friction, contact tolerance and set-back.
+    """
+    found: dict[str, float | None] = {}
+    if resistance.stable and 0 < len(build.model.blocks) <= MOST_WITHOUT_DILATANCY:
+        found["F_LR_coulomb"] = nonassociative_resistance(build.model).value
+    outlines, settle = build.wall.outlines, settings.settle
+    if outlines is not None:
+        for name, share, setback in (
+            ("F_LR_half", 0.5, settle.setback),
+            ("F_LR_double", 2.0, settle.setback),
+            ("F_LR_no_setback", 1.0, 0.0),
+        ):
+            model = model_of_outlines(outlines, settings.mu, share * settle.contact_px, setback)
+            found[name] = lateral_resistance(model).value
+    return found
 
 
 def mean_top(wall: Wall) -> float:

@@ -24,7 +24,7 @@ from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.planner.solves import Solves
 from drystone.search.anytime import Progress, searching
 from drystone.search.archive import archived
-from drystone.search.ending import as_found, with_the_rest
+from drystone.search.ending import as_found, surest, with_the_rest
 from drystone.search.found import Found
 from drystone.search.interrupts import insisted
 from drystone.search.notices import planning_notices
@@ -306,6 +306,8 @@ def run_to_end(
         forget()
     if best is None:
         return Ended(planner, planner.stopped, 1, (), lost, interrupted)
+    if walls > 1 and kept:
+        best = insisted(lambda: surest(planner, kept))
     last, stopped, cut = with_the_rest(planner, best)
     planner.failed_solves += last.failed_solves
     planner.cold_solves += last.cold_solves

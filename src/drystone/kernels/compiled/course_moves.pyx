@@ -43,9 +43,16 @@ cdef int32_t course_of(const Draft *draft, int32_t place) noexcept nogil:
     return course
 
 
-cdef void mend_gap(Draft *draft, int32_t course) noexcept nogil:
-    """Bring the gap of a course in between its stones."""
-    draft.gaps[course] = max(1, min(draft.gaps[course], draft.sizes[course] - 1))
+cdef inline int32_t left_of(int32_t gap) noexcept nogil:
+    """Return how many stones of a course are laid from the left end."""
+    return gap if gap >= 0 else -1 - gap
+
+
+cdef void move_gap(Draft *draft, int32_t course, int32_t by) noexcept nogil:
+    """Let so many more stones of a course be laid from the left end, as many as there are."""
+    cdef int32_t gap = draft.gaps[course]
+    cdef int32_t from_left = min(left_of(gap) + by, draft.sizes[course])
+    draft.gaps[course] = from_left if gap >= 0 else -1 - from_left
 
 
 cdef int32_t change(Draft *draft, uint64_t *state, int32_t most) noexcept nogil:
@@ -113,9 +120,7 @@ cdef int32_t move(Draft *draft, uint64_t *state) noexcept nogil:
             to -= 1
     elif not outside:
         draft.sizes[course] -= 1
-        if inside < draft.gaps[course]:
-            draft.gaps[course] -= 1
-        mend_gap(draft, course)
+        move_gap(draft, course, -(inside < left_of(draft.gaps[course])))
     insert(draft, state, stone, to)
     return min(min(course, to), draft.courses - 1)
 
@@ -135,9 +140,7 @@ cdef void insert(Draft *draft, uint64_t *state, int32_t stone, int32_t course) n
     draft.order[place] = stone
     if course < draft.courses:
         draft.sizes[course] += 1
-        if inside < draft.gaps[course]:
-            draft.gaps[course] += 1
-        mend_gap(draft, course)
+        move_gap(draft, course, inside < left_of(draft.gaps[course]))
 
 
 cdef void drop_course(Draft *draft, int32_t course) noexcept nogil:
@@ -150,11 +153,11 @@ cdef void drop_course(Draft *draft, int32_t course) noexcept nogil:
 
 
 cdef int32_t shift_gap(Draft *draft, uint64_t *state) noexcept nogil:
-    """Put the gap of a course somewhere else."""
-    cdef int32_t course = below(state, draft.courses), gap
-    if draft.sizes[course] < 3:
-        return NOTHING
-    gap = 1 + below(state, draft.sizes[course] - 1)
+    """Put the gap of a course somewhere else; of one in four it keeps away from the ends."""
+    cdef int32_t course = below(state, draft.courses)
+    cdef int32_t gap = below(state, draft.sizes[course] + 1)
+    if below(state, 4) == 0:
+        gap = -1 - gap
     if gap == draft.gaps[course]:
         return NOTHING
     draft.gaps[course] = gap
@@ -213,8 +216,6 @@ cdef int32_t split(Draft *draft, uint64_t *state, int32_t most) noexcept nogil:
     draft.courses += 1
     draft.sizes[course], draft.sizes[course + 1] = lower, size - lower
     draft.gaps[course], draft.gaps[course + 1] = (lower + 1) / 2, (size - lower + 1) / 2
-    mend_gap(draft, course)
-    mend_gap(draft, course + 1)
     return course
 
 

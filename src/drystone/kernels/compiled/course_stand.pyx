@@ -7,6 +7,8 @@ This does not depend on how they lie, so what it costs is known before any is la
 from libc.stdint cimport int32_t
 from libc.string cimport memcpy
 
+from drystone.kernels.course_types import INSET
+
 from drystone.kernels.compiled.course_scene cimport (
     COLUMN_BITS,
     COLUMN_UNITS,
@@ -15,6 +17,8 @@ from drystone.kernels.compiled.course_scene cimport (
     Lain,
     Scene,
 )
+
+cdef int32_t INSET_OF = INSET[0], INSET_PARTS = INSET[1]
 
 
 cdef bint stand(
@@ -67,7 +71,8 @@ cdef void meet(
 
 cdef inline int32_t side_by_side(const Scene *scene, Course *out) noexcept nogil:
     """Find the left ends of the stones of a course; return the room that they leave."""
-    cdef int32_t i, room, most, total = 0, before = out.lain[0].pose, columns
+    cdef int32_t i, room, most, total = 0, before = out.lain[0].pose, columns, inset = 0
+    cdef int32_t from_left = out.gap if out.gap >= 0 else -1 - out.gap
     cdef Lain *lain = out.lain
     # Distances first, then places.
     room = scene.wall_width
@@ -77,10 +82,12 @@ cdef inline int32_t side_by_side(const Scene *scene, Course *out) noexcept nogil
         room -= lain[i].x
         before = lain[i].pose
     room -= scene.width[before]
+    if out.gap < 0 and room > 0:
+        inset = room * INSET_OF / INSET_PARTS
     for i in range(out.stones):
         total += lain[i].x
         # What is laid from the right end is as far from there as it would be from a full course.
-        most = total + room if i >= out.gap else total
+        most = total + room - inset if i >= from_left else total + inset
         lain[i].x = max(0, min(most, scene.wall_width - scene.width[lain[i].pose]))
         columns = <int32_t> (scene.first[lain[i].pose + 1] - scene.first[lain[i].pose])
         lain[i].column = min(
