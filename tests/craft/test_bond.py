@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from drystone.craft import CraftSettings, Masonry, cross_joints, laps, one_over_two, running_joints
+from drystone.craft.bond import bond_faults
 from tests.craft.walls import both, box, courses, mirrored, open_joints, running_bond, stack_bond
 
 
@@ -55,6 +56,25 @@ def test_a_running_bond_keeps_every_rule_of_bond(place):
     lapped = laps.find(wall)
     assert (lapped.number, lapped.verdict) == (0.0, "good")
     assert lapped.figures["mean lap"] == pytest.approx(0.5, abs=0.02)
+
+
+def test_faults_of_a_bond_grow_with_every_rule_that_is_broken():
+    stack, bond = Masonry(stack_bond()), Masonry(running_bond())
+    # 3 joints go 4 courses on, 12 points, 8 of 20 bricks between the ends on one, no lap at all.
+    assert bond_faults(stack) == pytest.approx((12 + 12 + 8) / 20)
+    assert bond_faults(bond) == 0.0
+    assert bond_faults(Masonry({})) == 0.0
+
+
+@given(st.floats(0.02, 0.5))
+@settings(max_examples=25)
+def test_faults_of_a_bond_fall_as_laps_grow(lap):
+    """Three courses of four bricks, the middle one moved aside by a share of their width."""
+    wall = {4 * y + x: box(4 * x + 4 * lap * (y % 2), y, 4, 1) for y in range(3) for x in range(4)}
+    longer = {4 * y + x: box(4 * x + 2 * (y % 2), y, 4, 1) for y in range(3) for x in range(4)}
+    faults = bond_faults(Masonry(wall))
+    assert faults >= bond_faults(Masonry(longer)) - 1e-9
+    assert (faults < 0.05) == (lap >= 0.25 - 1e-9) or 0.2 < lap < 0.25
 
 
 def test_one_brick_cut_over_a_joint_makes_one_running_joint():

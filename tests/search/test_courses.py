@@ -136,6 +136,29 @@ def test_bricks_come_out_as_running_bond_with_level_courses() -> None:
 
 
 @needs_compiled
+@pytest.mark.parametrize("bricks_wide", [4, 4.5, 6, 7.5])
+def test_whole_bricks_are_bonded_whether_they_fit_or_not(bricks_wide: float) -> None:
+    """No head joint above another, though there are no halves; no end brick beside its bed."""
+    stones, width = bricks(40), 24.0 * bricks_wide
+    settings = CourseSettings(evaluations=1500)
+    plan = plan_courses(stones.stones, width, 40.0, 1.0, TOLERANCE_PX, settings, 1)
+    assert plan is not None
+    assert len(plan.courses) == 5
+    rows = [sorted((one.left_px, one.right_px) for one in course) for course in plan.courses]
+    for below, above in pairwise(rows):
+        for left, right in above:
+            middle = (left + right) / 2
+            assert below[0][0] < middle < below[-1][1]
+    joints = [[0.5 * (a[1] + b[0]) for a, b in pairwise(row)] for row in rows]
+    near = [
+        min((abs(one - other) for other in below), default=99.0)
+        for below, above in pairwise(joints)
+        for one in above
+    ]
+    assert np.mean(np.array(near) >= 4.0) > 0.8
+
+
+@needs_compiled
 def test_a_wall_smaller_than_the_stock_is_filled_and_the_rest_left_out() -> None:
     stones = bricks(20)
     settings = CourseSettings(evaluations=500)

@@ -3,15 +3,20 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from drystone.craft.bond import bond_faults
+from drystone.craft.masonry import Masonry
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
+from drystone.search.found import Found
 from drystone.search.goal import MISSING, Figures, figures_of, merit_of, possible_filling
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
 
 WALL = Figures(stones=8, F_SF=0.8, F_LR=0.5, F_AV=20.0, F_AH=2.0, T_LEVEL=0.2, E_FLUSH=0.1)
 GOAL = GoalSettings()
+EXACT = {"geometry": "exact"}
 
 
 def test_merit_rises_with_what_is_good_and_falls_with_what_is_bad() -> None:
@@ -25,6 +30,39 @@ def test_merit_rises_with_what_is_good_and_falls_with_what_is_bad() -> None:
     assert gain(F_AH=3.0) == pytest.approx(-GOAL.horizontal)
     assert gain(T_LEVEL=0.3) == pytest.approx(-0.1 * GOAL.level)
     assert gain(E_FLUSH=0.3) == pytest.approx(-0.2 * GOAL.flush)
+    assert gain(bond=0.5) == pytest.approx(-0.5 * GOAL.bond)
+
+
+def test_of_both_flow_rules_the_smaller_counts() -> None:
+    def gain(without: float) -> float:
+        return merit_of(replace(WALL, F_LR_coulomb=without), 0.9, GOAL) - merit_of(WALL, 0.9, GOAL)
+
+    assert gain(0.2) == pytest.approx(-0.3 * GOAL.resistance)
+    assert gain(0.9) == gain(0.5) == 0.0
+
+
+def test_a_stack_bond_costs_more_than_the_bricks_that_a_bond_leaves_out() -> None:
+    """Thirty bricks in stack bond, or two less in a bond: a mason leaves two out."""
+    brick = np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 20.0], [0.0, 20.0]])
+    stack = {6 * y + x: brick + np.array([40 * x, 20 * y]) for x in range(6) for y in range(5)}
+    bond = {i: corners + np.array([16 * (i // 6 % 2), 0]) for i, corners in stack.items()}
+    faults = bond_faults(Masonry(stack)) - bond_faults(Masonry(bond))
+    assert GOAL.bond * faults > GOAL.filling * 2 / 30
+
+
+@pytest.mark.parametrize("seed", [0, 3])
+def test_what_is_judged_carries_no_more(seed: int) -> None:
+    """Without dilatancy a wall carries at most what it carries with it, and it is asked once."""
+    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=greedy(EXACT)))
+    found = Found.of(planner)
+    judged = found.judged(planner.workshop, planner.settings)
+    assert found.figures is not None
+    assert judged.figures is not None
+    assert found.figures.F_LR_coulomb is None
+    assert judged.figures.F_LR_coulomb is not None
+    assert 0.0 <= judged.figures.F_LR_coulomb <= judged.figures.F_LR
+    assert judged.merit <= found.merit
+    assert judged.judged(planner.workshop, planner.settings) is judged
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,7 @@ from drystone.statics.contacts.gaps import model_with_closed_gaps, settle_gaps
 from drystone.statics.contacts.given import model_from_json, polygons_from_json
 from drystone.statics.contacts.joints import with_head_friction
 from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.statics.contacts.settled import SETBACK
 from drystone.statics.failing.wording import Noun
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
@@ -115,14 +116,20 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, arguments: argparse.Names
         return Modelled(picture.model, labels, "stone", wall.wedge_ids, picture.notices)
     outlines = outlines_of_labels(labels[: picture.ground_row])
     # What a picture weighs it weighs by its pixels, not by what smoothing made of them.
-    weighed = replace(model_from_outlines(outlines, mu), blocks=picture.model.blocks)
+    bare = replace(model_from_outlines(outlines, mu), blocks=picture.model.blocks)
+    found = model_from_outlines(outlines, mu, setback=SETBACK)
+    strength = lateral_resistance(bare).value
+    with_ends = "falls" if strength is None else f"F_LR {strength:.3f}"
     return Modelled(
-        weighed,
+        replace(bare, interfaces=found.interfaces),
         outlines,
         "stone",
         wall.wedge_ids,
         picture.notices,
-        {"contacts": "from sub-pixel outlines"},
+        {
+            "contacts": "from sub-pixel outlines, set back; "
+            f"{with_ends} with contacts up to the ends of faces"
+        },
     )
 
 

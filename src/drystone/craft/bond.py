@@ -30,8 +30,8 @@ def bond_faults(masonry: Masonry) -> float:
     >>> stack = {3 * y + x: brick + [2 * x, y] for x in range(3) for y in range(3)}
     >>> round(bond_faults(Masonry(stack)), 2)
     1.11
-    >>> bond = {i: brick + [x / 9 - y % 2, y] for i, (x, y) in enumerate([(0, 0), (18, 0), (18, 1)])}
-    >>> bond_faults(Masonry(bond))
+    >>> bond = [brick, brick + [2, 0], brick + [1, 1]]
+    >>> bond_faults(Masonry(dict(enumerate(bond))))
     0.0
     """
     stones = len(masonry.stones)

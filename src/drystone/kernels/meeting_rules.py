@@ -214,9 +214,10 @@ def set_back(p: Sides, q: Sides, contact: Contact, by: float, tolerance: float) 
         start = 0.0 if start < 0.0 else p.length[i] if start > p.length[i] else start
         x0, y0 = _on_edge(p, i, start)
     across = _projected(q, j, x0, y0)
-    if min(_runs_on(p, i, start, by, -1), _runs_on(p, i, start, by, 1)) < by:
-        if min(_runs_on(q, j, across, by, -1), _runs_on(q, j, across, by, 1)) < by:
-            return None
+    mine = min(_runs_on(p, i, start, by, -1), _runs_on(p, i, start, by, 1))
+    theirs = min(_runs_on(q, j, across, by, -1), _runs_on(q, j, across, by, 1))
+    if max(mine, theirs) < by:
+        return None
     return i, start, 1, x0, y0, x0, y0, normal_x, normal_y, j
 
 

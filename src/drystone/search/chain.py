@@ -183,7 +183,7 @@ def in_cycle(done: int, first: int) -> tuple[int, int]:
 def _floor(now: Found, share: float, search: SearchSettings, rng: Generator) -> float:
     """Draw the merit from which on a chain goes on from a wall that it finds (Metropolis)."""
     temperature = search.warm * (search.cold / search.warm) ** share
-    return now.merit + temperature * math.log(1.0 - float(rng.random()))
+    return float(now.merit + temperature * math.log(1.0 - rng.random()))
 
 
 def recreated(found: Found, workshop: Workshop, settings: PlannerSettings, rng: Generator) -> Found:

@@ -19,7 +19,7 @@ JUDGED_AGAIN = 4
 """So many of the best walls of a search are looked at thoroughly at most."""
 
 
-def surest(planner: Planner, walls: Iterable[Packed]) -> Packed:
+def surest(planner: Planner, walls: Iterable[Packed]) -> Packed | None:
     """Return the best of some walls once their load without dilatancy is looked for thoroughly.
 
     Parameters
@@ -27,7 +27,7 @@ def surest(planner: Planner, walls: Iterable[Packed]) -> Packed:
     planner : Planner
         Of the first wall.
     walls : iterable of Packed
-        From a search, at least one, the best first.
+        From a search, the best first; of none there is no best.
     """
     workshop, settings = planner.workshop, planner.settings
     best: Packed | None = None
@@ -37,7 +37,6 @@ def surest(planner: Planner, walls: Iterable[Packed]) -> Packed:
         again = found_again(wall, workshop, settings).judged(workshop, settings, THOROUGH)
         if best is None or again.merit > best.merit:
             best = Packed.of(again)
-    assert best is not None  # noqa: S101 - there is at least one
     return best
 
 

@@ -306,8 +306,7 @@ def run_to_end(
         forget()
     if best is None:
         return Ended(planner, planner.stopped, 1, (), lost, interrupted)
-    if walls > 1 and kept:
-        best = insisted(lambda: surest(planner, kept))
+    best = insisted(lambda: surest(planner, kept)) or best
     last, stopped, cut = with_the_rest(planner, best)
     planner.failed_solves += last.failed_solves
     planner.cold_solves += last.cold_solves

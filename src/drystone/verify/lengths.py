@@ -26,11 +26,14 @@ def plan_settings(plan: Plan) -> tuple[PlannerSettings, list[Problem]]:
     A setting that is not has the value of the plan's method, or the package's own default when
     the plan names none that is known here.
     """
+    base, settle = PlannerSettings(), plan.settings.get("settle")
+    if isinstance(settle, Mapping) and "setback" not in settle:  # made when there was none yet
+        base = base.updated({"settle": {"setback": 0.0}})
     try:
-        return PlannerSettings().updated(plan.settings), []
+        return base.updated(plan.settings), []
     except UsageError as error:
         refusal = error
-    settings, refused = _usable(PlannerSettings(), plan.settings)
+    settings, refused = _usable(base, plan.settings)
     instead = METHODS.get(plan.method, PlannerSettings()).as_dict()
     for path in refused:
         value = _value(instead, path)

@@ -18,7 +18,8 @@ MU, TOLERANCE, CLEARANCE = 0.58, 0.1, 0.01
 
 
 def box(left: float, bottom: float, width: float, height: float) -> Points:
-    return np.array([left, bottom]) + [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]]
+    corners = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]]
+    return np.array(corners) + np.array([left, bottom])
 
 
 def model_of(polygons: list[Points], setback: float = 0.01) -> RigidBlockModel:
@@ -81,7 +82,7 @@ def test_columns_that_stand_apart_topple_one_by_one(family):
     width, height, count, courses = family
     back = max(TOLERANCE, 0.01 * np.sqrt(width * height))
     apart = [
-        corners + [0.5 * (corners[0, 0] // width), 0.0]
+        corners + np.array([0.5 * (corners[0, 0] // width), 0.0])
         for corners in bricks(width, height, count, courses, 0.0, 0.0)
     ]
     expected = min(1.0, (width - 2.0 * back) / (courses * height) / MU)
@@ -106,7 +107,7 @@ def test_a_longer_lap_carries_no_less(family):
 def test_a_corner_that_stands_on_a_face_stays_however_it_leans(angle_deg, gap, setback):
     """From the whole face to its corner nothing vanishes as a brick leans."""
     base, brick = box(0, 0, 100, 20), turn(box(-15, 0, 30, 60), angle_deg)
-    standing = brick + [50.0, 20.0 + gap - brick[:, 1].min()]
+    standing = brick + np.array([50.0, 20.0 + gap - brick[:, 1].min()])
     assert any(face.other == 1 for face in model_of([base, standing], setback).interfaces)
 
 
@@ -122,7 +123,7 @@ def test_rounded_stones_keep_contacts_of_corner_on_corner():
     """An outline that turns by little at every corner has no end of a face there."""
     turns = np.linspace(0.0, 2 * np.pi, 36, endpoint=False)
     disc = 20.0 * np.column_stack([np.cos(turns), np.sin(turns)])
-    wall = [disc + [0.0, 20.01], disc + [0.0, 60.02]]
+    wall = [disc + np.array([0.0, up]) for up in (20.01, 60.02)]
     assert [(face.block, face.other) for face in model_of(wall).interfaces] == [(1, GROUND), (2, 1)]
 
 

@@ -12,8 +12,8 @@ from scipy import ndimage
 from drystone.kernels.boundary import touching_edges, trace_chains
 from drystone.kernels.segments import REACH_PX, Line, fitted_lines, meeting_point, with_area
 from drystone.model.wall import Labels
-from drystone.statics.contacts.touching import touching_interfaces
-from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
+from drystone.statics.contacts.settled import PlacedPolygons, model_of_outlines
+from drystone.statics.model import RigidBlockModel
 
 Points = NDArray[np.float64]
 Node = tuple[int, int]
@@ -91,7 +91,7 @@ def model_from_outlines(
     mu: float = 0.58,
     *,
     contact_tolerance_px: float = 0.1,
-    ground_y: float = 0.0,
+    setback: float = 0.0,
 ) -> RigidBlockModel:
     """Make the rigid block model of stones with given outlines.
 
@@ -103,13 +103,13 @@ def model_from_outlines(
         Coefficient of friction.
     contact_tolerance_px : float
         Gap or overlap up to which edges and corners touch, same unit as the outlines, above 0.
-    ground_y : float
-        Height of the ground.
+    setback : float
+        See :func:`drystone.kernels.meetings.meetings`.
 
     Returns
     -------
     RigidBlockModel
-        Interfaces sorted by ids; of two the larger id is `block`.  Weights and centroids are
+        Blocks and interfaces by ids; of two the larger id is `block`.  Weights and centroids are
         those of the outlines.  Overlaps are not looked for: whoever makes outlines checks them.
 
     Examples
@@ -119,28 +119,8 @@ def model_from_outlines(
     >>> [(i.block, i.other, i.length) for i in model.interfaces]
     [(1, 0, 10.0), (2, 1, 10.0)]
     """
-    if not outlines:
-        return RigidBlockModel((), (), mu)
-    ids = sorted(outlines)
-    shapes = np.array([shapely.Polygon(outlines[block]) for block in ids])
-    blocks = tuple(
-        Block(block, float(shape.area), (float(shape.centroid.x), float(shape.centroid.y)))
-        for block, shape in zip(ids, shapes, strict=True)
-    )
-    x = np.concatenate([outlines[block][:, 0] for block in ids])
-    extent = 1.0 + float(np.ptp(x))
-    ground = np.array([[x.max() + extent, ground_y], [x.min() - extent, ground_y]])
-    tolerance = contact_tolerance_px
-    found: list[Interface] = []
-    for block in ids:
-        found += touching_interfaces(block, outlines[block], GROUND, ground, tolerance)
-    near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=tolerance)
-    for high, low in near.T.tolist():
-        if high > low:  # each pair is found twice, and each block with itself
-            block, other = ids[high], ids[low]
-            found += touching_interfaces(block, outlines[block], other, outlines[other], tolerance)
-    found.sort(key=lambda interface: (interface.block, interface.other))
-    return RigidBlockModel(blocks, tuple(found), mu)
+    blocks = ((block, outlines[block][:-1]) for block in sorted(outlines))
+    return model_of_outlines(PlacedPolygons.of(blocks), mu, contact_tolerance_px, setback)
 
 
 def _rings(labels: Labels) -> dict[int, Piece]:
