@@ -33,7 +33,8 @@ def replace_figures(one: Packed) -> Packed:
 
 
 def test_one_better_figure_keeps_a_wall_as_far_as_it_counts() -> None:
-    for name, step in STEPS.items():
+    for figure, step in STEPS.items():
+        name = "F_LR" if figure == "carried" else figure
         better = wall(0.5, **{name: getattr(PLAIN, name) + step})
         alike = wall(0.5, **{name: getattr(PLAIN, name) + 0.3 * step})
         worse = wall(0.5, **{name: getattr(PLAIN, name) - step})

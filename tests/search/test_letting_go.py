@@ -43,6 +43,10 @@ class _Drop:
         places = range(len(tops) - len(bottoms) + 1)
         return [max(tops[at + k] - b for k, b in enumerate(bottoms)) for at in places]
 
+    def lost(self, at: int) -> float:
+        """How far a left end in column `at` is from one at 30: a quarter of a height is free."""
+        return max(0.0, at - 30.0, 30.0 - 0.25 * self.unit_px - at)
+
     def aim(self, left: float | None, top: float) -> Aim:
         return Aim(left, top, 0.0, 1e9, self.unit_px)
 
@@ -60,14 +64,14 @@ def test_stones_are_let_go_where_they_first_touch_the_cheapest_place_first(side:
         at = round(x + hung.left)
         assert x + hung.left == pytest.approx(at, abs=1e-9)
         assert y == pytest.approx(lifts[at] + 0.02, abs=1e-9)
-        costs.append(abs(y + hung.top - 20.0) + settings.width * max(0.0, at - 30.0))
+        costs.append(abs(y + hung.top - 20.0) + settings.width * drop.lost(at))
         assert 30 - 0.4 * size - 1 <= at <= 30 + 0.4 * size + 1
     assert costs == sorted(costs)
     columns = sorted(x for x, _ in starts)
     assert min(b - a for a, b in pairwise(columns)) >= 0.1 * size
     # No place beside these is cheaper.
     inside = range(30 - int(0.4 * size), 30 + int(0.4 * size) + 1)
-    best = min(abs(lifts[at] + 0.02 + hung.top - 20.0) + 2.0 * max(0, at - 30) for at in inside)
+    best = min(abs(lifts[at] + 0.02 + hung.top - 20.0) + 2.0 * drop.lost(at) for at in inside)
     assert costs[0] <= best + 1e-9
 
 

@@ -53,7 +53,7 @@ def test_what_the_mechanism_does_not_violate_does_not_help() -> None:
             assert alpha is not None
             assert violated or alpha <= one.alpha + 1e-6
             seen[violated] += 1
-    assert min(seen.values()) > 10
+    assert min(seen.values()) > 3
 
 
 def motion(*velocity: float) -> Motion:
