@@ -119,6 +119,35 @@ def test_a_brick_on_the_last_of_an_edge_has_nothing_below(aside):
     assert len(model_of(wall, 0.0).interfaces) > 1
 
 
+def bed_of(wall: list[Points], setback: float = 0.01) -> tuple[float, float]:
+    """From where to where the second stone bears on the first."""
+    (face,) = (f for f in model_of(wall, setback).interfaces if (f.block, f.other) == (2, 1))
+    ends = sorted(face.points[:, 0].tolist())
+    return ends[0], ends[-1]
+
+
+def test_contacts_of_small_stones_are_set_back_by_the_tolerance_at_least():
+    wall = [box(0, 0.01, 4, 2), box(0, 2.02, 4, 2)]
+    assert bed_of(wall) == pytest.approx((TOLERANCE, 4 - TOLERANCE))
+    assert bed_of(wall, 0.1) == pytest.approx((0.1 * 8**0.5, 4 - 0.1 * 8**0.5))
+
+
+def test_a_face_ends_where_the_outline_turns_away():
+    """A brick with its corners cut off at 45 degrees bears on what is left of its bottom."""
+    back = 0.01 * 799**0.5
+    cut = np.array([[1.0, 0], [39, 0], [40, 1], [40, 20], [0, 20], [0, 1]]) + np.array([0, 20.02])
+    assert bed_of([box(-20, 0.01, 80, 20), cut]) == pytest.approx((1 + back, 39 - back), abs=2e-3)
+
+
+def test_a_tip_in_an_inner_corner_has_stone_enough_behind_it():
+    corner = np.array([[-20.0, 0], [60, 0], [60, 20], [0, 20], [0, 60], [-20, 60]])
+    spike = np.array([[0.05, 20.02], [10.0, 50.0], [0.05, 50.0]])
+    wall = [corner + np.array([0.0, 0.01]), spike]
+    assert (0.0, 1.0) in [
+        face.normal for face in model_of(wall, 0.05).interfaces if face.block == 2
+    ]
+
+
 def test_rounded_stones_keep_contacts_of_corner_on_corner():
     """An outline that turns by little at every corner has no end of a face there."""
     turns = np.linspace(0.0, 2 * np.pi, 36, endpoint=False)
