@@ -17,7 +17,6 @@ from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.verify.check import check_plan
 from drystone.verify.exact_replay import PENETRATION_PX
-from drystone.verify.overlap import SPACING_PX
 from drystone.verify.report import PrefixAlpha
 from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example
@@ -160,7 +159,7 @@ def test_depth_is_said_in_source_px_and_of_wedges_too() -> None:
     made = exact_example(0.5, 200.0)
     plan = reshaped(made.plan, lambda w: w - (0, 1.2 / 200))
     report = check_plan(plan, made.stones)
-    assert report.overlap_depth == pytest.approx(1.2 - GAP_PX, abs=SPACING_PX / 2)
+    assert report.overlap_depth == pytest.approx(1.2 - GAP_PX, abs=1e-6)
     assert report.overlap_depth_at == (5, WEDGE)
     (problem,) = (p for p in report.problems if p.code == "E221")
     assert "1.19 source px deep in stone 5" in problem.message

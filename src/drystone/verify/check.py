@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from drystone.model.overlap import deepest_overlap, shape_of
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, PlanMetrics, WedgeStep
 from drystone.model.stone import StoneSet
@@ -22,7 +23,7 @@ from drystone.verify.claims import (
     check_unused,
     recompute_metrics,
 )
-from drystone.verify.overlap import deepest_overlap, real_outline, shape_of
+from drystone.verify.outlines import real_outline
 from drystone.verify.replay import Replay, Stage, replay_plan
 from drystone.verify.report import CheckReport, Problem
 from drystone.verify.stability import Standing, check_stability, prefix_alphas
