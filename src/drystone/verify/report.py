@@ -14,7 +14,7 @@ class Problem:
     Parameters
     ----------
     code : str
-        Stable code, ``"E210"`` to ``"E239"``; documented in ``docs/errors.md``.
+        Stable code, ``"E210"`` to ``"E242"``; documented in ``docs/errors.md``.
     step : int or None
         Number of the step concerned; None when it is the plan as a whole.
     message : str
