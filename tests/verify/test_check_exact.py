@@ -155,6 +155,17 @@ def test_penetration_is_allowed_up_to_a_limit(true: Example, into: float, allowe
     assert (into <= PENETRATION_PX) is allowed
 
 
+def test_what_lies_in_a_stone_that_lies_in_another_is_named_too(true: Example) -> None:
+    """The slab in the first stone, and one more in the end of the slab."""
+    lowered = moved(true.plan, SLAB, 0, -0.2)
+    x, y = step_of(lowered, SLAB).centroid
+    plan = changed(lowered, 300, centroid=(x + 24.0, y))
+    said = [p for p in check_plan(plan, true.stones).problems if p.code == "E221"]
+    for stone, other in ((SLAB, 3), (300, SLAB)):
+        mine = [p.message for p in said if p.step == step_of(plan, stone).step]
+        assert any(f"source px deep in stone {other}." in message for message in mine)
+
+
 def test_depth_is_said_in_source_px_and_of_wedges_too() -> None:
     made = exact_example(0.5, 200.0)
     plan = reshaped(made.plan, lambda w: w - (0, 1.2 / 200))

@@ -18,9 +18,6 @@ Without a grid GEOS computes in floats: of outlines that touch along an edge its
 then inside out, and they "overlap by 52.9".  On a grid it is right whatever is put in (snap
 rounding).  This one is coarse beside rounding and fine beside any stone."""
 
-THIN = 4.0
-"""Common areas thinner than so many pitches are rounding: the two only touch."""
-
 EXACT = 1e-8
 """Of a depth, over the extent of the common area."""
 
@@ -53,13 +50,8 @@ def common_parts(first: shapely.Geometry, second: shapely.Geometry) -> tuple[sha
     >>> common_parts(square, shapely.box(2, 0, 4, 2))
     ()
     """
-    pitch = _pitch(first, second)
-    common = shapely.intersection(first, second, grid_size=pitch)
-    return tuple(
-        part
-        for part in shapely.get_parts(common)
-        if isinstance(part, shapely.Polygon) and 2.0 * part.area > THIN * pitch * part.length
-    )
+    common = shapely.intersection(first, second, grid_size=_pitch(first, second))
+    return tuple(part for part in shapely.get_parts(common) if part.area > 0.0)
 
 
 def overlap_depth(first: shapely.Geometry, second: shapely.Geometry) -> float:
