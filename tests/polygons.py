@@ -5,6 +5,7 @@ import shapely
 from hypothesis import strategies as st
 
 from drystone.kernels.polygons import Points, area_and_centroid
+from drystone.kernels.raster import turn
 from tests.strategies import Draw
 
 
@@ -45,6 +46,18 @@ def on_grid(corners: Points, step: float) -> Points | None:
     moved = moved[(moved != np.roll(moved, 1, axis=0)).any(axis=1)]
     shape = shapely.Polygon(moved) if len(moved) > 2 else shapely.Polygon()
     return moved if shape.is_valid and shape.area > 0.0 else None
+
+
+def outlines_along_a_line(rng: np.random.Generator) -> tuple[Points, Points]:
+    """Two outlines above the ground with a common line of several pieces, otherwise rounded."""
+    x = np.array([0.0, *np.sort(rng.uniform(0.0, 50.0, rng.integers(0, 5))), 50.0])
+    line = np.column_stack([x, rng.uniform(-3.0, 3.0, len(x)) * rng.integers(0, 2)])
+    ends = np.array([[50.0, 30.0], [0.0, 30.0]])
+    angle_deg, away = rng.uniform(-180.0, 180.0), rng.uniform((-100.0, 60.0), (100.0, 90.0))
+    above = np.vstack([line, ends])
+    below = np.vstack([line[::-1], ends[::-1] * (1.0, -1.0)])
+    rounded = rng.uniform(-2e-15, 2e-15, 2)
+    return turn(above, angle_deg) + away, turn(below, angle_deg) + away + rounded
 
 
 @st.composite

@@ -78,6 +78,28 @@ def blobs(draw: Draw, min_px: int = 8, max_px: int = 24) -> Mask:
 
 
 @st.composite
+def joined_masks(draw: Draw) -> Mask:
+    """A piece that may be joined by corners only, as it is read: holes filled."""
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    shape = draw(st.tuples(st.integers(1, 12), st.integers(1, 12)))
+    labels, count = ndimage.label(rng.random(shape) < draw(st.floats(0.2, 0.8)), np.ones((3, 3)))
+    if count == 0:
+        return np.ones((1, 1), bool)
+    largest = int(np.argmax(np.bincount(labels.ravel())[1:])) + 1
+    return np.asarray(ndimage.binary_fill_holes(labels == largest))
+
+
+@st.composite
+def holed(draw: Draw) -> Mask:
+    """A stone with some holes, of one pixel up to all but its rim."""
+    mask = draw(st.one_of(masks(max_px=9), joined_masks(), blobs(min_px=10, max_px=40)))
+    inner = ndimage.binary_erosion(np.pad(mask, 1))[1:-1, 1:-1]
+    seed = draw(st.integers(0, 2**32 - 1))
+    share = draw(st.sampled_from([0.0, 0.1, 0.5, 0.9, 1.0]))
+    return np.asarray(mask & ~(inner & (np.random.default_rng(seed).random(mask.shape) < share)))
+
+
+@st.composite
 def stones(draw: Draw, stone_id: int = 1, max_px: int = 7) -> Stone:
     """A stone of any shape somewhere in a source image."""
     return Stone(stone_id, draw(masks(max_px)), draw(st.integers(0, 9)), draw(st.integers(0, 9)))

@@ -26,8 +26,8 @@ from drystone.physics.building import (
     build_up,
     tilt_of,
 )
-from drystone.physics.scatter import Variation
-from drystone.physics.tilt import TiltSettings
+from drystone.physics.scatter import TiltResult, Variation
+from drystone.physics.tilt import TiltSettings, TiltTrial
 from drystone.verify.check import check_plan
 from drystone.verify.outlines import plan_polygons
 from tests.cli.conftest import Run
@@ -125,13 +125,36 @@ def test_a_stone_that_falls_is_named_and_drawn(
     again = run("check", plan_copy, "--physics", "--json")
     report = again.json()
     assert (again.code, report["ok"]) == (5, False)
-    assert report["problems"] == []
+    assert [p["code"] for p in report["problems"]] == ["E241"]
+    assert report["problems"][0]["step"] == report["physics"]["first_fall"]
     assert report["picture"] == str(plan_copy / "check.png")
     physics = report["physics"]
     assert physics["fallen"]
     assert f"after step {physics['first_fall']}\n" in ran.out
     assert [move["id"] for move in physics["moves"] if move["fell"]] == physics["fallen"]
     assert (physics["tilt_left"], physics["tilt_right"]) == (None, None)
+
+
+def test_a_claim_that_the_engine_contradicts_fails(
+    plan_copy: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also when all numbers of the plan are those of its limit analysis."""
+    pytest.importorskip("pymunk", reason=NO_ENGINE)
+
+    weak = tuple(
+        TiltResult(side, (TiltTrial(side, 0.3, None, (), 0.0, 0.01),), ("quick",))
+        for side in ("left", "right")
+    )
+    monkeypatch.setattr(check_physics, "tilt_of", lambda _: weak)
+    assert run("check", plan_copy).code == 0
+    ran = run("check", plan_copy, "--physics")
+    assert ran.code == 5
+    assert ": holds, but not in the engine\n" in ran.out
+    for side in ("left", "right"):
+        assert f"E242 tilted to the {side} the wall comes down by alpha = 0.310 in" in ran.out
+    report = run("check", plan_copy, "--physics", "--json")
+    assert (report.code, report.json()["ok"]) == (5, False)
+    assert [p["code"] for p in report.json()["problems"]] == ["E242", "E242"]
 
 
 def test_what_hangs_in_the_air_falls(plan_copy: Path, run: Run) -> None:

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from drystone.kernels import crossings, gaps
 from drystone.kernels.backend import compiled
 from drystone.kernels.polygons import no_polygons, polygon_edges
+from drystone.model.overlap import overlap_depth
 from tests.naive.settling import distances, placed
 from tests.polygons import simple_polygons
 from tests.strategies import repeatable
@@ -75,6 +76,46 @@ def test_the_smallest_gap_is_the_distance(gaps_around):
 
 
 @pytest.mark.parametrize("gaps_around", VERSIONS)
+@pytest.mark.parametrize("reach", [0.3, 1.0, 4.0])
+def test_no_gap_is_wider_or_deeper_than_the_reach(gaps_around, reach):
+    deepest = 0.0
+
+    @repeatable(60)
+    @given(scenes())
+    def check(scene):
+        nonlocal deepest
+        corners, around = scene
+        found = gaps_around(corners, polygon_edges(corners), around, WIDTH, reach, 0.0)
+        gaps_found = [gap.gap for gap in found if gap.other >= 0]
+        assert all(abs(gap) <= reach for gap in gaps_found)
+        deepest = min([deepest, *gaps_found])
+
+    check()
+    assert deepest < -0.15
+
+
+@pytest.mark.parametrize("gaps_around", VERSIONS)
+def test_both_ends_of_flush_faces_are_seen_from_both_sides(gaps_around):
+    """Of bricks that lie exactly over each other no end is left to rounding."""
+    below, above = at(SQUARE, 4.0, 1.0), at(SQUARE, 4.0, 3.25)
+    around = no_polygons().added([below])
+    found = gaps_around(above, polygon_edges(above), around, WIDTH, 0.5, 0.0)
+    facing = {gap[:5] for gap in found}
+    assert facing == {(0.25, 0.0, 1.0, x, y) for x in (4.0, 6.0) for y in (3.0, 3.25)}
+
+
+def test_what_may_stand_out_over_the_ends_has_its_gaps_there():
+    """Only the compiled settling asks for that; the twins of settling are compared."""
+    corners = at(SQUARE, 57.9, 9.0)
+    edges = polygon_edges(corners)
+    found = gaps.gaps_python(corners, edges, no_polygons(), WIDTH, 0.5, 0.0, beyond=0.25)
+    assert [gap[:3] for gap in found] == 2 * [pytest.approx((0.35, -1.0, 0.0))]
+    corners = at(SQUARE, -0.1, 9.0)
+    found = gaps.gaps_python(corners, edges, no_polygons(), WIDTH, 0.5, 0.0, beyond=0.25)
+    assert [gap[:3] for gap in found] == 2 * [pytest.approx((0.15, 1.0, 0.0))]
+
+
+@pytest.mark.parametrize("gaps_around", VERSIONS)
 def test_a_small_shift_along_the_normal_closes_a_gap(gaps_around):
     @repeatable(60)
     @given(scenes())
@@ -109,20 +150,20 @@ def test_both_versions_agree(scene, reach, corner):
 
 
 @pytest.mark.parametrize("crosses_any", CROSSINGS)
-def test_crossings_are_those_of_shapely(crosses_any):
+def test_no_overlap_is_missed_and_what_is_apart_does_not_cross(crosses_any):
+    """What only touches may count either way: settled outlines keep a clearance."""
     seen = set()
 
-    @repeatable(200)
+    @repeatable(300)
     @given(scenes())
     def check(scene):
         corners, around = scene
         shape = shapely.Polygon(corners)
         others = [shapely.Polygon(around.polygon(i)) for i in range(len(around))]
-        common = max((shape.intersection(other).area for other in others), default=0.0)
-        if 0.0 < common < 1e-9 or (common == 0.0 and any(map(shape.intersects, others))):
-            return  # a touch may count either way
-        seen.add(common > 0.0)
-        assert crosses_any(corners, around) == (common > 0.0)
+        deep = any(overlap_depth(shape, other) > 1e-6 for other in others)
+        if deep or not any(map(shape.intersects, others)):
+            seen.add(deep)
+            assert crosses_any(corners, around) == deep
 
     check()
     assert seen == {True, False}
@@ -138,6 +179,30 @@ def test_what_lies_inside_crosses(crosses_any):
     assert not crosses_any(SQUARE, no_polygons())
     bar = np.array([[-3.0, 0.9], [5.0, 0.9], [5.0, 1.1], [-3.0, 1.1]])
     assert crosses_any(bar, inner)
+
+
+@pytest.mark.parametrize("crosses_any", CROSSINGS)
+def test_what_lies_inside_crosses_at_whatever_height(crosses_any):
+    """Also where corners of both are at one height, as those of bricks are."""
+    inside = 0
+
+    @repeatable(100)
+    @given(simple_polygons(), st.floats(0.1, 0.4))
+    def check(outer, half):
+        nonlocal inside
+        for x, y in (outer + np.roll(outer, 1, axis=0)).tolist() + (outer * 0.5).tolist():
+            inner = at((SQUARE - 1.0) * half, x / 2.0, y / 2.0)
+            for level in (inner, at(inner, 0.0, outer[0, 1] - inner[0, 1])):
+                shape, around = shapely.Polygon(level), shapely.Polygon(outer)
+                if shapely.contains_properly(around, shape):
+                    inside += 1
+                    assert crosses_any(level, no_polygons().added([outer]))
+                    assert crosses_any(outer, no_polygons().added([level]))
+                elif around.disjoint(shape):
+                    assert not crosses_any(level, no_polygons().added([outer]))
+
+    check()
+    assert inside > 100
 
 
 @pytest.mark.parametrize("gaps_around", VERSIONS)
@@ -164,6 +229,29 @@ def test_bricks_meet_with_their_faces_at_their_corners(gaps_around):
     # Far corners meet along what parts them.
     found = gaps_around(beside, polygon_edges(beside), around, WIDTH, 0.5, 0.05)
     assert all(gap.gap == gap.away for gap in found)
+
+
+@pytest.mark.parametrize("gaps_around", VERSIONS)
+@pytest.mark.parametrize(("side", "x"), [(1.0, 3.1), (-1.0, -1.1)])
+def test_of_the_faces_that_part_two_corners_the_best_is_taken(gaps_around, side, x):
+    """On whichever side: the faces come in the order of the corners, not of merit."""
+    around = no_polygons().added([at(SQUARE, 10.0, 1.0)])
+    beside = at(SQUARE, 9.0 + x, 3.02)
+    found = gaps_around(beside, polygon_edges(beside), around, WIDTH, 0.5, 0.3)
+    assert {(round(gap.gap, 9), gap.normal_x, gap.normal_y) for gap in found} == {(0.1, side, 0.0)}
+
+
+@pytest.mark.parametrize("gaps_around", VERSIONS)
+@pytest.mark.parametrize("tilted", [-1.0, 1.0])
+def test_a_face_that_an_edge_at_the_corner_runs_through_parts_nothing(gaps_around, tilted):
+    """A stone on its corner beside that of a brick lies over it: its own slope parts them best."""
+    around = no_polygons().added([at(SQUARE, 10.0, 1.0)])
+    x = 12.1 if tilted > 0.0 else 9.9
+    on_end = at(np.array([[0.0, 0.0], [2.0, 0.2], [0.0, 4.0], [-2.0, 0.2]]), x, 3.02)
+    found = gaps_around(on_end, polygon_edges(on_end), around, WIDTH, 0.3, 0.3)
+    expected = np.array([0.06, tilted * 0.2, 2.0]) / math.hypot(0.2, 2.0)
+    assert min(found)[:3] == pytest.approx(tuple(expected))
+    assert all(abs(gap.normal_x) < 0.5 for gap in found)
 
 
 @pytest.mark.parametrize("gaps_around", VERSIONS)

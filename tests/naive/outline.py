@@ -1,6 +1,11 @@
-"""Slow twins of drystone.kernels.outline."""
+"""Slow twins of drystone.kernels.outline and of what stones are made of."""
 
 from fractions import Fraction
+
+import numpy as np
+import shapely
+
+from drystone.kernels.raster import Mask
 
 
 def centre_inside(corners: list[tuple[int, int]], col: int, row: int) -> bool | None:
@@ -26,3 +31,31 @@ def inside_by_floats(corners: list[list[float]], x: float, y: float) -> bool:
         if min(y0, y1) <= y < max(y0, y1) and x0 + (y - y0) * (x1 - x0) / (y1 - y0) <= x:
             inside = not inside
     return inside
+
+
+def filled(mask: Mask) -> Mask:
+    """Pixels with their holes filled: what no way over edges leads out of."""
+    free = {tuple(place) for place in np.argwhere(~np.pad(mask, 1)).tolist()}
+    outside, left = {(0, 0)}, [(0, 0)]
+    while left:
+        row, col = left.pop()
+        beside = {(row + 1, col), (row - 1, col), (row, col + 1), (row, col - 1)} & free - outside
+        outside |= beside
+        left += beside
+    holes = free - outside
+    found = mask.copy()
+    for row, col in holes:
+        found[row - 1, col - 1] = True
+    return found
+
+
+def rim(mask: Mask) -> list[shapely.Point]:
+    """Middles of the pixel edges around a stone, from the mask's bottom-left corner, y up."""
+    inside = np.pad(filled(mask), 1)
+    height, points = len(mask), []
+    for row, col in np.argwhere(inside).tolist():
+        x, y = col - 0.5, height - row + 0.5  # of its centre
+        for down, right in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+            if not inside[row + down, col + right]:
+                points.append(shapely.Point(x + right / 2, y - down / 2))
+    return points

@@ -77,6 +77,31 @@ def test_snug_takes_the_least_weighted_cost(scene: Scene) -> None:
     assert [(spot.row, spot.col) for spot in got] == ranked[:5]
 
 
+@pytest.mark.parametrize("rule", ["eq12", "lowest", "snug"])
+def test_every_rule_keeps_the_clearance(rule: str) -> None:
+    """Of all places that a rule may take, none is without the room asked for on the way down."""
+    narrow = 0
+
+    @repeatable(60)
+    @given(scene=posed_on_walls(), clearance=st.integers(0, 3))
+    def check(scene: Scene, clearance: int) -> None:
+        nonlocal narrow
+        wall, posed, _, _ = scene
+        settings = PlacementSettings(
+            rule=rule,  # type: ignore[arg-type]
+            reach="above",
+            clearance_px=clearance,
+            tries=999,
+        )
+        got = best_spots(Landscape.of(wall), [posed], settings)
+        wide = naive.positions_from_above(wall.occupied, posed.mask, clearance)
+        assert sorted(spot.at for spot in got) == wide
+        narrow += wide != naive.positions_from_above(wall.occupied, posed.mask)
+
+    check()
+    assert narrow > 5  # places that have no room to their sides
+
+
 @repeatable(40)
 @given(scene=posed_on_walls())
 def test_lowest_takes_the_lowest_then_the_tightest_then_the_left(scene: Scene) -> None:

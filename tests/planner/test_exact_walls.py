@@ -1,6 +1,7 @@
 """Whatever the stones and the site: walls of outlines hold what their plans claim."""
 
 import json
+from dataclasses import replace
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import ndimage
 
 from drystone.generate import (
     FourierSettings,
@@ -20,7 +22,7 @@ from drystone.generate import (
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.outlines import Outlines
 from drystone.model.site import Site
-from drystone.model.stone import StoneSet
+from drystone.model.stone import Stone, StoneSet
 from drystone.model.wall import outlined
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
@@ -36,6 +38,24 @@ Case = tuple[StoneSet, tuple[float, float], float, PlannerSettings]
 
 @st.composite
 def stone_sets(draw: st.DrawFn) -> StoneSet:
+    """A few stones about 20 px wide, some with a hole that is kept."""
+    found = draw(whole_stone_sets())
+    if draw(st.booleans()):
+        return found
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    return replace(found, stones=tuple(with_hole(stone, rng) for stone in found))
+
+
+def with_hole(stone: Stone, rng: np.random.Generator) -> Stone:
+    """A round hole anywhere in a stone, up to two px from its rim."""
+    depth = ndimage.distance_transform_edt(np.pad(stone.mask, 1))[1:-1, 1:-1]
+    row, col = rng.choice(np.argwhere(depth >= depth.max() * rng.uniform(0.4, 1.0)))
+    y, x = np.indices(stone.mask.shape)
+    return replace(stone, mask=stone.mask & (np.hypot(y - row, x - col) > depth[row, col] - 2))
+
+
+@st.composite
+def whole_stone_sets(draw: st.DrawFn) -> StoneSet:
     """A few stones about 20 px wide."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     count = draw(st.integers(2, 7))

@@ -119,6 +119,14 @@ def test_a_pinned_stone_that_is_missing_counts_heavily() -> None:
     assert found.missing == 2
 
 
+@pytest.mark.parametrize("missing", [1, 2])
+def test_nothing_else_makes_up_for_a_pinned_stone(missing: int) -> None:
+    """A tenth more in the wall for each, and all that the masons' walls have, is still worse."""
+    best = {"F_LR": 1.0, "F_AV": 60.0, "F_AH": 0.5, "T_LEVEL": 0.0, "E_FLUSH": 0.0}
+    lacking = replace(WALL, F_SF=WALL.F_SF + 0.1 * missing, **best, missing=missing)
+    assert merit_of(lacking, 1.0, GOAL) < merit_of(WALL, 1.0, GOAL)
+
+
 def test_banned_stones_can_fill_nothing() -> None:
     ban = [stone.id for stone in rubble()][:2]
     free = Planner(rubble(), RUBBLE_SITE, settings=greedy())

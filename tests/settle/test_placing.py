@@ -120,11 +120,12 @@ def test_wedges() -> None:
     assert settled_wedge(under, site, 92, 5, corners).mask.tolist() == [[True]]
 
 
-def test_arms_thinner_than_a_pixel_are_not_seen_nor_what_is_beyond_them() -> None:
+@pytest.mark.parametrize("top", [10.0, 14.0])  # of the smaller plate, and so which comes first
+def test_arms_thinner_than_a_pixel_are_not_seen_nor_what_is_beyond_them(top: float) -> None:
     site = Site(24, 12, 0.5)
     # A dumb-bell: two plates that a bar of .4 working px joins.
     bell = np.array(
-        [[2, 0], [14, 0], [14, 5.6], [26, 5.6], [26, 2], [34, 2], [34, 10], [26, 10], [26, 6.4],
+        [[2, 0], [14, 0], [14, 5.6], [26, 5.6], [26, 2], [34, 2], [34, top], [26, top], [26, 6.4],
          [14, 6.4], [14, 12], [2, 12]], float,
     )  # fmt: skip
     made = placed(site, bell)

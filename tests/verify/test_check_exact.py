@@ -17,7 +17,6 @@ from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.verify.check import check_plan
 from drystone.verify.exact_replay import PENETRATION_PX
-from drystone.verify.overlap import SPACING_PX
 from drystone.verify.report import PrefixAlpha
 from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example
@@ -156,11 +155,22 @@ def test_penetration_is_allowed_up_to_a_limit(true: Example, into: float, allowe
     assert (into <= PENETRATION_PX) is allowed
 
 
+def test_what_lies_in_a_stone_that_lies_in_another_is_named_too(true: Example) -> None:
+    """The slab in the first stone, and one more in the end of the slab."""
+    lowered = moved(true.plan, SLAB, 0, -0.2)
+    x, y = step_of(lowered, SLAB).centroid
+    plan = changed(lowered, 300, centroid=(x + 24.0, y))
+    said = [p for p in check_plan(plan, true.stones).problems if p.code == "E221"]
+    for stone, other in ((SLAB, 3), (300, SLAB)):
+        mine = [p.message for p in said if p.step == step_of(plan, stone).step]
+        assert any(f"source px deep in stone {other}." in message for message in mine)
+
+
 def test_depth_is_said_in_source_px_and_of_wedges_too() -> None:
     made = exact_example(0.5, 200.0)
     plan = reshaped(made.plan, lambda w: w - (0, 1.2 / 200))
     report = check_plan(plan, made.stones)
-    assert report.overlap_depth == pytest.approx(1.2 - GAP_PX, abs=SPACING_PX / 2)
+    assert report.overlap_depth == pytest.approx(1.2 - GAP_PX, abs=1e-6)
     assert report.overlap_depth_at == (5, WEDGE)
     (problem,) = (p for p in report.problems if p.code == "E221")
     assert "1.19 source px deep in stone 5" in problem.message

@@ -7,8 +7,11 @@ import pytest
 import shapely
 
 from drystone.errors import PlanError
+from drystone.model.placement import Placement
 from drystone.model.plan import StoneStep, WedgeStep
-from drystone.verify.outlines import common_areas, plan_polygons
+from drystone.model.stone import Stone
+from drystone.poses import PoseBook
+from drystone.verify.outlines import common_areas, plan_polygons, real_outline
 from tests.verify.exact_examples import exact_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, example
 
@@ -126,3 +129,10 @@ def test_two_that_are_both_asked_for_come_once() -> None:
 
 def test_blocks_that_touch_have_nothing_in_common() -> None:
     assert common_areas({1: SQUARE, 2: at(2, 0)}, [1, 2]) == ()
+
+
+def test_real_outlines_are_in_source_px() -> None:
+    book = PoseBook(0.5)
+    posed = book.pose(Stone(4, np.ones((8, 16), bool)), 0.0)
+    outline = real_outline(Placement(posed, 6, 3), 10)  # row and column of a site of 10 working px
+    assert outline.bounds == (6.0, 0.0, 22.0, 8.0)

@@ -14,15 +14,18 @@ from tests.verify.exact_examples import exact_example
 Analyse = Callable[..., LateralResistance]
 
 
-def ending(status: LimitStatus, *, from_call: int) -> Analyse:
-    """An analysis whose left end is as said, from one call on."""
+SIDES = pytest.mark.parametrize("side", ["left", "right"])
+
+
+def ending(status: LimitStatus, side: str, *, from_call: int) -> Analyse:
+    """An analysis of which one end is as said, from one call on."""
     calls: list[object] = []
 
     def analyse(model: object) -> LateralResistance:
         calls.append(model)
         both = lateral_resistance(model)  # type: ignore[arg-type]
-        left = replace(both.left, status=status, alpha=None)
-        return both if len(calls) <= from_call else replace(both, left=left)
+        end = replace(getattr(both, side), status=status, alpha=None)
+        return both if len(calls) <= from_call else replace(both, **{side: end})
 
     return analyse
 
@@ -34,19 +37,24 @@ def told(monkeypatch: pytest.MonkeyPatch, analyse: Analyse) -> list[tuple[str, s
     return [(one.code, one.message) for one in problems if one.code in ("E230", "E237")]
 
 
-def test_a_solver_that_gives_up_is_no_wall_that_falls(monkeypatch: pytest.MonkeyPatch) -> None:
+@SIDES
+def test_a_solver_that_gives_up_is_no_wall_that_falls(
+    monkeypatch: pytest.MonkeyPatch, side: str
+) -> None:
     for from_call in (0, 3):  # of the walls as they are, and in their sturdy models
-        found = told(monkeypatch, ending(LimitStatus.FAILED, from_call=from_call))
+        found = told(monkeypatch, ending(LimitStatus.FAILED, side, from_call=from_call))
         assert found
         for code, message in found:
             assert code == "E230"
             assert "the solver gave up, and it is not known whether the wall stands" in message
 
 
-def test_a_wall_that_carries_any_load_stands(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert told(monkeypatch, ending(LimitStatus.UNBOUNDED, from_call=0)) == []
+@SIDES
+def test_a_wall_that_carries_any_load_stands(monkeypatch: pytest.MonkeyPatch, side: str) -> None:
+    assert told(monkeypatch, ending(LimitStatus.UNBOUNDED, side, from_call=0)) == []
 
 
-def test_a_wall_that_falls_is_said_to(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = told(monkeypatch, ending(LimitStatus.UNSTABLE, from_call=0))
-    assert ("E230", "the wall does not stand: left unstable.") in found
+@SIDES
+def test_a_wall_that_falls_is_said_to(monkeypatch: pytest.MonkeyPatch, side: str) -> None:
+    found = told(monkeypatch, ending(LimitStatus.UNSTABLE, side, from_call=0))
+    assert ("E230", f"the wall does not stand: {side} unstable.") in found

@@ -1,7 +1,6 @@
 """What a robot does with a part: where it holds it and how it comes to its place."""
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +9,7 @@ import shapely
 from drystone.assembly.frames import DOWN, Matrix, Pose3d, Vector
 from drystone.assembly.parts import Assembly, Part
 from drystone.kernels.polygons import Points
+from drystone.model.overlap import common_parts
 
 CLEARANCE_M = 0.05
 """How far above everything else a part is when it begins to be lowered."""
@@ -152,9 +152,10 @@ def blocked_m(assembly: Assembly, part: Part) -> float:
     way = swept(part.corners + np.array([0.0, _APART_M]), lift)
     others = [shapely.Polygon(other.corners) for other in before(assembly, part)]
     widest = 0.0
-    for piece in _polygons(shapely.intersection(way, others)):
-        left, _, right, _ = piece.bounds
-        widest = max(widest, right - left)
+    for other in others:
+        for piece in common_parts(way, other):
+            left, _, right, _ = piece.bounds
+            widest = max(widest, right - left)
     return widest
 
 
@@ -171,13 +172,6 @@ def swept(low: Points, lift: float) -> shapely.Geometry:
     sides = np.stack([low, low[following], high[following], high], axis=1)
     whole = [shapely.Polygon(low), shapely.Polygon(high), *shapely.polygons(sides)]
     return shapely.union_all([shape for shape in whole if shape.area > 0.0])
-
-
-def _polygons(found: Iterable[shapely.Geometry]) -> Iterable[shapely.Polygon]:
-    for shape in found:
-        for piece in shapely.get_parts(shape):
-            if isinstance(piece, shapely.Polygon):
-                yield piece
 
 
 def _approach(pose: Pose3d, direction: Vector, length_m: float) -> Approach:

@@ -9,9 +9,10 @@ from drystone.cli.progress import counting_bar
 from drystone.model.plan import Plan, PlanMetrics
 from drystone.physics.building import BlockMove, BuildUp, build_up, tilt_of
 from drystone.physics.scatter import TiltResult
+from drystone.verify.engine import check_engine
 from drystone.verify.lengths import plan_settings
 from drystone.verify.outlines import Group
-from drystone.verify.report import CheckReport
+from drystone.verify.report import CheckReport, Problem
 
 NOTEWORTHY_PX = 0.01
 """Overlaps below this, in source px, round to nothing and are not spoken of."""
@@ -40,6 +41,11 @@ class PhysicsCard:
     tilts: tuple[TiltResult, TiltResult] | None
     metrics: PlanMetrics | None
     overlap_px: float = 0.0
+
+    @property
+    def problems(self) -> list[Problem]:
+        """What contradicts the plan."""
+        return check_engine(self.plan, self.built, self.tilts)
 
     @property
     def first_fall(self) -> int | None:

@@ -16,7 +16,7 @@ from drystone.verify.replay import Stage, replay_plan
 from drystone.verify.report import Problem
 from drystone.verify.stability import wall_model
 
-MISPLACED = ("E220", "E221", "E222", "E223", "E224")
+MISPLACED = ("E220", "E221", "E222", "E223", "E224", "E240")
 """Problems of a stone or wedge where it lies."""
 
 OVERLAPS, FALLS, OTHER_PIXELS, NOT_STURDY = "E221", "E230", "E236", "E237"

@@ -1,14 +1,14 @@
 """Everything that `drystone check` found out about a plan."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from drystone.cli.check_physics import PhysicsCard
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.verify.outlines import Group
-from drystone.verify.report import CheckReport
+from drystone.verify.report import CheckReport, Problem
 
 PICTURE = "check.png"
 """Beside a plan of which something fails."""
@@ -49,16 +49,24 @@ class Checked:
         return self.physics is not None and not self.physics.built.stands
 
     @property
+    def problems(self) -> list[Problem]:
+        """What does not hold by the plan, then what the engine contradicts."""
+        engine = [] if self.physics is None else self.physics.problems
+        return [*self.report.problems, *engine]
+
+    @property
     def ok(self) -> bool:
-        """The plan holds and, when that was asked, nothing falls in the engine."""
-        return self.report.ok and not self.falls
+        """The plan holds and, when that was asked, the engine does not contradict it."""
+        return not self.problems
 
     @property
     def verdict(self) -> str:
         """In words."""
         if not self.report.ok:
             return "does not hold"
-        return "holds, but falls in the engine" if self.falls else "holds"
+        if self.falls:
+            return "holds, but falls in the engine"
+        return "holds" if self.ok else "holds, but not in the engine"
 
     def rows(self) -> list[tuple[str, str]]:
         """Return names and values, one a line."""
@@ -73,11 +81,12 @@ class Checked:
             found = self.physics
             rows += [("in the engine", NOT_BUILT)] if found is None else found.rows()
         rows += [("note", note) for note in report.notes]
-        return rows + [("problem", str(problem)) for problem in report.problems]
+        return rows + [("problem", str(problem)) for problem in self.problems]
 
     def as_dict(self) -> dict[str, Any]:
         """Return the same as JSON."""
-        found = {**self.report.as_dict(), "ok": self.ok}
+        problems = [asdict(problem) for problem in self.problems]
+        found = {**self.report.as_dict(), "ok": self.ok, "problems": problems}
         if self.asked_physics:
             found["physics"] = None if self.physics is None else self.physics.report()
         return found

@@ -5,6 +5,7 @@ import shapely
 
 from drystone.craft.finding import Case, Finding, Limit, Rule
 from drystone.craft.masonry import Masonry
+from drystone.model.overlap import common_parts
 
 RULE = Rule(
     "big_low",
@@ -43,8 +44,10 @@ def find(masonry: Masonry, limit: Limit = RULE.limit) -> Finding:
     middle = 0.5 * (y0 + y1)
     lower = shapely.box(x0, y0, x1, middle)
     areas = np.array([masonry.areas[i] for i in masonry.stones])
-    shapes = list(masonry.shapes.values())
-    below = np.clip(shapely.area(shapely.intersection(shapes, lower)) / areas, 0.0, 1.0)
+    lying = [
+        sum(part.area for part in common_parts(shape, lower)) for shape in masonry.shapes.values()
+    ]
+    below = np.clip(np.array(lying) / areas, 0.0, 1.0)
     above = 1.0 - below
     if min(below.sum(), above.sum()) < 1e-9:
         return Finding(RULE, limit, None, "not judged", note="One half of the wall has no stone.")

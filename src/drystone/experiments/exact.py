@@ -4,15 +4,13 @@ from collections.abc import Iterable, Sequence
 from itertools import chain, groupby
 from statistics import median
 
-import shapely
-
 from drystone.experiments.exact_walls import BuiltWall, built_walls
 from drystone.experiments.planned_walls import missing_data
 from drystone.experiments.table import BenchSettings, Cell, Table
+from drystone.model.overlap import deepest_overlap, shape_of
 from drystone.statics.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.statics.limit import lateral_resistance
 from drystone.verify.check import check_plan
-from drystone.verify.overlap import overlap_depth
 
 COLUMNS = (
     "wall", "placed", "all placed", "F_SF", "F_AV", "F_AH", "F_LR", "outlines .05 px", ".1 px",
@@ -82,10 +80,8 @@ def outline_resistances(wall: BuiltWall) -> tuple[float | None, ...]:
 
 def deepest(wall: BuiltWall) -> float:
     """Return how deep two outlines lie in each other at most, source px."""
-    shapes = [shapely.Polygon(corners) for group in wall.groups for _, corners in group]
-    tree = shapely.STRtree(shapes)
-    pairs = tree.query(shapes, predicate="intersects").T.tolist()
-    return max((overlap_depth(shapes[a], shapes[b]) for a, b in pairs if a < b), default=0.0)
+    blocks = chain.from_iterable(wall.groups)
+    return deepest_overlap([(block, shape_of(corners)) for block, corners in blocks])[0]
 
 
 def _median(values: Iterable[float | None]) -> float | None:

@@ -159,7 +159,7 @@ def filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], l
     if not found:
         return result, []
     if settings.holes == "keep":
-        text = "holes kept open (areas and centroids without them; outlines do not show them)"
+        text = "holes kept open (areas and centroids without them; outlines as if filled)"
         return result, [Notice("W112", f"{text}: {'; '.join(found)}.")]
     cure = "Use --holes keep (holes='keep' in Python) to leave them open."
     return result, [Notice("W112", f"holes filled: {'; '.join(found)}.", cure)]

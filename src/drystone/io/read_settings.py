@@ -25,7 +25,8 @@ class ReadSettings:
         the largest, "split" makes every piece a stone (new ids after the largest id), "error"
         refuses any second piece.
     holes : {"fill", "keep"}
-        Fill holes before areas and centroids are taken, or leave them open.
+        Fill holes before areas and centroids are taken, or leave them open; outlines are the outer
+        ones either way.
     min_area_px : int or None
         Smaller stones are left out and listed; None is max(10 px, 0.1 % of the median area).
     mask : bool or None

@@ -1,4 +1,8 @@
-"""Whether a polygon lies over others."""
+"""Whether a polygon lies over others: quick, for outlines that keep a clearance.
+
+No overlap is missed.  Outlines that only touch may count as crossing; where they may touch, ask
+:mod:`drystone.model.overlap`.
+"""
 
 import numpy as np
 from numpy.typing import NDArray

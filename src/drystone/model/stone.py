@@ -11,7 +11,7 @@ from drystone.errors import Notice, PlanError
 from drystone.kernels.hull import pixel_hull
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
-from drystone.model.outline import stone_outline
+from drystone.model.outline import centroid_of, solid, stone_outline
 
 OUTLINE_TOLERANCE_PX = 0.35
 """How far the outline may stay away from the contour of the pixels (DESIGN 4.9)."""
@@ -26,8 +26,9 @@ class Stone:
     id : int
         Label in the source image, positive.
     mask : (h, w) bool array
-        The stone's pixels, cropped to their bounding box, row 0 at the top, holes filled, one
-        connected piece.
+        The stone's pixels, cropped to their bounding box, row 0 at the top, one connected piece.
+        Holes are filled unless they are kept: then area and centroid are without them, and the
+        outline is the outer one all the same.
     left_px, bottom_px : int
         Position of the mask's bottom-left corner in the source frame (x right, y up from the
         image's bottom-left corner).
@@ -70,10 +71,14 @@ class Stone:
     @cached_property
     def local_centroid(self) -> tuple[float, float]:
         """Centroid of the pixel squares, (x, y) from the mask's bottom-left corner, y up."""
-        height, width = self.mask.shape
-        x = float(self.mask.sum(axis=0) @ (np.arange(width) + 0.5)) / self.area_px
-        y = float(self.mask.sum(axis=1) @ (height - np.arange(height) - 0.5)) / self.area_px
-        return x, y
+        return centroid_of(self.mask)
+
+    @cached_property
+    def solid(self) -> Mask:
+        """The pixels with all holes filled: what other stones meet."""
+        found = solid(self.mask)
+        found.flags.writeable = False
+        return found
 
     @cached_property
     def centroid(self) -> tuple[float, float]:
@@ -97,13 +102,16 @@ class Stone:
         Returns
         -------
         corners : (n, 2) float array
-            A simple polygon (x, y) relative to the centroid, counter-clockwise; area and centroid
-            are those of the pixels (:func:`drystone.model.outline.stone_outline`).  It is worked
-            out once for each tolerance.
+            A simple polygon (x, y) relative to the stone's centroid, counter-clockwise; area and
+            centroid are those of its solid (:func:`drystone.model.outline.stone_outline`), which
+            of a stone with a hole are others than its own.  It is worked out once for each
+            tolerance.
         """
         outline = self._outlines.get(tolerance_px)
         if outline is None:
-            outline = stone_outline(self.mask, tolerance_px)
+            outline = stone_outline(self.solid, tolerance_px)
+            if not np.array_equal(self.solid, self.mask):
+                outline += np.array(centroid_of(self.solid)) - np.array(self.local_centroid)
             outline.flags.writeable = False
             self._outlines[tolerance_px] = outline
         return outline

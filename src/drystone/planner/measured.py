@@ -12,7 +12,7 @@ from drystone.kernels.coverage import coverage
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask, turn
 from drystone.model.site import Site, working_px
-from drystone.model.stone import StoneSet
+from drystone.model.stone import Stone, StoneSet
 from drystone.model.wall import Labels, Wall
 from drystone.poses import wrap_deg
 
@@ -140,7 +140,7 @@ def places_in(labels: NDArray[np.integer], wall: Wall, stones: StoneSet) -> dict
     for stone_id in sorted(ids):
         seen = np.asarray(labels == stone_id)
         stone = stones.by_id(stone_id)
-        _require_seen(stone_id, int(seen.sum()), stone.area_px * scale**2)
+        _require_seen(stone, int(seen.sum()) / scale**2)
         placement = planned.get(stone_id)
         if placement is None:
             found[stone_id] = fitted(seen, stone.outline, scale, None)
@@ -289,13 +289,15 @@ def _rim_share(seen: Mask, expected: Mask) -> float:
     return int((seen ^ expected).sum()) / max(rim, 1)
 
 
-def _require_seen(stone_id: int, seen_px: int, area_px: float) -> None:
-    share = seen_px / area_px
+def _require_seen(stone: Stone, seen_px: float) -> None:
+    """Raise InputError (E197) when much of a stone is not to be seen, or more than there is."""
+    # A hole that is kept is shown or not.
+    share = seen_px / min(max(seen_px, stone.area_px), int(stone.solid.sum()))
     if SEEN[0] <= share <= SEEN[1]:
         return
     raise InputError(
         "E197",
-        f"stone {stone_id} has {100 * share:.0f} % of its area in the picture.",
+        f"stone {stone.id} has {100 * share:.0f} % of its area in the picture.",
         where="observe",
         cure="Give a picture of all of it, or set its pixels to 0 when it has fallen.",
     )

@@ -6,9 +6,9 @@ import shapely
 from drystone.kernels.polygons import Points
 from drystone.model.landscape import Landscape
 from drystone.model.outlines import Outlines
+from drystone.model.overlap import common_parts, shape_of
 from drystone.placement.feasible import can_be_lowered
 from drystone.verify.exact_replay import PENETRATION_PX
-from drystone.verify.overlap import shape_of
 from drystone.verify.replay import Stage
 
 SLIVER_CELLS = 1.0
@@ -47,7 +47,7 @@ def lies_under(corners: Points, outlines: Outlines, sliver: float) -> bool:
         return False
     way = swept_upwards(corners, float(boxes[met, 3].max()))
     earlier = [shape_of(outlines.polygons.polygon(i)) for i in met.tolist()]
-    parts = shapely.get_parts(shapely.intersection(way, earlier))
+    parts = [part for shape in earlier for part in common_parts(way, shape)]
     # What is no thicker than a stone may lie deep in its bed does not stand in its way.
     bounds = shapely.bounds(shapely.buffer(parts, -PENETRATION_PX / 2.0))
     widths = bounds[:, 2] - bounds[:, 0] + PENETRATION_PX  # NaN of what vanishes

@@ -5,8 +5,10 @@ from typing import Any
 import numpy as np
 import shapely
 
+from drystone.kernels.polygons import Points
+from drystone.model.overlap import deepest_overlap, shape_of
 from drystone.model.placement import Placement, Wedge
-from drystone.model.plan import Plan, PlanMetrics, WedgeStep
+from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
 from drystone.statics.model import RigidBlockModel
@@ -22,7 +24,9 @@ from drystone.verify.claims import (
     check_unused,
     recompute_metrics,
 )
-from drystone.verify.overlap import deepest_overlap, real_outline, shape_of
+from drystone.verify.lengths import source_points
+from drystone.verify.outlines import real_outline
+from drystone.verify.pixels import check_outline
 from drystone.verify.replay import Replay, Stage, replay_plan
 from drystone.verify.report import CheckReport, Problem
 from drystone.verify.stability import Standing, check_stability, prefix_alphas
@@ -63,8 +67,9 @@ def check_plan(
     centroids, clusters and turns of stones; the rules of wedging; that the wall stands after
     every stone with its wedges, with the load multipliers claimed; all indices; the metrics; that
     no stone is banned or out of a given order; the images and the block model beside the plan.
-    On exact geometry outlines are what is judged: how deep they lie in each other and beyond the
-    edges of the wall, and the limit analysis on their contacts, with the tolerance of the plan.
+    On exact geometry outlines are what is judged: that they are those of the pixels, how deep
+    they lie in each other and beyond the edges of the wall, and the limit analysis on their
+    contacts, with the tolerance of the plan.
     Stones that cannot be lowered in from above, the deviation of pixel areas from the stones' own
     and, on the raster, overlap of the real outlines are reported and are no failure.
     """
@@ -107,9 +112,20 @@ def _check_pieces(replay: Replay, reference: Reference) -> list[Problem]:
     for piece in replay.pieces:
         if piece.step.kind == "stone":
             problems += check_stone_claims(piece.step, reference)
+            if piece.corners is not None:
+                problems += _check_outline(piece.step, piece.corners, replay, reference)
         elif isinstance(piece.item, Wedge) and not replay.exact:
             problems += check_polygon(piece.step, piece.item, replay.site)
     return problems
+
+
+def _check_outline(
+    step: StoneStep, corners: Points, replay: Replay, reference: Reference
+) -> list[Problem]:
+    """Verify that a stone lies where its pixels do."""
+    stone = reference.stones.by_id(step.stone)
+    centroid_px = source_points([step.centroid], replay.site)[0]
+    return check_outline(step, stone, centroid_px, corners, replay.settings.settle.outline_px)
 
 
 def _check_stages(replay: Replay, standing: Standing, reference: Reference) -> list[Problem]:
@@ -186,7 +202,9 @@ def _worst_area(replay: Replay) -> tuple[float, int | None]:
         if not isinstance(piece.item, Placement):
             continue
         posed = piece.item.posed
-        own = posed.stone.area_px * posed.scale**2
+        # Of a hole that is kept an outline shows nothing.
+        whole = int(posed.stone.solid.sum()) if replay.exact else posed.stone.area_px
+        own = whole * posed.scale**2
         # Pixels that two outlines share go to the one that covers more.
         area = seen.get(piece.id, 0) if replay.exact else posed.area_px
         error = abs(area - own) / own

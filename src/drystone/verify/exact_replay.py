@@ -6,6 +6,7 @@ import shapely
 from drystone.errors import PlanError
 from drystone.kernels.polygons import Points
 from drystone.model.outlines import Outlines
+from drystone.model.overlap import overlap_depth, shape_of
 from drystone.model.placement import Placement, Settled, Wedge
 from drystone.model.plan import StoneStep, WedgeStep
 from drystone.model.site import Site
@@ -15,14 +16,13 @@ from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import placed_outline
 from drystone.settle.settings import SettleSettings
 from drystone.verify.lengths import source_points
-from drystone.verify.overlap import overlap_depth, shape_of
 from drystone.verify.pieces import Piece, Step, piece_id, piece_name
 from drystone.verify.report import Problem
 
 PENETRATION_PX = 0.05
 """So deep, source px, outlines may lie in each other and beyond the edges of the wall (DESIGN 2).
 
-Depth is that of :func:`drystone.verify.overlap.overlap_depth`.  Settled stones keep a clearance,
+Depth is that of :func:`drystone.model.overlap.overlap_depth`.  Settled stones keep a clearance,
 so this is for plans of other hands and of other arithmetic."""
 
 

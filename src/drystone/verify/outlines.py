@@ -7,13 +7,18 @@ import shapely
 
 from drystone.errors import PlanError
 from drystone.kernels.polygons import Points
+from drystone.kernels.raster import turn
+from drystone.model.overlap import common_parts, shape_of
+from drystone.model.placement import Placement
 from drystone.model.plan import Plan, WedgeStep
 from drystone.model.site import Site
 from drystone.model.stone import OUTLINE_TOLERANCE_PX, StoneSet
 from drystone.verify.exact_replay import settled_stone
 from drystone.verify.lengths import plan_settings, plan_site, source_points
-from drystone.verify.overlap import NO_AREA_PX, shape_of
 from drystone.verify.pieces import Step, grouped, piece_id
+
+NO_AREA_PX = 1e-9
+"""A polygon with an area below this, in square px, has none but for rounding."""
 
 Group = tuple[tuple[int, Points], ...]
 """A stone and its wedges, the stone first: ids and corners."""
@@ -81,14 +86,23 @@ def common_areas(polygons: Mapping[int, Points], blocks: Sequence[int]) -> tuple
     [4]
     """
     shapes = {block: shape_of(corners) for block, corners in polygons.items()}
-    areas = []
+    areas: list[shapely.Polygon] = []
     for block in blocks:
         for other, shape in shapes.items():
             # Of two that are both asked for only one comes first.
             if other != block and not (other in blocks and other < block):
-                common = shapely.get_parts(shapely.intersection(shapes[block], shape))
-                areas += [part for part in common if part.area > NO_AREA_PX]
-    return tuple(_ring(area) for area in areas if isinstance(area, shapely.Polygon))
+                areas += common_parts(shapes[block], shape)
+    return tuple(map(_ring, areas))
+
+
+def real_outline(placement: Placement, site_height_px: int) -> shapely.Geometry:
+    """Return the outline of a placed stone in the wall frame, source px."""
+    if placement.settled is not None:
+        return shape_of(placement.settled.corners)
+    x, y = placement.centroid(site_height_px)
+    scale = placement.posed.scale
+    points = turn(placement.posed.stone.outline, placement.posed.angle_deg)
+    return shape_of(points + np.array([x, y]) / scale)
 
 
 def _corners(step: Step, stones: StoneSet, site: Site, outline_px: float) -> Points | None:

@@ -14,7 +14,7 @@ class Problem:
     Parameters
     ----------
     code : str
-        Stable code, ``"E210"`` to ``"E239"``; documented in ``docs/errors.md``.
+        Stable code, ``"E210"`` to ``"E242"``; documented in ``docs/errors.md``.
     step : int or None
         Number of the step concerned; None when it is the plan as a whole.
     message : str
@@ -73,7 +73,7 @@ class CheckReport:
         Every claim that does not hold; empty when the plan is what it says.
     overlap_depth : float
         How deep real outlines of two stones (on exact geometry also of wedges) lie in each other
-        at most, source px; see :func:`drystone.verify.overlap.overlap_depth`.
+        at most, source px; see :func:`drystone.model.overlap.overlap_depth`.
     overlap_depth_at : (int, int) or None
         Ids of the two; None when no two outlines overlap.
     buried : tuple of int

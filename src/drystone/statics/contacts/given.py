@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from drystone.errors import InputError
+from drystone.model.overlap import overlap_depth
 from drystone.statics.contacts.given_parts import (
     bad,
     read_friction,
@@ -231,9 +232,8 @@ def _among_blocks(corners: dict[int, Points], tolerance: float) -> list[Interfac
         if high <= low:  # each pair is found twice, and each block with itself
             continue
         block, other = ids[high], ids[low]
-        both = shapely.intersection(shapes[high], shapes[low])
-        depth = 2.0 * both.area / both.length if both.length > 0 else 0.0
-        _check_depth(depth, tolerance, f"blocks {other} and {block} overlap by about {depth:g}.")
+        depth = overlap_depth(shapes[high], shapes[low])
+        _check_depth(depth, tolerance, f"blocks {other} and {block} overlap by {depth:g}.")
         found += touching_interfaces(block, corners[block], other, corners[other], tolerance)
     return found
 

@@ -11,6 +11,7 @@ from scipy import ndimage
 
 from drystone.kernels.boundary import touching_edges, trace_chains
 from drystone.kernels.segments import REACH_PX, Line, fitted_lines, meeting_point, with_area
+from drystone.model.overlap import common_parts
 from drystone.model.wall import Labels
 from drystone.statics.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.statics.model import RigidBlockModel
@@ -232,7 +233,7 @@ def _is_sound(outline: Points, ring: Piece, tolerance_px: float) -> bool:
         return False
     away = shapely.hausdorff_distance(pixels.exterior, shape.exterior)
     # Pixel edges that pass one corner twice make no valid area; a hair's breadth inside is one.
-    common = shapely.intersection(pixels.buffer(-1e-6), shape).area
+    common = sum(part.area for part in common_parts(pixels.buffer(-1e-6), shape))
     return bool(away <= tolerance_px + REACH_PX and common >= SAME_SHARE * pixels.area)
 
 

@@ -1,0 +1,110 @@
+"""What a rigid-body engine says against a plan."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drystone.model.plan import Plan
+from drystone.physics.building import BlockMove, BuildUp, build_up, tilt_of
+from drystone.physics.scatter import TiltResult
+from drystone.physics.tilt import TiltTrial
+from drystone.statics.contacts.settled import PlacedPolygons, model_of_outlines
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import Direction
+from drystone.verify.engine import CONFIRMED, check_engine, claimed_alpha
+from drystone.verify.report import Problem
+from tests.verify.exact_examples import exact_example
+from tests.verify.examples import SLAB, WEDGE
+
+MU = 0.58
+PLAN = exact_example().plan
+IDS = [step.stone for step in PLAN.stone_steps]
+
+
+def claiming(left: float | None, right: float | None, coulomb: float | None = None) -> Plan:
+    metrics = replace(PLAN.metrics, alpha_left=left, alpha_right=right)
+    object.__setattr__(metrics, "F_LR_coulomb", coulomb)
+    return replace(PLAN, metrics=metrics)
+
+
+def built(*fallen: int, first_fall: int | None = None) -> BuildUp:
+    moves = [BlockMove(i, n, 9.0, 0.3, 0.0, 0.0, i in fallen) for n, i in enumerate(IDS, 1)]
+    moves.insert(3, BlockMove(WEDGE, 3, 9.0, 0.3, 0.0, 0.0, WEDGE in fallen))
+    return BuildUp(tuple(moves), {}, {}, (0.0,) * len(IDS), (), first_fall, MU)
+
+
+def tilts(left: float | None, right: float | None, **trial: Any) -> tuple[TiltResult, TiltResult]:
+    def result(direction: Direction, alpha: float | None) -> TiltResult:
+        fields = {"resolution": 0.001, **trial}
+        return TiltResult(
+            direction, (TiltTrial(direction, alpha, None, (), 0.0, **fields),), ("quick",)
+        )
+
+    return result("left", left), result("right", right)
+
+
+def codes(problems: list[Problem]) -> list[str]:
+    return [problem.code for problem in problems]
+
+
+def test_blocks_that_fall_are_named_with_the_step() -> None:
+    (problem,) = check_engine(PLAN, built(SLAB, WEDGE, first_fall=3), None)
+    assert (problem.code, problem.step) == ("E241", PLAN.stone_steps[2].step)
+    assert f"stone {SLAB}, wedge {WEDGE}." in problem.message
+
+
+@pytest.mark.parametrize(
+    ("plan", "found", "said"),
+    [
+        (claiming(0.5, 0.4), (0.425, 0.34), []),
+        (claiming(0.5, 0.4), (0.42, 0.34), ["left"]),
+        (claiming(0.5, 0.4), (0.425, 0.33), ["right"]),
+        (claiming(0.5, 0.4), (0.1, 0.1), ["left", "right"]),
+        (claiming(0.5, 0.4), (None, None), []),
+        (claiming(None, 0.4), (0.1, 0.4), []),
+        # Without dilatancy plans claim less of the weaker side, which is not named.
+        (claiming(0.5, 0.4, coulomb=0.2 / MU), (0.171, 0.171), []),
+        (claiming(0.5, 0.4, coulomb=0.2 / MU), (0.171, 0.16), ["right"]),
+        (claiming(0.5, 0.1, coulomb=0.2 / MU), (0.171, 0.086), []),
+    ],
+)
+def test_a_tilt_below_the_claim_is_named(
+    plan: Plan, found: tuple[float | None, float | None], said: list[str]
+) -> None:
+    problems = check_engine(plan, built(), tilts(*found))
+    assert codes(problems) == ["E242"] * len(said)
+    for problem, side in zip(problems, said, strict=True):
+        assert f"tilted to the {side} " in problem.message
+
+
+def test_the_resolution_of_the_tilt_is_no_contradiction() -> None:
+    plan = claiming(0.5, 0.5)
+    assert codes(check_engine(plan, built(), tilts(0.4, 0.4, resolution=0.1))) == []
+    assert codes(check_engine(plan, built(), tilts(0.4, 0.4, resolution=0.02))) == ["E242"] * 2
+
+
+def test_what_comes_down_on_the_level_table_carries_nothing() -> None:
+    problems = check_engine(claiming(0.5, 0.4), built(), tilts(None, None, fell_at_rest=True))
+    assert codes(problems) == ["E242"] * 2
+    assert "alpha = 0.000 in the engine, 0% of the 0.500" in problems[0].message
+
+
+@pytest.mark.parametrize("courses", [2, 4])
+def test_a_stack_that_claims_full_interlock_is_found_out(courses: int) -> None:
+    """Bricks in a stack tip at width over height, whatever a plan claims of them."""
+    pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
+    brick = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]])
+    groups = [[(IDS[k], brick + np.array([0.0, k * 20.0]))] for k in range(courses)]
+    stack = build_up(groups, 0.9)
+    assert stack.stands
+    tilted = tilt_of(stack)
+    wall = PlacedPolygons.of(block for group in groups for block in group)
+    honest = lateral_resistance(model_of_outlines(wall, 0.9))
+    assert honest.left.alpha == pytest.approx(1.0 / courses, rel=0.05)
+    claimed = claiming(honest.left.alpha, honest.right.alpha)
+    assert check_engine(claimed, stack, tilted) == []
+    assert codes(check_engine(claiming(0.9, 0.9), stack, tilted)) == ["E242"] * 2
+    assert claimed_alpha(claimed, "left", 0.9) == honest.left.alpha
+    assert CONFIRMED == 0.85

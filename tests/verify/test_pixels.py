@@ -1,0 +1,151 @@
+"""Outlines in plans are those of the pixels, whatever made them; holes change nothing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels.polygons import Points
+from drystone.kernels.raster import Mask, turn
+from drystone.model import stone as stone_module
+from drystone.model.outline import stone_outline
+from drystone.model.overlap import deepest_overlap
+from drystone.model.stone import Stone, StoneSet
+from drystone.search.plan_result import PlanResult
+from drystone.search.plan_wall import plan_wall
+from drystone.settle.rest import placed_outline
+from drystone.verify.check import check_plan
+from drystone.verify.pixels import check_outline, rim_px
+from tests.naive import outline as naive
+from tests.planner.scenes import greedy, stones_of_masks
+from tests.strategies import blobs, holed, masks, repeatable
+from tests.verify.exact_examples import exact_example
+from tests.verify.examples import SLAB
+from tests.verify.tampering import codes, step_of
+
+STEP = step_of(exact_example().plan, SLAB)
+
+
+def problems(mask: Mask, outline: Points, angle_deg: float = 0.0) -> list[str]:
+    """What is said of an outline of some pixels, about their centroid, at some place."""
+    at = np.array([31.5, 12.25])
+    step = replace(STEP, angle_deg=angle_deg)
+    corners = placed_outline(outline, angle_deg, *at.tolist())
+    return [p.message for p in check_outline(step, Stone(SLAB, mask), at, corners, 0.35)]
+
+
+@repeatable(60)
+@given(mask=masks(max_px=9))
+def test_the_rim_is_around_the_pixels(mask: Mask) -> None:
+    slow = {(point.x, point.y) for point in naive.rim(mask)}
+    found = [tuple(point) for point in rim_px(naive.filled(mask)).tolist()]
+    assert len(found) == len(set(found))
+    assert set(found) == slow
+
+
+@repeatable(150)
+@given(mask=holed(), angle_deg=st.floats(-180, 180))
+def test_outlines_of_stones_are_those_of_their_pixels(mask: Mask, angle_deg: float) -> None:
+    assert problems(mask, Stone(1, mask).outline, angle_deg) == []
+
+
+@repeatable(100)
+@given(
+    mask=st.one_of(holed(), blobs(min_px=10, max_px=40)),
+    angle_deg=st.floats(-180, 180),
+    factor=st.sampled_from([0.5, 0.866, 0.98, 0.999, 1.001, 1.2]),
+)
+def test_a_scaled_outline_is_named(mask: Mask, angle_deg: float, factor: float) -> None:
+    """Also one that stays within the tolerance of every pixel."""
+    (*_, said) = problems(mask, Stone(1, mask).outline * factor, angle_deg)
+    assert f"has {factor**2:.6g} times the area of its pixels" in said
+
+
+@pytest.mark.parametrize("shift", [(0.9, 0.0), (-0.9, 0.0), (0.0, 0.9), (0.0, -0.9)])
+def test_an_outline_beside_its_pixels_is_named(shift: tuple[float, float]) -> None:
+    brick = np.ones((12, 20), bool)
+    (said,) = problems(brick, Stone(1, brick).outline + shift)
+    assert "is 0.9 source px from the rim of its pixels; 0.5 are allowed" in said
+    assert problems(brick, Stone(1, brick).outline + 0.5 * np.array(shift)) == []
+
+
+def test_an_outline_of_another_shape_and_the_same_area_is_named() -> None:
+    slim, flat = np.ones((10, 24), bool), np.ones((12, 20), bool)
+    assert len(problems(slim, Stone(1, flat).outline)) == 1
+
+
+@pytest.mark.parametrize(("factor", "named"), [(1.0, False), (0.97, True), (1.03, True)])
+def test_check_does_not_take_the_word_of_whoever_reads_outlines(
+    monkeypatch: pytest.MonkeyPatch, factor: float, named: bool
+) -> None:
+    monkeypatch.setattr(stone_module, "stone_outline", lambda *of: factor * stone_outline(*of))
+    made = exact_example()
+    report = check_plan(made.plan, made.stones)
+    assert ("E240" in codes(report)) is named
+    assert {p.step for p in report.problems if p.code == "E240"} <= {
+        step.step for step in made.plan.stone_steps
+    }
+
+
+def frame() -> Mask:
+    mask = np.ones((40, 40), bool)
+    mask[10:30, 10:30] = False
+    return mask
+
+
+def ring(outer: float, inner: float) -> Mask:
+    y, x = np.mgrid[: 2 * int(outer) + 1, : 2 * int(outer) + 1] - outer
+    return (np.hypot(x, y) <= outer) & (np.hypot(x, y) >= inner)
+
+
+def planned(stones: StoneSet, width: float, height: float) -> PlanResult:
+    return plan_wall(stones, width, height, seed=1, settings=greedy(), scale=1.0)
+
+
+def deepest_by_pixels(result: PlanResult) -> float:
+    """How deep the pixel squares of two placed stones lie in each other, holes filled."""
+    shapes = []
+    for placement in result.wall.placements:
+        stone, settled = placement.posed.stone, placement.settled
+        assert settled is not None
+        rows, cols = np.nonzero(naive.filled(stone.mask))
+        left, low = cols, len(stone.mask) - rows - 1
+        squares = shapely.union_all(shapely.box(left, low, left + 1, low + 1))
+        about = shapely.get_coordinates(squares.exterior)[:-1] - np.array(stone.local_centroid)
+        at = np.array([settled.x_px, settled.y_px])
+        corners = turn(about, placement.posed.angle_deg) + at
+        shapes.append((stone.id, shapely.Polygon(corners)))
+    return deepest_overlap(shapes)[0]
+
+
+def test_frames_are_laid_as_if_they_were_filled() -> None:
+    kept = planned(stones_of_masks({i: frame() for i in range(1, 5)}), 160, 40)
+    whole = planned(stones_of_masks({i: np.ones((40, 40), bool) for i in range(1, 5)}), 160, 40)
+    assert len(kept.plan.steps) == 4
+    assert kept.wall.outlines is not None
+    assert whole.wall.outlines is not None
+    np.testing.assert_array_equal(
+        kept.wall.outlines.polygons.corners, whole.wall.outlines.polygons.corners
+    )
+    assert deepest_by_pixels(kept) < 0.5
+    assert kept.metrics.F_SF == pytest.approx(0.75 * whole.metrics.F_SF)
+    assert (kept.metrics.alpha_left, kept.metrics.F_LR) == (
+        whole.metrics.alpha_left,
+        whole.metrics.F_LR,
+    )
+
+
+def test_rings_among_discs_and_bricks_do_not_overlap() -> None:
+    shapes = [ring(22, 9)] * 8 + [ring(6.9, 0)] * 8 + [np.ones((20, 35), bool)] * 8
+    stones = stones_of_masks(dict(enumerate(shapes, 1)))
+    result = planned(stones, 150, 70)
+    placed = {step.stone for step in result.plan.stone_steps}
+    assert len(placed) > 10
+    assert placed & set(range(1, 9))
+    assert deepest_by_pixels(result) < 0.5
+    report = check_plan(result.plan, stones, wall_labels=result.wall.labels)
+    assert report.problems == ()
+    assert report.area_error < 0.05
