@@ -40,7 +40,7 @@ class Walk:
         lines : int
             How many lines of stdout are printed.
         codes : sequence of int
-            Exit codes that are right: 4 is an incomplete wall.
+            Exit codes that are right: 4 is an incomplete wall, 5 one that does not stand.
         """
         words = [str(argument) for argument in arguments]
         command = [sys.executable, "-m", "drystone", *words]

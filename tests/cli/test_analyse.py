@@ -206,11 +206,81 @@ def test_head_friction_of_the_options_wins_over_that_of_the_file(tmp_path: Path,
     assert oiled["alpha_right"] < without - 1e-3
 
 
-def test_a_model_without_blocks_has_no_size(tmp_path: Path, run: Run) -> None:
-    (tmp_path / "none.json").write_text('{"blocks": []}')
-    ran = run("analyse", tmp_path / "none.json", "--px-per-m", "100")
+def test_a_model_in_which_nothing_can_move_is_refused(tmp_path: Path, run: Run) -> None:
+    for blocks in ([], [{"id": 1, "polygon": box(0, 0, 1, 1), "fixed": True}]):
+        ran = run("analyse", written(tmp_path / "none.json", blocks))
+        assert ran.code == 3
+        assert "E303" in ran.err
+        assert "no free block" in ran.err
+
+
+def jammed(folder: Path) -> Path:
+    """A brick, 3, between two piers."""
+    boxes = (box(0, 0, 1, 4), box(2, 0, 1, 4), box(1, 1.5, 1, 1))
+    blocks = [{"id": i, "polygon": corners} for i, corners in enumerate(boxes, start=1)]
+    return written(folder / "jammed.json", blocks)
+
+
+def test_what_stands_only_by_friction_on_upright_faces_is_named(tmp_path: Path, run: Run) -> None:
+    ran = run("analyse", jammed(tmp_path), "-o", tmp_path / "out")
+    assert ran.code == 5
+    named = "stands only by friction on upright faces: block 3; let go, it can fall"
+    assert f"own weight           {named}\n" in ran.out
+    assert "  without dilatancy  unstable: There are forces with which" in ran.out
+    assert "Falls by itself: block 3 slides along 1 and 2." in ran.out
+    assert "falls on a table" not in ran.out
+    report = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert named in report
+    found = run("analyse", jammed(tmp_path), "--json").json()
+    assert found["held_by_upright_faces"] == [3]
+    without = found["nonassociative"]
+    assert (without["status_left"], without["status_right"]) == ("unstable", "unstable")
+    assert (without["alpha_left"], without["alpha_right"]) == (None, None)
+    assert found["status_left"] == "optimal"
+
+
+def test_without_the_second_flow_rule_only_the_upright_faces_are_told(
+    tmp_path: Path, run: Run
+) -> None:
+    ran = run("analyse", jammed(tmp_path), "--associative-only")
     assert ran.code == 0
-    assert "size" not in ran.out
+    assert "own weight         stands only by friction on upright faces: block 3\n" in ran.out
+
+
+def test_an_arch_is_told_apart_from_what_can_fall(tmp_path: Path, run: Run) -> None:
+    angles = np.linspace(0.0, np.pi, 10)
+    rays = np.column_stack((np.cos(angles), np.sin(angles).round(15)))
+    joints = list(zip(0.8 * rays, 1.2 * rays, strict=True))
+    blocks = [
+        {"id": i, "polygon": np.array([*joints[i - 1], *joints[i][::-1]]).tolist()}
+        for i in range(1, 10)
+    ]
+    ran = run("analyse", written(tmp_path / "arch.json", blocks))
+    assert ran.code == 0
+    assert "stands only by friction on upright faces: blocks" in ran.out
+    assert "; let go, nothing was found to fall\n" in ran.out
+
+
+def test_a_wall_that_does_not_stand_ends_with_a_code_of_its_own(tmp_path: Path, run: Run) -> None:
+    boxes = (box(0, 0, 1, 1), box(0.8, 1, 1, 1))
+    blocks = [{"id": i, "polygon": corners} for i, corners in enumerate(boxes, start=1)]
+    path = written(tmp_path / "leans.json", blocks)
+    for more in ((), ("--associative-only",)):
+        ran = run("analyse", path, *more)
+        assert ran.code == 5
+        assert "does not stand\n" in ran.out
+        assert "E140" not in ran.err
+    assert run("analyse", path, "--json").json()["held_by_upright_faces"] is None
+
+
+def test_friction_beyond_any_sliding_is_answered(tmp_path: Path, run: Run) -> None:
+    path = tmp_path / "rough.json"
+    for mu in (1e4, 1e7, 1e9, 1e300):
+        path.write_text(json.dumps({"blocks_xywh": [[0, 0, 1, 1], [0, 1, 1, 1]], "mu": mu}))
+        found = run("analyse", path, "--json").json()
+        for side in ("left", "right"):
+            assert found[f"alpha_{side}"] == pytest.approx(0.5, abs=1e-8)
+            assert found["nonassociative"][f"alpha_{side}"] == pytest.approx(0.5, abs=1e-8)
 
 
 def test_a_multiplier_of_nothing_has_no_sign(

@@ -7,13 +7,14 @@ import pytest
 from scipy.optimize import nnls
 
 from drystone.statics.asking import Answer, answered
-from drystone.statics.certificate import certify
+from drystone.statics.certificate import certify, in_equilibrium
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import resistance_between
 from drystone.statics.program import assemble
 from drystone.statics.result import CERTIFIED, Certificate, LimitStatus
 from drystone.statics.solvers.highs import HighsSession
+from drystone.statics.solvers.solution import Solution
 from tests.statics.walls import coursed, stacked
 
 MODEL = model_from_labels(coursed(5, 4, 90)).model
@@ -154,3 +155,60 @@ def test_self_stress_must_balance_press_and_grow_to_the_right_side():
     ray = found.columns.copy()
     ray[1] = -1.0
     assert certify(program, replace(found, columns=ray), -1.0).violation > 0.1
+
+
+def hanging(mu=0.58):
+    """A block that touches a fixed ceiling and a fixed wall to its right."""
+    boxes = (((0, 2, 3, 1), True), ((2, 0.5, 1, 1.5), True), ((1, 1, 1, 1), False))
+    blocks = [
+        {"id": i, "fixed": fixed, "polygon": [[x, y], [x + w, y], [x + w, y + h], [x, y + h]]}
+        for i, ((x, y, w, h), fixed) in enumerate(boxes, start=1)
+    ]
+    return model_from_json({"blocks": blocks, "mu": mu})
+
+
+class Claims:
+    """A solver that says what it is told to say."""
+
+    def __init__(self, growing, held):
+        self.growing, self.held = growing, held
+
+    def minimise(self, costs):
+        return self.growing if costs[0] else self.held
+
+
+def pressing(block, other):
+    """Columns of the two edges at each contact point of a pair, in a model of `hanging`."""
+    model = hanging()
+    pairs = [(i.block, i.other) for i in model.interfaces for _ in i.points]
+    return [1 + 2 * k + j for k, pair in enumerate(pairs) for j in (0, 1) if pair == (block, other)]
+
+
+def test_forces_hold_a_wall_only_when_they_press():
+    """A block that hangs from the ceiling by tension is in balance, and falls."""
+    program = assemble(hanging())
+    columns = np.zeros(program.column_count)
+    columns[pressing(3, 1)] = -0.25
+    tension = Solution(LimitStatus.OPTIMAL, columns, None, "", "")
+    assert np.abs(program.matrix @ columns - program.rhs).max() < 1e-12
+    assert not in_equilibrium(program, tension)
+    for factor in (1.0, 0.9):
+        pressed = replace(tension, columns=-factor * columns)
+        turned = replace(program, rhs=-program.rhs)
+        assert in_equilibrium(turned, pressed) == (factor == 1.0)
+
+
+def test_no_load_is_called_without_limit_where_only_tension_carries_the_weight():
+    program = assemble(hanging(mu=0.0))
+    hung = np.zeros(program.column_count)
+    hung[pressing(3, 1)] = -0.25
+    ray = np.zeros(program.column_count)
+    ray[0] = 1.0
+    ray[pressing(3, 2)] = 0.25
+    growing = Solution(LimitStatus.UNBOUNDED, ray, None, "", "")
+    held = Solution(LimitStatus.OPTIMAL, hung, None, "", "")
+    assert certify(program, growing, 1.0).holds
+    assert answered(program, Claims(growing, held), 1.0).status is LimitStatus.FAILED
+    rough = assemble(hanging())
+    honest = HighsSession(rough).minimise(np.zeros(rough.column_count))
+    assert answered(rough, Claims(growing, honest), 1.0).status is LimitStatus.UNBOUNDED

@@ -18,7 +18,7 @@ from drystone.statics.loads import (
     tilting_table,
     weight,
 )
-from drystone.statics.model import GROUND
+from drystone.statics.model import GROUND, Block, RigidBlockModel
 from drystone.statics.result import LimitStatus
 from tests.statics.walls import coursed, stacked
 
@@ -164,3 +164,11 @@ def test_no_alpha_may_hold_a_wall_up():
     assert none.least.status is none.greatest.status is LimitStatus.UNSTABLE
     assert none.least.certificate.holds
     assert none.least.message == "No alpha holds the blocks up."
+
+
+def test_what_lies_below_the_ground_is_not_pushed_by_a_load_that_grows_with_height():
+    blocks = (Block(1, 2.0, (0.0, 3.0)), Block(2, 2.0, (0.0, -3.0)), Block(3, 1.0, (0.0, 1.0)))
+    pushed = growing_with_height(RigidBlockModel(blocks, ())).live[:, 0]
+    assert pushed[1] == 0.0
+    assert pushed[0] == pytest.approx(6.0 * pushed[2])
+    assert pushed.sum() == pytest.approx(5.0)

@@ -1,5 +1,7 @@
 """Generated walls for tests of the limit analysis."""
 
+import math
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -51,6 +53,44 @@ def brick_model(courses: int, bricks: int, height: float, mu: float) -> RigidBlo
         y = course * height
         rows += [[left, y, right - left, height] for left, right in pairwise(edges)]
     return model_from_json({"blocks_xywh": rows, "mu": mu})
+
+
+def between_piers(
+    pier: float, height: float, gap: float, mu: float, *, covered: bool = False
+) -> RigidBlockModel:
+    """A brick, 3, between two piers that stand free; a slab, 4, may cover them."""
+    rows = [[0, 0, pier, height], [pier + gap, 0, pier, height], [pier, 1, gap, 1]]
+    if covered:
+        rows.append([0, height, 2 * pier + gap, 1])
+    return model_from_json({"blocks_xywh": rows, "mu": mu})
+
+
+def slot(left: float, right: float, mu: float) -> RigidBlockModel:
+    """A block, 2, between two fixed ones, whose upper corners lie so far right of the lower."""
+    outlines = (
+        [[-2, 1], [0, 1], [left, 2], [-2, 2]],
+        [[0, 1], [1, 1], [1 + right, 2], [left, 2]],
+        [[1, 1], [3, 1], [3, 2], [1 + right, 2]],
+    )
+    return _with_one_free(outlines, mu)
+
+
+def under_a_roof(slope_deg: float, mu: float) -> RigidBlockModel:
+    """A block, 2, between fixed faces that lean over it by so many degrees from the vertical."""
+    lean = math.tan(math.radians(slope_deg))
+    outlines = (
+        [[-1, 2], [lean - 1, 3], [-3, 3], [-3, 2]],
+        [[-1, 2], [-1, 1], [1, 1], [1, 2], [1 - lean, 3], [lean - 1, 3]],
+        [[1, 2], [3, 2], [3, 3], [1 - lean, 3]],
+    )
+    return _with_one_free(outlines, mu)
+
+
+def _with_one_free(outlines: Sequence[list[list[float]]], mu: float) -> RigidBlockModel:
+    blocks = [
+        {"id": i, "polygon": corners, "fixed": i != 2} for i, corners in enumerate(outlines, 1)
+    ]
+    return model_from_json({"blocks": blocks, "mu": mu})
 
 
 def irregular(seed: int, count: int, width_px: int, height_px: int) -> Labels:

@@ -6,6 +6,8 @@ what the linear program's own tolerance of 1e-9 leaves.
 """
 
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from drystone.experiments.cases import (
     closed_forms,
@@ -14,7 +16,11 @@ from drystone.experiments.cases import (
     single_block,
     two_equal_blocks,
 )
+from drystone.statics.contacts.given import model_from_json
+from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.upright import held_by_upright_faces
+from tests.strategies import repeatable
 
 TOLERANCE = 1e-8
 
@@ -77,3 +83,58 @@ def test_running_bond_of_four_courses_slides():
 @pytest.mark.parametrize("case", closed_forms(), ids=lambda case: f"{case.name}, mu {case.mu}")
 def test_what_the_cases_expect(case):
     assert alphas(case) == pytest.approx((case.left, case.right), abs=TOLERANCE)
+
+
+@given(
+    slabs=st.lists(
+        st.tuples(st.floats(1.0, 2.5), st.floats(0.3, 1.5), st.floats(-0.3, 0.3)),
+        min_size=2,
+        max_size=9,
+    ),
+    unit=st.sampled_from([1e-3, 1.0, 1e3]),
+    mu=st.sampled_from([0.3, 0.6, 0.9]),
+)
+@repeatable(40)
+def test_towers_of_slabs(slabs, unit, mu):
+    """Each joint carries one resultant: above it all slides at mu, or turns about an end of it."""
+    rows, left, top = [], 0.0, 0.0
+    for width, height, shift in slabs:
+        left += shift
+        rows.append((left, top, width, height))
+        top += height
+    expected = {"left": mu, "right": mu}
+    for k, (x, y, width, _) in enumerate(rows):
+        below = rows[k - 1] if k else rows[0]
+        ends = {"left": max(x, below[0]), "right": min(x + width, below[0] + below[2])}
+        for side, sign in (("left", -1.0), ("right", 1.0)):
+            arms = [
+                (w * h, sign * (ends[side] - a - w / 2), b + h / 2 - y) for a, b, w, h in rows[k:]
+            ]
+            restoring, turning = (sum(arm[0] * arm[i] for arm in arms) for i in (1, 2))
+            expected[side] = min(expected[side], restoring / turning)
+    assume(abs(min(expected.values())) > 1e-6)
+    scaled = [[unit * value for value in row] for row in rows]
+    model = model_from_json({"blocks_xywh": scaled, "mu": mu})
+    both = lateral_resistance(model)
+    assert both.stable == (min(expected.values()) > 0.0)
+    if both.stable:
+        sides = (expected["left"], expected["right"])
+        assert (both.left.alpha, both.right.alpha) == pytest.approx(sides, abs=1e-7)
+        assert held_by_upright_faces(model) == ()
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.025])
+@pytest.mark.parametrize("courses", [2, 4])
+def test_low_bonds_slide_with_head_joints_open_or_closed(gap, courses):
+    """Bricks 1 x .25 in running bond, half bricks at the ends of every other course."""
+    half = (1.0 - gap) / 2.0
+    rows = []
+    for course in range(courses):
+        widths = [1.0] * 5 if course % 2 == 0 else [half, *[1.0] * 4, half]
+        left = 0.0
+        for width in widths:
+            rows.append([left, 0.25 * course, width, 0.25])
+            left += width + gap
+    model = model_from_json({"blocks_xywh": rows, "mu": 0.6})
+    for both in (lateral_resistance(model), nonassociative_resistance(model)):
+        assert (both.left.alpha, both.right.alpha) == pytest.approx((0.6, 0.6), abs=1e-7)

@@ -7,9 +7,10 @@ from typing import Any
 
 from drystone.cli.output import number
 from drystone.statics.failing.mechanism import Failure
+from drystone.statics.failing.wording import Names
 from drystone.statics.flow.nonassociative import NonassociativeResistance, NonassociativeResult
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LateralResistance, LimitResult, LoadRange
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, LoadRange
 
 ASSUMPTIONS = (
     "2D, rigid blocks, no tension, no crushing, Coulomb friction at the ends of every contact"
@@ -34,6 +35,11 @@ class Card:
         How it fails, where that is known.
     loose : mapping of {"left", "right"} to Failure
         What moves without dilatancy, where that is at a clearly smaller load.
+    upright : tuple of int or None
+        Blocks that only friction on upright faces holds under the dead load; None where the wall
+        does not stand, or nothing is known.
+    names : Names
+        What blocks are called.
     sensitivity : mapping of {"left", "right"} to float
         d alpha / d mu, where that is known.
     sha256 : str
@@ -50,6 +56,8 @@ class Card:
     nonassociative: NonassociativeResistance | None
     failures: Mapping[str, Failure]
     loose: Mapping[str, Failure]
+    upright: tuple[int, ...] | None
+    names: Names
     sensitivity: Mapping[str, float]
     sha256: str
     version: str
@@ -60,14 +68,14 @@ class Card:
         both = self.resistance
         rows = [
             ("load case", self.load_case),
-            ("own weight", _standing(both)),
+            ("own weight", self._standing()),
             ("load to the left", _alpha(both.left)),
             *self._further("left"),
             ("load to the right", _alpha(both.right)),
             *self._further("right"),
             ("F_LR", self._ratio()),
         ]
-        least = _least(both)
+        least = _least(both) if self.stands else None
         if least is not None and self.load_case == "tilting table":
             angle = degrees(atan(least))
             rows.append(("falls on a table", f"tilted by {angle:.1f} degrees, by associated flow"))
@@ -83,6 +91,7 @@ class Card:
         return {
             **_alphas(both.left, both.right),
             "F_LR": both.value,
+            "held_by_upright_faces": None if self.upright is None else list(self.upright),
             "mu": self.model.mu,
             "blocks": len(self.model.blocks),
             "contacts": self.model.contact_count,
@@ -109,6 +118,37 @@ class Card:
             "sha256": self.sha256,
             "version": self.version,
         }
+
+    @property
+    def stands(self) -> bool:
+        """True when the dead load is carried, as far as both flow rules know."""
+        return self.resistance.stable and not self._can_fall
+
+    @property
+    def _can_fall(self) -> bool:
+        """Whether a fall without dilatancy was found."""
+        without = self.nonassociative
+        return without is not None and LimitStatus.UNSTABLE in (
+            without.left.status,
+            without.right.status,
+        )
+
+    def _standing(self) -> str:
+        """Say whether the dead load alone is carried, and by what."""
+        if self.resistance.failed:
+            return "not known: no answer could be certified"
+        if not self.resistance.stable:
+            return "does not stand"
+        said = "stands"
+        if self.upright is None:
+            said += "; not known whether without friction on upright faces"
+        elif self.upright:
+            said += f" only by friction on upright faces: {self.names.listed(self.upright)}"
+        if self._can_fall:
+            return f"{said}; let go, it can fall"
+        if self.upright and self.nonassociative is not None:
+            return f"{said}; let go, nothing was found to fall"
+        return said
 
     def _further(self, direction: str) -> list[tuple[str, str]]:
         """Tell what belongs to one direction, under it."""
@@ -235,16 +275,9 @@ def _lower_first(text: str) -> str:
     return text[:1].lower() + text[1:].rstrip(".")
 
 
-def _standing(both: LateralResistance) -> str:
-    """Say whether the dead load alone is carried, as far as that is known."""
-    if both.failed:
-        return "not known: no answer could be certified"
-    return "stands" if both.stable else "does not stand"
-
-
 def _least(both: LateralResistance) -> float | None:
     alphas = [result.alpha for result in (both.left, both.right) if result.alpha is not None]
-    return min(alphas) if both.stable and alphas else None
+    return min(alphas) if alphas else None
 
 
 def _certificate(

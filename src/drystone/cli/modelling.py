@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.cli.loads import is_range, load_case
-from drystone.errors import Notice, UsageError
+from drystone.errors import InputError, Notice, UsageError
 from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
 from drystone.statics.contacts.blocks import ImageModel, model_from_labels
@@ -70,6 +70,13 @@ def modelled(wall: GivenWall, arguments: argparse.Namespace) -> Modelled:
             found = replace(found, model=with_head_friction(found.model, arguments.mu_head))
         said = f"friction {arguments.mu_head:g}"
         found = replace(found, remarks={**found.remarks, "head joints": said})
+    if all(block.fixed for block in found.model.blocks):
+        raise InputError(
+            "E303",
+            "there is no free block in it, so there is nothing to analyse.",
+            where=arguments.wall_path,
+            cure="Give a block that is not fixed.",
+        )
     return found
 
 

@@ -11,8 +11,9 @@ from dataclasses import replace
 
 from drystone.model.outlines import Outlined, Outlines
 from drystone.settle.settings import SettleSettings
+from drystone.statics.contacts.joints import slippery
 from drystone.statics.contacts.settled import model_of_outlines, model_with_outlines
-from drystone.statics.model import Interface, RigidBlockModel
+from drystone.statics.model import RigidBlockModel
 
 GRIP = 0.75
 """Share of the friction with which a wall must stand."""
@@ -38,7 +39,9 @@ def sturdy_model_with(
         model, blocks, outlines, 0.5 * settings.contact_px, settings.setback
     ).added
     assert added is not None  # noqa: S101 - it was made by adding
-    return model.with_added(added.blocks, _slippery(added.interfaces, model.mu, settings))
+    return model.with_added(
+        added.blocks, slippery(added.interfaces, model.mu, settings.steep, GRIP)
+    )
 
 
 def sturdy_model_of(outlines: Outlines, mu: float, settings: SettleSettings) -> RigidBlockModel:
@@ -54,14 +57,4 @@ def sturdy_model_of(outlines: Outlines, mu: float, settings: SettleSettings) -> 
         Contact tolerance, and which faces are upright.
     """
     model = model_of_outlines(outlines, mu, 0.5 * settings.contact_px, settings.setback)
-    return replace(model, interfaces=_slippery(model.interfaces, mu, settings))
-
-
-def _slippery(
-    interfaces: tuple[Interface, ...], mu: float, settings: SettleSettings
-) -> tuple[Interface, ...]:
-    """Return interfaces with as little friction as a wall must do with."""
-    return tuple(
-        replace(interface, mu=0.0 if abs(interface.normal[1]) < settings.steep else GRIP * mu)
-        for interface in interfaces
-    )
+    return replace(model, interfaces=slippery(model.interfaces, mu, settings.steep, GRIP))

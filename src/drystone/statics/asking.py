@@ -12,6 +12,7 @@ from drystone.statics.certificate import certify, in_equilibrium
 from drystone.statics.program import EquilibriumProgram, Floats
 from drystone.statics.result import Certificate, LimitStatus
 from drystone.statics.solvers.highs import HighsSession
+from drystone.statics.solvers.refined import RefinedSession
 from drystone.statics.solvers.solution import Solution
 
 Solver = Literal["auto", "highs", "highs-ipm", "clarabel"]
@@ -94,13 +95,15 @@ def _chain(
         "highs": lambda: HighsSession(program),
         "highs-ipm": lambda: HighsSession(program, "ipm"),
         "clarabel": clarabel,
+        # Large friction and heavy stones cost the others the last digits of their forces.
+        "refined": lambda: RefinedSession(program),
     }
     if solver != "auto":
         return [kinds[solver]]
     many = MANY_BLOCKS_FOR_A_VERTEX if mechanism else MANY_BLOCKS
     if len(program.block_ids) < many:
         return list(kinds.values())
-    return [kinds[name] for name in ("clarabel", "highs", "highs-ipm")]
+    return [kinds[name] for name in ("clarabel", "highs", "highs-ipm", "refined")]
 
 
 def answered(program: EquilibriumProgram, session: Session, sign: float) -> Answer:

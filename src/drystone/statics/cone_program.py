@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from drystone.kernels.cones import GROUND_BODY, Body, cone_edges
 from drystone.kernels.simplex import Added, Cones
 from drystone.statics.appending import Units
-from drystone.statics.model import GROUND, Addition, Block, Interface
+from drystone.statics.model import GROUND, NO_SLIP, Addition, Block, Interface
 
 Ints = NDArray[np.int32]
 
@@ -131,7 +131,7 @@ class ConeProgram:
                 return None
             bodies.append((first, second))
             normals.append(interface.normal)
-            frictions.append(mu if interface.mu is None else interface.mu)
+            frictions.append(min(mu if interface.mu is None else interface.mu, NO_SLIP))
             points.append(interface.points)
         return Cones(*cone_edges(bodies, normals, frictions, points, self.units.length))
 

@@ -177,9 +177,10 @@ def _asked(program: EquilibriumProgram, session: RefinedSession, start: Basis, s
 
 def _told(model: RigidBlockModel, program: EquilibriumProgram, tilts: Tilts) -> Grown:
     """Tell the resistance; by the ordinary solvers when the answers cannot be certified."""
-    if LimitStatus.FAILED in (tilts.least.status, tilts.greatest.status):
+    both = resistance_between(program, tilts.least, tilts.greatest, model.mu)
+    if both.failed:
         return Grown(lateral_resistance(model), solved_cold=True)
-    return Grown(resistance_between(program, tilts.least, tilts.greatest, model.mu))
+    return Grown(both)
 
 
 def _grown_to(model: RigidBlockModel, program: OpenProgram, starts: Bases) -> WarmGrowth:

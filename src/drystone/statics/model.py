@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 GROUND = 0
 """Id of the ground in interfaces; it is fixed and carries no load."""
 
+NO_SLIP = 1e4
+"""Friction above this counts as this, an angle of 89.994 degrees: nothing slides, and beyond it
+solvers lose their digits."""
+
 Direction = Literal["left", "right"]
 
 Freedom = Literal["x", "y", "turn"]
@@ -136,8 +140,8 @@ class RigidBlockModel:
         return self if self.added is None else replace(self)
 
     def friction(self, interface: Interface) -> float:
-        """Return the coefficient of friction of an interface."""
-        return self.mu if interface.mu is None else interface.mu
+        """Return the coefficient of friction of an interface, at most `NO_SLIP`."""
+        return min(self.mu if interface.mu is None else interface.mu, NO_SLIP)
 
     @cached_property
     def contact_count(self) -> int:

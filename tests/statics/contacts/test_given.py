@@ -2,12 +2,16 @@ import math
 
 import numpy as np
 import pytest
+import shapely
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from drystone.errors import InputError
 from drystone.statics.contacts.given import model_from_json, polygons_from_json
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
 from tests.polygons import outlines_along_a_line
+from tests.strategies import repeatable
 
 
 def told(model):
@@ -99,6 +103,87 @@ def test_gaps_within_the_tolerance_are_contacts_and_wider_ones_are_not():
         assert len(model.interfaces) == count
 
 
+def two_and_a_far_one(gap, far, size=1.0, above=1.0):
+    """A block, one above it with a gap, and one far away; the second may be of another size."""
+    second = [0, size + gap, above, above]
+    return {"blocks_xywh": [[0, 0, size, size], second, [far, 0, size, size]], "mu": 0.58}
+
+
+@pytest.mark.parametrize("far", [5.0, 1e3, 2e6, 1e8])
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_a_far_block_changes_no_answer_nearby(far, size):
+    for gap, stands in ((0.0, True), (1e-6 * size, True), (1e-3 * size, False)):
+        model = model_from_json(two_and_a_far_one(gap, far * size, size, size))
+        both = lateral_resistance(model)
+        assert both.stable == stands
+        if stands:
+            assert both.right.alpha == pytest.approx(0.5, abs=1e-5)
+
+
+def test_the_tolerance_of_a_pair_is_that_of_the_smaller_block():
+    """A gap that is nothing beside a large block is one beside a small one."""
+    for above, stands in ((1.0, True), (1e-2, False)):
+        gap = 3e-7
+        assert lateral_resistance(
+            model_from_json(two_and_a_far_one(gap, 10.0, above=above))
+        ).stable == stands  # fmt: skip
+
+
+@given(
+    seed=st.integers(0, 10**6),
+    size=st.sampled_from([1e-3, 1.0, 1e3]),
+    far=st.sampled_from([0.0, 1e3, 1e6]),
+    angle_deg=st.floats(0.0, 180.0),
+)
+@repeatable(40)
+def test_two_halves_of_a_polygon_touch_and_do_not_overlap(seed, size, far, angle_deg):
+    """However rounding turns their common edge."""
+    rng = np.random.default_rng(seed)
+    angles = np.sort(rng.random(8)) * 2.0 * np.pi
+    corners = np.column_stack((np.cos(angles), 2.0 + np.sin(angles)))
+    turn = math.radians(angle_deg)
+    normal = np.array([math.cos(turn), math.sin(turn)])
+    sides = (corners - corners.mean(axis=0)) @ normal
+    cuts = []
+    for i in range(8):
+        j = (i + 1) % 8
+        if sides[i] * sides[j] < 0.0:
+            share = sides[i] / (sides[i] - sides[j])
+            cuts.append((i, corners[i] + share * (corners[j] - corners[i])))
+    assume(len(cuts) == 2)
+    (i, first), (j, second) = cuts
+    halves = [[first, *corners[i + 1 : j + 1], second]]
+    halves.append([second, *corners[j + 1 :], *corners[: i + 1], first])
+    areas = [shapely.Polygon(half).area for half in halves]
+    assume(min(areas) > 1e-3)
+
+    def model(deep):
+        """Push the second half into the first by so many tolerances."""
+        into = normal if sides[i + 1] > 0.0 else -normal
+        shift = deep * 1e-5 * math.sqrt(min(areas)) * into
+        moved = [np.array(halves[0]), np.array(halves[1]) + shift]
+        blocks = [
+            {"id": k, "polygon": (size * half + [size * far, 0.0]).tolist()}
+            for k, half in enumerate(moved, start=1)
+        ]
+        return model_from_json({"blocks": blocks})
+
+    edge = float(np.hypot(*(second - first)))
+    assume(edge > 0.05)
+    for deep in (0.0, 0.8, -0.8):
+        (joint,) = (i for i in model(deep).interfaces if i.other == 1)
+        assert joint.length == pytest.approx(size * edge, rel=1e-2)
+    with pytest.raises(InputError, match="blocks 1 and 2 overlap"):
+        model(3.0)
+    assert not any(i.other == 1 and i.length for i in model(-1.5).interfaces)
+
+
+def test_bars_that_cross_overlap_although_no_corner_is_inside():
+    bars = {"blocks_xywh": [[0, 1, 3, 1], [1, 0, 1, 3]]}
+    with pytest.raises(InputError, match="blocks 1 and 2 overlap"):
+        model_from_json(bars)
+
+
 def test_a_gap_that_opens_along_an_edge_leaves_a_contact_at_a_point():
     lower = {"id": 1, "polygon": [[0, 0], [2, 0], [2, 1], [0, 1]]}
     upper = {"id": 2, "polygon": [[0.5, 1], [1.5, 1.0005], [1.5, 2], [0.5, 2]]}
@@ -188,6 +273,45 @@ def test_points_of_an_interface_run_along_it():
     model = model_from_json({"blocks_xywh": [[0, 0, 4, 4]], "mu": 2, "interfaces": [three]})
     assert model.interfaces[0].points.tolist() == [[0, 0], [2, 0], [4, 0]]
     assert model.interfaces[0].length == 4
+
+
+@pytest.mark.parametrize("unit", [1e-49, 1e-12, 1e12, 1e49])
+def test_any_unit_that_arithmetic_carries(unit):
+    rows = [[0, 0, 0.5, 1], [0.1, 1, 0.4, 0.5]]
+    model = model_from_json({"blocks_xywh": [[unit * v for v in row] for row in rows]})
+    both = lateral_resistance(model)
+    assert (both.left.alpha, both.right.alpha) == pytest.approx((0.37, 0.33), abs=1e-6)
+
+
+def polygon(x, y, size):
+    return {"blocks": [{"id": 1, "polygon": square(x, y, size)}]}
+
+
+@pytest.mark.parametrize(
+    ("data", "cure"),
+    [
+        ({"blocks_xywh": [[0, 0, 1e150, 1e150]]}, "another unit"),
+        ({"blocks_xywh": [[0, 0, 1e60, 1]]}, "another unit"),
+        ({"blocks_xywh": [[1e308, 0, 1e308, 1]]}, "another unit"),
+        ({"blocks_xywh": [[0, 0, 1, 1e-60]]}, "another unit"),
+        ({"blocks_xywh": [[1e17, 0, 1, 1]]}, "origin"),
+        (polygon(0, 0, 1e150), "another unit"),
+        (polygon(0, 0, 1e-150), "another unit"),
+        (polygon(0, 1e10, 1), "origin"),
+    ],
+)
+def test_coordinates_beyond_what_arithmetic_carries_are_refused(data, cure):
+    """Without a warning of NumPy: warnings are errors here."""
+    with pytest.raises(InputError, match="E303") as refused:
+        model_from_json(data)
+    assert cure in refused.value.cure
+
+
+@pytest.mark.parametrize("density", [1e60, 1e-60])
+def test_densities_beyond_what_arithmetic_carries_are_refused(density):
+    block = {"id": 1, "polygon": square(0, 0), "density": density}
+    with pytest.raises(InputError, match="E303"):
+        model_from_json({"blocks": [block]})
 
 
 def test_numbers_that_no_float_holds_are_refused():

@@ -4,9 +4,9 @@ import pytest
 from drystone.errors import InputError
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.given import model_from_json, polygons_from_json
-from drystone.statics.contacts.joints import loose_blocks, with_head_friction
+from drystone.statics.contacts.joints import loose_blocks, slippery, with_head_friction
 from drystone.statics.limit import lateral_resistance, limit_load
-from drystone.statics.model import GROUND
+from drystone.statics.model import GROUND, Interface
 from tests.statics.walls import brick_model, irregular
 
 PAIR = [[0, 0, 2, 1], [0, 1, 2, 1]]
@@ -129,3 +129,27 @@ def test_what_is_said_of_one_joint_wins_over_what_is_said_of_all_head_joints():
     assert [i.mu for i in model_from_json({**data, "interfaces": [upright]}).interfaces] == [0.1]
     own = {**upright, "mu": 0.9}
     assert [i.mu for i in model_from_json({**data, "interfaces": [own]}).interfaces] == [0.9]
+
+
+def leaning(slope_deg, mu=0.58):
+    """A face that rises so steeply, from the level."""
+    angle = np.radians(slope_deg)
+    normal = (-np.sin(angle), np.cos(angle))
+    return Interface(2, 1, np.array([[0.0, 0.0], [1.0, 1.0]]), normal, mu)
+
+
+@pytest.mark.parametrize("mu", [0.2, 0.58, 0.84, 1.0, 5.0])
+def test_faces_within_the_friction_angle_of_the_vertical_are_slippery(mu):
+    """There alone friction lifts what is under a face: mu |n_x| > |n_y|; never below 45 degrees."""
+    limit = 90.0 - min(np.degrees(np.arctan(mu)), 45.0)
+    for slope_deg, left in ((limit - 0.1, mu), (limit + 0.1, 0.0), (90.0, 0.0), (0.0, mu)):
+        for turned in (slope_deg, -slope_deg, 180.0 - slope_deg):
+            (found,) = slippery([leaning(turned, None)], mu)
+            assert found.mu == left
+
+
+def test_a_share_of_the_friction_stays_on_faces_less_steep_than_asked_for():
+    faces = [leaning(70), leaning(80), leaning(20, 0.4), leaning(20, None)]
+    found = slippery(faces, 0.6, steep=0.3, grip=0.5)
+    assert [face.mu for face in found] == [0.29, 0.0, 0.2, 0.3]
+    assert [face.normal for face in found] == [face.normal for face in faces]

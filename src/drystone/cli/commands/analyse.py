@@ -19,6 +19,7 @@ from drystone.cli.output import print_json, print_table
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.walls import read_wall, unsupported
 from drystone.statics.failing.mechanism import Failure, describe_mechanism
+from drystone.statics.failing.wording import Names
 from drystone.statics.flow.nonassociative import (
     NonassociativeResult,
     nonassociative_resistance,
@@ -29,6 +30,7 @@ from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.saved_program import save_program
 from drystone.statics.sensitivity import friction_sensitivity
+from drystone.statics.upright import held_by_upright_faces
 
 CLEARLY_LESS = 0.99
 """Share of the associative load multiplier; above it the mechanisms are mostly the same."""
@@ -68,7 +70,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     else:
         title = f"{path}: {_many(model)}, {model.contact_count} contact points"
         print_table(title, card.rows() + ([] if scatter is None else scatter.rows()))
-    return _keep_failure(model, loads, folder) if resistance.failed else ExitCode.DONE
+    if resistance.failed:
+        return _keep_failure(model, loads, folder)
+    return ExitCode.DONE if card.stands else ExitCode.CHECK_FAILED
 
 
 def _write_all(
@@ -121,6 +125,12 @@ def _card(
         nonassociative=without,
         failures=_failures(wall, both),
         loose={} if without is None else _loose(wall, both, (without.left, without.right)),
+        upright=(
+            held_by_upright_faces(wall.model, loads, solver=arguments.solver)
+            if resistance.stable
+            else None
+        ),
+        names=Names(wall.noun, wall.wedge_ids),
         sensitivity=sensitivity,
         sha256=_sha256(arguments),
         version=version("drystone"),
@@ -156,12 +166,17 @@ def _loose(
     """Describe what moves without dilatancy where it needs clearly less load."""
     return {
         result.direction: describe_mechanism(
-            wall.model, result.mechanism, noun=wall.noun, wedges=wall.wedge_ids
+            wall.model,
+            result.mechanism,
+            falls=result.status is LimitStatus.UNSTABLE,
+            noun=wall.noun,
+            wedges=wall.wedge_ids,
         )
         for result, bound in zip(without, associative, strict=True)
         if result.mechanism is not None
-        and bound.alpha is not None
-        and (result.alpha is None or result.alpha < CLEARLY_LESS * bound.alpha)
+        and (
+            result.alpha is None or bound.alpha is None or result.alpha < CLEARLY_LESS * bound.alpha
+        )
     }
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import inf
+from math import inf, sqrt
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import shapely
 from drystone.errors import InputError
 from drystone.model.overlap import overlap_depth
 from drystone.statics.contacts.given_parts import (
+    LARGEST,
     bad,
     read_friction,
     read_interfaces,
@@ -28,8 +29,15 @@ LARGEST_RATIO = 1e6
 STRAIGHT = 1e-12
 """A corner this far from the line between its neighbours, in sizes of the block, is none."""
 
-RELATIVE_TOLERANCE = 1e-6
-"""Gaps up to this share of the model's extent count as contact."""
+RELATIVE_TOLERANCE = 1e-5
+"""Gaps and overlaps up to this share of the size of the smaller block, the root of its area, count
+as contact: coordinates are written with six digits or so."""
+
+SMALLEST = 1.0 / LARGEST
+"""Of sizes and densities."""
+
+FARTHEST = 1e9
+"""From the origin, in sizes of a block: beyond it coordinates lack the digits to tell contacts."""
 
 
 def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
@@ -76,7 +84,8 @@ def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
     if "interfaces" in data:
         interfaces = read_interfaces(read_list(data, "interfaces"), ids)
     else:
-        interfaces = _all_interfaces(corners)
+        sizes = {block.id: sqrt(block.area) for block in blocks}
+        interfaces = _all_interfaces(corners, sizes)
     model = RigidBlockModel(blocks, interfaces, read_mu(data, "mu", 0.58))
     if "mu_head" in data:
         model = with_head_friction(model, read_mu(data, "mu_head", 0.0))
@@ -126,6 +135,7 @@ def _rectangle(number: int, row: Any) -> Points:
     x, y, width, height = read_numbers(row, (4,), where)
     if width <= 0 or height <= 0:
         raise bad(f"a block of {width} x {height}.", where, "Give a width and height above 0.")
+    _check_size(min(width, height), max(abs(x), abs(y)), where)
     right, top = x + width, y + height
     return np.array([[x, y], [right, y], [right, top], [x, top], [x, y]])
 
@@ -142,12 +152,20 @@ def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
     ):
         raise bad(f"its id is {block_id!r}.", where, "Give a whole number from 1 to 4294967295.")
     density = float(read_numbers(density, (), where))
-    if density <= 0 or not isinstance(fixed, bool):
-        raise bad("density must be above 0 and fixed true or false.", where, "Correct it.")
+    if density < SMALLEST or not isinstance(fixed, bool):
+        raise bad(
+            f"density must be above 0 ({SMALLEST:g} or more) and fixed true or false.",
+            where,
+            "Correct it.",
+        )
     held = entry.get("held", [])
     if not isinstance(held, list | tuple) or not all(one in FREEDOMS for one in held):
         raise bad(f"held is {held!r}.", where, 'List what is held: "x", "y", "turn".')
-    corners = _apart(read_numbers(entry["polygon"], (-1, 2), where))
+    corners = read_numbers(entry["polygon"], (-1, 2), where)
+    if len(corners):
+        size = float(np.ptp(corners, axis=0).max())
+        _check_size(size, float(np.abs(corners).max()), where)
+    corners = _apart(corners)
     shape = shapely.Polygon(corners) if len(corners) >= 3 else shapely.Polygon()
     if shape.is_empty or not shape.is_valid or shape.area <= 0:
         raise bad("its polygon has no area or crosses itself.", where, "Correct its corners.")
@@ -156,6 +174,21 @@ def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
         line = line[::-1].copy()
     line = _without_straight_corners(line)
     return Block(block_id, 0.0, (0.0, 0.0), density, fixed, tuple(held)), line
+
+
+def _check_size(size: float, farthest: float, where: str) -> None:
+    """Refuse what arithmetic cannot carry; a block without size is refused elsewhere."""
+    if 0.0 < size < SMALLEST:
+        raise bad(
+            f"its size, {size:g}, is below {SMALLEST:g}.", where, "Use another unit of length."
+        )
+    if 0.0 < size < farthest / FARTHEST:
+        raise bad(
+            f"it is {farthest / size:.0e} times as far from the origin as it is large: its"
+            " coordinates have too few digits to tell what touches.",
+            where,
+            "Put the origin near the wall.",
+        )
 
 
 def _apart(corners: Points) -> Points:
@@ -198,46 +231,45 @@ def _measured(block: Block, polygon: Points) -> Block:
     return replace(block, area=area, centroid=(cx, cy))
 
 
-def _all_interfaces(corners: dict[int, Points]) -> tuple[Interface, ...]:
+def _all_interfaces(corners: dict[int, Points], sizes: dict[int, float]) -> tuple[Interface, ...]:
     """Find the interfaces of all polygons, sorted by ids; of two the larger id is `block`."""
-    if not corners:
-        return ()
-    everything = np.concatenate(list(corners.values()))
-    lowest, highest = everything.min(axis=0), everything.max(axis=0)
-    extent = float((highest - lowest).max())
-    tolerance = RELATIVE_TOLERANCE * extent
-    ground = np.array([[highest[0] + extent, 0.0], [lowest[0] - extent, 0.0]])
-    on_ground = _on_ground(corners, ground, tolerance)
-    among_blocks = _among_blocks(corners, tolerance)
-    found = (*on_ground, *among_blocks)
+    found = [*_on_ground(corners, sizes), *_among_blocks(corners, sizes)]
     return tuple(sorted(found, key=lambda interface: (interface.block, interface.other)))
 
 
-def _on_ground(corners: dict[int, Points], ground: Points, tolerance: float) -> list[Interface]:
+def _on_ground(corners: dict[int, Points], sizes: dict[int, float]) -> list[Interface]:
     found = []
     for block, polygon in corners.items():
+        tolerance = RELATIVE_TOLERANCE * sizes[block]
         depth = -float(polygon[:, 1].min())
-        _check_depth(depth, tolerance, f"block {block} reaches {depth:g} below the ground, y = 0.")
+        if depth > tolerance:
+            raise _too_deep(f"block {block} reaches {depth:g} below the ground, y = 0.")
         if depth >= -tolerance:
+            left, right = polygon[:, 0].min() - sizes[block], polygon[:, 0].max() + sizes[block]
+            ground = np.array([[right, 0.0], [left, 0.0]])
             found += touching_interfaces(block, polygon, GROUND, ground, tolerance)
     return found
 
 
-def _among_blocks(corners: dict[int, Points], tolerance: float) -> list[Interface]:
+def _among_blocks(corners: dict[int, Points], sizes: dict[int, float]) -> list[Interface]:
+    if not corners:
+        return []
     ids = sorted(corners)
     shapes = np.array([shapely.Polygon(corners[i]) for i in ids])
-    near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=tolerance)
+    reach = RELATIVE_TOLERANCE * np.array([sizes[i] for i in ids])
+    near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=reach)
     found = []
-    for high, low in near.T.tolist():
-        if high <= low:  # each pair is found twice, and each block with itself
+    for high, low in sorted({(max(pair), min(pair)) for pair in near.T.tolist()}):
+        if high == low:
             continue
         block, other = ids[high], ids[low]
+        tolerance = float(min(reach[high], reach[low]))
         depth = overlap_depth(shapes[high], shapes[low])
-        _check_depth(depth, tolerance, f"blocks {other} and {block} overlap by {depth:g}.")
+        if depth > tolerance:
+            raise _too_deep(f"blocks {other} and {block} overlap by {depth:g}.")
         found += touching_interfaces(block, corners[block], other, corners[other], tolerance)
     return found
 
 
-def _check_depth(depth: float, tolerance: float, what: str) -> None:
-    if depth > tolerance:
-        raise InputError("E304", what, where="block model", cure="Move them apart.")
+def _too_deep(what: str) -> InputError:
+    return InputError("E304", what, where="block model", cure="Move them apart.")

@@ -14,6 +14,10 @@ from drystone.statics.model import GROUND, Interface
 Points = NDArray[np.float64]
 
 
+LARGEST = 1e50
+"""Of numbers: moments, products of three of them, must not overflow."""
+
+
 def bad(what: str, where: str, cure: str) -> InputError:
     """Return the error (E303) for what is no block model."""
     return InputError("E303", what, where=where, cure=cure)
@@ -38,6 +42,8 @@ def read_numbers(value: Any, shape: tuple[int, ...], where: str) -> Points:
     )
     if not fits or not np.isfinite(array).all():
         raise bad(f"{value!r} is not made of finite numbers as it should be.", where, "Correct it.")
+    if np.abs(array).max(initial=0.0) > LARGEST:
+        raise bad(f"{value!r} holds a number above {LARGEST:g}.", where, "Use another unit.")
     return array
 
 

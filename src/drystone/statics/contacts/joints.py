@@ -59,6 +59,42 @@ def with_pair_friction(model: RigidBlockModel, friction: Mapping[Pair, float]) -
     )
 
 
+def slippery(
+    interfaces: Iterable[Interface], mu: float, steep: float | None = None, grip: float = 1.0
+) -> tuple[Interface, ...]:
+    """Take the friction off upright faces, and some of it off the others.
+
+    Upright faces grip only what was pressed between them before, which weight alone does not do.
+
+    Parameters
+    ----------
+    interfaces : iterable of Interface
+        Of a model.
+    mu : float
+        Friction of those that have none of their own.
+    steep : float, optional
+        A face is upright when its normal goes up or down by less than this, 0 to 1.  Unless
+        given, when it stands within its friction angle of the vertical, and nearer to upright
+        than to level: there, and only there, can friction lift the block under the face.
+    grip : float
+        Share of the friction that the other faces keep, 0 to 1.
+
+    Examples
+    --------
+    >>> from drystone.statics.contacts.given import model_from_json
+    >>> pair = model_from_json({"blocks_xywh": [[0, 0, 1, 1], [1, 0, 1, 1]], "mu": 0.5})
+    >>> [interface.mu for interface in slippery(pair.interfaces, pair.mu)]
+    [0.5, 0.5, 0.0]
+    """
+    changed = []
+    for interface in interfaces:
+        own = mu if interface.mu is None else interface.mu
+        across, up = interface.normal
+        upright = abs(up) < (min(own, 1.0) * abs(across) if steep is None else steep)
+        changed.append(replace(interface, mu=0.0 if upright else grip * own))
+    return tuple(changed)
+
+
 def loose_blocks(model: RigidBlockModel) -> tuple[int, ...]:
     """Return the blocks that no chain of contacts connects with the ground or a fixed block."""
     touching: dict[int, set[int]] = {}

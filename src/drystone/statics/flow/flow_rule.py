@@ -170,6 +170,12 @@ class MotionsOfForces:
         least[-1] = greatest[-1] = 1.0
         return least, greatest
 
+    @property
+    def exist(self) -> bool:
+        """False when no motion at all lets the load do work: that is proved."""
+        self._minimise(np.zeros(self._rates.normal.shape[0]), *self._open_bounds())
+        return bool(self._highs.getModelStatus() != highspy.HighsModelStatus.kInfeasible)
+
     def find(
         self, edges: Floats, wanted: Floats | None = None, last: Floats | None = None
     ) -> Floats | None:

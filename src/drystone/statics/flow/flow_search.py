@@ -116,7 +116,7 @@ class Search:
     Parameters
     ----------
     program : EquilibriumProgram
-        The equations; the associative problem has a finite solution.
+        The equations; the blocks stand under their dead load.
     sign : float
         1 along the live load, -1 against it.
     upright : (m,) float array
@@ -138,12 +138,18 @@ class Search:
         self._forces = ForcesOfMotion(program, sign)
         self._motions = MotionsOfForces(program, sign)
 
+    @property
+    def moves(self) -> bool:
+        """False when no motion that closes no contact goes along with the load."""
+        return self._motions.exist
+
     def attempts(self) -> Iterator[Found]:
         """Yield what each start leads to."""
         first = self._round(HighsSession(self._program), np.zeros(len(self._upright)))
-        if first is None:
-            return
-        mechanism = np.abs(self._slip.T @ first.velocity)
+        # Without an associative mechanism, where no load is too great for one, all slip alike.
+        mechanism = np.ones(len(self._upright))
+        if first is not None:
+            mechanism = np.abs(self._slip.T @ first.velocity)
         rng = np.random.default_rng(self._settings.seed)
         for start in self._settings.all_starts:
             rounds, state = self._rounds(self._rates(start, mechanism, rng), start.step)

@@ -31,9 +31,15 @@ blocks themselves.  Starts with fast slip ask for small normal forces, everywher
 joints, and lead to the lower solutions.  On walls 1 to 5 of Ferris and Tin-Loi (2001) the answers
 are the least ones that a nonlinear solver found.
 
-**Jammed contacts.**  The least alpha may be negative although the blocks can carry their dead load:
-when a stone is held only by friction in contacts that are pressed together by nothing but
-themselves.  Such a wall is called unstable here, with the motion that shows it.
+**Jammed contacts.**  Blocks may be held only by friction in contacts that are pressed together by
+nothing but themselves.  So before any load is looked for, the blocks are let go under their dead
+load alone (:mod:`drystone.statics.flow.release`).  And the least alpha found may be negative.  In
+both cases the wall is called unstable here, with the motion that shows it: there are forces with
+which it falls, although there are others with which it stands.
+
+**No limit.**  Where no load is too great for associated flow there may still be one without
+dilatancy, and it is looked for.  That there is none is told where no motion at all goes along
+with the load.
 """
 
 from dataclasses import dataclass, field, replace
@@ -43,14 +49,17 @@ import numpy as np
 from drystone.statics.flow.flow_check import FlowCheck, check_flow
 from drystone.statics.flow.flow_rule import State
 from drystone.statics.flow.flow_search import NonassociativeSettings, Search
+from drystone.statics.flow.release import fall_of, with_inertia
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.loads import Loads
+from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.model import Direction, RigidBlockModel
 from drystone.statics.program import EquilibriumProgram, Floats, assemble
 from drystone.statics.result import LimitResult, LimitStatus, Mechanism
 
 STANDING = 1e-9
 """A load multiplier down to minus this is one of 0."""
+
+IMMOVABLE = "No motion goes along with a load in this direction."
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +75,7 @@ class NonassociativeResult:
     alpha : float or None
         Load multiplier; None unless the status is "optimal".
     mechanism : Mechanism or None
-        How the blocks move.
+        How the blocks move, or start to fall.
     forces : (m, 2) float array or None
         Normal and tangential force at every contact point, in the order of the interfaces and
         their points, on the block that the normal points into; the tangent of a normal (x, y) is
@@ -150,9 +159,9 @@ def nonassociative_load(
     NonassociativeResult
         "optimal" when forces and motion were found whose check holds: the least alpha of those
         found, in bounded effort, an upper estimate of the least there is.  "unstable" when the
-        blocks do not stand under their dead load, or only without certainty: a motion that needs
-        less than no load was found.  "unbounded" when the associative problem is.  "failed" when
-        nothing was found.
+        blocks do not stand under their dead load, or only without certainty: there are forces
+        with which they start to fall, or a motion that needs less than no load.  "unbounded"
+        when no motion goes along with the load.  "failed" when nothing was found.
 
     Examples
     --------
@@ -164,7 +173,10 @@ def nonassociative_load(
     """
     both = lateral_resistance(model, loads)
     associative = both.left if direction == "left" else both.right
-    return _nonassociative(model, loads, associative, settings or NonassociativeSettings())
+    chosen = settings or NonassociativeSettings()
+    return _released(model, loads, associative, chosen) or _nonassociative(
+        model, loads, associative, chosen
+    )
 
 
 def nonassociative_resistance(
@@ -182,8 +194,47 @@ def nonassociative_resistance(
     """
     both = lateral_resistance(model, loads)
     chosen = settings or NonassociativeSettings()
+    falls = _released(model, loads, both.right, chosen)
+    if falls is not None:
+        return NonassociativeResistance(replace(falls, direction="left"), falls, model.mu)
     left, right = (_nonassociative(model, loads, end, chosen) for end in (both.left, both.right))
     return NonassociativeResistance(left, right, model.mu)
+
+
+def _released(
+    model: RigidBlockModel,
+    loads: Loads | None,
+    associative: LimitResult,
+    settings: NonassociativeSettings,
+) -> NonassociativeResult | None:
+    """Tell how blocks start to fall that stand with associated flow; None when none was found."""
+    if not _is_known(model, associative):
+        return None
+    program = assemble(model, loads)
+    fall = fall_of(model, program, settings.rounds)
+    if fall is None:
+        return None
+    state = State(0.0, fall.edges, fall.acceleration)
+    falling = with_inertia(model, program, loads or tilting_table(model), fall)
+    answer = _answer(model, falling, "right", program, state, "let go")
+    if not answer.check.holds:
+        return None
+    return NonassociativeResult(
+        LimitStatus.UNSTABLE,
+        associative.direction,
+        mechanism=answer.mechanism,
+        forces=answer.forces,
+        method=answer.method,
+        check=answer.check,
+        message="There are forces with which the blocks, let go, start to fall under their dead"
+        " load alone; others, squeezed in before, would hold them.",
+    )
+
+
+def _is_known(model: RigidBlockModel, associative: LimitResult) -> bool:
+    """Whether there is a wall that stands with associated flow."""
+    stands = associative.status in (LimitStatus.OPTIMAL, LimitStatus.UNBOUNDED)
+    return stands and not all(block.fixed for block in model.blocks)
 
 
 def _nonassociative(
@@ -193,12 +244,15 @@ def _nonassociative(
     settings: NonassociativeSettings,
 ) -> NonassociativeResult:
     direction = associative.direction
-    if associative.alpha is None:
+    if not _is_known(model, associative):
         return NonassociativeResult(associative.status, direction, message=associative.message)
     program = assemble(model, loads)
     rounds, answers = 0, []
     sign = -1.0 if direction == "left" else 1.0
-    for found in Search(program, sign, _upright(model), settings).attempts():
+    search = Search(program, sign, _upright(model), settings)
+    if associative.alpha is None and not search.moves:
+        return NonassociativeResult(LimitStatus.UNBOUNDED, direction, message=IMMOVABLE)
+    for found in search.attempts():
         rounds += found.rounds
         if found.state is not None:
             state = replace(found.state, alpha=_without_noise(found.state.alpha, associative.alpha))
@@ -206,12 +260,13 @@ def _nonassociative(
     return _told(direction, associative.alpha, rounds, answers)
 
 
-def _without_noise(alpha: float, associative: float) -> float:
+def _without_noise(alpha: float, associative: float | None) -> float:
     """Take off what can only be rounding, at 0 and at the associative load; it is checked after.
 
     The forces are admissible in the associative problem, so alpha cannot be greater.
     """
-    return min(0.0 if -STANDING <= alpha < 0.0 else alpha, associative)
+    alpha = 0.0 if -STANDING <= alpha < 0.0 else alpha
+    return alpha if associative is None else min(alpha, associative)
 
 
 def _upright(model: RigidBlockModel) -> Floats:
@@ -252,14 +307,15 @@ def _answer(
 
 
 def _told(
-    direction: Direction, associative: float, rounds: int, answers: list[_Answer]
+    direction: Direction, associative: float | None, rounds: int, answers: list[_Answer]
 ) -> NonassociativeResult:
     """Choose the least of the verified answers."""
     verified = [answer for answer in answers if answer.check.holds]
     if not verified:
-        said = (
-            f"The search did not converge in {rounds} rounds; the load multiplier lies at or"
-            f" below the associative one, {associative:.5g}."
+        said = f"The search did not converge in {rounds} rounds; " + (
+            "with associated flow no load is too great."
+            if associative is None
+            else f"the load multiplier lies at or below the associative one, {associative:.5g}."
         )
         return NonassociativeResult(LimitStatus.FAILED, direction, rounds=rounds, message=said)
     # Of equal ones the first.

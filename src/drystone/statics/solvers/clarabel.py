@@ -5,7 +5,7 @@ from typing import Any
 
 import clarabel
 import numpy as np
-from scipy.sparse import csc_matrix, diags_array, vstack
+from scipy.sparse import csc_array, csc_matrix, diags_array, vstack
 
 from drystone.statics.program import EquilibriumProgram, Floats
 from drystone.statics.result import LimitStatus
@@ -20,6 +20,13 @@ _SETTINGS: Mapping[str, Any] = {
     "tol_gap_rel": 1e-12,
     "tol_feas": 1e-12,
     "max_threads": 1,
+}
+# Near 1e-12 quadratic ones stop short, some far from the end.
+_QUADRATIC: Mapping[str, Any] = {
+    **_SETTINGS,
+    "tol_gap_abs": 1e-8,
+    "tol_gap_rel": 1e-8,
+    "tol_feas": 1e-8,
 }
 
 # "Almost" and "insufficient progress" stop near the last digits: the certificate decides.
@@ -75,3 +82,42 @@ class ClarabelSession:
             said,
             NAME,
         )
+
+
+def least_constraint(
+    masses: Floats, forces: Floats, matrix: csc_array, least: Floats
+) -> tuple[Floats, Floats] | None:
+    """Minimise sum(masses x^2) / 2 - forces . x, subject to matrix' x >= least.
+
+    Gauss's principle: masses under given forces accelerate so, and the multipliers are what the
+    constraints do to them.
+
+    Parameters
+    ----------
+    masses, forces : (n,) float array
+        Masses above 0.
+    matrix : (n, m) sparse array
+        A constraint a column.
+    least : (m,) float array
+        At most 0.
+
+    Returns
+    -------
+    x, multipliers : (n,) and (m,) float array
+        None when Clarabel gives up.
+    """
+    settings = clarabel.DefaultSettings()
+    for name, value in _QUADRATIC.items():
+        setattr(settings, name, value)
+    solver = clarabel.DefaultSolver(
+        csc_matrix(diags_array(masses)),
+        -forces,
+        csc_matrix(-matrix.T),
+        -least,
+        [clarabel.NonnegativeConeT(len(least))],
+        settings,
+    )
+    found = solver.solve()
+    if _STATUS.get(str(found.status)) is not LimitStatus.OPTIMAL:
+        return None
+    return np.array(found.x), np.array(found.z)

@@ -1,0 +1,204 @@
+"""How blocks that are let go start to fall, by Coulomb friction without dilatancy.
+
+Equilibrium says that forces exist which would hold the blocks.  Whether they arise is another
+question: a brick between two piers is held as soon as the piers are pressed together by
+something, and falls when they are not.  So it is asked whether Newton's law has another answer
+than rest.  At the moment when the blocks are let go, forces and an acceleration a obey
+
+    M a = dead + contact forces;  a_n >= 0, n >= 0, n a_n = 0;  |t| <= mu n, t a_t = -mu n |a_t|:
+
+the flow rule of :mod:`drystone.statics.flow.flow_rule`, with the rates at which contacts begin to
+open and slide.  With a = 0 that is equilibrium, and with a != 0 the blocks fall: their weight does
+more work than friction takes.  A motion in equilibrium, dead load and friction in balance, would
+be too narrow a claim: it says that a block creeps under just that squeeze which it needs, and
+blocks that fall freely have none.
+
+**Rounds**, as in :mod:`drystone.statics.flow.nonassociative`: for given slip rates s_i the problem
+
+    minimise  a . M a / 2 - dead . a   subject to  a_n,i + mu s_i >= mu |a_t,i|
+
+is convex (Gauss's principle), its multipliers are the contact forces, and where s_i = |a_t,i| all
+conditions hold.  The first slip rates are those without any friction: nothing is pressed but by
+weight.  From there walls that hold themselves come to rest in some rounds.
+
+**Closing.**  Which contacts open, stick or slide, and which way, shows early.  With that given the
+conditions are linear in a and the forces, and a linear program answers exactly.
+
+What is heuristic: a fall that was found is one, checked from the blocks themselves; that none was
+found proves nothing.  The model knows no moments of inertia, so each block has that of a square
+of its area, which decides how fast it turns, and not which forces it can be held by.
+"""
+
+from dataclasses import dataclass
+
+import highspy
+import numpy as np
+from scipy.sparse import block_array, csc_array, diags_array
+
+from drystone.statics.flow.flow_rule import ContactRates
+from drystone.statics.loads import Loads
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.program import EquilibriumProgram, Floats
+from drystone.statics.solvers.clarabel import least_constraint
+from drystone.statics.solvers.highs import TOLERANCE
+from drystone.statics.solvers.silent import silent_highs
+
+AT_REST = 1e-6
+"""Blocks whose weight does no more work than this on their acceleration rest; in mean weights
+times that of free fall."""
+
+UNBALANCED = 1e-5
+"""Least force that nothing balances in a fall, in mean weights: far above errors of checks."""
+
+CLEAR = 1e-4
+"""Forces and slip rates below this share of the largest one are taken as none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fall:
+    """How blocks start to fall, in the units of the program; free fall has acceleration 1.
+
+    Parameters
+    ----------
+    acceleration : (rows,) float array
+        One entry a row of the program.
+    edges : (m, 2) float array
+        Forces along the two edges of every cone of friction.
+    inertia : (rows,) float array
+        Mass times acceleration: what the forces on the blocks sum up to.
+    """
+
+    acceleration: Floats
+    edges: Floats
+    inertia: Floats
+
+
+def fall_of(model: RigidBlockModel, program: EquilibriumProgram, rounds: int) -> Fall | None:
+    """Let blocks go, and find out how they start to fall.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        With at least one free block.
+    program : EquilibriumProgram
+        Of the model.
+    rounds : int
+        At most so many.
+
+    Returns
+    -------
+    Fall or None
+        None when they come to rest, and when the rounds lead to nothing.
+
+    Examples
+    --------
+    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.statics.program import assemble
+    >>> piers = [[0, 0, 1, 4], [2, 0, 1, 4]]
+    >>> jammed = model_from_json({"blocks_xywh": [*piers, [1, 1.5, 1, 1]]})
+    >>> fall_of(jammed, assemble(jammed), 9).acceleration.round(6)[-2]
+    np.float64(-1.0)
+    """
+    masses = _masses(model, program)
+    if not len(masses) or program.column_count == 1:
+        return None
+    rates = ContactRates.of(program)
+    dead, edges = -program.rhs, csc_array(program.matrix[:, 1:])
+    states = _States(program, rates, masses)
+    found = least_constraint(masses, dead, rates.normal, np.zeros(rates.normal.shape[1]))
+    for _ in range(rounds):
+        if found is None or dead @ found[0] < AT_REST:
+            return None
+        slip = np.abs(rates.slip.T @ found[0])
+        found = least_constraint(masses, dead, edges, -np.repeat(slip, 2))
+        fall = None if found is None else states.exact(*found)
+        if fall is not None and np.abs(fall.inertia).max() > UNBALANCED:
+            return fall
+    return None
+
+
+def with_inertia(
+    model: RigidBlockModel, program: EquilibriumProgram, loads: Loads, fall: Fall
+) -> Loads:
+    """Return loads that the forces of a fall balance (d'Alembert): its dead ones less inertia.
+
+    Live is the dead load, whose work is that of the fall.
+    """
+    forces = np.zeros((len(program.rows), 3))
+    forces[program.rows >= 0] = program.weight * fall.inertia
+    forces[:, 2] *= program.length
+    dead = loads.dead.copy()
+    dead[[not block.fixed for block in model.blocks]] -= forces
+    return Loads(dead, loads.dead, f"{loads.name}, let go")
+
+
+def _masses(model: RigidBlockModel, program: EquilibriumProgram) -> Floats:
+    """Return mass or moment of inertia of every row; a unit of weight has a mass of 1."""
+    free = [block for block in model.blocks if not block.fixed]
+    mass = np.array([block.weight for block in free]) / program.weight
+    square = np.array([block.area for block in free]) / 6.0 / program.length**2
+    own: Floats = np.column_stack((mass, mass, mass * square))[program.rows >= 0]
+    return own
+
+
+class _States:
+    """Newton's law with what each contact does given: a linear program in a and the forces."""
+
+    def __init__(self, program: EquilibriumProgram, rates: ContactRates, masses: Floats) -> None:
+        self._rates, self._masses, self._dead = rates, masses, -program.rhs
+        rows, points = rates.normal.shape
+        newton = [diags_array(masses), -program.matrix[:, 1:]]
+        matrix = csc_array(block_array([newton, [rates.normal.T, None], [rates.slip.T, None]]))
+        count, columns = matrix.shape
+        self._unbounded = np.full(points, highspy.kHighsInf)
+        self._columns = np.arange(rows, columns, dtype=np.int32)
+        self._contacts = np.arange(rows, count, dtype=np.int32)
+        free = np.full(columns, highspy.kHighsInf)
+        fixed = np.concatenate((self._dead, np.zeros(2 * points)))
+        by_column, minimise, offset = 1, 1, 0.0
+        self._highs = silent_highs(
+            {
+                "threads": 1,
+                "solver": "simplex",
+                "primal_feasibility_tolerance": TOLERANCE,
+                "dual_feasibility_tolerance": TOLERANCE,
+            }
+        )
+        self._highs.passModel(
+            columns, count, matrix.nnz, by_column, minimise, offset, np.zeros(columns), -free,
+            free, fixed, fixed, matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32),
+            matrix.data, np.zeros(columns, np.int32),
+        )  # fmt: skip
+
+    def exact(self, acceleration: Floats, multipliers: Floats) -> Fall | None:
+        """Return the answer in which contacts do what they do in an inexact one, if any.
+
+        A contact that presses stays closed, others carry nothing; one that slips resists by the
+        edge against its slip, one that does not slip sticks.
+        """
+        rows = len(self._masses)
+        forces = multipliers.reshape(-1, 2).sum(axis=1)
+        presses = forces > CLEAR * max(1.0, float(forces.max()))
+        slip = self._rates.slip.T @ acceleration
+        clear = CLEAR * float(np.abs(acceleration).max())
+        forth, back = slip > clear, slip < -clear
+        none = np.column_stack((~presses | forth, ~presses | back)).ravel()
+        upper = np.where(none, 0.0, highspy.kHighsInf)
+        least = np.concatenate(
+            (np.zeros(len(slip)), np.where(presses & ~back, 0.0, -self._unbounded))
+        )
+        greatest = np.concatenate(
+            (
+                np.where(presses, 0.0, self._unbounded),
+                np.where(presses & ~forth, 0.0, self._unbounded),
+            )
+        )
+        highs = self._highs
+        highs.changeColsBounds(len(upper), self._columns, np.zeros(len(upper)), upper)
+        highs.changeRowsBounds(len(least), self._contacts, least, greatest)  # type: ignore[attr-defined]
+        highs.run()
+        if highs.getModelStatus() != highspy.HighsModelStatus.kOptimal:
+            return None
+        answer = np.array(highs.getSolution().col_value)
+        moves, edges = answer[:rows], np.maximum(answer[rows:], 0.0).reshape(-1, 2)
+        return Fall(moves, edges, self._masses * moves)
