@@ -98,7 +98,8 @@ class PlanMetrics:
     F_LR of a wall of outlines is that at the contact tolerance and the set-back of its settings.
     F_LR_half and F_LR_double are those at half and at twice this tolerance, F_LR_no_setback is
     that with contacts up to the ends of faces (DESIGN 4.8, 4.9); None for pixels.  F_LR_coulomb is
-    the least that was found without dilatancy; None where nothing was found or looked for.
+    the least that was found without dilatancy, 0 where the wall can fall when it is let go; None
+    where nothing was found or looked for.
     """
 
     F_SF: float

@@ -17,7 +17,7 @@ from drystone.search.goal import (
 )
 from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 
-QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0)
+QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
 """One start of twelve finds the least load without dilatancy of most walls."""
 
 

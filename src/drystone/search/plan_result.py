@@ -206,7 +206,7 @@ def other_resistances(
     """
     found: dict[str, float | None] = {}
     if resistance.stable and 0 < len(build.model.blocks) <= MOST_WITHOUT_DILATANCY:
-        found["F_LR_coulomb"] = nonassociative_resistance(build.model).value
+        found["F_LR_coulomb"] = nonassociative_resistance(build.model).carried
     outlines, settle = build.wall.outlines, settings.settle
     if outlines is not None:
         for name, share, setback in (

@@ -76,6 +76,8 @@ class NonassociativeSettings:
         So many more, from random slip rates.
     seed : int
         Of the random slip rates.
+    let_go : bool
+        It is looked first whether the blocks can fall when they are let go.
     """
 
     rounds: int = 60
@@ -83,6 +85,7 @@ class NonassociativeSettings:
     starts: tuple[Start, ...] = STARTS
     random_starts: int = 6
     seed: int = 0
+    let_go: bool = True
 
     @property
     def all_starts(self) -> tuple[Start, ...]:

@@ -133,6 +133,12 @@ class NonassociativeResistance:
             return None
         return min(self.left.alpha, self.right.alpha) / self.mu
 
+    @property
+    def carried(self) -> float | None:
+        """The same, and 0 where it was verified that the blocks can fall by themselves."""
+        falls = LimitStatus.UNSTABLE in (self.left.status, self.right.status)
+        return 0.0 if falls else self.value
+
 
 def nonassociative_load(
     model: RigidBlockModel,
@@ -208,7 +214,7 @@ def _released(
     settings: NonassociativeSettings,
 ) -> NonassociativeResult | None:
     """Tell how blocks start to fall that stand with associated flow; None when none was found."""
-    if not _is_known(model, associative):
+    if not (settings.let_go and _is_known(model, associative)):
         return None
     program = assemble(model, loads)
     fall = fall_of(model, program, settings.rounds)
