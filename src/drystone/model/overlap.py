@@ -12,7 +12,7 @@ import shapely
 from drystone.kernels.polygons import Points
 
 GRID = 2.0**-42
-"""Pitch of the grid on which common areas are computed, over the largest coordinate.
+"""Pitch of the grid on which common areas are computed, over the extent of both shapes.
 
 Without a grid GEOS computes in floats: of outlines that touch along an edge its answer is now and
 then inside out, and they "overlap by 52.9".  On a grid it is right whatever is put in (snap
@@ -50,8 +50,8 @@ def common_parts(first: shapely.Geometry, second: shapely.Geometry) -> tuple[sha
     >>> common_parts(square, shapely.box(2, 0, 4, 2))
     ()
     """
-    common = shapely.intersection(first, second, grid_size=_pitch(first, second))
-    return tuple(part for part in shapely.get_parts(common) if part.area > 0.0)
+    one, other, origin = _near(first, second)
+    return tuple(shapely.transform(part, lambda xy: xy + origin) for part in _common(one, other))
 
 
 def overlap_depth(first: shapely.Geometry, second: shapely.Geometry) -> float:
@@ -72,14 +72,15 @@ def overlap_depth(first: shapely.Geometry, second: shapely.Geometry) -> float:
     >>> overlap_depth(shapely.box(0, 0, 4, 2), shapely.box(0, 1.75, 4, 4))
     0.25
     """
-    parts = common_parts(first, second)
+    one, other, _ = _near(first, second)
+    parts = _common(one, other)
     if not parts:
         return 0.0
     extent = float(np.ptp(shapely.total_bounds(parts).reshape(2, 2), axis=0).max())
-    exact = max(EXACT * extent, _pitch(first, second))
+    exact = max(EXACT * extent, _pitch(one, other))
     circles = shapely.maximum_inscribed_circle(parts, tolerance=CIRCLE * extent)
     rim = _segments(shapely.MultiPolygon(parts))
-    reaches = [_furthest(rim, _segments(area), exact) for area in (first, second)]
+    reaches = [_furthest(rim, _segments(area), exact) for area in (one, other)]
     return max(float(shapely.length(circles).max()), *reaches)
 
 
@@ -109,6 +110,21 @@ def deepest_overlap(
         if a < b and (depth := overlap_depth(shapes[a], shapes[b])) > deepest:
             deepest, at = depth, (outlines[a][0], outlines[b][0])
     return deepest, at
+
+
+def _near(
+    first: shapely.Geometry, second: shapely.Geometry
+) -> tuple[shapely.Geometry, shapely.Geometry, Points]:
+    """Return two shapes moved to the origin, and where they were: far away there are few digits."""
+    origin = shapely.bounds([first, second])[:, :2].max(axis=0)
+    one, other = shapely.transform([first, second], lambda xy: xy - origin)
+    return one, other, origin
+
+
+def _common(first: shapely.Geometry, second: shapely.Geometry) -> tuple[shapely.Polygon, ...]:
+    """Return the areas that two shapes near the origin have in common."""
+    common = shapely.intersection(first, second, grid_size=_pitch(first, second))
+    return tuple(part for part in shapely.get_parts(common) if part.area > 0.0)
 
 
 def _pitch(first: shapely.Geometry, second: shapely.Geometry) -> float:
