@@ -57,7 +57,6 @@ def claimed_alpha(plan: Plan, direction: Direction, mu: float) -> float | None:
     """
     metrics = plan.metrics
     claims = [metrics.alpha_left if direction == "left" else metrics.alpha_right]
-    coulomb = getattr(metrics, "F_LR_coulomb", None)
-    if coulomb is not None:
-        claims.append(coulomb * mu)
+    if metrics.F_LR_coulomb is not None:
+        claims.append(metrics.F_LR_coulomb * mu)
     return min((claim for claim in claims if claim is not None), default=None)
