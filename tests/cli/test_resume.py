@@ -1,12 +1,14 @@
-"""An interrupt keeps what is built, and --resume goes on from there."""
+"""An interrupt and the time limit keep what is built, and --resume goes on from there."""
 
 from pathlib import Path
 
 import pytest
 
 from drystone.io.plan_json import read_plan
+from drystone.planner.deadline import Deadline
 from drystone.planner.events import Callbacks, Step
 from tests.cli.conftest import WALL, Run
+from tests.planner.scenes import after_looks
 
 
 @pytest.fixture
@@ -133,4 +135,54 @@ def test_a_search_goes_on_from_an_interrupted_first_wall(
     ran = run(*plan, "-o", tmp_path / "part", "--resume")
     assert ran.code == whole.code
     plans = [(tmp_path / name / "plan.json").read_bytes() for name in ("part", "whole")]
+    assert plans[0] == plans[1]
+
+
+def limit(monkeypatch: pytest.MonkeyPatch, looks: int) -> None:
+    """Let `--time` strike by how often the clock was looked at; what follows has time."""
+    limits = iter([after_looks(looks)])
+    monkeypatch.setattr(Deadline, "after", lambda *_: next(limits, Deadline()))
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_first_wall_that_the_time_limit_cuts_short_is_gone_on_with(
+    jobs: int, rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan = ("plan", rubble, "--wall", "100x36", "--scale", "1", "--seed", 1)
+    timed = (*plan, "--time", "5", "--jobs", jobs, "-o", tmp_path / "part")
+    placed: list[int] = []
+    more: tuple[str, ...] = ()
+    while True:
+        limit(monkeypatch, 9)
+        ran = run(*timed, *more)
+        part = read_plan(tmp_path / "part")
+        assert run("check", tmp_path / "part", "--stones", rubble).code == 0
+        if "W128 the time limit struck after" not in ran.err:
+            break
+        assert part.stopped == "the time limit struck"
+        placed.append(len(part.stone_steps))
+        # By the rule for any wall: incomplete where its top is low.
+        assert ran.code == (
+            4 if "incomplete: the time limit struck; the top is at" in ran.out else 0
+        )
+        assert "--resume" in ran.err
+        more = ("--resume",)
+    assert len(placed) > 2
+    assert placed == sorted(set(placed))
+    assert ran.err.startswith(f"drystone: going on after {placed[-1]} stones")
+    used = part.settings["search"]["budget"]
+    assert run(*plan, "--budget", used, "-o", tmp_path / "whole").code == ran.code
+    plans = [(tmp_path / name / "plan.json").read_bytes() for name in ("part", "whole")]
+    assert plans[0] == plans[1]
+
+
+def test_time_that_nobody_asked_for_does_not_cut_the_first_wall_short(
+    rubble: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan = ("plan", rubble, "--wall", "100x36", "--scale", "1", "--seed", 1, "-o")
+    limit(monkeypatch, 0)
+    ran = run(*plan, tmp_path / "by default")
+    assert "W128" not in ran.err
+    assert run(*plan, tmp_path / "one", "--budget", 1).code == ran.code
+    plans = [(tmp_path / name / "plan.json").read_bytes() for name in ("by default", "one")]
     assert plans[0] == plans[1]

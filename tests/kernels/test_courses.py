@@ -325,3 +325,26 @@ def test_arrays_that_do_not_fit_are_refused(changes: dict[str, Any], message: st
         evaluate(*spoilt(case, **changes))
     with pytest.raises(ValueError, match=message):
         anneal(*spoilt(case, **changes), Cooling(1, 1.0, 1.0, 0))
+
+
+@pytest.mark.parametrize("annealing", [anneal, anneal_python])
+@pytest.mark.parametrize("evaluations", [0, 1, 4, 7, 8])
+def test_a_look_is_taken_every_round_and_what_it_raises_ends_the_annealing(
+    annealing: Any, evaluations: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = random_case(0)
+    cooling = Cooling(evaluations, 1.0, 0.98, 1)
+    unseen, cost = annealing(*case, cooling)
+    monkeypatch.setattr(courses, "ROUND", 4)
+    looks: list[int] = []
+
+    def looked() -> None:
+        looks.append(1)
+        if len(looks) > 2:
+            raise TimeoutError
+
+    found, same_cost = annealing(*case, cooling, looked)
+    assert len(looks) == -(-evaluations // 4)
+    assert (bits(found), same_cost) == (bits(unseen), cost)
+    with pytest.raises(TimeoutError):
+        annealing(*case, cooling._replace(evaluations=12), looked)

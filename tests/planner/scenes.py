@@ -9,6 +9,7 @@ from drystone.kernels.raster import Mask
 from drystone.model.site import Site
 from drystone.model.stone import Source, Stone, StoneSet
 from drystone.model.wall import outlined
+from drystone.planner.deadline import Deadline
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings, method_settings
 
@@ -51,6 +52,22 @@ def order(planner: Planner) -> list[tuple[int, float, int, int, str]]:
     """Stone, angle, row, column and side of every action."""
     placements = [action.stabilised.placement for action in planner.build.actions]
     return [(p.stone_id, p.posed.angle_deg, p.row, p.col, p.side) for p in placements]
+
+
+class Ticks:
+    """A clock that goes on by one whenever it is looked at."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def __call__(self) -> float:
+        self.count += 1
+        return float(self.count)
+
+
+def after_looks(count: int) -> Deadline:
+    """A time limit that has not struck yet when it is looked at so many times."""
+    return Deadline(float(count), Ticks())
 
 
 def finish(planner: Planner) -> Planner:

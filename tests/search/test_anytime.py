@@ -1,5 +1,7 @@
 """A search: the same budget gives the same wall, and a larger one none that is worse."""
 
+import math
+import sys
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from itertools import pairwise
@@ -10,6 +12,7 @@ import pytest
 from drystone.errors import UsageError
 from drystone.generate.polygon import PolygonSettings, polygon_stones
 from drystone.model.site import Site
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.events import Callbacks, Incumbent
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import UNLIMITED
@@ -25,10 +28,24 @@ from drystone.search.plan_wall import plan_wall, run_to_end
 from drystone.search.processes import processes
 from drystone.search.work import Job, PackedLink, planned_first
 from drystone.verify.check import check_plan
-from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, rubble
+from tests.planner.scenes import RUBBLE_SITE, Ticks, after_looks, finish, greedy, order, rubble
 
 SMALL = {"passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
 """A search that does everything within ten walls."""
+
+WALLS = {
+    "one_pass": {"in_time", "anneal", "laid_course", "_with_one_more", "_needed", "_round"},
+    "newly_planned": {"anneal", "laid_course", "in_time"},
+    "replanned": {"anneal", "laid_course"},
+    "relaid": {"laid_course"},
+    "recreated": {"replayed", "in_time"},
+    "more_links": {"replayed", "in_time", "anneal", "laid_course", "_with_one_more", "_round"},
+    "wedged": {"replayed", "_with_one_more", "_needed", "_round"},
+    "surest": {"replayed", "fall_of", "_round"},
+}
+"""What builds or judges a wall, and the loops of it in which the clock is looked at."""
+
+LOOPS = {name for names in WALLS.values() for name in names}
 
 
 def first(budget: int, geometry: str = "exact", seed: int = 1, patience: int = 12) -> Planner:
@@ -37,12 +54,12 @@ def first(budget: int, geometry: str = "exact", seed: int = 1, patience: int = 1
     return finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings))
 
 
-def searched(planner: Planner, jobs: int = 1) -> list[Progress]:
+def searched(planner: Planner, jobs: int = 1, until: Deadline = NEVER) -> list[Progress]:
     with processes(jobs) as executor:
         return list(
             searching(
                 Found.of(planner), planner.workshop, planner.settings, planner.seed,
-                executor=executor,
+                executor=executor, until=until,
             )
         )  # fmt: skip
 
@@ -162,39 +179,58 @@ def test_a_part_of_several_rounds_is_a_search_with_a_smaller_budget() -> None:
         assert again.solves == part.solves
 
 
-class Ticks:
-    """A clock that goes on by one whenever it is looked at."""
+@pytest.mark.parametrize("geometry", ["raster", "exact"])
+def test_what_was_built_in_time_counts_even_where_a_wall_was_cut_off(geometry: str) -> None:
+    clock = Ticks()
+    assert searched(first(9, geometry), until=Deadline(math.inf, clock))[-1].walls == 9
+    reached = set()
+    for looks in range(0, clock.count, clock.count // 8):
+        timed = searched(first(1000, geometry), until=after_looks(looks))[-1]
+        again = searched(first(timed.walls, geometry))[-1]
+        assert again.walls == timed.walls
+        # There is no time to judge a first wall by both flow rules: its merit is then known less.
+        best = again.best if looks else replace(again.best, merit=timed.best.merit)
+        assert same(best, timed.best)
+        assert again.solves == timed.solves
+        reached.add(timed.walls)
+    assert len(reached) > 4
+    assert min(reached) == 1
 
-    def __init__(self) -> None:
-        self.count = 0
 
-    def __call__(self) -> float:
-        self.count += 1
-        return float(self.count)
+def test_the_clock_is_looked_at_inside_everything_that_takes_long(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """In first walls by policy and by courses, restarts, chains, wedging, and judging."""
+    inside: set[tuple[str, str]] = set()
 
-
-@pytest.mark.parametrize("ticks", [4, 7, 8, 12])
-def test_what_was_built_in_time_counts_even_where_a_chain_was_cut_off(ticks: int) -> None:
-    planner = first(1000)
-    timed = list(
-        searching(
-            Found.of(planner), planner.workshop, planner.settings, planner.seed,
-            seconds=float(ticks), clock=Ticks(),
+    def look(_: Deadline) -> None:
+        names, frame = [], sys._getframe(1)
+        while frame is not None:
+            names.append(frame.f_code.co_name)
+            frame = frame.f_back  # type: ignore[assignment]
+        inside.update(
+            (inner, outer) for inner in LOOPS for outer in WALLS if {inner, outer} <= {*names}
         )
-    )  # fmt: skip
-    # The clock is looked at once at the start and once before wedges are put into the first wall,
-    # then once for every wall, and once when it is late.
-    assert timed[-1].walls == ticks
-    again = searched(first(timed[-1].walls))[-1]
-    assert again.walls == timed[-1].walls
-    assert same(again.best, timed[-1].best)
-    assert again.solves == timed[-1].solves
+
+    monkeypatch.setattr(Deadline, "look", look)
+    run_to_end(first(24, seed=3, patience=1))
+    missing = {(inner, outer) for outer, inners in WALLS.items() for inner in inners} - inside
+    assert not missing
 
 
 def test_processes_change_nothing() -> None:
     one, two = searched(first(16, patience=1)), searched(first(16, patience=1), jobs=2)
     assert [p.walls for p in one] == [p.walls for p in two]
     assert all(same(a.best, b.best) for a, b in zip(one, two, strict=True))
+
+
+@pytest.mark.parametrize("looks", [150, 500])
+def test_the_clock_cuts_off_walls_of_other_processes_too(looks: int) -> None:
+    # Every task has a copy of the clock as it is when it is handed over.
+    timed = searched(first(9), jobs=2, until=after_looks(looks))[-1]
+    again = searched(first(timed.walls))[-1]
+    assert again.walls == timed.walls
+    assert same(again.best, timed.best)
 
 
 def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls() -> None:
@@ -225,13 +261,16 @@ def test_no_budget_is_none_to_plan_with() -> None:
         plan_wall(rubble(), 100, 36, scale=1.0, budget=0)
 
 
-def test_no_time_is_one_wall() -> None:
+def test_no_time_is_one_wall_where_that_is_built_whole() -> None:
     settings = greedy({"search": {"budget": 100, **SMALL}})
     planner = Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
-    best, stopped, walls, *_ = run_to_end(planner, seconds=0.0)
+    best, stopped, walls, *_ = run_to_end(planner, until=after_looks(0), first_whole=True)
     assert walls == 1
-    assert order(best) == order(planner)
+    assert best is planner
     assert stopped == planner.stopped
+    assert order(planner) == order(
+        finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
+    )
 
 
 def test_an_interrupt_keeps_the_best_wall_so_far() -> None:

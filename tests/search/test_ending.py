@@ -8,17 +8,18 @@ import numpy as np
 import pytest
 
 from drystone import generate
+from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.events import Callbacks, Step, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
-from drystone.search.ending import as_found, with_the_rest
+from drystone.search.ending import as_found, surest, with_the_rest
 from drystone.search.found import Found
 from drystone.search.interrupts import insisted
 from drystone.search.packed import Packed
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.search.work import _opened
-from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
+from tests.planner.scenes import RUBBLE_SITE, Ticks, after_looks, greedy, rubble
 
 
 @pytest.fixture
@@ -88,6 +89,55 @@ def test_an_interrupt_at_the_end_loses_nothing(
     assert insisted(once) == 2
 
 
+def test_time_that_is_up_at_the_end_loses_nothing(planner: Planner) -> None:
+    half, clock = half_of(planner), Ticks()
+    before = [group.stone_id for group in half.groups]
+    whole, _, interrupted = with_the_rest(planner, half, Deadline(math.inf, clock))
+    assert not interrupted
+    placed = set()
+    for share in (0.0, 0.3, 0.6, 0.9):
+        found, why, interrupted = with_the_rest(
+            planner, half, after_looks(int(share * clock.count))
+        )
+        assert interrupted
+        assert why.reason == "search"
+        assert ids(found)[: len(before)] == before
+        assert ids(whole)[: len(ids(found))] == ids(found)
+        placed.add(len(ids(found)))
+    assert len(placed) > 1
+    # Nor is there time for stones that do not make the wall better.
+    assert with_the_rest(planner, replace(half, merit=math.inf), after_looks(0))[2]
+    with pytest.raises(TimeIsUp):
+        as_found(planner, half, after_looks(0))
+
+
+def test_of_walls_that_there_is_no_time_to_judge_the_first_is_taken(planner: Planner) -> None:
+    half, clock = half_of(planner), Ticks()
+    # Nobody knows yet that it carries less than it seems to.
+    whole = Packed.of(Found.of(planner))
+    walls = [replace(half, merit=whole.merit + 2.0), replace(whole, merit=whole.merit + 1.0)]
+    best, interrupted = surest(planner, walls, Deadline(math.inf, clock))
+    assert (len(best.groups), interrupted) == (len(whole.groups), False)
+    assert surest(planner, walls, after_looks(0)) == (walls[0], True)
+    # The half was judged, and the other one was not.
+    judged, interrupted = surest(planner, walls, after_looks(clock.count - 1))
+    assert (len(judged.groups), interrupted) == (len(half.groups), True)
+    assert judged.merit < walls[0].merit
+
+
+def test_walls_to_choose_that_there_is_no_time_for_are_left_out(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    settings = greedy({"search": {"budget": 4, "passes": 4, "chains": 2, "share_every": 2}})
+    limits = iter([Deadline(), Deadline(), after_looks(0)])
+    monkeypatch.setattr(Deadline, "after", lambda *_: next(limits))
+    result = plan_wall(rubble(), 100, 36, scale=1.0, seed=1, settings=settings, choice=True)
+    assert [one.plan for one in result.choice] == [result.plan]
+    assert [notice.code for notice in result.notices] == ["W125"]
+    assert result.metrics.F_LR is not None
+    assert result.metrics.F_LR_coulomb is None
+
+
 def test_an_interrupt_while_others_are_finished_keeps_the_best(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -110,8 +160,10 @@ def test_what_the_solver_gave_up_on_at_the_end_is_counted(
 ) -> None:
     settings = greedy({"search": {"budget": 4, "passes": 4, "chains": 2, "share_every": 2}})
 
-    def with_trouble(first: Planner, best: Packed) -> tuple[Planner, Stopped, bool]:
-        last, stopped, cut = with_the_rest(first, best)
+    def with_trouble(
+        first: Planner, best: Packed, until: Deadline
+    ) -> tuple[Planner, Stopped, bool]:
+        last, stopped, cut = with_the_rest(first, best, until)
         last.failed_solves += 5
         return last, stopped, cut
 

@@ -1,4 +1,4 @@
-"""What is no input of `plan_wall` is said, before anything is planned."""
+"""What is no input of `plan_wall` is said, before anything is planned; what time does to a wall."""
 
 import math
 from typing import Any
@@ -7,10 +7,16 @@ import numpy as np
 import pytest
 
 import drystone as ds
+from drystone.cli.resuming import course_heights
 from drystone.model.placement import Placement
 from drystone.model.wall import Wall
+from drystone.planner.deadline import Deadline
+from drystone.planner.events import OUT_OF_TIME
+from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
-from tests.planner.scenes import blocks, greedy
+from drystone.search.plan_result import PlanResult
+from drystone.verify.check import check_plan
+from tests.planner.scenes import Ticks, after_looks, blocks, greedy, rubble
 
 
 @pytest.fixture(scope="module")
@@ -75,3 +81,89 @@ def lying(stones: ds.StoneSet, stone_id: int, row: int) -> Placement:
 def test_settings_of_the_wrong_type(stones: ds.StoneSet, settings: Any) -> None:
     with pytest.raises(TypeError, match="settings must be PlannerSettings, not "):
         ds.plan_wall(stones, 60, 20, settings=settings)
+
+
+FEW = {"search": {"budget": 4, "passes": 3, "chains": 2, "share_every": 2}}
+"""Few walls of every kind."""
+
+WAYS: dict[str, dict[str, Any]] = {
+    "best": {"settings": greedy(FEW)},
+    "best, two processes": {"settings": greedy(FEW), "n_jobs": 2},
+    "one pass in threads": {"settings": greedy(), "n_jobs": 2, "budget": 1},
+    "pixels": {"settings": greedy({**FEW, "geometry": "raster"})},
+    "paper": {"settings": method_settings("paper"), "budget": 1},
+    "policy": {"settings": greedy({"selection_rule": "lowest"}), "budget": 1},
+}
+
+
+def planned(until: Deadline | None, **options: Any) -> PlanResult:
+    """A wall of rubble, with a time limit by another clock than that of the world."""
+
+    def after(seconds: float, _: object = None) -> Deadline:
+        return until if until and seconds == 5.0 else Deadline()
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Deadline, "after", after)
+        return ds.plan_wall(rubble(), 100, 36, scale=1.0, seed=1, seconds=5.0, **options)
+
+
+def gone_on_with(result: PlanResult) -> dict[str, Any]:
+    """What `--resume` hands over."""
+    return {"built": result.wall, "course_heights_px": course_heights(result.plan)}
+
+
+def steps_of(result: PlanResult) -> list[Any]:
+    return list(result.plan.steps)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_first_wall_cut_short_is_a_plan_that_is_gone_on_with(way: str) -> None:
+    options = {"budget": 3, **WAYS[way]}
+    clock = Ticks()
+    alone = planned(Deadline(math.inf, clock), **{**options, "budget": 1})
+    whole = planned(None, **options)
+    placed = set()
+    for share in (0.0, 0.5, 0.9):
+        result = planned(after_looks(int(share * clock.count)), **options)
+        assert result.plan.stopped == OUT_OF_TIME.text
+        assert result.status == ("incomplete" if result.shortfall else "complete")
+        assert check_plan(result.plan, rubble(), wall_labels=result.wall.labels).problems == ()
+        placed.add(len(result.plan.stone_steps))
+        (notice,) = result.notices
+        assert notice.code == "W128"
+        assert f"after {len(result.plan.stone_steps)} of 8 stones" in notice.message
+        assert result.plan.steps == alone.plan.steps[: len(result.plan.steps)]
+        assert result.plan.settings["search"]["budget"] == 1
+    assert len(placed) == 3
+    assert planned(None, **options, **gone_on_with(result)).plan == whole.plan
+
+
+@pytest.mark.parametrize("way", ["best", "best, two processes", "pixels"])
+def test_after_a_whole_first_wall_no_wall_that_is_cut_short_counts(way: str) -> None:
+    options, clock = WAYS[way], Ticks()
+    planned(Deadline(math.inf, clock), **options, budget=1)
+    for more in (1, 40):
+        result = planned(after_looks(clock.count + more), **options, budget=6)
+        used = result.plan.settings["search"]["budget"]
+        assert used < 6
+        assert result.plan == planned(None, **options, budget=used).plan
+        assert result.notices == ()
+
+
+def test_every_time_a_wall_grows_by_a_stone_however_little_time_there_is() -> None:
+    settings, placed = greedy(FEW), 0
+    before: dict[str, Any] = {}
+    while True:
+        result = planned(after_looks(0), settings=settings, **before)
+        if result.plan.stopped != OUT_OF_TIME.text:
+            break
+        assert len(result.plan.stone_steps) == placed + 1
+        before, placed = gone_on_with(result), placed + 1
+    assert placed >= 6
+    assert result.plan == planned(None, settings=settings, budget=1).plan
+
+
+def test_a_first_wall_is_whole_where_that_is_asked_for() -> None:
+    settings = greedy(FEW)
+    whole = planned(after_looks(0), settings=settings, first_whole=True)
+    assert whole.plan == planned(None, settings=settings, budget=1).plan

@@ -1,6 +1,7 @@
 """Wedges in the gaps of finished walls: they raise the resistance, and the plan stays true."""
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
@@ -19,6 +20,7 @@ from drystone.model.stone import StoneSet
 from drystone.model.wall import Group, outlined
 from drystone.planner.assemble import Frame
 from drystone.planner.build import Build
+from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.events import Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.replay import Replayed, replayed
@@ -36,7 +38,7 @@ from drystone.statics.contacts.settled import (
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify import check_plan
-from tests.planner.scenes import greedy, stones_of_masks
+from tests.planner.scenes import Ticks, after_looks, greedy, stones_of_masks
 from tests.search.wedge_walls import ONE_PX, all_places, limits_of, small_walls
 
 NOTHING = np.zeros((0, 0), bool)
@@ -142,6 +144,18 @@ def test_wedges_on_both_sides_keep_a_stone_from_toppling() -> None:
     assert centres[0] < 28.0
     assert centres[1] > 32.0
     check(made, after, STONES)
+
+
+def test_time_that_is_up_leaves_the_wall_as_it_is() -> None:
+    made, clock = built((1, 20.0, 0.01)), Ticks()
+    arguments = made.build, made.workshop, made.settings, limits_of(made), 2
+    after = wedged_up(*arguments, Deadline(math.inf, clock)).build
+    assert len(after.wall.wedges) == 2
+    assert clock.count > 8
+    for looks in range(clock.count):
+        with pytest.raises(TimeIsUp):
+            wedged_up(*arguments, after_looks(looks))
+    assert made.build.wall.wedges == ()
 
 
 def test_where_two_stones_topple_at_once_one_wedge_is_of_no_use() -> None:
@@ -320,12 +334,12 @@ def refusing(monkeypatch: pytest.MonkeyPatch, outlines: set[bytes]) -> list[int]
     """No step can be taken with a wedge of some outlines; how many steps are taken again."""
     taken: list[int] = []
 
-    def refuse(start: Build, groups: Sequence[Group], *rest: object) -> Replayed:
+    def refuse(start: Build, groups: Sequence[Group], *rest: Any, **named: Any) -> Replayed:
         taken.append(len(groups))
         wedges = [w.corners for group in groups for w in group.wedges if w.corners is not None]
         if any(corners.tobytes() in outlines for corners in wedges):
             return Replayed(start, (groups[0].placement.stone_id,), Solves())
-        return replayed(start, groups, *rest)  # type: ignore[arg-type]
+        return replayed(start, groups, *rest, **named)
 
     monkeypatch.setattr(wedging, "replayed", refuse)
     return taken
@@ -382,10 +396,10 @@ def test_what_cannot_be_dropped_stays(monkeypatch: pytest.MonkeyPatch) -> None:
     made = built((2, 20.0, 0.01), (5, 45.0, 0.01), wedges=two)
     assert wedged(made, 0).wall.wedges == ()
 
-    def refuse(start: Build, groups: Sequence[Group], *rest: object) -> Replayed:
+    def refuse(start: Build, groups: Sequence[Group], *rest: Any, **named: Any) -> Replayed:
         if len(groups) == 2 and not any(group.wedges for group in groups):
             return Replayed(start, (2,), Solves())
-        return replayed(start, groups, *rest)  # type: ignore[arg-type]
+        return replayed(start, groups, *rest, **named)
 
     monkeypatch.setattr(wedging, "replayed", refuse)
     after = wedged(made, 0)

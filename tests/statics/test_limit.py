@@ -1,4 +1,6 @@
 import math
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -315,6 +317,22 @@ def test_a_wrong_optimal_answer_is_found_out_and_asked_again(wrong, monkeypatch)
 
 
 SOLVERS = ("highs", "highs-ipm", "clarabel")
+
+
+@pytest.mark.parametrize("order", [("highs-ipm", "highs"), ("highs", "highs-ipm")])
+def test_no_solver_keeps_another_from_working_in_a_process(order):
+    """HiGHS refuses another number of threads than that of the first call of a process."""
+    script = (
+        "from drystone.statics.contacts.given import model_from_json\n"
+        "from drystone.statics.limit import lateral_resistance\n"
+        "model = model_from_json({'blocks_xywh': [[0, 0, 1, 2]], 'mu': 0.7})\n"
+        f"for solver in {order!r}:\n"
+        "    print(lateral_resistance(model, solver=solver).left.status.value)\n"
+    )
+    ran = subprocess.run(  # noqa: S603 - our own code
+        [sys.executable, "-c", script], check=True, stdout=subprocess.PIPE, text=True
+    )
+    assert ran.stdout.split() == ["optimal", "optimal"]
 
 
 @given(seed=st.integers(0, 10**6), count=st.integers(2, 25), coursing=st.booleans())

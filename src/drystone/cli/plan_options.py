@@ -86,7 +86,7 @@ def _planning(command: argparse.ArgumentParser) -> None:
     effort = group.add_mutually_exclusive_group()
     effort.add_argument(
         "--time", type=positive, metavar="SECONDS",
-        help="how long better walls are looked for (best: 10 s for 30 stones)",
+        help="time limit of the search (best: 10 s for 30 stones, and a whole wall)",
     )  # fmt: skip
     effort.add_argument(
         "--budget", type=_count, metavar="N",

@@ -33,6 +33,7 @@ from drystone.io.plan_folder import write_plan_folder
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.stone_size import median_sides, sides_px
+from drystone.planner.events import UNFINISHED
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.planner.workshop import fitting_stones
 from drystone.search.plan_result import PlanResult
@@ -56,7 +57,7 @@ def plan_and_write(
     folder = Path(arguments.output)
     settings, method = settings_from(arguments), recorded_method(arguments)
     partial = partial_plan(folder, stones, wall, arguments, settings)
-    if partial is not None and partial.stopped != "interrupted":
+    if partial is not None and partial.stopped not in UNFINISHED:
         return _EXIT[tell_finished(partial, stones, settings, arguments)]
     if partial is not None:
         print(f"drystone: going on after {len(partial.stone_steps)} stones", file=sys.stderr)
@@ -80,6 +81,7 @@ def plan_and_write(
             scale=arguments.scale,
             px_per_m=arguments.px_per_m,
             seconds=math.inf if seconds is None else seconds,
+            first_whole=arguments.time is None,
             n_jobs=arguments.jobs,
             callbacks=callbacks,
             built=None if partial is None else rebuild_wall(partial, stones),

@@ -9,6 +9,7 @@ from drystone.experiments.runs.changes import Changes, nested
 from drystone.experiments.search_targets import SearchTarget
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
+from drystone.planner.deadline import Deadline
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.search.anytime import searching
@@ -137,10 +138,8 @@ def _searched(
     first: Planner, settings: PlannerSettings, end: float, clock: Clock
 ) -> Iterator[State]:
     workshop = first.workshop
-    left = end - clock()
-    for progress in searching(
-        Found.of(first), workshop, settings, first.seed, seconds=left, clock=clock
-    ):
+    until = Deadline(end, clock)
+    for progress in searching(Found.of(first), workshop, settings, first.seed, until=until):
         packed = progress.best
         yield State(
             progress.walls,
@@ -187,8 +186,9 @@ def looked_at_times(
 ) -> list[Looked]:
     """Look for a good wall, and say what was the best after several times.
 
-    The last wall is the one that is begun before the end and finished after it; of the earlier
-    times what was finished by then counts, though never less than the first wall.
+    The last wall is the one that is begun before the end and finished after it, but for a search,
+    which leaves it there; of the earlier times what was finished by then counts, though never less
+    than the first wall.
 
     Parameters
     ----------

@@ -1,6 +1,7 @@
 """Plan a wall course by course: anneal the order of its stones on height profiles."""
 
 import math
+from collections.abc import Callable
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -30,6 +31,9 @@ from drystone.kernels.course_types import (
 
 LOGS: Final = 4096
 """Numbers that are drawn to accept a costlier plan are rounded to one of so many."""
+
+ROUND: Final = 1024
+"""Evaluations after which a look is taken at whether to go on."""
 
 _LUCK: Floats = np.array([-math.log((i + 0.5) / LOGS) for i in range(LOGS)])
 _LUCK.flags.writeable = False
@@ -64,7 +68,12 @@ def evaluate(poses: Poses, plan: Arrangement, ground: Ground, rules: Rules) -> L
 
 
 def anneal(
-    poses: Poses, plan: Arrangement, ground: Ground, rules: Rules, cooling: Cooling
+    poses: Poses,
+    plan: Arrangement,
+    ground: Ground,
+    rules: Rules,
+    cooling: Cooling,
+    look: Callable[[], None] = lambda: None,
 ) -> tuple[Arrangement, float]:
     """Change an arrangement at random, at a falling temperature.
 
@@ -80,6 +89,9 @@ def anneal(
         How, and what counts.
     cooling : Cooling
         How long, and from which temperature.
+    look : callable
+        Called before the first evaluation and after every :data:`ROUND` of them; what it raises
+        ends the annealing.
 
     Returns
     -------
@@ -95,9 +107,10 @@ def anneal(
     """
     check(poses, plan, ground, rules)
     if _fast is None:
-        return anneal_python(poses, plan, ground, rules, cooling)
+        return anneal_python(poses, plan, ground, rules, cooling, look)
+    luck, seed = _LUCK, cooling.seed % 2**64
     *parts, cost = _fast.anneal(
-        poses, plan, ground, rules, floats(rules), cooling, cooling.seed % 2**64, _LUCK
+        poses, plan, ground, rules, floats(rules), cooling, seed, luck, look, ROUND
     )
     return Arrangement(*parts), cost
 
@@ -146,7 +159,12 @@ class Built(NamedTuple):
 
 
 def anneal_python(
-    poses: Poses, plan: Arrangement, ground: Ground, rules: Rules, cooling: Cooling
+    poses: Poses,
+    plan: Arrangement,
+    ground: Ground,
+    rules: Rules,
+    cooling: Cooling,
+    look: Callable[[], None] = lambda: None,
 ) -> tuple[Arrangement, float]:
     """Return what :func:`anneal` returns, by Python."""
     dice = Dice(cooling.seed)
@@ -155,7 +173,9 @@ def anneal_python(
     assert now is not None  # noqa: S101 - there was no limit
     best = now
     temperature = cooling.temperature
-    for _ in range(cooling.evaluations):
+    for step in range(cooling.evaluations):
+        if step % ROUND == 0:
+            look()
         temperature *= cooling.factor
         draft = now.draft.copy()
         lowest = change(draft, dice, rules.courses)

@@ -19,6 +19,7 @@ from drystone.planner.choose import (
     choose_by_policy,
     choose_by_score,
 )
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import Proposer, RasterProposer, Trial
@@ -55,6 +56,8 @@ class Attempt:
         Evaluates candidates; the result does not depend on it.
     profile : Profile or None
         Told where the time goes.
+    until : Deadline
+        Looked at for every candidate: :class:`TimeIsUp` leaves the attempt.
     """
 
     def __init__(
@@ -64,6 +67,7 @@ class Attempt:
         build: Build,
         executor: Executor | None = None,
         profile: Profile | None = None,
+        until: Deadline = NEVER,
     ) -> None:
         self.build = build
         self.failed_solves = 0
@@ -71,6 +75,7 @@ class Attempt:
         self._workshop = workshop
         self._settings = settings
         self._executor = executor
+        self._until = until
         self._profile = profile or Profile()
         self._policy: Policy | None = None
         if settings.by_policy:
@@ -215,12 +220,17 @@ class Attempt:
 
     def _map(self, work: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
         """Apply a function to all items, in their order, by the executor if there is one."""
+
+        def in_time(item: Item) -> Result:
+            self._until.look()
+            return work(item)
+
         if self._executor is None or len(items) == 1:
-            return [work(item) for item in items]
+            return [in_time(item) for item in items]
         # Handing over a candidate costs as much as a part of it: a few tasks, many candidates.
         size = math.ceil(len(items) / TASKS)
         chunks = [items[k : k + size] for k in range(0, len(items), size)] if items else []
-        done = self._executor.map(lambda chunk: [work(item) for item in chunk], chunks)
+        done = self._executor.map(lambda chunk: [in_time(item) for item in chunk], chunks)
         return [result for results in done for result in results]
 
 

@@ -15,6 +15,7 @@ from drystone.model.outlines import Outlined
 from drystone.model.placement import Placement
 from drystone.model.wall import outlined
 from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
@@ -55,11 +56,14 @@ class Evaluator:
         Sizes of the set.
     profile : Profile
         Told where the time goes.
+    until : Deadline
+        Looked at for every wall that is judged: :class:`TimeIsUp` ends the judging.
     """
 
     settings: PlannerSettings
     stock: Stock
     profile: Profile = field(default_factory=Profile)
+    until: Deadline = NEVER
 
     def judge(self, build: Build, landscape: Landscape, proposal: Proposal) -> Candidate:
         """Return the candidate of a proposal: all indices, with the wall's resistance after it.
@@ -129,6 +133,7 @@ class Evaluator:
         blocks : list of (int, (n, 2) float array)
             Ids and outlines of the stone and its wedges, source px.
         """
+        self.until.look()
         outlines, analysis = build.wall.outlines, build.analysis
         assert outlines is not None  # noqa: S101 - its caller knows
         with self.profile.part("contacts"):
@@ -150,6 +155,7 @@ class Evaluator:
             return Loaded(model, analysis.resistance_with(model))
 
     def _of_pixels(self, build: Build, stabilised: Stabilised) -> Loaded:
+        self.until.look()
         analysis, labels = build.analysis, build.wall.labels
         placement, wedges = stabilised.placement, stabilised.wedges
         with self.profile.part("contacts"):

@@ -91,15 +91,22 @@ class Stopped:
 
     Parameters
     ----------
-    reason : {"filled", "stones", "failures", "search", "interrupted"}
-        Design goal reached, all stones placed, too many failures in a row, left so by a search, or
-        stopped by the user.
+    reason : {"filled", "stones", "failures", "search", "interrupted", "time"}
+        Design goal reached, all stones placed, too many failures in a row, left so by a search,
+        stopped by the user, or by the time limit.
     text : str
         The same in words.
     """
 
-    reason: Literal["filled", "stones", "failures", "search", "interrupted"]
+    reason: Literal["filled", "stones", "failures", "search", "interrupted", "time"]
     text: str
+
+
+INTERRUPTED = Stopped("interrupted", "interrupted")
+OUT_OF_TIME = Stopped("time", "the time limit struck")
+
+UNFINISHED = (INTERRUPTED.text, OUT_OF_TIME.text)
+"""What a plan says of a wall that was cut short, and that can be gone on with."""
 
 
 @dataclass(frozen=True)

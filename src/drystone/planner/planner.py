@@ -11,6 +11,7 @@ from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.attempt import Attempt
 from drystone.planner.build import Build, Candidate
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.events import Callbacks, Step, Stopped
 from drystone.planner.observe import Measurement, Observation, observed, without
@@ -83,15 +84,25 @@ class Planner:
         self.cold_solves = 0
         self.callbacks = callbacks or Callbacks()
 
-    def steps(self) -> Iterator[Step]:
+    def steps(self, until: Deadline = NEVER) -> Iterator[Step]:
         """Place stone after stone (Algorithm 1), yielding each step as it is decided.
 
         After the last step :attr:`stopped` says why construction ended.  Leaving the loop early
         keeps what is built; calling `steps` again goes on from there.  Between two steps the wall
         may be measured (:meth:`observe`).
+
+        Parameters
+        ----------
+        until : Deadline
+            Looked at for every candidate.
+
+        Raises
+        ------
+        TimeIsUp
+            It has struck; as after leaving the loop, what is built is kept.
         """
         self.stopped = None
-        attempt = self._attempt()
+        attempt = self._attempt(until)
         failures = 0  # zeta
         aside: set[int] = set()
         while (stopped := self._why_stop(failures, aside)) is None:  # lines 5 and 27
@@ -107,7 +118,7 @@ class Planner:
             self.callbacks.on_step(step)
             yield step
             # After it: the wall may have been measured meanwhile.
-            attempt, failures = self._attempt(), 0
+            attempt, failures = self._attempt(until), 0
         self._count_solves(attempt)
         self.profile.end_without_action(attempt.candidates)
         self.stopped = stopped
@@ -140,9 +151,11 @@ class Planner:
         last = max((action.stone_id for action in self.build.actions), default=-1)
         return tuple(i for i in left if i > last and i not in aside)
 
-    def _attempt(self) -> Attempt:
+    def _attempt(self, until: Deadline) -> Attempt:
         self.profile.begin_step()
-        return Attempt(self.workshop, self._weighted, self.build, self.executor, self.profile)
+        return Attempt(
+            self.workshop, self._weighted, self.build, self.executor, self.profile, until
+        )
 
     def _count_solves(self, attempt: Attempt) -> None:
         self.failed_solves += attempt.failed_solves

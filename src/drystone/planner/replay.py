@@ -10,6 +10,7 @@ from drystone.model.outlines import Outlines
 from drystone.model.placement import Placement, Wedge
 from drystone.model.wall import Group, Wall, outlined
 from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
@@ -37,7 +38,7 @@ class Replayed(NamedTuple):
     solves: Solves
 
 
-def replayed(
+def replayed(  # noqa: PLR0913 - steps, what they need, and how
     start: Build,
     groups: Sequence[Group],
     course_heights_px: Mapping[int, float],
@@ -46,6 +47,7 @@ def replayed(
     *,
     keep: bool = True,
     strict: bool = True,
+    until: Deadline = NEVER,
 ) -> Replayed:
     """Place stones with their wedges where they were, judging every step anew.
 
@@ -69,13 +71,20 @@ def replayed(
     strict : bool
         The first step that cannot be taken ends the replay; otherwise it is left out and the next
         one tried.
+    until : Deadline
+        Looked at before every step.
 
     Returns
     -------
     replayed : Replayed
         What is built then.
+
+    Raises
+    ------
+    TimeIsUp
+        The time limit struck.
     """
-    evaluator = Evaluator(settings, workshop.stock)
+    evaluator = Evaluator(settings, workshop.stock, until=until)
     build = start
     left_out: list[int] = []
     solves = Solves()

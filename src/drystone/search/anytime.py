@@ -7,14 +7,14 @@ the clock says.  The clock decides only how large the budget is.
 """
 
 import itertools
-import math
 import pickle
-import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
 from drystone.planner.search_settings import SearchSettings
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
@@ -64,9 +64,8 @@ def searching(
     settings: PlannerSettings,
     seed: int,
     *,
-    seconds: float = math.inf,
+    until: Deadline = NEVER,
     executor: Executor | None = None,
-    clock: Callable[[], float] = time.time,
 ) -> Iterator[Progress]:
     """Look for better walls than a first one.
 
@@ -80,12 +79,11 @@ def searching(
         All parameters; those of the search say how many walls are built at most.
     seed : int
         Of everything that is drawn.
-    seconds : float
-        Time after which no further wall is begun, as far as the budget does not end before.
+    until : Deadline
+        Ends the search, as far as the budget does not end it before.  A wall that is not whole by
+        then is none.
     executor : concurrent.futures.Executor, optional
         Processes that build walls side by side; the walls do not depend on it.
-    clock : callable
-        Gives the seconds, in every process the same.
 
     Yields
     ------
@@ -93,15 +91,20 @@ def searching(
         After the first wall, and whenever walls have been added.
     """
     tools = pickle.dumps((workshop.stones, workshop.site, settings))
-    job = Job(tools, seed, clock() + seconds, clock)
-    first = first.judged(workshop, settings)
+    job = Job(tools, seed, until)
+    with suppress(TimeIsUp):
+        first = first.judged(workshop, settings, until=until)
     search, start = settings.search, Packed.of(first)
     yield Progress(1, start, start.solves, archived((), [start]))
-    if search.budget == 1 or job.late():
+    if search.budget == 1:
         return
     # Its wedges are told of with the next wall: a search that ends before that is repeated by the
     # budget 1, which is the wall without them.
-    found = [Packed.of(wedged(first, workshop, settings))]
+    try:
+        until.look()
+        found = [Packed.of(wedged(first, workshop, settings, until))]
+    except TimeIsUp:
+        return
     before: Progress | None = None
     for number in itertools.count():
         one = _Round(number, before, job, settings, executor)

@@ -3,6 +3,7 @@
 from numpy.random import Generator
 
 from drystone.planner.build import Build
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.vary import varied
@@ -10,9 +11,13 @@ from drystone.planner.workshop import Workshop
 
 
 def built_up(
-    build: Build, workshop: Workshop, settings: PlannerSettings, rng: Generator
+    build: Build,
+    workshop: Workshop,
+    settings: PlannerSettings,
+    rng: Generator,
+    until: Deadline = NEVER,
 ) -> Planner:
-    """Build on to the end, with craft weights varied."""
+    """Build on to the end, with craft weights varied; `TimeIsUp` where there is no time for it."""
     planner = Planner(
         workshop.stones,
         workshop.site,
@@ -21,6 +26,6 @@ def built_up(
         workshop=workshop,
     )
     planner.build = build
-    for _ in planner.steps():
+    for _ in planner.steps(until):
         pass
     return planner

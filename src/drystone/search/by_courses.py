@@ -10,6 +10,7 @@ from numpy.random import Generator
 
 from drystone.kernels.polygons import Points
 from drystone.planner.build import Build
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
@@ -34,18 +35,24 @@ AGAIN = 0.3
 """Evaluations of a plan that is changed, over those of a new one."""
 
 
-def newly_planned(workshop: Workshop, settings: PlannerSettings, rng: Generator) -> Found | None:
-    """Plan a wall, and lay it; None when no stone can be planned."""
-    plan = _new_plan(workshop, settings, int(rng.integers(2**31)))
+def newly_planned(
+    workshop: Workshop, settings: PlannerSettings, rng: Generator, until: Deadline = NEVER
+) -> Found | None:
+    """Plan a wall, and lay it; None when no stone can be planned, `TimeIsUp` when time is up."""
+    plan = _new_plan(workshop, settings, int(rng.integers(2**31)), until)
     if plan is None:
         return None
     start = Planner(workshop.stones, workshop.site, settings=settings, workshop=workshop).build
-    return _laid(Courses(plan, (0,)), start, workshop, settings, LayingSettings(), rng)
+    return _laid(Courses(plan, (0,)), start, workshop, settings, LayingSettings(), rng, until)
 
 
-def _new_plan(workshop: Workshop, settings: PlannerSettings, seed: int) -> CoursePlan | None:
+def _new_plan(
+    workshop: Workshop, settings: PlannerSettings, seed: int, until: Deadline
+) -> CoursePlan | None:
     if settings.geometry == "raster":
-        return plan_pixel_courses(workshop, CourseSettings(), seed, pinned=settings.pin)
+        return plan_pixel_courses(
+            workshop, CourseSettings(), seed, pinned=settings.pin, until=until
+        )
     return plan_courses(
         [workshop.stones.by_id(i) for i in workshop.fitting],
         *workshop.site.extent_px,
@@ -55,11 +62,16 @@ def _new_plan(workshop: Workshop, settings: PlannerSettings, seed: int) -> Cours
         seed,
         book=workshop.book,
         pinned=settings.pin,
+        until=until,
     )
 
 
 def replanned(
-    found: Found, workshop: Workshop, settings: PlannerSettings, rng: Generator
+    found: Found,
+    workshop: Workshop,
+    settings: PlannerSettings,
+    rng: Generator,
+    until: Deadline = NEVER,
 ) -> Found | None:
     """Plan the upper courses of a wall again, and lay them; None when nothing can be planned."""
     courses = found.courses
@@ -67,11 +79,12 @@ def replanned(
     kept = int(rng.integers(len(courses.ends) - 1))
     start = found.build.states()[courses.ends[kept]]
     ends = courses.ends[: kept + 1]
-    plan = _upper_plan(courses.plan, start, ends, workshop, settings, int(rng.integers(2**31)))
+    seed = int(rng.integers(2**31))
+    plan = _upper_plan(courses.plan, start, ends, workshop, settings, seed, until)
     if plan is None:
         return None
     begun = Courses(_each_once(plan, kept), ends)
-    return _laid(begun, start, workshop, settings, LayingSettings(), rng)
+    return _laid(begun, start, workshop, settings, LayingSettings(), rng, until)
 
 
 def _upper_plan(
@@ -81,6 +94,7 @@ def _upper_plan(
     workshop: Workshop,
     settings: PlannerSettings,
     seed: int,
+    until: Deadline,
 ) -> CoursePlan | None:
     """Plan what goes on top of the courses that are laid."""
     kept, known, left = len(ends) - 1, CourseSettings(), workshop.remaining(start)
@@ -90,7 +104,7 @@ def _upper_plan(
     if settings.geometry == "raster":
         laid = LaidCourses.of(outlines, pixel_extent(workshop.site)[0], cell_px)
         return replan_pixel_courses(
-            plan, kept, left, workshop, quick, seed, laid=laid, pinned=settings.pin
+            plan, kept, left, workshop, quick, seed, laid=laid, pinned=settings.pin, until=until
         )
     extent = workshop.site.extent_px
     return replan_courses(
@@ -105,6 +119,7 @@ def _upper_plan(
         laid=LaidCourses.of(outlines, extent[0], cell_px),
         book=workshop.book,
         pinned=settings.pin,
+        until=until,
     )
 
 
@@ -118,7 +133,13 @@ def _each_once(plan: CoursePlan, kept: int) -> CoursePlan:
     return CoursePlan(below + plan.courses[kept:], plan.cost)
 
 
-def relaid(found: Found, workshop: Workshop, settings: PlannerSettings, rng: Generator) -> Found:
+def relaid(
+    found: Found,
+    workshop: Workshop,
+    settings: PlannerSettings,
+    rng: Generator,
+    until: Deadline = NEVER,
+) -> Found:
     """Lay the upper courses of a wall again, with other weights."""
     courses = found.courses
     assert courses is not None  # noqa: S101 - its caller looked
@@ -126,7 +147,7 @@ def relaid(found: Found, workshop: Workshop, settings: PlannerSettings, rng: Gen
     start = found.build.states()[courses.ends[kept]]
     begun = Courses(courses.plan, courses.ends[: kept + 1])
     laying = _varied(LayingSettings(), settings, rng)
-    return _laid(begun, start, workshop, settings, laying, rng)
+    return _laid(begun, start, workshop, settings, laying, rng, until)
 
 
 def _laid(
@@ -136,12 +157,13 @@ def _laid(
     settings: PlannerSettings,
     laying: LayingSettings,
     rng: Generator,
+    until: Deadline,
 ) -> Found:
     """Lay the courses of a plan that are not laid yet; the stones that are left go on top."""
     left = CoursePlan(begun.plan.courses[len(begun.ends) - 1 :], begun.plan.cost)
-    laid = lay(left, start, workshop, settings, laying)
+    laid = lay(left, start, workshop, settings, laying, until)
     ends = (*begun.ends, *(len(state.actions) for state in laid.states[1:]))
-    planner = built_up(laid.build, workshop, settings, rng)
+    planner = built_up(laid.build, workshop, settings, rng, until)
     return Found.of(planner, Courses(begun.plan, ends), laid.solves)
 
 

@@ -6,13 +6,14 @@ kept, worse ones with a probability that falls with the temperature.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.random import Generator
 
 from drystone.planner.build import Build
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.dropping import wedge_limits
 from drystone.planner.replay import Replayed, replayed
 from drystone.planner.search_settings import SearchSettings
@@ -67,9 +68,9 @@ def lengthened(
     seed: int,
     workshop: Workshop,
     settings: PlannerSettings,
-    late: Callable[[], bool] = lambda: False,
-) -> Link:
-    """Build some more walls of a chain, until it is too late for another.
+    until: Deadline = NEVER,
+) -> Iterator[Link]:
+    """Build some more walls of a chain.
 
     Parameters
     ----------
@@ -84,37 +85,41 @@ def lengthened(
         Stones and site.
     settings : PlannerSettings
         All parameters.
-    late : callable
-        Asked before every wall; says whether it is too late for another.
+    until : Deadline
+        Looked at inside every wall.
 
-    Returns
-    -------
+    Yields
+    ------
     Link
-        Where it is then; `done` says how many walls were built in time.
+        Where it is after each of them.
+
+    Raises
+    ------
+    TimeIsUp
+        The time limit struck before all of them were built.
     """
     search = settings.search
     for _ in range(count):
-        if late():
-            break
+        until.look()
         position, length = in_cycle(link.done, search.cycle)
         if position == 0 and link.best.courses is not None:
-            link = replace(link, now=found_again(link.best, workshop, settings))
+            link = replace(link, now=found_again(link.best, workshop, settings, until))
         rng = np.random.default_rng([seed, 3_000_000 + link.number, link.done])
         planned = link.now.courses is not None
         usual = shares(planned, search.polish)
         operator = (link.known + link.learnt).drawn(usual, rng)
         # A part of a planned wall that is built up freely has no plan any more.
         aside = planned and operator == RECREATED
-        base = found_again(link.best, workshop, settings) if aside else link.now
-        found = _changed(base, operator, workshop, settings, rng)
+        base = found_again(link.best, workshop, settings, until) if aside else link.now
+        found = _changed(base, operator, workshop, settings, rng, until)
         now = link.now
         floor = math.inf if aside else _floor(now, position / length, search, rng)
         worth_wedges = link.best.merit - search.wedge_below
         # What a wall carries without dilatancy takes long to find, and only lowers its merit.
         if found.merit > min(floor, worth_wedges):
-            found = found.judged(workshop, settings)
+            found = found.judged(workshop, settings, until=until)
         if found.merit > worth_wedges:
-            found = wedged(found, workshop, settings)
+            found = wedged(found, workshop, settings, until)
         if found.merit >= floor:
             now = found
         link = Link(
@@ -127,41 +132,48 @@ def lengthened(
             link.known,
             link.learnt.after(operator, found.merit > base.merit + 1e-12),
         )
-    return link
+        yield link
 
 
 def _changed(
-    base: Found, operator: str, workshop: Workshop, settings: PlannerSettings, rng: Generator
+    base: Found,
+    operator: str,
+    workshop: Workshop,
+    settings: PlannerSettings,
+    rng: Generator,
+    until: Deadline,
 ) -> Found:
     """Change a wall; where nothing can be planned, lay it again."""
     if operator == RECREATED:
-        return recreated(base, workshop, settings, rng)
+        return recreated(base, workshop, settings, rng, until)
     new: Found | None = None
     if operator == NEW:
-        new = newly_planned(workshop, settings, rng)
+        new = newly_planned(workshop, settings, rng, until)
     elif operator == REPLANNED:
-        new = replanned(base, workshop, settings, rng)
-    return relaid(base, workshop, settings, rng) if new is None else new
+        new = replanned(base, workshop, settings, rng, until)
+    return relaid(base, workshop, settings, rng, until) if new is None else new
 
 
-def wedged(found: Found, workshop: Workshop, settings: PlannerSettings) -> Found:
+def wedged(
+    found: Found, workshop: Workshop, settings: PlannerSettings, until: Deadline = NEVER
+) -> Found:
     """Put small wedges into the gaps of a wall of outlines, where that makes it better.
 
     The wall is judged by both flow rules.
     """
-    found = found.judged(workshop, settings)
+    found = found.judged(workshop, settings, until=until)
     wedges = settings.search.wedges
     may = settings.stabilise.method in ("both", "wedge")
     if found.build.wall.outlines is None or not (wedges and may and found.build.actions):
         return found
     limits = wedge_limits(settings, workshop.stock, workshop.site.scale)
-    build, solves = wedged_up(found.build, workshop, settings, limits, wedges)
+    build, solves = wedged_up(found.build, workshop, settings, limits, wedges, until)
     found = replace(found, solves=found.solves + solves)
     if build is found.build:
         return found
     again = Found.measured(build, workshop, settings, found.solves, found.courses)
     if again.merit > found.merit:
-        again = again.judged(workshop, settings)
+        again = again.judged(workshop, settings, until=until)
     return again if again.merit > found.merit else found
 
 
@@ -186,7 +198,13 @@ def _floor(now: Found, share: float, search: SearchSettings, rng: Generator) -> 
     return float(now.merit + temperature * math.log(1.0 - rng.random()))
 
 
-def recreated(found: Found, workshop: Workshop, settings: PlannerSettings, rng: Generator) -> Found:
+def recreated(
+    found: Found,
+    workshop: Workshop,
+    settings: PlannerSettings,
+    rng: Generator,
+    until: Deadline = NEVER,
+) -> Found:
     """Take a part of a wall down and build it up again.
 
     Parameters
@@ -199,6 +217,8 @@ def recreated(found: Found, workshop: Workshop, settings: PlannerSettings, rng: 
         All parameters.
     rng : numpy.random.Generator
         Draws what is taken down, and the weights with which it is built up.
+    until : Deadline
+        Looked at for every wall that is judged: :class:`TimeIsUp` when it has struck.
     """
     solves = Solves()
     if found.figures is None:
@@ -211,16 +231,21 @@ def recreated(found: Found, workshop: Workshop, settings: PlannerSettings, rng: 
         names = list(RUINS)
         ruin = RUINS[names[int(rng.integers(len(names)))]]
         gone = taken_down(found.build, ruin, settings.search, rng)
-        build, _, solves = without(found.build, gone, workshop, settings)
-    return Found.of(built_up(build, workshop, settings, rng), before=solves)
+        build, _, solves = without(found.build, gone, workshop, settings, until)
+    return Found.of(built_up(build, workshop, settings, rng, until), before=solves)
 
 
 def without(
-    build: Build, gone: frozenset[int], workshop: Workshop, settings: PlannerSettings
+    build: Build,
+    gone: frozenset[int],
+    workshop: Workshop,
+    settings: PlannerSettings,
+    until: Deadline = NEVER,
 ) -> Replayed:
     """Return a wall without some stones; those that do not stand without them go as well."""
     groups = build.wall.groups
     first = next((k for k, g in enumerate(groups) if g.placement.stone_id in gone), len(groups))
     kept = [g for g in groups[first:] if g.placement.stone_id not in gone]
     start = build.states()[first]
-    return replayed(start, kept, build.course_heights_px(), workshop, settings, strict=False)
+    heights = build.course_heights_px()
+    return replayed(start, kept, heights, workshop, settings, strict=False, until=until)

@@ -24,6 +24,7 @@ from drystone.kernels.courses import anneal, evaluate
 from drystone.kernels.raster import turn
 from drystone.model.placement import Side
 from drystone.model.stone import Stone
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.poses import PoseBook
 from drystone.search.course_choice import choosing, taken
 from drystone.search.course_plan import CoursePlan, PlannedStone
@@ -47,6 +48,7 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
     laid: LaidCourses | None = None,
     book: PoseBook | None = None,
     pinned: Collection[int] = (),
+    until: Deadline = NEVER,
 ) -> CoursePlan | None:
     """Plan a wall course by course.
 
@@ -70,15 +72,22 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
         Remembers the initial angles of stones.
     pinned : collection of int
         Ids of stones that cost ten times as much when they are left out.
+    until : Deadline
+        Looked at while stones are annealed.
 
     Returns
     -------
     plan : CoursePlan or None
         None when no stone fits into the wall.
+
+    Raises
+    ------
+    TimeIsUp
+        The time limit struck.
     """
     size = (width_px, height_px)
     task = task_of(stones, size, cell_px, tolerance_px, settings, laid=laid, book=book)
-    return None if task is None else planned_anew(task, settings, seed, pinned)
+    return None if task is None else planned_anew(task, settings, seed, pinned, until)
 
 
 def replan_courses(  # noqa: PLR0913 - as above
@@ -95,6 +104,7 @@ def replan_courses(  # noqa: PLR0913 - as above
     laid: LaidCourses,
     book: PoseBook | None = None,
     pinned: Collection[int] = (),
+    until: Deadline = NEVER,
 ) -> CoursePlan | None:
     """Plan the upper courses of a plan again, for what was really laid below.
 
@@ -106,7 +116,7 @@ def replan_courses(  # noqa: PLR0913 - as above
         So many of its courses stay as they are.
     stones : collection of Stone
         Those that are not laid yet.
-    width_px, height_px, cell_px, tolerance_px, settings, seed, book, pinned
+    width_px, height_px, cell_px, tolerance_px, settings, seed, book, pinned, until
         As for :func:`plan_courses`.
     laid : LaidCourses
         What is there.
@@ -119,17 +129,23 @@ def replan_courses(  # noqa: PLR0913 - as above
     """
     size = (width_px, height_px)
     task = task_of(stones, size, cell_px, tolerance_px, settings, laid=laid, book=book)
-    return None if task is None else planned_again(task, plan, keep, settings, seed, pinned)
+    if task is None:
+        return None
+    return planned_again(task, plan, keep, settings, seed, pinned, until)
 
 
 def planned_anew(
-    task: Task, settings: CourseSettings, seed: int, pinned: Collection[int]
+    task: Task,
+    settings: CourseSettings,
+    seed: int,
+    pinned: Collection[int],
+    until: Deadline = NEVER,
 ) -> CoursePlan:
     """Plan a wall from stones in random order; parameters as for :func:`plan_courses`."""
     looked_at = stones_looked_at(task)
     task = choosing(task, pinned)
     start = scattered(task, Dice(seed))
-    return annealed(task, start, settings, settings.temperature, looked_at, seed)
+    return annealed(task, start, settings, settings.temperature, looked_at, seed, until)
 
 
 def planned_again(
@@ -139,6 +155,7 @@ def planned_again(
     settings: CourseSettings,
     seed: int,
     pinned: Collection[int],
+    until: Deadline = NEVER,
 ) -> CoursePlan:
     """Plan upper courses again from what they are; parameters as for :func:`replan_courses`."""
     looked_at = stones_looked_at(task)
@@ -147,7 +164,7 @@ def planned_again(
     if start is None:
         start = scattered(task, Dice(seed))
     warm = settings.temperature * settings.again
-    found = annealed(task, start, settings, warm, looked_at, seed)
+    found = annealed(task, start, settings, warm, looked_at, seed, until)
     return CoursePlan(plan.courses[:keep] + found.courses, found.cost)
 
 
@@ -245,13 +262,14 @@ def annealed(
     temperature: float,
     stones: int,
     seed: int,
+    until: Deadline = NEVER,
 ) -> CoursePlan:
     """Anneal an arrangement, and say where its stones lie in the wall frame."""
     count = min(settings.evaluations * stones, settings.most_evaluations)
     factor = (settings.coldest / temperature) ** (1.0 / count)
     cooling = Cooling(count, temperature, factor, seed, settings.doubt)
     poses = task.quarters.poses
-    plan, _ = anneal(poses, start, task.ground, task.rules, cooling)
+    plan, _ = anneal(poses, start, task.ground, task.rules, cooling, until.look)
     return placed(task, plan, evaluate(poses, plan, task.ground, task.rules))
 
 

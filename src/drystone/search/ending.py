@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from itertools import islice
 
+from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
 from drystone.planner.events import Stopped
 from drystone.planner.planner import Planner
 from drystone.search.found import Found
@@ -19,7 +20,9 @@ JUDGED_AGAIN = 4
 """So many of the best walls of a search are looked at thoroughly at most."""
 
 
-def surest(planner: Planner, walls: Iterable[Packed]) -> Packed | None:
+def surest(
+    planner: Planner, walls: Iterable[Packed], until: Deadline = NEVER
+) -> tuple[Packed | None, bool]:
     """Return the best of some walls once their load without dilatancy is looked for thoroughly.
 
     Parameters
@@ -28,19 +31,31 @@ def surest(planner: Planner, walls: Iterable[Packed]) -> Packed | None:
         Of the first wall.
     walls : iterable of Packed
         From a search, the best first; of none there is no best.
+    until : Deadline
+        Ends it with the best of those that were looked at, and the first where none was.
+
+    Returns
+    -------
+    best : Packed or None
+        One of the walls.
+    interrupted : bool
+        Not all were looked at.
     """
     workshop, settings = planner.workshop, planner.settings
-    best: Packed | None = None
+    looked_at: list[Packed] = []
     for wall in islice(walls, JUDGED_AGAIN):
+        best = max(looked_at, key=lambda one: one.merit, default=None)
         if best is not None and wall.merit <= best.merit:
             break
-        again = found_again(wall, workshop, settings).judged(workshop, settings, THOROUGH)
-        if best is None or again.merit > best.merit:
-            best = Packed.of(again)
-    return best
+        try:
+            again = found_again(wall, workshop, settings, until)
+            looked_at.append(Packed.of(again.judged(workshop, settings, THOROUGH, until)))
+        except TimeIsUp:
+            return best or wall, True
+    return max(looked_at, key=lambda one: one.merit, default=None), False
 
 
-def as_found(planner: Planner, wall: Packed) -> tuple[Planner, Stopped]:
+def as_found(planner: Planner, wall: Packed, until: Deadline = NEVER) -> tuple[Planner, Stopped]:
     """Return a planner with a wall as a search has found it, and why nothing is added.
 
     Parameters
@@ -49,12 +64,16 @@ def as_found(planner: Planner, wall: Packed) -> tuple[Planner, Stopped]:
         Of the first wall.
     wall : Packed
         From the search.
+    until : Deadline
+        Looked at for every step: :class:`TimeIsUp` when it has struck.
     """
-    last = _planner_of(planner, wall)
+    last = _planner_of(planner, wall, until)
     return last, last.finished or _FOUND
 
 
-def with_the_rest(planner: Planner, best: Packed) -> tuple[Planner, Stopped, bool]:
+def with_the_rest(
+    planner: Planner, best: Packed, until: Deadline = NEVER
+) -> tuple[Planner, Stopped, bool]:
     """Return a planner with the best wall of a search, and why nothing more is placed on it.
 
     The passes of a search have weights of their own: a stone that found no place by those may
@@ -66,6 +85,8 @@ def with_the_rest(planner: Planner, best: Packed) -> tuple[Planner, Stopped, boo
         Of the first wall.
     best : Packed
         From the search.
+    until : Deadline
+        Ends it, as an interrupt does.
 
     Returns
     -------
@@ -76,16 +97,16 @@ def with_the_rest(planner: Planner, best: Packed) -> tuple[Planner, Stopped, boo
     interrupted : bool
         Not all was tried.
     """
-    last = insisted(lambda: _planner_of(planner, best))
+    last = insisted(lambda: _planner_of(planner, best, NEVER))
     build, merit, interrupted = last.build, best.merit, False
     try:
-        for _ in last.steps():
+        for _ in last.steps(until):
             now = Found.of(last)
             if now.merit > merit:
-                now = now.judged(planner.workshop, planner.settings, THOROUGH)
+                now = now.judged(planner.workshop, planner.settings, THOROUGH, until)
             if now.merit > merit:
                 build, merit = last.build, now.merit
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, TimeIsUp):
         interrupted = True
     if last.stopped is not None and last.build is build:
         return last, last.stopped, interrupted
@@ -95,7 +116,7 @@ def with_the_rest(planner: Planner, best: Packed) -> tuple[Planner, Stopped, boo
     return last, Stopped("search", "the stones that are left do not make the wall better"), False
 
 
-def _planner_of(planner: Planner, wall: Packed) -> Planner:
+def _planner_of(planner: Planner, wall: Packed, until: Deadline) -> Planner:
     workshop, settings = planner.workshop, planner.settings
     last = Planner(
         workshop.stones,
@@ -105,5 +126,5 @@ def _planner_of(planner: Planner, wall: Packed) -> Planner:
         workshop=workshop,
         profile=planner.profile,
     )
-    last.build = found_again(wall, workshop, settings).build
+    last.build = found_again(wall, workshop, settings, until).build
     return last

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field, replace
 
 from drystone.planner.build import Build
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
@@ -88,6 +89,7 @@ class Found:
         workshop: Workshop,
         settings: PlannerSettings,
         flow: NonassociativeSettings | None = None,
+        until: Deadline = NEVER,
     ) -> "Found":
         """Return the same wall with what it carries without dilatancy, unless that is known.
 
@@ -97,12 +99,14 @@ class Found:
             As for :meth:`measured`.
         flow : NonassociativeSettings, optional
             How hard it is looked for; asked again when given.
+        until : Deadline
+            Looked at while it is looked for: :class:`TimeIsUp` when it has struck.
         """
         figures = self.figures
         if figures is None or self.build.wall.outlines is None:
             return self
         if figures.F_LR_coulomb is not None and flow is None:
             return self
-        figures = with_coulomb(figures, self.build.model, flow or QUICK)
+        figures = with_coulomb(figures, self.build.model, flow or QUICK, until)
         merit = merit_of(figures, possible_filling(workshop), settings.goal)
         return replace(self, figures=figures, merit=merit)

@@ -9,6 +9,7 @@ from drystone.craft.masonry import Masonry
 from drystone.craft.settings import CraftSettings
 from drystone.metrics.measure import measure_labels
 from drystone.planner.build import Build
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.search_settings import GoalSettings
 from drystone.planner.workshop import Workshop
 from drystone.statics.flow.flow_search import NonassociativeSettings
@@ -87,13 +88,17 @@ def figures_of(build: Build, pinned: Collection[int] = ()) -> Figures | None:
 
 
 def with_coulomb(
-    figures: Figures, model: RigidBlockModel, settings: NonassociativeSettings
+    figures: Figures,
+    model: RigidBlockModel,
+    settings: NonassociativeSettings,
+    until: Deadline = NEVER,
 ) -> Figures:
     """Add what a wall carries without dilatancy, the least that is found (DESIGN 4.8).
 
-    Where nothing is found the associative value stands, above which none can be.
+    Where nothing is found the associative value stands, above which none can be.  Where the time
+    limit strikes, :class:`TimeIsUp` is raised.
     """
-    found = nonassociative_resistance(model, settings=settings)
+    found = nonassociative_resistance(model, settings=settings, look=until.look)
     least = figures.F_LR
     for end in (found.left, found.right):
         if end.status is LimitStatus.UNSTABLE:

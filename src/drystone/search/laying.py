@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from drystone.planner.build import Build
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
@@ -67,6 +68,7 @@ def lay(
     workshop: Workshop,
     settings: PlannerSettings,
     laying: LayingSettings | None = None,
+    until: Deadline = NEVER,
 ) -> Laid:
     """Lay a course plan.
 
@@ -82,16 +84,25 @@ def lay(
         How stones settle and are judged.
     laying : LayingSettings, optional
         How the plan is laid.
+    until : Deadline
+        Looked at for every wall that is judged.
+
+    Raises
+    ------
+    TimeIsUp
+        The time limit struck.
     """
-    layer = _layer(workshop, settings, laying or LayingSettings())
+    layer = _layer(workshop, settings, laying or LayingSettings(), until)
     return _go_on(Laid((build,), ()), plan.courses, layer)
 
 
-def _layer(workshop: Workshop, settings: PlannerSettings, laying: LayingSettings) -> Layer:
+def _layer(
+    workshop: Workshop, settings: PlannerSettings, laying: LayingSettings, until: Deadline
+) -> Layer:
     """Return who lays courses in the geometry of a wall."""
     if settings.geometry == "raster":
-        return PixelMason.of(workshop, settings, laying).course
-    mason = Mason.of(workshop, settings, laying)
+        return PixelMason.of(workshop, settings, laying, until).course
+    mason = Mason.of(workshop, settings, laying, until)
     views = mason.views()
     return lambda build, course: mason.course(build, course, views)
 

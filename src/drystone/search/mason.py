@@ -12,6 +12,7 @@ from drystone.model.outlines import Outlined
 from drystone.model.placement import Side
 from drystone.model.stone import Stone
 from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.dropping import wedge_limits
 from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.settings import PlannerSettings
@@ -88,11 +89,18 @@ class Mason:
     evaluator: Evaluator
 
     @classmethod
-    def of(cls, workshop: Workshop, settings: PlannerSettings, laying: LayingSettings) -> "Mason":
+    def of(
+        cls,
+        workshop: Workshop,
+        settings: PlannerSettings,
+        laying: LayingSettings,
+        until: Deadline = NEVER,
+    ) -> "Mason":
         """Return who lays stones of a workshop."""
         limits = wedge_limits(settings, workshop.stock, workshop.site.scale)
         hand = Hand(laying.let_go, settings.settle, limits, settings.stabilise.method)
-        return cls(workshop, settings, laying, hand, Evaluator(settings, workshop.stock))
+        evaluator = Evaluator(settings, workshop.stock, until=until)
+        return cls(workshop, settings, laying, hand, evaluator)
 
     def views(self) -> Views:
         """Look at the bare ground from both ends."""

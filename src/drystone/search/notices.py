@@ -20,6 +20,7 @@ def planning_notices(
     lost: bool = False,
     fallen: Sequence[int] = (),
     interrupted_after: int | None = None,
+    cut_short: bool = False,
 ) -> tuple[Notice, ...]:
     """Return the notices of a plan.
 
@@ -37,9 +38,11 @@ def planning_notices(
         Stones after which the wall to begin with does not stand.
     interrupted_after : int, optional
         So many walls the search had built when it was interrupted, or what was done after it.
+    cut_short : bool
+        The time limit struck inside the first wall.
     """
     missing = _missing(missing_stones(built))
-    cut = _interrupted(interrupted_after)
+    cut = (*_interrupted(interrupted_after), *_cut_short(built, cut_short=cut_short))
     begun = (*_left_out(left_out), *_fallen(fallen))
     return (*begun, *missing, *_lost(lost=lost), *cut, *_solves(asked))
 
@@ -87,6 +90,17 @@ def _interrupted(walls: int | None) -> Iterator[Notice]:
             "W125",
             f"planning was interrupted after {walls} walls; this is the best of them.",
             "To look for a better one from here, give this plan to --from.",
+        )
+
+
+def _cut_short(planner: Planner, *, cut_short: bool) -> Iterator[Notice]:
+    if cut_short:
+        placed, fitting = len(planner.build.actions), len(planner.workshop.fitting)
+        yield Notice(
+            "W128",
+            f"the time limit struck after {placed} of {fitting} stones of the first wall; the plan "
+            "is what is built of it.",
+            "Give the same command again with --resume to go on with it, or more --time.",
         )
 
 

@@ -9,6 +9,7 @@ from drystone.kernels.raster import Mask
 from drystone.model.placement import Placement, Settled, Side, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Group
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.planner import Planner
 from drystone.planner.replay import replayed
 from drystone.planner.settings import PlannerSettings
@@ -97,19 +98,23 @@ def _packed_group(group: Group, heights: dict[int, float]) -> PackedGroup:
     )
 
 
-def found_again(one: Packed, workshop: Workshop, settings: PlannerSettings) -> Found:
+def found_again(
+    one: Packed, workshop: Workshop, settings: PlannerSettings, until: Deadline = NEVER
+) -> Found:
     """Build a wall again.
 
     Raises
     ------
     ValueError
         When it does not stand, as another wall than the one that was packed may.
+    TimeIsUp
+        The time limit struck.
     """
     start = Planner(workshop.stones, workshop.site, settings=settings, workshop=workshop).build
     groups = one.groups
     heights = {g.stone_id: g.course_height_px for g in groups if g.course_height_px is not None}
     again = [_group(group, workshop) for group in groups]
-    build, left_out, _ = replayed(start, again, heights, workshop, settings)
+    build, left_out, _ = replayed(start, again, heights, workshop, settings, until=until)
     if left_out:
         raise ValueError(f"stones {left_out} do not stand where they stood")
     return Found(build, one.figures, one.merit, one.solves, one.courses)

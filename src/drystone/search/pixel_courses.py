@@ -8,6 +8,7 @@ from drystone.kernels.course_types import COLUMN_UNITS
 from drystone.kernels.polygons import Points
 from drystone.model.site import Site
 from drystone.model.stone import Stone
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.workshop import Workshop
 from drystone.search.course_plan import CoursePlan
 from drystone.search.course_poses import Quarters, poses_of
@@ -24,6 +25,7 @@ def plan_pixel_courses(
     seed: int,
     *,
     pinned: Collection[int] = (),
+    until: Deadline = NEVER,
 ) -> CoursePlan | None:
     """Plan a wall of pixels course by course; None when no stone fits.
 
@@ -31,11 +33,11 @@ def plan_pixel_courses(
     ----------
     workshop : Workshop
         Stones and site.
-    settings, seed, pinned
+    settings, seed, pinned, until
         As for :func:`drystone.search.courses.plan_courses`.
     """
     task = pixel_task(workshop, workshop.fitting, settings)
-    return None if task is None else planned_anew(task, settings, seed, pinned)
+    return None if task is None else planned_anew(task, settings, seed, pinned, until)
 
 
 def replan_pixel_courses(  # noqa: PLR0913 - as above
@@ -48,6 +50,7 @@ def replan_pixel_courses(  # noqa: PLR0913 - as above
     *,
     laid: LaidCourses,
     pinned: Collection[int] = (),
+    until: Deadline = NEVER,
 ) -> CoursePlan | None:
     """Plan the upper courses of a plan again, for what was really laid below; None as above.
 
@@ -59,13 +62,15 @@ def replan_pixel_courses(  # noqa: PLR0913 - as above
         So many of its courses stay as they are.
     stone_ids : collection of int
         Those that are not laid yet.
-    workshop, settings, seed, pinned
+    workshop, settings, seed, pinned, until
         As for :func:`plan_pixel_courses`.
     laid : LaidCourses
         What is there.
     """
     task = pixel_task(workshop, stone_ids, settings, laid)
-    return None if task is None else planned_again(task, plan, keep, settings, seed, pinned)
+    if task is None:
+        return None
+    return planned_again(task, plan, keep, settings, seed, pinned, until)
 
 
 def pixel_task(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Side
 from drystone.planner.build import Build, Candidate, Proposal
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
@@ -53,11 +54,16 @@ class PixelMason:
 
     @classmethod
     def of(
-        cls, workshop: Workshop, settings: PlannerSettings, laying: LayingSettings
+        cls,
+        workshop: Workshop,
+        settings: PlannerSettings,
+        laying: LayingSettings,
+        until: Deadline = NEVER,
     ) -> "PixelMason":
         """Return who lays stones of a workshop."""
         hand = PixelHand(laying.put_down, workshop.memory)
-        return cls(workshop, settings, laying, hand, Evaluator(settings, workshop.stock))
+        evaluator = Evaluator(settings, workshop.stock, until=until)
+        return cls(workshop, settings, laying, hand, evaluator)
 
     def course(
         self, build: Build, course: Sequence[PlannedStone]

@@ -1,6 +1,7 @@
 """What planning gave, and whether the wall counts as complete."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from importlib.metadata import version
@@ -14,7 +15,8 @@ from drystone.model.plan import Plan, PlanMetrics
 from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame, assemble_plan, plan_metrics
 from drystone.planner.build import Build
-from drystone.planner.events import Stopped
+from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
+from drystone.planner.events import INTERRUPTED, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
@@ -73,8 +75,9 @@ class PlanResult:
     notices : tuple of Notice
         W120 when pinned stones are missing, W121 when stones of the wall that was begun with were
         taken out, W122 when a process died, W125 when the search or what follows it was
-        interrupted, W126 when a wall that was built already does not stand; W303 when the solver
-        gave up on some candidates, which were then passed over.
+        interrupted, W126 when a wall that was built already does not stand, W128 when the time
+        limit cut the first wall short; W303 when the solver gave up on some candidates, which were
+        then passed over.
     profile : Profile
         Where the time went.
     solves : Solves
@@ -116,11 +119,12 @@ def finish(
     stopped: Stopped,
     provenance: Mapping[str, Any],
     seconds: float,
+    until: Deadline = NEVER,
 ) -> PlanResult:
     """Judge what a planner has built and write the plan."""
     build = planner.build
     resistance = lateral_resistance(build.model, mechanism=True)
-    others = other_resistances(build, resistance, planner.settings)
+    others = other_resistances(build, resistance, planner.settings, until)
     metrics = plan_metrics(build, frame, resistance, others)
     plan = assemble_plan(planner.workshop, frame, build, stopped, metrics, provenance)
     interrupted = stopped.reason == "interrupted"
@@ -173,7 +177,7 @@ def result_of(planner: Planner) -> PlanResult:
         "settings": one_pass.as_dict(),
     }
     site = planner.build.wall.site
-    stopped = planner.stopped or Stopped("interrupted", "interrupted")
+    stopped = planner.stopped or INTERRUPTED
     result = finish(planner, Frame(*site.extent_px, site), stopped, provenance, 0.0)
     return replace(result, solves=Solves(planner.failed_solves, planner.cold_solves))
 
@@ -188,12 +192,15 @@ def _shortfall(planner: Planner, metrics: PlanMetrics) -> str:
 
 
 def other_resistances(
-    build: Build, resistance: LateralResistance, settings: PlannerSettings
+    build: Build,
+    resistance: LateralResistance,
+    settings: PlannerSettings,
+    until: Deadline = NEVER,
 ) -> dict[str, float | None]:
     """Return F_LR by other rules, by the names of a plan's metrics.
 
-    Without dilatancy it is looked for in walls of up to :data:`MOST_WITHOUT_DILATANCY` blocks, and
-    where the wall stands.
+    Without dilatancy it is looked for in walls of up to :data:`MOST_WITHOUT_DILATANCY` blocks,
+    where the wall stands, and where there is time.
 
     Parameters
     ----------
@@ -203,10 +210,14 @@ def other_resistances(
         Of it.
     settings : PlannerSettings
         Friction, contact tolerance and set-back.
+    until : Deadline
+        For what is looked for.
     """
     found: dict[str, float | None] = {}
     if resistance.stable and 0 < len(build.model.blocks) <= MOST_WITHOUT_DILATANCY:
-        found["F_LR_coulomb"] = nonassociative_resistance(build.model).carried
+        with suppress(TimeIsUp):
+            look = until.look
+            found["F_LR_coulomb"] = nonassociative_resistance(build.model, look=look).carried
     outlines, settle = build.wall.outlines, settings.settle
     if outlines is not None:
         for name, share, setback in (

@@ -16,7 +16,8 @@ from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame
-from drystone.planner.events import Callbacks, Incumbent, Stopped
+from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
+from drystone.planner.events import INTERRUPTED, OUT_OF_TIME, Callbacks, Incumbent, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.replay import stands
 from drystone.planner.search_settings import UNLIMITED
@@ -36,6 +37,11 @@ from drystone.search.work import forget
 
 TYPICAL_STONE_PX = 40
 """Longer side of the median stone at the resolution that is chosen when none is given."""
+
+
+GRACE = 0.5
+"""What follows a search may take this share of its time, and at least a second: judging its best
+walls, the rest of the stones.  So may the last figures of merit, and the walls to choose from."""
 
 
 def working_scale(stones: StoneSet) -> float:
@@ -59,6 +65,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     px_per_m: float | None = None,
     budget: int | None = None,
     seconds: float = math.inf,
+    first_whole: bool = False,
     n_jobs: int = 1,
     executor: Executor | None = None,
     callbacks: Callbacks | None = None,
@@ -90,10 +97,13 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         and without `seconds` that of the settings: 16 for ``"best"``, some eight seconds for 30
         stones.
     seconds : float
-        Time after which the search begins no further wall, as many as there are by then, whatever
-        the budget of the settings; with `budget` it ends with the first of the two.  Policies
-        build a single wall.  The plan's settings hold the budget that was used, which repeats the
-        plan.
+        Time after which the search ends with the best of the walls that are whole, as many as
+        there are by then, whatever the budget of the settings; with `budget` it ends with the
+        first of the two.  Policies build a single wall.  The plan's settings hold the budget that
+        was used, which repeats the plan.  Where not even the first wall is whole by then, the
+        plan is what is built of it; it can be gone on with (`built`).
+    first_whole : bool
+        Whether the first wall is built to its end whatever the clock says.
     n_jobs : int
         Processes that build the walls of a search, threads that evaluate candidates where a
         single wall is built; never changes the result.
@@ -171,8 +181,12 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
         if built is not None:
             first.restore(built, course_heights_px or {})
         left_out = () if begin is None else begin_with(first, begin, course_heights_px or {})
-        ended = run_to_end(first, seconds=seconds, executor=workers)
+        until, grace_s = Deadline.after(seconds), max(1.0, GRACE * seconds)
+        ended = run_to_end(
+            first, until=until, grace_s=grace_s, first_whole=first_whole, executor=workers
+        )
     took = time.perf_counter() - started
+    grace = Deadline.after(grace_s)
     used = replace(settings, search=replace(settings.search, budget=ended.walls))
     provenance = {
         "version": version("drystone"),
@@ -182,11 +196,11 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     }
 
     def finished(planner: Planner, stopped: Stopped) -> PlanResult:
-        return finish(planner, frame, stopped, provenance, took)
+        return finish(planner, frame, stopped, provenance, took, grace)
 
     best = insisted(lambda: finished(ended.planner, ended.stopped))
     to_choose = ended.kept if choice else ()
-    others = tuple(_others(first, to_choose[1:], finished))
+    others = tuple(_others(first, to_choose[1:], finished, grace))
     interrupted = ended.interrupted or len(others) < len(to_choose[1:])
     return replace(
         best,
@@ -197,6 +211,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             lost=ended.lost,
             fallen=ended.fallen,
             interrupted_after=ended.walls if interrupted else None,
+            cut_short=ended.stopped.reason == "time",
         ),
         solves=Solves(first.failed_solves, first.cold_solves),
         choice=(best, *others) if to_choose else (),
@@ -211,13 +226,16 @@ def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> 
 
 
 def _others(
-    first: Planner, kept: Sequence[Packed], finished: Callable[[Planner, Stopped], PlanResult]
+    first: Planner,
+    kept: Sequence[Packed],
+    finished: Callable[[Planner, Stopped], PlanResult],
+    until: Deadline,
 ) -> Iterator[PlanResult]:
     """Finish other walls to choose from; an interrupt leaves out those of least merit."""
     try:
         for wall in kept:
-            yield finished(*as_found(first, wall))
-    except KeyboardInterrupt:
+            yield finished(*as_found(first, wall, until))
+    except (KeyboardInterrupt, TimeIsUp):
         pass
 
 
@@ -235,7 +253,8 @@ class Ended(NamedTuple):
     kept : tuple of Packed
         Walls that none beats in every figure of merit, the best first; none of a single pass.
     lost, interrupted : bool
-        A process of the search died, or somebody had enough, and it ended there.
+        A process of the search died, or somebody had enough, and it ended there; or what follows
+        the search took too long.
     fallen : tuple of int
         Stones after which the wall to begin with does not stand, so that nothing was looked for.
     """
@@ -252,17 +271,25 @@ class Ended(NamedTuple):
 def run_to_end(
     planner: Planner,
     *,
-    seconds: float = math.inf,
+    until: Deadline = NEVER,
+    grace_s: float = math.inf,
+    first_whole: bool = False,
     executor: Executor | None = None,
 ) -> Ended:
     """Build a first wall, and look for better ones; an interrupt keeps the best so far.
+
+    So does the time limit; a first wall that either cuts short is what is built of it.
 
     Parameters
     ----------
     planner : Planner
         Of the first wall.
-    seconds : float
-        Time after which no further wall is begun, from now.
+    until : Deadline
+        Ends the search, or the first wall.
+    grace_s : float
+        So long may take what follows the search.
+    first_whole : bool
+        Whether the first wall is built to its end whatever the clock says.
     executor : concurrent.futures.Executor, optional
         Processes for the search.
 
@@ -271,20 +298,13 @@ def run_to_end(
     ended : Ended
         With the best wall.
     """
-    started = time.perf_counter()
-    try:
-        for _ in planner.steps():
-            pass
-    except KeyboardInterrupt:
-        return Ended(planner, Stopped("interrupted", "interrupted"), 1, ())
-    assert planner.stopped is not None  # noqa: S101 - steps() ended by itself
+    stopped = _built(planner, NEVER if first_whole else until)
     workshop, settings = planner.workshop, planner.settings
-    if settings.search.budget == 1:
-        return Ended(planner, planner.stopped, 1, ())
+    if settings.search.budget == 1 or stopped in (INTERRUPTED, OUT_OF_TIME):
+        return Ended(planner, stopped, 1, ())
     fallen = tuple(one.stone_id for one in planner.build.actions if not stands(one))
     if fallen:
-        return Ended(planner, planner.stopped, 1, (), fallen=fallen)
-    left = seconds - (time.perf_counter() - started)
+        return Ended(planner, stopped, 1, (), fallen=fallen)
     best: Packed | None = None
     walls, lost, interrupted = 1, False, False
     kept: tuple[Packed, ...] = ()
@@ -292,7 +312,7 @@ def run_to_end(
         first = Found.of(planner)
         with planner.profile.part("search"):
             for progress in searching(
-                first, workshop, settings, planner.seed, seconds=left, executor=executor
+                first, workshop, settings, planner.seed, until=until, executor=executor
             ):
                 best, walls, kept = progress.best, progress.walls, progress.kept
                 planner.failed_solves = progress.solves.failed
@@ -304,15 +324,35 @@ def run_to_end(
         lost = True
     finally:
         forget()
-    if best is None:
-        return Ended(planner, planner.stopped, 1, (), lost, interrupted)
-    best = insisted(lambda: surest(planner, kept)) or best
-    last, stopped, cut = with_the_rest(planner, best)
+    if best is None or walls == 1:
+        return Ended(planner, stopped, 1, kept, lost, interrupted)
+    grace = Deadline.after(grace_s, until.clock)
+    surer, unsure = insisted(lambda: surest(planner, kept, grace))
+    best = surer or best
+    last, stopped, cut = with_the_rest(planner, best, grace)
     planner.failed_solves += last.failed_solves
     planner.cold_solves += last.cold_solves
     if len(last.build.actions) > len(best.groups):
         kept = insisted(lambda: archived(kept, [Packed.of(Found.of(last))]))
-    return Ended(last, stopped, walls, kept, lost, interrupted or cut)
+    return Ended(last, stopped, walls, kept, lost, interrupted or unsure or cut)
+
+
+def _built(planner: Planner, until: Deadline) -> Stopped:
+    """Build a first wall, and say why its construction ended.
+
+    At least a stone is placed, however late it is: a step may take longer than the time limit, and
+    going on again and again (`--resume`) must lead to a whole wall.
+    """
+    try:
+        if next(planner.steps(), None) is not None:
+            for _ in planner.steps(until):
+                pass
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except TimeIsUp:
+        return OUT_OF_TIME
+    assert planner.stopped is not None  # noqa: S101 - steps() ended by itself
+    return planner.stopped
 
 
 def _incumbent(progress: Progress) -> Incumbent:

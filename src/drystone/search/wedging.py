@@ -15,6 +15,7 @@ from drystone.kernels.polygons import Points
 from drystone.model.placement import Wedge
 from drystone.model.wall import Group
 from drystone.planner.build import Build
+from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.replay import replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
@@ -78,12 +79,14 @@ class _Yard:
     settings: PlannerSettings
     limits: WedgeLimits
     course_heights_px: dict[int, float]
+    until: Deadline
     trouble: list[Solves] = field(default_factory=list)
 
     def again(self, start: Build, groups: Sequence[Group]) -> Build | None:
         """Take steps again on what is built; None when one of them cannot be taken."""
+        heights, until = self.course_heights_px, self.until
         build, left_out, solves = replayed(
-            start, groups, self.course_heights_px, self.workshop, self.settings
+            start, groups, heights, self.workshop, self.settings, until=until
         )
         self.trouble.append(solves)
         return None if left_out else build
@@ -122,7 +125,12 @@ class WedgedUp(NamedTuple):
 
 
 def wedged_up(
-    build: Build, workshop: Workshop, settings: PlannerSettings, limits: WedgeLimits, most: int
+    build: Build,
+    workshop: Workshop,
+    settings: PlannerSettings,
+    limits: WedgeLimits,
+    most: int,
+    until: Deadline = NEVER,
 ) -> WedgedUp:
     """Add wedges to a finished wall that raise F_LR, and drop those that do not matter.
 
@@ -141,16 +149,23 @@ def wedged_up(
         What wedges may be (:func:`drystone.planner.dropping.wedge_limits`).
     most : int
         So many are added.
+    until : Deadline
+        Looked at for every wedge that is tried, and every step that is taken again.
 
     Returns
     -------
     wedged : WedgedUp
         Its build has all its states; it is the same one when nothing changes, or when its own steps
         cannot be taken again.
+
+    Raises
+    ------
+    TimeIsUp
+        The time limit struck.
     """
     if build.wall.outlines is None:
         raise ValueError("only walls of outlines are wedged up")
-    yard = _Yard(workshop, settings, limits, build.course_heights_px())
+    yard = _Yard(workshop, settings, limits, build.course_heights_px(), until)
     begun = _with_states(build, yard)
     wall = begun if begun is None or not begun.actions else _wedged(begun, yard, most)
     solves = sum(yard.trouble, Solves())
@@ -206,14 +221,14 @@ def _drafted(
     draft = Draft.of(build, yard.limits)
     number = yard.workshop.next_wedge(build)
     while len(draft.added) < most:
-        better = _with_one_more(draft, number + len(draft.added), barred)
+        better = _with_one_more(draft, number + len(draft.added), barred, yard.until)
         if better is None:
             break
         draft = better
     return _needed(build, draft, yard)
 
 
-def _with_one_more(draft: Draft, number: int, barred: Barred) -> Draft | None:
+def _with_one_more(draft: Draft, number: int, barred: Barred, until: Deadline) -> Draft | None:
     """Return a draft with one more wedge, the best one; None when none helps."""
     value, mu = draft.resistance.value, draft.resistance.mu
     if value is None:  # the solver gave up: it stood when it was built
@@ -225,6 +240,7 @@ def _with_one_more(draft: Draft, number: int, barred: Barred) -> Draft | None:
     draft = draft.looked_at(motion)
     worth: list[tuple[float, float, WedgePlace, RigidBlockModel]] = []
     for place in _resisting(draft, motion, barred):
+        until.look()
         model = draft.model_with(number, place)
         gained = _share(draft.alpha_with(model, weaker), mu)
         if gained is None or gained < value + LEAST:
@@ -273,6 +289,7 @@ def _needed(build: Build, draft: Draft, yard: _Yard) -> tuple[list[_Change], lis
     }
     dropped: list[_Change] = []
     for number in sorted([*there, *added], key=draft.placed.ids.index):
+        yard.until.look()
         model = draft.idle(number)
         value, carried = draft.resistance.value, draft.analysis.resistance_with(model).resistance
         if value is None or carried.value is None or carried.value < value - SAME:

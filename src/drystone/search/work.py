@@ -1,13 +1,12 @@
 """What the processes of a search do: whole walls, from what fits into a message."""
 
 import pickle
-import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
 
+from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
@@ -29,20 +28,13 @@ class Job:
         Stones, site and settings, pickled.
     seed : int
         Of the search.
-    deadline : float
-        When it is too late for another wall, by the clock.
-    clock : callable
-        Gives seconds; the same in all processes, where there are several.
+    until : Deadline
+        Looked at inside every wall.
     """
 
     tools: bytes
     seed: int
-    deadline: float
-    clock: Callable[[], float] = time.time
-
-    def late(self) -> bool:
-        """Say whether it is too late for another wall."""
-        return self.clock() > self.deadline
+    until: Deadline
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +52,7 @@ class PackedLink:
 
 
 def one_pass(job: Job, number: int, planned_share: float) -> Packed | None:
-    """Build a first wall from its seed; None when it is too late.
+    """Build a first wall from its seed; None when time is up before it is whole.
 
     Parameters
     ----------
@@ -71,21 +63,29 @@ def one_pass(job: Job, number: int, planned_share: float) -> Packed | None:
     planned_share : float
         Probability that it is planned course by course, where walls may be.
     """
-    workshop, settings = _opened(job.tools)
-    if job.late():
+    try:
+        found = _first_wall(job, number, planned_share)
+    except TimeIsUp:
         return None
+    return Packed.of(found)
+
+
+def _first_wall(job: Job, number: int, planned_share: float) -> Found:
+    """Build a first wall; see :func:`one_pass`."""
+    workshop, settings = _opened(job.tools)
+    job.until.look()
     rng = np.random.default_rng([job.seed, 4_000_000 + number])
     if planned_first(settings) and rng.random() < planned_share:
-        planned = newly_planned(workshop, settings, rng)
+        planned = newly_planned(workshop, settings, rng, job.until)
         if planned is not None:
-            return Packed.of(wedged(planned, workshop, settings))
+            return wedged(planned, workshop, settings, job.until)
     seed = int(rng.integers(2**31))
     planner = Planner(
         workshop.stones, workshop.site, seed=seed, settings=settings, workshop=workshop
     )
-    for _ in planner.steps():
+    for _ in planner.steps(job.until):
         pass
-    return Packed.of(wedged(Found.of(planner), workshop, settings))
+    return wedged(Found.of(planner), workshop, settings, job.until)
 
 
 def planned_first(settings: PlannerSettings) -> bool:
@@ -102,12 +102,17 @@ def planned_first(settings: PlannerSettings) -> bool:
 
 
 def more_links(job: Job, link: PackedLink, count: int) -> PackedLink | None:
-    """Build some more walls of a chain, fewer when it becomes too late; None when it is."""
+    """Build some more walls of a chain, fewer when time is up; None when there is no time."""
     workshop, settings = _opened(job.tools)
-    begun = found_again(link.now, workshop, settings)
-    start = Link(link.number, link.done, begun, link.best, link.solves, known=link.known)
-    end = lengthened(start, count, job.seed, workshop, settings, job.late)
-    if end.done == link.done:
+    end = None
+    try:
+        begun = found_again(link.now, workshop, settings, job.until)
+        start = Link(link.number, link.done, begun, link.best, link.solves, known=link.known)
+        for end in lengthened(start, count, job.seed, workshop, settings, job.until):  # noqa: B007
+            pass
+    except TimeIsUp:
+        pass
+    if end is None:
         return None
     now = Packed.of(end.now)
     return PackedLink(

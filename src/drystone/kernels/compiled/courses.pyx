@@ -35,9 +35,9 @@ cdef struct Trial:
 
 def anneal(
     poses, plan, ground, rules, const double[::1] weights, cooling, uint64_t seed,
-    const double[::1] luck,
+    const double[::1] luck, look, Py_ssize_t each,
 ):
-    """Return the fields of the best arrangement, and its cost."""
+    """Return the fields of the best arrangement, and its cost; `look` is called in between."""
     cdef const int32_t[::1] order = plan.order, turns = plan.turns
     cdef const int32_t[::1] sizes = plan.sizes, gaps = plan.gaps
     cdef Py_ssize_t stones = order.shape[0], most = rules.courses, kept
@@ -47,7 +47,7 @@ def anneal(
     cdef Layers trial_layers = Layers(ground, most, stones)
     cdef Trial now, trial, best
     cdef Scene scene
-    cdef Py_ssize_t evaluations = cooling.evaluations
+    cdef Py_ssize_t evaluations = cooling.evaluations, done = 0, count
     cdef double temperature = cooling.temperature, factor = cooling.factor, doubt = cooling.doubt
     now.courses, trial.courses = now_layers.courses, trial_layers.courses
     now.seen = trial.seen = trial_layers.seen
@@ -60,12 +60,19 @@ def anneal(
     memcpy(now.draft.sizes, &sizes[0], sizes.shape[0] * sizeof(int32_t))
     memcpy(now.draft.gaps, &gaps[0], sizes.shape[0] * sizeof(int32_t))
     fill_scene(&scene, poses, ground, rules, weights)
-    with nogil:
-        search(
-            &scene, &now, &trial, &best, <int32_t> most, evaluations, temperature, factor,
-            doubt, seed, &luck[0], <int32_t> luck.shape[0],
-        )
-    free_scene(&scene)
+    try:
+        begin(&scene, &now, &best, doubt)
+        while done < evaluations:
+            look()
+            count = min(each, evaluations - done)
+            with nogil:
+                search(
+                    &scene, &now, &trial, &best, <int32_t> most, count, &temperature, factor,
+                    doubt, &seed, &luck[0], <int32_t> luck.shape[0],
+                )
+            done += count
+    finally:
+        free_scene(&scene)
     found = np.asarray(room)[2 * numbers : 3 * numbers]
     kept = best.draft.courses
     parts = (
@@ -93,6 +100,13 @@ cdef void copy(const Draft *source, Draft *to) noexcept nogil:
     to.courses = source.courses
 
 
+cdef void begin(const Scene *scene, Trial *now, Trial *best, double doubt) noexcept nogil:
+    """Lay the first arrangement; it is the best so far."""
+    now.cost = laid_again(scene, now, now, 0, INFINITY, doubt)
+    copy(&now.draft, &best.draft)
+    best.cost = now.cost
+
+
 cdef void search(
     const Scene *scene,
     Trial *now,
@@ -100,28 +114,25 @@ cdef void search(
     Trial *best,
     int32_t most,
     Py_ssize_t evaluations,
-    double temperature,
+    double *temperature,
     double factor,
     double doubt,
-    uint64_t state,
+    uint64_t *state,
     const double *luck,
     int32_t luck_count,
 ) noexcept nogil:
-    """Anneal; what is best is in the draft and the cost of `best`."""
+    """Anneal for a while; what is best is in the draft and the cost of `best`."""
     cdef Py_ssize_t step
     cdef int32_t lowest, i
     cdef double limit
     cdef Course held
-    now.cost = laid_again(scene, now, now, 0, INFINITY, doubt)
-    copy(&now.draft, &best.draft)
-    best.cost = now.cost
     for step in range(evaluations):
-        temperature *= factor
+        temperature[0] *= factor
         copy(&now.draft, &trial.draft)
-        lowest = change(&trial.draft, &state, most)
+        lowest = change(&trial.draft, state, most)
         if lowest == NOTHING:
             continue
-        limit = now.cost + temperature * luck[below(&state, luck_count)]
+        limit = now.cost + temperature[0] * luck[below(state, luck_count)]
         trial.cost = laid_again(scene, now, trial, lowest, limit, doubt)
         if not trial.cost <= limit:
             continue

@@ -3,7 +3,7 @@
 The method is told in :mod:`drystone.statics.flow.nonassociative`.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -126,6 +126,8 @@ class Search:
         Vertical part of the unit normal at every contact point, 0 to 1: 1 in a bed joint.
     settings : NonassociativeSettings
         How much is tried.
+    look : callable
+        Called before every round and every step of descent; what it raises ends the search.
     """
 
     def __init__(
@@ -134,9 +136,11 @@ class Search:
         sign: float,
         upright: Floats,
         settings: NonassociativeSettings,
+        look: Callable[[], None] = lambda: None,
     ) -> None:
         self._program, self._sign, self._upright = program, sign, upright
         self._settings = settings
+        self._look = look
         self._slip = ContactRates.of(program).slip
         self._forces = ForcesOfMotion(program, sign)
         self._motions = MotionsOfForces(program, sign)
@@ -188,6 +192,7 @@ class Search:
 
     def _round(self, session: HighsSession, rates: Floats) -> State | None:
         """Maximise alpha - sum r n; None when the solver gives up."""
+        self._look()
         costs = np.concatenate(([-self._sign], np.repeat(rates, 2)))
         found = session.minimise(costs)
         if found.status is not LimitStatus.OPTIMAL or found.columns is None or found.duals is None:
@@ -199,6 +204,7 @@ class Search:
         """Improve forces and motion in turn until alpha has not fallen for some steps."""
         stalled = 0
         while stalled < self._settings.patience:
+            self._look()
             better = self._forces.find(state.velocity)
             if better is None or better.alpha > state.alpha + NOTHING:
                 return state

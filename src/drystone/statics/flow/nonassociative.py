@@ -42,6 +42,7 @@ dilatancy, and it is looked for.  That there is none is told where no motion at 
 with the load.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -190,8 +191,16 @@ def nonassociative_resistance(
     *,
     loads: Loads | None = None,
     settings: NonassociativeSettings | None = None,
+    look: Callable[[], None] = lambda: None,
 ) -> NonassociativeResistance:
     """Find the loads in both directions; see :func:`nonassociative_load`.
+
+    Parameters
+    ----------
+    model, loads, settings
+        See there.
+    look : callable
+        Called before every round; what it raises ends the search.
 
     Returns
     -------
@@ -200,10 +209,12 @@ def nonassociative_resistance(
     """
     both = lateral_resistance(model, loads)
     chosen = settings or NonassociativeSettings()
-    falls = _released(model, loads, both.right, chosen)
+    falls = _released(model, loads, both.right, chosen, look)
     if falls is not None:
         return NonassociativeResistance(replace(falls, direction="left"), falls, model.mu)
-    left, right = (_nonassociative(model, loads, end, chosen) for end in (both.left, both.right))
+    left, right = (
+        _nonassociative(model, loads, end, chosen, look) for end in (both.left, both.right)
+    )
     return NonassociativeResistance(left, right, model.mu)
 
 
@@ -212,12 +223,13 @@ def _released(
     loads: Loads | None,
     associative: LimitResult,
     settings: NonassociativeSettings,
+    look: Callable[[], None] = lambda: None,
 ) -> NonassociativeResult | None:
     """Tell how blocks start to fall that stand with associated flow; None when none was found."""
     if not (settings.let_go and _is_known(model, associative)):
         return None
     program = assemble(model, loads)
-    fall = fall_of(model, program, settings.rounds)
+    fall = fall_of(model, program, settings.rounds, look)
     if fall is None:
         return None
     state = State(0.0, fall.edges, fall.acceleration)
@@ -248,6 +260,7 @@ def _nonassociative(
     loads: Loads | None,
     associative: LimitResult,
     settings: NonassociativeSettings,
+    look: Callable[[], None] = lambda: None,
 ) -> NonassociativeResult:
     direction = associative.direction
     if not _is_known(model, associative):
@@ -255,7 +268,7 @@ def _nonassociative(
     program = assemble(model, loads)
     rounds, answers = 0, []
     sign = -1.0 if direction == "left" else 1.0
-    search = Search(program, sign, _upright(model), settings)
+    search = Search(program, sign, _upright(model), settings, look)
     if associative.alpha is None and not search.moves:
         return NonassociativeResult(LimitStatus.UNBOUNDED, direction, message=IMMOVABLE)
     for found in search.attempts():

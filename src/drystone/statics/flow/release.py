@@ -29,6 +29,7 @@ found proves nothing.  The model knows no moments of inertia, so each block has 
 of its area, which decides how fast it turns, and not which forces it can be held by.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import highspy
@@ -73,7 +74,12 @@ class Fall:
     inertia: Floats
 
 
-def fall_of(model: RigidBlockModel, program: EquilibriumProgram, rounds: int) -> Fall | None:
+def fall_of(
+    model: RigidBlockModel,
+    program: EquilibriumProgram,
+    rounds: int,
+    look: Callable[[], None] = lambda: None,
+) -> Fall | None:
     """Let blocks go, and find out how they start to fall.
 
     Parameters
@@ -84,6 +90,8 @@ def fall_of(model: RigidBlockModel, program: EquilibriumProgram, rounds: int) ->
         Of the model.
     rounds : int
         At most so many.
+    look : callable
+        Called before each of them; what it raises ends the search.
 
     Returns
     -------
@@ -107,6 +115,7 @@ def fall_of(model: RigidBlockModel, program: EquilibriumProgram, rounds: int) ->
     states = _States(program, rates, masses)
     found = least_constraint(masses, dead, rates.normal, np.zeros(rates.normal.shape[1]))
     for _ in range(rounds):
+        look()
         if found is None or dead @ found[0] < AT_REST:
             return None
         slip = np.abs(rates.slip.T @ found[0])

@@ -20,20 +20,20 @@ PIVOTS_PER_ROW = 10
 """HiGHS gives up after so many and a thousand more; walls take one to three, but it can cycle."""
 
 _COMMON: Mapping[str, Any] = {
+    # HiGHS keeps to the number of the first call of a process: every call with another one fails.
+    "threads": 1,
     "primal_feasibility_tolerance": TOLERANCE,
     "dual_feasibility_tolerance": TOLERANCE,
 }
 # Measured on coursed and irregular walls of 30 and 60 stones: dual simplex first, then primal
 # from its basis, without presolve and scaling, is the fastest of all pairs.
 _SIMPLEX: Mapping[str, Any] = {
-    "threads": 1,
     "solver": "simplex",
     "presolve": "off",
     "simplex_scale_strategy": 0,
     "simplex_strategy": 1,
 }
 _FROM_BASIS: Mapping[str, Any] = {"simplex_strategy": 4}
-# With its own number of threads: another one than in an earlier call can fail (kError).
 _IPM: Mapping[str, Any] = {"solver": "ipm", "run_crossover": "on", "presolve": "on"}
 
 _OPTIONS: Mapping[Algorithm, Mapping[str, Any]] = {"simplex": _SIMPLEX, "ipm": _IPM}
