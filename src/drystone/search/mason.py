@@ -90,7 +90,7 @@ class Mason:
     @classmethod
     def of(cls, workshop: Workshop, settings: PlannerSettings, laying: LayingSettings) -> "Mason":
         """Return who lays stones of a workshop."""
-        limits = wedge_limits(settings, workshop.stock, workshop.site.scale)
+        limits = wedge_limits(settings, workshop.stock, workshop.site)
         hand = Hand(laying.let_go, settings.settle, limits, settings.stabilise.method)
         return cls(workshop, settings, laying, hand, Evaluator(settings, workshop.stock))
 
