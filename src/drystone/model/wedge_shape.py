@@ -256,9 +256,7 @@ class WedgeRule:
                 yield f"{value:.4g} {words}, at most {limit:.4g}"
         for words, angle in angles:
             if angle > friction + rounding:
-                yield (
-                    f"{math.degrees(angle):.1f}° {words}, at most {math.degrees(friction):.1f}°"
-                )
+                yield (f"{math.degrees(angle):.1f}° {words}, at most {math.degrees(friction):.1f}°")
 
     def allows(self, shape: WedgeShape) -> bool:
         """Say whether a mason would cut a wedge that is to be put on the grid."""

@@ -124,11 +124,15 @@ def all_spans(table: Slabs, places: int, limits: WedgeLimits) -> list[Span]:
 
 
 def fitted(table: Slabs, narrowest: Span, part: Span, limits: WedgeLimits) -> Span | None:
-    """Return the narrowest span made wider, itself where that is no wedge, or None."""
-    for span in (_widened(table, narrowest, part), narrowest):
-        if limits.allows(table.shape(span)):
-            return span
-    return None
+    """Make a span as wide as it is high: outwards, then inwards; None when that is no wedge."""
+    left, right = narrowest
+    for _ in range(WIDENINGS):
+        height = table.shape((left, right)).height
+        if height <= right - left:
+            break
+        right = min(left + ASPECT * height, part[1])
+        left = max(min(left, right - ASPECT * height), part[0])
+    return (left, right) if limits.allows(table.shape((left, right))) else None
 
 
 def parts(table: Slabs, limits: WedgeLimits) -> list[Span]:
@@ -161,18 +165,6 @@ def _fitting(slab: Span, thick: list[float], limits: WedgeLimits) -> Span:
         slab[0] if ends[0] <= 0.0 else slab[0] + run * ends[0],
         slab[1] if ends[1] >= 1.0 else slab[0] + run * ends[1],
     )
-
-
-def _widened(table: Slabs, span: Span, part: Span) -> Span:
-    """Make a span as wide as it is high where there is room: outwards, then inwards."""
-    left, right = span
-    for _ in range(WIDENINGS):
-        height = table.shape((left, right)).height
-        if height <= right - left:
-            break
-        right = min(left + ASPECT * height, part[1])
-        left = max(min(left, right - ASPECT * height), part[0])
-    return left, right
 
 
 def extent(points: Points) -> Span:
