@@ -1,5 +1,7 @@
 """Wedges: what they cannot help carrying, and those that stick out."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import OptimizeResult
@@ -16,9 +18,11 @@ def modelled(loops, wedges):
 
 
 def slab_on(*, wedge_x, piers, slab=(0.0, 4.0)):
+    """A slab on piers, and on a flat wedge on a low block; something stands beside them."""
     loops = {i: box(x, 0, 1, 1) for i, x in enumerate(piers, 1)}
+    loops[5], loops[6] = box(wedge_x, 0, 0.5, 0.75), box(5, 0, 1, 1)
     loops[8] = box(slab[0], 1, slab[1], 1)
-    loops[9] = box(wedge_x, 0, 0.5, 1)
+    loops[9] = box(wedge_x, 0.75, 0.5, 0.25)
     return modelled(loops, {9})
 
 
@@ -58,6 +62,63 @@ def test_a_wedge_that_sticks_out_is_named(at):
     out = [case for case in found.cases if "sticks out" in case.words]
     assert [case.stones for case in out] == [(9, 2)]
     assert out[0].value == pytest.approx(0.6)
+
+
+def slab_with(wedge, *more):
+    """A slab of size 2 over a wedge, between two posts or what is given instead."""
+    beside = more or (box(-3, 0, 2, 2), box(5, 0, 2, 2))
+    loops = {1: box(0, 0, 4, 1), 8: box(0, 1.3, 4, 1), 9: np.asarray(wedge, float)}
+    return Masonry(loops | dict(enumerate(beside, 20)), wedge_ids={9})
+
+
+def named(masonry):
+    found = pins.find(masonry)
+    told = [case.words for case in found.cases if "no mason would cut" in case.words]
+    assert found.figures["wedges that no mason would cut"] == len(told)
+    assert found.verdict == ("broken" if told else "not judged")
+    return "; ".join(told).partition(": ")[2]
+
+
+@pytest.mark.parametrize("factor", [1.0, 250.0])
+@pytest.mark.parametrize(
+    ("wedge", "words"),
+    [
+        (box(1, 1, 0.5, 0.3), ""),
+        (box(1, 1, 0.5, 0.082), "6.098 times as wide as thick, at most 5"),
+        (box(1, 1, 0.3, 0.078), "0.039 thick, at least 0.04"),
+        (box(1, 1, 0.2, 0.19), "0.1 wide, at least 0.12"),
+        (box(1, 1, 0.3, 0.33), "1.1 times as high as wide, at most 1"),
+        (box(1, 1, 0.7, 0.62), "0.31 high, at most 0.3"),
+        (box(1, 1, 1.2, 0.59), "0.177 in area, at most 0.144"),
+        (
+            [[1, 1.1], [1.5, 1], [1.5, 1.4], [1, 1.19]],
+            "34.1° between its faces, at most 30.1°",
+        ),
+    ],
+)
+def test_wedges_that_no_mason_would_cut_are_named_in_stone_sizes(wedge, words, factor):
+    masonry = slab_with(wedge)
+    assert masonry.median_size == 2.0
+    loops = {i: loop * factor for i, loop in masonry.loops.items()}
+    assert named(Masonry(loops, wedge_ids={9})) == words
+
+
+def test_with_a_scale_thickness_is_judged_in_millimetres():
+    """A size of 2 is 200 mm, so the least is 6 mm less a fifth instead of a twentieth."""
+    masonry = slab_with(box(1, 1, 0.16, 0.05))
+    assert "thick" in named(masonry)
+    assert named(replace(masonry, per_m=10.0)) == ""
+    assert "thick" in named(replace(masonry, per_m=20.0))
+
+
+def test_a_wedge_with_nothing_beside_it_is_named():
+    wedge, post = box(1, 1, 0.5, 0.3), box(5, 0, 2, 2)
+    assert named(slab_with(wedge)) == ""
+    assert named(slab_with(wedge, post, box(8, 0, 2, 2))) == "nothing beside it to the left"
+    mirrored = named(slab_with(wedge, post * [-1, 1], box(-8, 0, 2, 2)))
+    assert mirrored == "nothing beside it to the right"
+    # Stones that lie lower or higher are not beside it.
+    assert "left; nothing" in named(slab_with(wedge, box(-3, 0, 2, 1), box(5, 1.3, 2, 1)))
 
 
 def test_a_wedge_beyond_its_stone_but_between_others_does_not_stick_out():
@@ -119,7 +180,9 @@ def test_a_solver_that_gives_up_is_no_wall_that_falls(monkeypatch):
 
 def test_without_wedges_or_contacts_nothing_is_judged():
     assert pins.find(Masonry({1: box(0, 0, 1, 1)})).verdict == "not judged"
-    floating = modelled({1: box(0, 0, 2, 1), 2: box(0, 1.4, 2, 1), 9: box(0, 1, 0.5, 0.2)}, {9})
+    loops = {1: box(0, 0, 2, 1), 2: box(0, 1.4, 2, 1), 9: box(1, 1, 0.5, 0.2),
+             3: box(-2, 0, 1, 3), 4: box(3, 0, 1, 3)}  # fmt: skip
+    floating = modelled(loops, {9})
     found = pins.find(floating)
     assert (found.number, found.verdict) == (None, "not judged")
     assert "does not stand" in found.note

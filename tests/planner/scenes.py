@@ -16,11 +16,25 @@ from drystone.planner.settings import PlannerSettings, method_settings
 RUBBLE_SITE = Site(100, 36)
 """What :func:`rubble` is for."""
 
+WITH_WEDGES: Mapping[str, object] = {
+    "selection_rule": "algorithm2",
+    "stabilise": {"method": "wedge", "min_wedge_px": 1, "margin": 0.3, "max_wedge_height": 0.9},
+    "wedge": {"thickness": 0.02, "thickness_mm": 1.0, "height": 0.9, "area": 0.9},
+    "two_sided": False,
+}
+"""Changes with which many stones stand on wedges, of any size, on pixels and on outlines."""
+
 
 def rubble(seed: int = 0, count: int = 8) -> StoneSet:
     """Rubble of two courses."""
     settings = RubbleSettings(count=count, width_px=100, height_px=36, courses=2)
     return rubble_stones(settings, np.random.default_rng(seed))
+
+
+def few_stones() -> StoneSet:
+    """Some of these get wedges with :data:`WITH_WEDGES`."""
+    size = RubbleSettings(count=5, width_px=90, height_px=30, courses=2)
+    return rubble_stones(size, np.random.default_rng(4))
 
 
 def bricks(count: int = 6, halves: int = 0) -> StoneSet:

@@ -84,7 +84,7 @@ def test_a_wedge_polygon_is_in_metres() -> None:
     assert corners.max(axis=0) == pytest.approx([6.0, 2.0])
 
 
-@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("seed", [0, 3])
 def test_plans_of_the_default_method_hold_and_bury_nothing(seed: int) -> None:
     stones = rubble(seed=seed)
     settings = method_settings("best").updated({"search": {"budget": 3}})

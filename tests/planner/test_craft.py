@@ -20,7 +20,9 @@ from drystone.stabilise.stabilise import Stabilised
 from tests.naive import planner as naive
 from tests.strategies import posed_on_walls, repeatable
 
-STOCK = Stock(narrowest_px=4.0, mean_height_px=5.0, mean_area_px=50.0, largest_id=9)
+STOCK = Stock(
+    narrowest_px=4.0, mean_height_px=5.0, mean_area_px=50.0, median_area_px=50.0, largest_id=9
+)
 SITE = Site(40, 20)
 
 

@@ -30,7 +30,7 @@ from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall, run_to_end
 from drystone.settle.rest import placed_outline
 from drystone.verify import check_plan
-from tests.planner.scenes import finish, greedy, outlines, rubble, same
+from tests.planner.scenes import WITH_WEDGES, few_stones, finish, greedy, outlines, rubble, same
 from tests.strategies import repeatable
 
 Case = tuple[StoneSet, tuple[float, float], float, PlannerSettings]
@@ -77,10 +77,8 @@ def cases(draw: st.DrawFn) -> Case:
         "two_sided": draw(st.booleans()),
         "skip_too_large": True,
         "settle": {"method": draw(st.sampled_from(["energy", "pivot"]))},
-        "stabilise": {
-            "method": draw(st.sampled_from(["both", "wedge", "rotation", "none"])),
-            "min_wedge_px": 1,
-        },
+        "stabilise": {"method": draw(st.sampled_from(["both", "wedge", "rotation", "none"]))},
+        "wedge": draw(st.sampled_from([{}, {"height": 0.6, "area": 0.4}])),
         "selection_rule": draw(st.sampled_from(["score", "algorithm2"])),
         "orientations": draw(st.sampled_from(["quarter", "sf", "45deg"])),
         "mu": draw(st.sampled_from([0.58, 0.3])),
@@ -138,22 +136,9 @@ def test_every_plan_is_true(case: Case, seed: int) -> None:
         assert result.wall.wedges == ()
 
 
-WEDGES = greedy(
-    {
-        "selection_rule": "algorithm2",
-        "stabilise": {"method": "wedge", "min_wedge_px": 1, "margin": 0.3, "max_wedge_height": 0.9},
-        "two_sided": False,
-        "search": {"budget": 4},
-    }
-)
+WEDGES = greedy({**WITH_WEDGES, "search": {"budget": 4}})
 WALL_PX = (84.0, 34.0)
 SITE = Site.from_source(*WALL_PX, 0.5)
-
-
-def few_stones() -> StoneSet:
-    """Some of these get wedges."""
-    size = RubbleSettings(count=5, width_px=90, height_px=30, courses=2)
-    return rubble_stones(size, np.random.default_rng(1))
 
 
 def test_half_a_pixel_is_not_decided_by_the_unit() -> None:

@@ -25,7 +25,7 @@ from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.limit import lateral_resistance
 from drystone.verify.check import check_plan
-from tests.planner.scenes import blocks, finish, greedy, same
+from tests.planner.scenes import WITH_WEDGES, blocks, few_stones, finish, greedy, same
 
 PX_PER_M, SCALE = 200.0, 0.5
 SITE = Site.from_source(250.0, 95.0, SCALE, PX_PER_M)
@@ -303,19 +303,9 @@ def test_deviations_are_measured_less_planned(settings: PlannerSettings) -> None
 
 
 def test_wedges_in_a_picture_are_no_stones() -> None:
-    wedges = greedy(
-        {
-            "selection_rule": "algorithm2",
-            "stabilise": {
-                "method": "wedge", "min_wedge_px": 1, "margin": 0.3, "max_wedge_height": 0.9,
-            },
-            "two_sided": False,
-        }
-    )  # fmt: skip
-    size = RubbleSettings(count=5, width_px=90, height_px=30, courses=2)
-    stones = rubble_stones(size, np.random.default_rng(1))
+    stones = few_stones()
     site = Site.from_source(84.0, 34.0, SCALE)
-    one = finish(Planner(stones, site, seed=3, settings=wedges))
+    one = finish(Planner(stones, site, seed=3, settings=greedy(WITH_WEDGES)))
     assert one.build.wall.wedges
     before = one.build
     found = one.observe(one.build.wall.labels)

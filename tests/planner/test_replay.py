@@ -6,11 +6,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from drystone.generate import RubbleSettings, rubble_stones
 from drystone.model.outlines import Outlines
 from drystone.model.placement import Placement, Settled, Wedge
 from drystone.model.site import Site
-from drystone.model.stone import StoneSet
 from drystone.model.wall import Group
 from drystone.planner.build import Build, Candidate
 from drystone.planner.evaluate import Evaluator
@@ -19,25 +17,22 @@ from drystone.planner.replay import judged, replayed, stands
 from drystone.planner.settings import PlannerSettings
 from drystone.settle.placing import settled_placement
 from drystone.settle.rest import placed_outline
-from tests.planner.scenes import RUBBLE_SITE, blocks, finish, greedy, rubble
+from tests.planner.scenes import (
+    RUBBLE_SITE,
+    WITH_WEDGES,
+    blocks,
+    few_stones,
+    finish,
+    greedy,
+    rubble,
+)
 
-WEDGES = {
-    "selection_rule": "algorithm2",
-    "stabilise": {"method": "wedge", "min_wedge_px": 1, "margin": 0.3, "max_wedge_height": 0.9},
-    "two_sided": False,
-}
-RASTER = greedy({"geometry": "raster", **WEDGES})
-EXACT = greedy(WEDGES)
+RASTER = greedy({"geometry": "raster", **WITH_WEDGES})
+EXACT = greedy(WITH_WEDGES)
 PLAIN = pytest.mark.parametrize(
     "settings", [greedy(), greedy({"geometry": "raster"})], ids=["exact", "raster"]
 )
 BOTH = pytest.mark.parametrize("settings", [EXACT, RASTER], ids=["exact", "raster"])
-
-
-def few_stones() -> StoneSet:
-    """Two of these get wedges."""
-    size = RubbleSettings(count=5, width_px=90, height_px=30, courses=2)
-    return rubble_stones(size, np.random.default_rng(1))
 
 
 def wedged_wall(settings: PlannerSettings) -> Planner:
@@ -150,7 +145,7 @@ def laid(planner: Planner, stone_id: int, left: float, level: float) -> Group:
 
 def scene(settings: PlannerSettings) -> tuple[Planner, dict[str, Group]]:
     """Blocks on the ground, on each other, over each other, and in the air."""
-    planner = Planner(STONES, Site(60, 40), settings=settings)
+    planner = Planner(STONES, Site(80, 40), settings=settings)
     return planner, {
         "ground": laid(planner, 1, 5, 0),
         "upon": laid(planner, 2, 9, 1),

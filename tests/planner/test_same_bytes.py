@@ -6,26 +6,20 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
-from drystone.generate import RubbleSettings, rubble_stones
 from drystone.io.plan_json import write_plan
 from drystone.io.wall_image import write_wall_image
 from drystone.kernels.backend import VARIABLE, describe
 from drystone.search.plan_wall import plan_wall
-from tests.planner.scenes import greedy
+from tests.planner.scenes import WITH_WEDGES, few_stones, greedy
 from tests.regression.test_same_plan import planned
 
 METHODS = ("paper", "best")
 WALLS: dict[str, dict[str, Any]] = {
     "energy": {"selection_rule": "score", "search": {"budget": 2}},
     "pivot": {"selection_rule": "algorithm2", "settle": {"method": "pivot"}, "mu": 0.4},
-    "wedges": {
-        "selection_rule": "algorithm2",
-        "stabilise": {"method": "wedge", "min_wedge_px": 1, "margin": 0.3, "max_wedge_height": 0.9},
-        "two_sided": False,
-    },
+    "wedges": dict(WITH_WEDGES),
 }
 """What is changed in the default method, on outlines."""
 
@@ -45,9 +39,7 @@ print(describe())
 
 def exact(name: str, folder: Path, n_jobs: int = 1) -> tuple[bytes, bytes]:
     """The bytes of plan.json and wall.png of a few stones on outlines; in metres, at half size."""
-    size = RubbleSettings(count=5, width_px=90, height_px=30, courses=2)
-    stones = rubble_stones(size, np.random.default_rng(1))
-    settings = greedy(WALLS[name])
+    stones, settings = few_stones(), greedy(WALLS[name])
     result = plan_wall(
         stones, 84, 34, scale=0.5, seed=3, settings=settings, n_jobs=n_jobs, px_per_m=437.3
     )

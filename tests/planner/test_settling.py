@@ -23,7 +23,7 @@ from drystone.planner.profile import Profile
 from drystone.planner.proposing import Key, Trial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
-from drystone.planner.stock import Stock
+from drystone.planner.stock import Sides, Stock
 from drystone.settle.rest import Scene, Turned, come_to_rest
 from drystone.settle.settings import SettleSettings
 from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, rubble
@@ -268,7 +268,9 @@ TIPPING = blocks({1: (8, 12), 2: (30, 6), 3: (8, 14), 4: (12, 6)})
 
 def _one(method: str, start: tuple[float, float], post: float = 0.0) -> Proposal | None:
     """Let the slab go over the post, which stands on the ground somewhere."""
-    changes = {"stabilise": {"method": method, "max_wedge_height": 3.0, "margin": 0.0}}
+    changes = {
+        "stabilise": {"method": method, "margin": 0.0}, "wedge": {"height": 1.5, "area": 2.0}
+    }  # fmt: skip
     step = _Step(TIPPING, Site(60, 30), changes=changes)
     step.build = _placed(step, 1, (post + 4.02, 6.01))
     trial = next(t for t in step.trials(("left",)) if t.key == (2, 0.0, "left"))
@@ -308,7 +310,7 @@ def test_methods_of_stabilisation() -> None:
 
 def _tilted(method: str) -> Proposal | None:
     """A brick that is let go tilted by 8 degrees over bare ground."""
-    changes = {"stabilise": {"method": method, "min_wedge_px": 1}, "orientations": "8deg"}
+    changes = {"stabilise": {"method": method}, "orientations": "8deg"}
     step = _Step(blocks({1: (20, 10)}), Site(60, 30), changes=changes)
     trial = next(t for t in step.trials(("left",)) if abs(t.key[1]) == 4.0)
     return step.proposer()._settle(Drop(trial, 0, (30.0, 12.0), (0.0, (trial.key, 0))))
@@ -418,10 +420,17 @@ def test_what_was_asked_before_does_not_matter(rule: str) -> None:
 
 
 def test_wedge_limits_are_in_source_px() -> None:
-    settings = PlannerSettings().updated({"stabilise": {"min_wedge_px": 3, "margin": 0.1}})
-    stock = Stock(narrowest_px=4.0, mean_height_px=20.0, mean_area_px=400.0, largest_id=9)
-    limits = wedge_limits(settings, stock, 0.5)
-    assert (limits.smallest_px, limits.largest_px, limits.margin) == (6.0, 20.0, 0.1)
-    assert (limits.contact_px, limits.rest, limits.steep, limits.mu) == (0.05, 0.2, 0.3, 0.58)
-    small = replace(stock, mean_height_px=2.0)
-    assert wedge_limits(settings, small, 0.5).largest_px == 6.0
+    settings = PlannerSettings().updated({"stabilise": {"margin": 0.1}, "wedge": {"area": 0.2}})
+    stock = Stock(
+        narrowest_px=4.0, mean_height_px=20.0, mean_area_px=400.0, median_area_px=400.0,
+        largest_id=9, sides=Sides(Counter({(7, 30): 2, (9, 9): 1})),
+    )  # fmt: skip
+    limits = wedge_limits(settings, stock, Site(100, 50, 0.5))
+    # The median stone is 20 working px in size, 40 source px.
+    assert (limits.least_thickness, limits.greatest_height) == (2.0, 10.0)
+    assert (limits.greatest_area, limits.room_px) == (320.0, 14.0)
+    assert (limits.margin, limits.mu, limits.setback) == (0.1, 0.58, 0.01)
+    assert (limits.contact_px, limits.rest, limits.steep) == (0.05, 0.2, 0.3)
+    metres = wedge_limits(settings, stock, Site(100, 50, 0.5, px_per_m=500.0))
+    assert (metres.least_thickness, metres.greatest_height) == (3.0, 10.0)
+    assert Stock(4.0, 20.0, 400.0, 400.0, 9).least_side_px == 0

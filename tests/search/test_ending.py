@@ -181,13 +181,13 @@ def score(result: PlanResult) -> tuple[float, ...]:
 def test_none_of_the_walls_to_choose_is_better_than_another() -> None:
     """With the weights of the settings stones find a place that had none by those of a pass."""
     settings = generate.RubbleSettings(count=12)
-    stones = generate.rubble_stones(settings, np.random.default_rng(21))
+    stones = generate.rubble_stones(settings, np.random.default_rng(14))
     area = sum(stone.area_px for stone in stones)
     width = (area * 1.6) ** 0.5 * 1.3
     search = {"budget": 5, "passes": 5, "chains": 2, "share_every": 2}
     few = method_settings("best").updated({"skip_too_large": True, "search": search})
     result = plan_wall(
-        stones, round(width), round(area * 1.25 / width), seed=21, settings=few, choice=True
+        stones, round(width), round(area * 1.25 / width), seed=14, settings=few, choice=True
     )
     assert len(result.choice) > 1
     assert result.choice[0].plan == result.plan

@@ -235,8 +235,8 @@ def test_a_stone_on_its_tip_is_turned_by_half() -> None:
 
 
 def test_a_stone_that_does_not_rest_is_wedged() -> None:
-    sizes = {1: (10, 10), 2: (10, 7), 3: (30, 10)}
-    stones, site = blocks(sizes), Site(36, 30)
+    sizes = {1: (10, 10), 2: (10, 8), 3: (30, 10)}
+    stones, site = blocks(sizes), Site(38, 30)
     for method, status, wedges in (("wedge", "as planned", 1), ("none", "no rest", 0)):
         yard = Yard(stones, site, {"stabilise": {"method": method}})
         laid = yard.lay([yard.planned(1, 0, 0), yard.planned(2, 20, 0)], [yard.planned(3, 0, 10)])

@@ -33,7 +33,7 @@ class _Drop:
         outline = self.yard.workshop.outlines.outline(stone)
         self.stone = Turned.of(outline, 0.0, side, stone.area_px**0.5)
         self.unit_px = self.yard.workshop.stock.mean_height_px
-        limits = wedge_limits(self.yard.settings, self.yard.workshop.stock, 1.0)
+        limits = wedge_limits(self.yard.settings, self.yard.workshop.stock, self.yard.workshop.site)
         self.hand = Hand(settings, self.yard.settings.settle, limits, "both")
 
     def lifts(self) -> list[float]:

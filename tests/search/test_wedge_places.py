@@ -37,7 +37,8 @@ def test_what_the_mechanism_does_not_violate_does_not_help() -> None:
         assert one.alpha is not None
         outlines = build.wall.outlines
         assert outlines is not None
-        places = all_places(build, limits_of(made))
+        lax = replace(limits_of(made), least_thickness=0.1, greatest_height=12.0, mu=3.0)
+        places = all_places(build, lax)
         rates = motion_of(build.model, one.mechanism).resisted_by(places)
         naive = NaiveMotion(build.model, one.mechanism)
         for place, rate in zip(places, rates.tolist(), strict=True):

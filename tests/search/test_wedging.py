@@ -39,10 +39,12 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify import check_plan
 from tests.planner.scenes import Ticks, after_looks, greedy, stones_of_masks
-from tests.search.wedge_walls import ONE_PX, all_places, limits_of, small_walls
+from tests.search.wedge_walls import LARGE, all_places, limits_of, small_walls
 
 NOTHING = np.zeros((0, 0), bool)
-SITE = Site(80, 40)
+SITE = Site(100, 40)
+ENDS = (10, 0.01, 0.01), (11, 93.0, 0.01)
+"""Low blocks at both ends of the wall, so that something is beside every wedge."""
 
 
 def toadstool(stem: slice, height: int, under: int) -> Mask:
@@ -57,19 +59,22 @@ STONES = stones_of_masks(
     {
         1: toadstool(slice(8, 12), 10, 3),
         2: toadstool(slice(0, 16), 10, 3),
-        3: np.ones((4, 7), bool),
+        3: np.ones((2, 5), bool),
         4: toadstool(slice(0, 8), 10, 8),
         5: np.ones((10, 20), bool),
         6: toadstool(slice(0, 11), 10, 3),
         7: toadstool(slice(8, 12), 10, 3),
         8: toadstool(slice(4, 11), 24, 3),
         9: toadstool(slice(8, 16), 24, 3),
+        10: np.ones((5, 6), bool),
+        11: np.ones((5, 6), bool),
+        12: toadstool(slice(0, 8), 10, 5),
     }
 )
 
 
 def planner() -> Planner:
-    return Planner(STONES, SITE, settings=ONE_PX)
+    return Planner(STONES, SITE, settings=LARGE)
 
 
 def wedged(made: Planner, most: int) -> Build:
@@ -79,10 +84,13 @@ def wedged(made: Planner, most: int) -> Build:
 def built(
     *places: tuple[int, float, float], wedges: dict[int, list[Points]] | None = None
 ) -> Planner:
-    """A wall of stones: id, left end and lower end of each, and outlines of wedges under them."""
+    """A wall of stones: id, left end and lower end of each, and outlines of wedges under them.
+
+    Between two blocks at its ends.
+    """
     made = planner()
     groups = []
-    for stone_id, left, low in places:
+    for stone_id, left, low in (*ENDS, *places):
         outline = made.workshop.outlines.outline(STONES.by_id(stone_id))
         x, y = on_grid(np.array([left, low]) - outline.min(axis=0)).tolist()
         settled = Settled(x, y, placed_outline(outline, 0.0, x, y))
@@ -132,22 +140,22 @@ def check(made: Planner, build: Build, stones: StoneSet) -> None:
 
 
 def test_wedges_on_both_sides_keep_a_stone_from_toppling() -> None:
-    made = built((1, 20.0, 0.01))
+    made = built((1, 30.0, 0.01))
     before = value(made.build)
     # The centre of mass is 7.3 px high, the stem 4 wide.
     assert before < 0.5
     after = wedged(made, 2)
     assert value(after) == pytest.approx(1.0)
     assert [w.under for w in after.wall.wedges] == [1, 1]
-    assert [w.id for w in after.wall.wedges] == [10, 11]
+    assert [w.id for w in after.wall.wedges] == [13, 14]
     centres = sorted(float(w.corners[:, 0].mean()) for w in after.wall.wedges)  # type: ignore[index]
-    assert centres[0] < 28.0
-    assert centres[1] > 32.0
+    assert centres[0] < 38.0
+    assert centres[1] > 42.0
     check(made, after, STONES)
 
 
 def test_time_that_is_up_leaves_the_wall_as_it_is() -> None:
-    made, clock = built((1, 20.0, 0.01)), Ticks()
+    made, clock = built((1, 30.0, 0.01)), Ticks()
     arguments = made.build, made.workshop, made.settings, limits_of(made), 2
     after = wedged_up(*arguments, Deadline(math.inf, clock)).build
     assert len(after.wall.wedges) == 2
@@ -159,13 +167,13 @@ def test_time_that_is_up_leaves_the_wall_as_it_is() -> None:
 
 
 def test_where_two_stones_topple_at_once_one_wedge_is_of_no_use() -> None:
-    made = built((1, 5.0, 0.01), (7, 40.0, 0.01))
+    made = built((1, 15.0, 0.01), (7, 50.0, 0.01))
     assert wedged(made, 1) is made.build
 
 
 def test_of_wedges_that_do_as_much_the_smallest_is_cut() -> None:
     """The stone then slides before it topples over a wedge anywhere under its end."""
-    made = built((6, 20.0, 0.01))
+    made = built((6, 30.0, 0.01))
     after = wedged(made, 1)
     assert value(after) == pytest.approx(1.0)
     (wedge,) = after.wall.wedges
@@ -175,8 +183,8 @@ def test_of_wedges_that_do_as_much_the_smallest_is_cut() -> None:
 
 def test_the_direction_that_was_the_weaker_one_gains_all_it_can() -> None:
     """The other direction is then that in which another stone topples, wherever the wedge is."""
-    alone = built((9, 40.0, 0.01)).build.actions[-1].resistance
-    made = built((8, 5.0, 0.01), (9, 40.0, 0.01))
+    alone = built((9, 50.0, 0.01)).build.actions[-1].resistance
+    made = built((8, 15.0, 0.01), (9, 50.0, 0.01))
     before, after = (b.actions[-1].resistance for b in (made.build, wedged(made, 1)))
     assert before.right.alpha == pytest.approx(0.58 * value(made.build))
     assert after.left.alpha == pytest.approx(alone.left.alpha)
@@ -184,7 +192,7 @@ def test_the_direction_that_was_the_weaker_one_gains_all_it_can() -> None:
 
 
 def test_no_more_are_added_than_asked_for() -> None:
-    made = built((1, 5.0, 0.01), (6, 40.0, 0.01))
+    made = built((1, 15.0, 0.01), (6, 50.0, 0.01))
     assert wedged(made, 0) is made.build
     counts = [len(wedged(made, most).wall.wedges) for most in range(5)]
     assert all(count <= most for most, count in enumerate(counts))
@@ -193,7 +201,7 @@ def test_no_more_are_added_than_asked_for() -> None:
 
 def test_a_wedge_that_does_not_matter_is_dropped() -> None:
     """The stone slides before it topples over its wide stem."""
-    made = built((2, 20.0, 0.01), wedges={2: [box(37.0, 0.01, 39.5, 3.0)]})
+    made = built((2, 30.0, 0.01), wedges={2: [box(47, 0.01, 49.5, 3.0)]})
     assert len(made.build.wall.wedges) == 1
     assert value(made.build) == pytest.approx(1.0)
     after = wedged(made, 0)
@@ -204,21 +212,21 @@ def test_a_wedge_that_does_not_matter_is_dropped() -> None:
 
 def test_a_wedge_that_carries_stays() -> None:
     """Without it the stone falls, whatever the wall beside it carries."""
-    leaning = {4: [box(55.0, 0.01, 58.0, 8.0)]}
-    made = built((5, 2.0, 0.01), (4, 40.0, 0.01), wedges=leaning)
+    leaning = {4: [box(65, 0.01, 68, 8.0)]}
+    made = built((5, 12.0, 0.01), (4, 50.0, 0.01), wedges=leaning)
     assert wedged(made, 0) is made.build
 
 
 def test_of_two_wedges_the_needless_one_is_dropped() -> None:
-    two = {4: [box(50.0, 0.01, 52.0, 8.0), box(55.0, 0.01, 58.0, 8.0)]}
-    after = wedged(built((5, 2.0, 0.01), (4, 40.0, 0.01), wedges=two), 0)
-    assert [float(w.corners[:, 0].min()) for w in after.wall.wedges] == [55.0]  # type: ignore[index]
+    two = {4: [box(60, 0.01, 62, 8.0), box(65, 0.01, 68, 8.0)]}
+    after = wedged(built((5, 12.0, 0.01), (4, 50.0, 0.01), wedges=two), 0)
+    assert [float(w.corners[:, 0].min()) for w in after.wall.wedges] == [65.0]  # type: ignore[index]
 
 
 def test_a_wedge_that_is_needed_only_while_the_wall_grows_stays() -> None:
     """The block on the other end of the stone keeps it from falling; but until it comes..."""
-    held = {4: [box(55.0, 0.01, 58.0, 8.0)]}
-    made = built((4, 40.0, 0.01), (5, 30.5, 18.02), wedges=held)
+    held = {4: [box(65, 0.01, 68, 8.0)]}
+    made = built((4, 50.0, 0.01), (5, 40.5, 18.02), wedges=held)
     blocks = [b for b in made.build.wall.outlines.blocks if b[0] in (4, 5)]  # type: ignore[union-attr]
     without = lateral_resistance(model_of_outlines(PlacedPolygons.of(blocks)))
     assert without.value == pytest.approx(value(made.build))
@@ -226,7 +234,7 @@ def test_a_wedge_that_is_needed_only_while_the_wall_grows_stays() -> None:
 
 
 def test_a_wall_without_its_states_is_the_same_wall_when_nothing_changes() -> None:
-    made = built((5, 2.0, 0.01), (2, 40.0, 0.01))
+    made = built((5, 12.0, 0.01), (2, 50.0, 0.01))
     groups = made.build.wall.groups
     start = made.build.states()[0]
     made.build, _, _ = replayed(start, groups, {}, made.workshop, made.settings, keep=False)
@@ -235,20 +243,22 @@ def test_a_wall_without_its_states_is_the_same_wall_when_nothing_changes() -> No
 
 
 def test_wedges_keep_clear_of_what_comes_later_and_do_not_rest_on_it() -> None:
-    made = built((4, 20.0, 0.01), (3, 33.5, 0.01), wedges={4: [box(28.1, 0.01, 30.1, 8.0)]})
-    places = all_places(made.build, replace(limits_of(made), largest_px=20.0))
-    under = [p for p in places if p.step == 0]
-    later = shapely.Polygon(made.build.wall.groups[1].placement.settled.corners)  # type: ignore[union-attr]
+    made = built((12, 30.0, 0.01), (3, 44.9, 0.01), wedges={12: [box(38.1, 0.01, 39.6, 5.0)]})
+    places = all_places(
+        made.build, replace(limits_of(made), greatest_height=20.0, greatest_area=99.0)
+    )
+    under = [p for p in places if p.step == 2]
+    later = shapely.Polygon(made.build.wall.groups[3].placement.settled.corners)  # type: ignore[union-attr]
     assert under
     for place in under:
         shape = shapely.Polygon(place.corners)
         assert shape.distance(later) >= 0.0049
-        # Over the stone that comes later there is a gap 4 px high, which is not filled.
+        # Over the stone that comes later there is a gap 3 px high, which is not filled.
         assert place.corners[:, 1].min() == pytest.approx(0.01, abs=1e-5)
 
 
 def test_no_stone_gets_more_than_two_wedges() -> None:
-    two = wedged(built((1, 20.0, 0.01)), 2)
+    two = wedged(built((1, 30.0, 0.01)), 2)
     assert len(two.wall.wedges) == 2
     made = planner()
     made.build = two
@@ -372,7 +382,7 @@ def test_a_wedge_with_which_the_wall_does_not_stand_is_barred(
 
 
 def test_other_wedges_are_found_when_the_best_is_barred(monkeypatch: pytest.MonkeyPatch) -> None:
-    made = built((6, 20.0, 0.01))
+    made = built((6, 30.0, 0.01))
     best = wedged(made, 1)
     (wedge,) = best.wall.wedges
     assert wedge.corners is not None
@@ -384,7 +394,7 @@ def test_other_wedges_are_found_when_the_best_is_barred(monkeypatch: pytest.Monk
 
 
 def test_the_steps_are_taken_again_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    made = built((1, 5.0, 0.01), (6, 40.0, 0.01))
+    made = built((1, 15.0, 0.01), (6, 50.0, 0.01))
     taken = refusing(monkeypatch, set())
     assert len(wedged(made, 4).wall.wedges) > 1
     assert len(taken) == 1
@@ -392,8 +402,8 @@ def test_the_steps_are_taken_again_once(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_what_cannot_be_dropped_stays(monkeypatch: pytest.MonkeyPatch) -> None:
     """Both wedges may go as the finished wall is, but not one after the other."""
-    two = {2: [box(36.5, 0.01, 38.0, 3.0), box(38.2, 0.01, 39.7, 3.0)]}
-    made = built((2, 20.0, 0.01), (5, 45.0, 0.01), wedges=two)
+    two = {2: [box(46.5, 0.01, 48, 3.0), box(48.2, 0.01, 49.7, 3.0)]}
+    made = built((2, 30.0, 0.01), (5, 55.0, 0.01), wedges=two)
     assert wedged(made, 0).wall.wedges == ()
 
     def refuse(start: Build, groups: Sequence[Group], *rest: Any, **named: Any) -> Replayed:
@@ -407,13 +417,13 @@ def test_what_cannot_be_dropped_stays(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_solver_that_gives_up_is_no_reason_to_stop(monkeypatch: pytest.MonkeyPatch) -> None:
-    made = built((1, 20.0, 0.01))
+    made = built((1, 30.0, 0.01))
     monkeypatch.setattr(Draft, "motion", lambda *_: None)
     assert wedged(made, 3) is made.build
     gave_up = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
     failed = LateralResistance(gave_up[0], gave_up[1], 0.58)
     monkeypatch.setattr(Draft, "resistance", failed)
-    assert wedged(built((2, 20.0, 0.01), wedges={2: [box(37.0, 0.01, 39.5, 3.0)]}), 3).wall.wedges
+    assert wedged(built((2, 30.0, 0.01), wedges={2: [box(47, 0.01, 49.5, 3.0)]}), 3).wall.wedges
 
 
 def test_trouble_with_steps_that_are_taken_again_is_counted(

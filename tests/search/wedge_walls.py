@@ -16,11 +16,12 @@ from drystone.settle.wedge import WedgeLimits
 from drystone.statics.contacts.settled import PlacedPolygons
 from tests.planner.scenes import finish, greedy
 
-ONE_PX = greedy({"stabilise": {"min_wedge_px": 1}, "search": {"budget": 2}})
+LARGE = greedy({"wedge": {"thickness": 0.04, "height": 0.5, "area": 0.3}, "search": {"budget": 2}})
+"""With larger wedges than usual, of which small walls have some."""
 
 
 def limits_of(made: Planner) -> WedgeLimits:
-    return wedge_limits(made.settings, made.workshop.stock, made.workshop.site.scale)
+    return wedge_limits(made.settings, made.workshop.stock, made.workshop.site)
 
 
 def all_places(build: Build, limits: WedgeLimits) -> list[WedgePlace]:
@@ -38,13 +39,16 @@ def all_places(build: Build, limits: WedgeLimits) -> list[WedgePlace]:
 
 @cache
 def small_walls() -> tuple[tuple[StoneSet, Planner], ...]:
-    """Walls of stones about 20 px wide."""
+    """Walls of stones about 20 px wide, most of which gain by wedges."""
     rubble = RubbleSettings(count=8, width_px=90, height_px=40, courses=2)
-    sharp = PolygonSettings(count=8, width_px=28, height_px=18)
+    plain, sharp = (
+        PolygonSettings(count=8, width_px=28, height_px=18, noise=noise) for noise in (0.2, 0.4)
+    )
     made = []
-    for seed, scale in ((0, 1.0), (1, 0.5)):
+    for kind, seed, scale in ((plain, 0, 0.5), (plain, 5, 0.5), (sharp, 4, 0.5), (rubble, 0, 1.0)):
         rng = np.random.default_rng(seed)
-        for stones in (rubble_stones(rubble, rng), polygon_stones(sharp, rng)):
-            site = Site.from_source(90.0, 48.0, scale)
-            made.append((stones, finish(Planner(stones, site, seed=seed, settings=ONE_PX))))
+        generated = isinstance(kind, RubbleSettings)
+        stones = rubble_stones(kind, rng) if generated else polygon_stones(kind, rng)
+        site = Site.from_source(90.0, 48.0, scale)
+        made.append((stones, finish(Planner(stones, site, seed=seed, settings=LARGE))))
     return tuple(made)

@@ -1,5 +1,8 @@
 """Wedges under stones that would fall: drawn by hand, and on random piles."""
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -22,14 +25,22 @@ from drystone.settle.wedge import (
     falling_side,
     in_order,
     met_below,
+    squeezed_out,
     wedge_under,
 )
 from drystone.settle.wedge_spans import Slabs, parts
 from tests.naive.crevice import gap_at
+from tests.naive.wedge_shape import covered, objections
 from tests.settle.piles import WIDTH, moved, piles
 from tests.strategies import repeatable
 
-LIMITS = WedgeLimits(smallest_px=0.5, largest_px=6.0)
+LIMITS = WedgeLimits(least_thickness=0.5, greatest_height=6.0)
+SIZES = 0.4, 4.0, 12.0, 0.5
+STRICT = WedgeLimits(
+    least_thickness=SIZES[0], greatest_height=SIZES[1], greatest_area=SIZES[2], mu=SIZES[3],
+    room_px=20.0,
+)  # fmt: skip
+"""Least thickness, greatest height, greatest area, friction; all of them matter in piles."""
 
 
 def box(left: float, low: float, right: float, high: float) -> Points:
@@ -71,31 +82,33 @@ def test_a_stone_that_falls_to_the_left_gets_its_wedge_there() -> None:
 
 
 def test_the_margin_moves_the_wedge_outwards() -> None:
-    wedge = wedge_for(PLANK, SCENE, WedgeLimits(smallest_px=0.5, largest_px=6.0, margin=0.2))
+    wedge = wedge_for(
+        PLANK, SCENE, WedgeLimits(least_thickness=0.5, greatest_height=6.0, margin=0.2)
+    )
     assert wedge is not None
     assert wedge[:, 0].min() == pytest.approx(17.0)
 
 
 def test_at_the_end_of_the_stone_the_wedge_grows_inwards() -> None:
-    limits = WedgeLimits(smallest_px=0.5, largest_px=6.0, margin=0.4)
+    limits = WedgeLimits(least_thickness=0.5, greatest_height=6.0, margin=0.4)
     wedge = wedge_for(PLANK, SCENE, limits)
     assert wedge is not None
     assert wedge[:, 0].tolist() == pytest.approx([20 - 1.25 * 1.99, 20, 20, 20 - 1.25 * 1.99])
 
 
-def test_at_the_end_of_the_stone_it_is_still_as_wide_as_the_smallest() -> None:
-    """Floor and lid rise side by side, so that a wider wedge is higher than it may be."""
+def test_at_the_end_of_the_stone_it_is_still_as_wide_as_the_narrowest() -> None:
+    """Floor and lid rise side by side; rounding takes nothing off the end."""
     stone = np.array([[10, 5.01], [24, 9.21], [24, 12], [10, 12]])
-    hill = np.array([[13.02, 0], [26, 0], [26, 6.81], [13.02, 2.916]])
+    hill = np.array([[13.02, 0], [26, 0], [26, 8.61], [13.02, 4.716]])
     scene = [box(10, 0, 13, 5), hill]
     for shift in np.linspace(0.0, 9.0, 181):
-        smallest = 2.9 + shift / 200.0
-        limits = WedgeLimits(smallest_px=smallest, largest_px=4.0, margin=0.45)
+        least = 1.0 + shift / 100.0
+        limits = WedgeLimits(least_thickness=least, greatest_height=4.0, margin=0.45)
         wedge = wedge_for(
             moved(stone, shift), no_polygons().added(moved(p, shift) for p in scene), limits, 1
         )
         assert wedge is not None
-        assert np.ptp(wedge[:, 0]) == pytest.approx(smallest)
+        assert np.ptp(wedge[:, 0]) == pytest.approx(3.0 * least)
         assert wedge[:, 0].max() == pytest.approx(24.0 + shift)
 
 
@@ -112,20 +125,24 @@ def test_bends_do_not_end_a_wedge_but_steps_do() -> None:
 
 def test_too_low_or_too_high_a_gap_takes_no_wedge() -> None:
     for smallest, largest in ((0.5, 1.98), (2.0, 6.0)):
-        limits = WedgeLimits(smallest_px=smallest, largest_px=largest)
+        limits = WedgeLimits(least_thickness=smallest, greatest_height=largest)
         assert wedge_for(PLANK, SCENE, limits) is None
-    limits = WedgeLimits(smallest_px=1.98, largest_px=2.0)
+    limits = WedgeLimits(least_thickness=1.98, greatest_height=2.0)
     assert wedge_for(PLANK, SCENE, limits) is not None
 
 
 def test_where_the_gap_is_too_narrow_there_is_no_wedge() -> None:
     """From the centre of mass to the end of the stone, and as far as the next wall inwards."""
     stone = box(10.0, 2.01, 15.2, 4.0)
-    scene = no_polygons().added([box(10, 0, 12.4, 2)])
-    assert wedge_for(stone, scene, WedgeLimits(smallest_px=2.0, largest_px=3.0)) is None
-    scene = no_polygons().added([box(10, 0, 12.4, 2), box(14, 0, 15, 1.9)])
-    assert wedge_for(stone, scene, WedgeLimits(smallest_px=1.7, largest_px=3.0)) is None
-    assert wedge_for(stone, scene, WedgeLimits(smallest_px=1.5, largest_px=3.0)) is not None
+    scene = no_polygons().added([box(10, 0, 12.4, 2), box(12.4, 0, 16, 1.5)])
+    wide, narrow = (
+        WedgeLimits(least_thickness=least, greatest_height=3.0) for least in (0.45, 0.4)
+    )
+    assert wedge_for(stone, scene, wide) is not None
+    # A slot of 1.27 px is left: three times as wide as the second is thick at least.
+    scene = scene.added([box(13.7, 1.5, 15, 1.9)])
+    assert wedge_for(stone, scene, wide) is None
+    assert wedge_for(stone, scene, narrow) is not None
 
 
 @pytest.mark.parametrize("above", [False, True])
@@ -137,30 +154,51 @@ def test_no_face_is_steeper_than_friction_holds(above: bool) -> None:
     if above:
         stone = np.array([[10, 4.01], [13, 4.01], [23, 9.01], [23, 12], [10, 12]])
         scene = no_polygons().added([box(10, 0, 13, 4)])
-    mild, slippery = (WedgeLimits(smallest_px=1.0, largest_px=8.0, mu=mu) for mu in (0.51, 0.49))
+    mild, slippery = (
+        WedgeLimits(least_thickness=1.0, greatest_height=8.0, mu=mu) for mu in (0.51, 0.49)
+    )
     assert wedge_for(stone, scene, mild, 1) is not None
     assert wedge_for(stone, scene, slippery, 1) is None
 
 
-def test_the_slope_of_a_face_is_that_from_end_to_end() -> None:
-    """It rests on the level part of the floor, but the load would push it down the other."""
-    bank = np.array([[14.02, 0.0], [24.0, 0.0], [24.0, 3.0], [19.0, 3.0], [14.02, 0.5]])
-    scene = no_polygons().added([box(9, 0, 14, 10), bank])
-    mild, slippery = (WedgeLimits(smallest_px=6.0, largest_px=10.0, mu=mu) for mu in (0.45, 0.2))
-    assert wedge_for(box(9.0, 10.01, 22.02, 13.0), scene, mild, 1) is not None
-    assert wedge_for(box(9.0, 10.01, 22.02, 13.0), scene, slippery, 1) is None
-
-
-def test_a_wide_place_further_out_is_better_than_a_narrow_one() -> None:
+def test_no_wedge_stands_upright_in_a_narrow_place() -> None:
     """Right of the post a slot narrower than high, then a ledge, then more room."""
-    limits = WedgeLimits(smallest_px=0.3, largest_px=6.0, margin=0.03)
+    limits = WedgeLimits(least_thickness=0.3, greatest_height=6.0, margin=0.03)
     scene = SCENE.added([box(15.5, 0.01, 16.5, 1.9)])
     wedge = wedge_for(PLANK, scene, limits)
     assert wedge is not None
     assert wedge[:, 0].min() == pytest.approx(16.51)
-    wedge = wedge_for(PLANK, scene.added([box(17.5, 0.01, 20, 1.9)]), limits)
-    assert wedge is not None
-    assert [wedge[:, 0].min(), wedge[:, 0].max()] == pytest.approx([14.01, 15.49])
+    assert wedge_for(PLANK, scene.added([box(17.5, 0.01, 20, 1.9)]), limits) is None
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_wedge_at_the_end_of_the_wall_has_something_beside_it(mirrored: bool) -> None:
+    """Or there is room for a stone between the one on it and the end of the wall."""
+
+    def found(right: float, *beside: Points) -> bool:
+        shift = right - 20.0
+        stone, *others = (moved(one, shift) for one in (PLANK, POST, *beside))
+        around = no_polygons().added(others)
+        if mirrored:
+            stone, around = mirrored_polygon(stone, WIDTH), around.mirrored(WIDTH)
+        limits = WedgeLimits(least_thickness=0.5, greatest_height=6.0, room_px=8.0)
+        return wedge_for(stone, around, limits) is not None
+
+    assert found(WIDTH - 8.0)
+    assert not found(WIDTH - 7.9)
+    # A block beside the wedge, half as high, below or behind the end of the plank.
+    assert found(WIDTH - 2.0, box(18.5, 0.01, 20.5, 1.01))
+    assert found(WIDTH - 2.0, box(20.5, 0.01, 21.5, 1.01))
+    assert not found(WIDTH - 2.0, box(20.5, 0.01, 21.5, 0.99))
+
+
+def test_what_is_under_the_stone_itself_covers_its_wedge() -> None:
+    hook = np.array([[10, 2.01], [18.5, 2.01], [18.5, 1.0], [20, 1.0], [20, 4], [10, 4]])
+    limits = WedgeLimits(least_thickness=0.5, greatest_height=6.0, room_px=WIDTH)
+    wedge = box(15.0, 0.01, 17.5, 2.0)
+    beside = SCENE.added([wedge])
+    assert squeezed_out(wedge, PLANK, beside, WIDTH, limits)
+    assert not squeezed_out(wedge, hook, beside, WIDTH, limits)
 
 
 def test_a_stone_that_rests_or_touches_nothing_needs_no_wedge() -> None:
@@ -171,7 +209,7 @@ def test_a_stone_that_rests_or_touches_nothing_needs_no_wedge() -> None:
 
 
 def test_to_which_side_a_stone_falls() -> None:
-    margin = WedgeLimits(smallest_px=0.5, largest_px=6.0, margin=0.1)
+    margin = WedgeLimits(least_thickness=0.5, greatest_height=6.0, margin=0.1)
     assert [falling_side(PLANK, x, SCENE, LIMITS) for x in (10.9, 11.1, 13.9, 14.1)] == [
         -1,
         0,
@@ -206,9 +244,9 @@ def test_a_wedge_must_rest_and_hold_the_stone() -> None:
 
 def test_the_margin_that_the_stone_keeps_is_asked_for() -> None:
     """The plank lifts off when gravity leans to the left by more than (15 - 11) / 1."""
-    strict = WedgeLimits(smallest_px=0.5, largest_px=6.0, rest=0.99)
+    strict = WedgeLimits(least_thickness=0.5, greatest_height=6.0, rest=0.99)
     assert wedge_for(PLANK, SCENE, strict) is not None
-    impossible = WedgeLimits(smallest_px=0.5, largest_px=6.0, rest=1.01)
+    impossible = WedgeLimits(least_thickness=0.5, greatest_height=6.0, rest=1.01)
     assert wedge_for(PLANK, SCENE, impossible) is None
 
 
@@ -218,7 +256,7 @@ def test_wedges_touch_hold_and_overlap_nothing(
     pile: tuple[Points, Polygons], margin: float
 ) -> None:
     stone, around = pile
-    limits = WedgeLimits(smallest_px=0.4, largest_px=5.0, margin=margin)
+    limits = replace(STRICT, margin=margin)
     side = falling_side(stone, centroid(stone)[0], around, limits)
     wedge = wedge_for(stone, around, limits)
     if wedge is None:
@@ -231,14 +269,11 @@ def test_wedges_touch_hold_and_overlap_nothing(
     for body in (held, below):
         assert shape.intersection(body).area == 0.0
         assert limits.clearance_px / 2 <= shape.distance(body) <= 2 * limits.clearance_px
-    left, low, right, high = shape.bounds
-    assert right - left >= limits.smallest_px - 1e-9
-    assert high - low <= limits.largest_px + 1e-9
-    heights = [_height(shape, x) for x in np.linspace(left, right, 23)[1:-1]]
-    assert min(heights) >= limits.smallest_px - 1e-9
+    assert max(objections(wedge, *SIZES).values()) <= 1e-6
+    assert stays_in(wedge, stone, others, limits.room_px)
     # It brings the centre of mass inside the support.
     wanted = limits.margin * float(np.ptp(stone[:, 0]))
-    outer = right if side > 0 else left
+    outer = wedge[:, 0].max() if side > 0 else wedge[:, 0].min()
     assert side * (outer - centroid(stone)[0]) >= wanted - 1e-9
     mu, tolerance = limits.mu, limits.contact_px
     assert rest_margin(wedge, centroid(wedge), around, WIDTH, mu, tolerance) >= 0.0
@@ -246,9 +281,13 @@ def test_wedges_touch_hold_and_overlap_nothing(
     assert rest_margin(stone, centroid(stone), with_it, WIDTH, mu, tolerance) >= 0.0
 
 
-def _height(shape: shapely.Polygon, x: float) -> float:
-    low, high = shapely.LineString([(x, -99.0), (x, 199.0)]).intersection(shape).bounds[1::2]
-    return float(high - low)
+def stays_in(wedge: Points, stone: Points, others: Sequence[shapely.Polygon], room: float) -> bool:
+    """Whether something is beside a wedge on each side, or room for a stone; rows may be few."""
+    shapes = [np.array(other.exterior.coords[:-1]) for other in (*others, shapely.Polygon(stone))]
+    left, right = covered(wedge, shapes)
+    return (left >= 0.48 or stone[:, 0].min() >= room - 1e-4) and (
+        right >= 0.48 or stone[:, 0].max() <= WIDTH - room + 1e-4
+    )
 
 
 @repeatable(150)
@@ -276,17 +315,17 @@ def test_parts_are_where_upright_lines_are_as_long_as_a_wedge(
     for x in (left + share * (right - left) for share in shares):
         if np.abs(corners - x).min() > 1e-6:
             floor, lid = gap_at(stone, around, x)
-            room = min(lid - floor - LIMITS.smallest_px, LIMITS.largest_px - (lid - floor))
+            room = min(lid - floor - LIMITS.least_thickness, LIMITS.greatest_height - (lid - floor))
             if abs(room) > 1e-6:
                 assert (room > 0.0) == any(start <= x <= stop for start, stop in found)
 
 
 def test_limits_are_checked() -> None:
-    good = {"smallest_px": 1.0, "largest_px": 2.0}
+    good = {"least_thickness": 1.0, "greatest_height": 2.0}
     WedgeLimits(**good)
     bad = [
-        {"smallest_px": 0.0}, {"largest_px": 0.9}, {"margin": -0.1}, {"margin": 0.5}, {"mu": 0.0},
-        {"clearance_px": 0.0}, {"clearance_px": 0.06},
+        {"least_thickness": 0.0}, {"greatest_height": 0.9}, {"margin": -0.1}, {"margin": 0.5},
+        {"mu": 0.0}, {"clearance_px": 0.0}, {"clearance_px": 0.06},
     ]  # fmt: skip
     for change in bad:
         with pytest.raises(ValueError, match="must"):
@@ -316,7 +355,7 @@ def test_polygons_in_order_are_those_added_in_order(
 def test_a_stone_meets_what_is_beside_it_and_so_far_below_as_a_wedge_is_high() -> None:
     stone = box(10.0, 20.0, 20.0, 24.0)
     reach = LIMITS.contact_px + 4.0 * LIMITS.clearance_px
-    deep = 20.0 - reach - LIMITS.largest_px
+    deep = 20.0 - reach - LIMITS.greatest_height
     around = [
         stone,
         box(10.0, deep - 2.0, 20.0, deep + 0.01),

@@ -9,12 +9,13 @@ from drystone.kernels.crevice import crevice
 from drystone.kernels.polygons import Points, Polygons, no_polygons, on_grid
 from drystone.settle.wedge import PLACES, gridded, rests, wedges_below
 from drystone.settle.wedge_spans import Slabs, WedgeLimits, all_spans
+from tests.naive.wedge_shape import objections
 from tests.settle.piles import WIDTH, piles
-from tests.settle.test_wedge import box
+from tests.settle.test_wedge import SIZES, STRICT, box
 from tests.strategies import repeatable
 
 POST, PLANK = box(13.0, 0.01, 16.0, 2.0), box(10.0, 2.01, 20.0, 4.0)
-LIMITS = WedgeLimits(smallest_px=1.0, largest_px=2.5)
+LIMITS = WedgeLimits(least_thickness=0.6, greatest_height=2.5)
 
 
 def spans(limits: WedgeLimits) -> list[tuple[float, float]]:
@@ -40,17 +41,17 @@ def test_each_part_of_a_crevice_has_its_places_and_itself() -> None:
 
 
 def test_limits_hold_for_whole_parts_as_well() -> None:
-    assert spans(WedgeLimits(smallest_px=0.5, largest_px=1.97)) == []
-    assert spans(WedgeLimits(smallest_px=1.99, largest_px=2.5)) == []
-    narrow = WedgeLimits(smallest_px=1.9, largest_px=2.5)
-    assert min(stop - start for start, stop in spans(narrow)) >= 1.9
+    assert spans(WedgeLimits(least_thickness=0.5, greatest_height=1.97)) == []
+    assert spans(WedgeLimits(least_thickness=1.99, greatest_height=2.5)) == []
+    wide = WedgeLimits(least_thickness=1.2, greatest_height=2.5)
+    assert min(stop - start for start, stop in spans(wide)) == pytest.approx(3.6)
     # The gap rises by 4 in 10: too high over its whole length, and at the end.
     ramp = np.array([[10.0, 1.0], [20.0, 5.0], [20.0, 8.0], [10.0, 8.0]])
     space = crevice(ramp, no_polygons(), 0.01)
     for start, stop in all_spans(Slabs.of(space), PLACES, LIMITS):
         assert 1.0 + 0.4 * (stop - 10.0) <= 2.5 + 0.05
         assert stop - start >= 1.0 - 1e-9
-    steep = WedgeLimits(smallest_px=1.0, largest_px=2.5, mu=0.39)
+    steep = WedgeLimits(least_thickness=1.0, greatest_height=2.5, mu=0.39)
     assert all_spans(Slabs.of(space), PLACES, steep) == []
 
 
@@ -74,7 +75,7 @@ def test_the_grid_makes_no_two_corners_one() -> None:
     (before_x, before_y), (x, y) = floor[k - 1].tolist(), floor[k].tolist()
     fall = (before_y - y) / (x - before_x)
     smallest = 9.99 - y - 3e-7 * fall
-    limits = WedgeLimits(smallest_px=smallest, largest_px=6.0, contact_px=0.05)
+    limits = WedgeLimits(least_thickness=smallest, greatest_height=6.0, contact_px=0.05)
     wedges = list(wedges_below(wall, 1, limits))
     assert any(np.abs(wedge[:, 0] - x).min() < 1e-6 for wedge in wedges)
     for wedge in wedges:
@@ -97,7 +98,7 @@ def test_a_wedge_rests_or_falls() -> None:
 @given(piles())
 def test_wedges_fit_and_overlap_nothing(pile: tuple[Points, Polygons]) -> None:
     stone, around = pile
-    limits = WedgeLimits(smallest_px=0.4, largest_px=5.0)
+    limits = STRICT
     wall = around.added([stone])
     shapes = [shapely.Polygon(wall.polygon(i)) for i in range(len(wall))]
     below = shapely.union_all([shapely.box(-99, -9, 199, 0), *shapes[:-1]])
@@ -109,6 +110,4 @@ def test_wedges_fit_and_overlap_nothing(pile: tuple[Points, Polygons]) -> None:
         for body in (shapes[-1], below):
             gap = shape.distance(body)
             assert limits.clearance_px / 2 <= gap <= 2 * limits.clearance_px
-        left, low, right, high = shape.bounds
-        assert right - left >= limits.smallest_px - 2e-6
-        assert high - low <= limits.largest_px + 2e-6
+        assert max(objections(wedge, *SIZES).values()) <= 1e-5

@@ -21,7 +21,7 @@ from drystone.settle.wedged import Wedged, wedged
 
 WIDTH = 60.0
 SIDES: tuple[Side, ...] = ("left", "right")
-LIMITS = WedgeLimits(smallest_px=0.5, largest_px=6.0, rest=0.2, contact_px=0.05)
+LIMITS = WedgeLimits(least_thickness=0.5, greatest_height=6.0, rest=0.2, contact_px=0.05)
 POST = np.array([[11.0, 0.01], [14.0, 0.01], [14.0, 2.0], [11.0, 2.0]])
 PLANK = np.array([[-5.0, -1.0], [5.0, -1.0], [5.0, 1.0], [-5.0, 1.0]])
 
@@ -72,7 +72,7 @@ def test_a_wedge_is_counter_clockwise_on_the_grid_and_holds_the_stone(side: Side
 @pytest.mark.parametrize("side", SIDES)
 def test_no_wedge_where_none_is_needed_or_none_fits(side: Side) -> None:
     assert lowered(side, (12.5, 6.0)) is None  # it lies over its support
-    low = replace(LIMITS, largest_px=1.9)
+    low = replace(LIMITS, greatest_height=1.9)
     assert lowered(side, limits=low) is None
     assert lowered(side, limits=replace(LIMITS, rest=9.0)) is None
 

@@ -12,6 +12,7 @@ from drystone.model.placement import Settled, Side
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
+from drystone.model.wedge_shape import WedgeSettings
 from drystone.planner.assemble import Frame
 from drystone.planner.events import Stopped
 from drystone.planner.planner import Planner
@@ -19,7 +20,6 @@ from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_result import finish
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import placed_outline
-from drystone.stabilise.settings import StabiliseSettings
 from drystone.statics.contacts.settled import model_of_outlines
 from tests.planner.scenes import stones_of_masks
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example, stone_set
@@ -31,7 +31,7 @@ SETTINGS = PlannerSettings(
     geometry="exact",
     orientations="quarter",
     two_sided=True,
-    stabilise=StabiliseSettings(min_wedge_px=1, max_wedge_height=0.8),
+    wedge=WedgeSettings(height=0.4, area=0.2),
 )
 WALL_PX = (84.0, 30.0)
 

@@ -188,8 +188,8 @@ def test_wedge_may_fill_no_pixel_and_is_a_block_nevertheless() -> None:
     (wedge,) = replay.wall.wedges
     assert wedge.mask.size == 0
     report = check_plan(example.plan, example.stones, wall_labels=example.wall.labels)
-    # Ten working px are more than it is high: only its size is wrong.
-    assert {problem.code for problem in report.problems} == {"E224"}
+    # What a wedge may be does not depend on the working px.
+    assert report.problems == ()
 
 
 def test_wedge_of_huge_size_is_refused_before_it_is_drawn() -> None:

@@ -13,7 +13,7 @@ from drystone.craft.joints import Joint, joints
 from drystone.craft.scans import Scan, scan
 from drystone.craft.settings import CraftSettings
 from drystone.errors import UsageError
-from drystone.kernels.polygons import area_and_centroid
+from drystone.kernels.polygons import Polygons, area_and_centroid, no_polygons
 from drystone.model.wall import Labels
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.outlines import outlines_of_labels
@@ -38,6 +38,8 @@ class Masonry:
         Step of the plan that places a stone or wedge; empty for what is no plan.
     settings : CraftSettings
         What counts as a joint, a bearing and so on.
+    per_m : float or None
+        Units of length in a metre, where that is known.
 
     Raises
     ------
@@ -57,6 +59,7 @@ class Masonry:
     wedge_ids: Collection[int] = frozenset()
     steps: Mapping[int, int] = field(default_factory=dict)
     settings: CraftSettings = field(default_factory=CraftSettings)
+    per_m: float | None = None
 
     def __post_init__(self) -> None:
         strangers = sorted(set(self.wedge_ids) - set(self.outlines))
@@ -130,6 +133,17 @@ class Masonry:
     def areas(self) -> Mapping[int, float]:
         """Of stones and wedges."""
         return {i: area_and_centroid(loop)[0] for i, loop in self.loops.items()}
+
+    @cached_property
+    def median_size(self) -> float:
+        """Root of the median area of the stones; 1 when there are none."""
+        areas = [self.areas[i] for i in self.stones]
+        return float(np.median(areas)) ** 0.5 if areas else 1.0
+
+    @cached_property
+    def polygons(self) -> Polygons:
+        """All stones and wedges in one array."""
+        return no_polygons().added(self.loops.values())
 
     @cached_property
     def box(self) -> tuple[float, float, float, float]:

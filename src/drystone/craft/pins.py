@@ -1,4 +1,4 @@
-"""Pins and wedges: they fill, they do not carry."""
+"""Pins and wedges: they fill, they do not carry, and a mason would cut them so."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -9,16 +9,21 @@ import numpy as np
 from drystone.craft.finding import VERDICTS, Case, Finding, Limit, Line, Rule
 from drystone.craft.masonry import Masonry
 from drystone.craft.wedge_loads import least_wedge_loads
+from drystone.model.wedge_shape import WedgeRule, WedgeSettings, WedgeShape, open_sides
 from drystone.statics.contacts.joints import is_head_joint, loose_blocks
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus
+
+EASE = 0.2
+"""Wedges may miss their sizes by so much: a planner's go by all stones, not by those placed."""
 
 UNKNOWN = "What the wedges carry is not known"
 
 RULE = Rule(
     "pins",
     "pins and wedges",
-    "Wedges fill gaps and stop rocking; the load goes beside them, and none sticks out.",
+    "Wedges fill gaps and stop rocking; the load goes beside them, none sticks out, and each is a "
+    "flat piece that one can cut and that stays in its place.",
     "The paper, section 2 (shards fill openings or prevent rocking); rockinwalls.com, Pinning & "
     "Chinks, 2011 (pins that lift a large stone fall out or are crushed); Delaware Quarries, "
     "rule 10 (fill cracks after the wall is complete). The number: own definition",
@@ -30,10 +35,10 @@ RULE = Rule(
 
 
 def find(masonry: Masonry, limit: Limit = RULE.limit) -> Finding:
-    """Find wedges that carry, and wedges that stick out.
+    """Find wedges that carry, that stick out, and that no mason would cut.
 
     Wedges are known in plans; in a label image or block model they have to be named.  The verdict
-    is that of the number, or "broken" when a wedge sticks out.
+    is that of the number, or "broken" when a wedge sticks out or is none that a mason would cut.
 
     Parameters
     ----------
@@ -47,14 +52,17 @@ def find(masonry: Masonry, limit: Limit = RULE.limit) -> Finding:
         return Finding(RULE, limit, None, "not judged", note="No wedges are known.")
     resting = {wedge: _resting(masonry, wedge) for wedge in wedges}
     outside = [case for wedge in sorted(wedges) for case in _outside(masonry, wedge, resting)]
+    unfit = [case for wedge in sorted(wedges) for case in _unfit(masonry, wedge, resting)]
     loads, note = _loads(masonry, wedges)
     figures: dict[str, float | None] = {
         "wedges": float(len(wedges)),
         "wedges that stick out": float(len(outside)),
+        "wedges that no mason would cut": float(len(unfit)),
     }
+    bad = (*outside, *unfit)
     if loads is None:
-        verdict = VERDICTS[2] if outside else "not judged"
-        return Finding(RULE, limit, None, verdict, tuple(outside), figures, note)
+        verdict = VERDICTS[2] if bad else "not judged"
+        return Finding(RULE, limit, None, verdict, bad, figures, note)
     shares = {wedge: _share(masonry, loads[wedge], resting[wedge]) for wedge in sorted(wedges)}
     number = round(max(shares.values()), 9)
     carrying = [
@@ -63,10 +71,10 @@ def find(masonry: Masonry, limit: Limit = RULE.limit) -> Finding:
         if share > limit.good + 1e-9
     ]
     carrying.sort(key=lambda case: -case.value)
-    verdict = VERDICTS[2] if outside else RULE.verdict(number, limit)
+    verdict = VERDICTS[2] if bad else RULE.verdict(number, limit)
     figures["wedges that carry"] = float(len(carrying))
     figures["mean load"] = float(np.mean(list(shares.values())))
-    return Finding(RULE, limit, number, verdict, (*carrying, *outside), figures, note)
+    return Finding(RULE, limit, number, verdict, (*bad, *carrying), figures, note)
 
 
 def _loads(masonry: Masonry, wedges: frozenset[int]) -> tuple[Mapping[int, float] | None, str]:
@@ -132,7 +140,8 @@ def _outside(masonry: Masonry, wedge: int, resting: dict[int, tuple[int, ...]]) 
     left = min(masonry.boxes[i][0] for i in resting[wedge]) - x0
     right = x1 - max(masonry.boxes[i][2] for i in resting[wedge])
     out = max(left, right) / masonry.mean_height
-    if out <= masonry.settings.stick_out + 1e-9 or not _open(masonry, wedge, left > right):
+    opened = open_sides(masonry.loops[wedge], masonry.polygons)[0 if left > right else 1]
+    if out <= masonry.settings.stick_out + 1e-9 or not opened:
         return []
     y = 0.5 * (y0 + y1)
     line = np.array([[x0, y], [x0 + left, y]] if left > right else [[x1 - right, y], [x1, y]])
@@ -140,8 +149,26 @@ def _outside(masonry: Masonry, wedge: int, resting: dict[int, tuple[int, ...]]) 
     return [Case((wedge, *resting[wedge]), round(out, 6), words, (line,))]
 
 
-def _open(masonry: Masonry, wedge: int, at_left: bool) -> bool:
-    """Whether nothing is beside a wedge on a side in at least half of its rows."""
-    rows = [runs for runs in masonry.rows.runs if any(run.id == wedge for run in runs)]
-    outermost = [runs[0 if at_left else -1].id == wedge for runs in rows]
-    return bool(outermost) and 2 * sum(outermost) >= len(outermost)
+def _unfit(masonry: Masonry, wedge: int, resting: dict[int, tuple[int, ...]]) -> list[Case]:
+    """Say what is wrong with a wedge that no mason would cut; lengths in sizes of the stones."""
+    if not masonry.stones:
+        return []
+    size = masonry.median_size
+    mu = 0.58 if masonry.model is None else masonry.model.mu
+    per_m = None if masonry.per_m is None else masonry.per_m / size
+    rule = WedgeRule.of(WedgeSettings(), mu, 1.0, per_m)
+    rule = replace(
+        rule,
+        least_thickness=(1.0 - EASE) * rule.least_thickness,
+        greatest_height=(1.0 + EASE) * rule.greatest_height,
+        greatest_area=(1.0 + EASE) ** 2 * rule.greatest_area,
+    )
+    faults = list(rule.faults(WedgeShape.of(masonry.loops[wedge] / size)))
+    if resting[wedge]:
+        left, right = open_sides(masonry.loops[wedge], masonry.polygons)
+        faults += ["nothing beside it to the left"] * left
+        faults += ["nothing beside it to the right"] * right
+    if not faults:
+        return []
+    words = f"no mason would cut the wedge (in stone sizes): {'; '.join(faults)}"
+    return [Case((wedge, *resting[wedge]), float(len(faults)), words, _frame(masonry, wedge))]

@@ -159,7 +159,7 @@ def _on_outlines(
     assert wall.outlines is not None  # noqa: S101 - its caller knows
     scene = Scene.of(wall.outlines.polygons, wall.site.extent_px[0], one.side, settings.mu)
     turned = workshop.outlines.hung(one.stone, one.place.angle_deg, one.side).turned
-    limits = wedge_limits(settings, workshop.stock, wall.site.scale)
+    limits = wedge_limits(settings, workshop.stock, wall.site)
     starts = _starts(turned, one.place, scene, settle.clearance_px)
     taken_in = partial(_taken_in, build, one, workshop, settle.beyond_px)
 

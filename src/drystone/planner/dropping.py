@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from operator import attrgetter
 
 import numpy as np
@@ -11,6 +11,7 @@ from drystone.kernels.drops import DropTerms
 from drystone.kernels.profiles import Floats
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
+from drystone.model.wedge_shape import WedgeRule
 from drystone.planner.proposing import Key, Trial
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, Stock
@@ -166,28 +167,27 @@ def shortlist(drops: Iterable[Drop], settings: SettleSettings) -> list[Drop]:
     return taken
 
 
-def wedge_limits(settings: PlannerSettings, stock: Stock, scale: float) -> WedgeLimits:
+def wedge_limits(settings: PlannerSettings, stock: Stock, site: Site) -> WedgeLimits:
     """Return what wedges may be, in source px.
 
     Parameters
     ----------
     settings : PlannerSettings
-        Sizes in working px and in mean stone heights.
+        Sizes of wedges, and how a wedged stone must rest.
     stock : Stock
         Sizes of the stones, working px.
-    scale : float
-        Working resolution over source resolution.
+    site : Site
+        Its resolution, and its scale.
     """
-    sizes, settle = settings.stabilise, settings.settle
-    smallest = sizes.min_wedge_px / scale
+    settle, size_px = settings.settle, stock.median_area_px**0.5 / site.scale
+    rule = WedgeRule.of(settings.wedge, settings.mu, size_px, site.px_per_m)
     return WedgeLimits(
-        smallest_px=smallest,
-        largest_px=max(smallest, sizes.max_wedge_height * stock.mean_height_px / scale),
-        margin=sizes.margin,
-        mu=settings.mu,
+        **asdict(rule),
+        margin=settings.stabilise.margin,
         clearance_px=settle.clearance_px,
         contact_px=0.5 * settle.contact_px,
         setback=settle.setback,
+        room_px=stock.least_side_px / site.scale,
         rest=settle.margin,
         steep=settle.steep,
     )

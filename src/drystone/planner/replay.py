@@ -11,11 +11,13 @@ from drystone.model.placement import Placement, Wedge
 from drystone.model.wall import Group, Wall, outlined
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.deadline import NEVER, Deadline
+from drystone.planner.dropping import wedge_limits
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.settle.placing import settled_placement, settled_wedge
+from drystone.settle.wedge import WedgeLimits, squeezed_out
 from drystone.stabilise.stabilise import Stabilised
 
 
@@ -27,8 +29,9 @@ class Replayed(NamedTuple):
     build : Build
         After the steps that could be taken.
     left_out : tuple of int
-        Ids of the stones of the others: they overlap what is there, fill no pixel of the wall, or
-        leave a wall that does not stand in both models.
+        Ids of the stones of the others: they overlap what is there, fill no pixel of the wall,
+        have a wedge that nothing would be beside, or leave a wall that does not stand in both
+        models.
     solves : Solves
         What trouble the solver had; a step on which it gave up is left out.
     """
@@ -85,12 +88,13 @@ def replayed(  # noqa: PLR0913 - steps, what they need, and how
         The time limit struck.
     """
     evaluator = Evaluator(settings, workshop.stock, until=until)
+    limits = wedge_limits(settings, workshop.stock, workshop.site)
     build = start
     left_out: list[int] = []
     solves = Solves()
     for group in groups:
         action = None
-        if not (strict and left_out):
+        if not (strict and left_out) and not _squeezed_out(build.wall, group, limits):
             action = _again(build, group, course_heights_px, workshop, evaluator)
         if action is not None:
             solves += Solves.of(action)
@@ -155,6 +159,16 @@ def _has_room(wall: Wall, group: Group) -> bool:
     pieces = [(group.placement.window, group.placement.posed.mask)]
     pieces += [(wedge.window, wedge.mask) for wedge in group.wedges]
     return not any(wall.occupied[window][mask].any() for window, mask in pieces)
+
+
+def _squeezed_out(wall: Wall, group: Group, limits: WedgeLimits) -> bool:
+    """Say whether nothing would be beside a wedge of a step on outlines."""
+    if wall.outlines is None or not group.wedges:
+        return False
+    (_, stone), *wedges = outlined(group.placement, group.wedges)
+    around = wall.outlines.polygons.added(corners for _, corners in wedges)
+    width = wall.site.extent_px[0]
+    return any(squeezed_out(corners, stone, around, width, limits) for _, corners in wedges)
 
 
 def _fitted(wall: Wall, group: Group, number: int) -> Group | None:

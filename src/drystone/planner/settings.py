@@ -9,6 +9,7 @@ from typing import Any, Literal, get_args
 from drystone.clusters import ClusterSettings
 from drystone.errors import UsageError
 from drystone.model.settings import check_finite, updated
+from drystone.model.wedge_shape import WedgeSettings
 from drystone.placement.settings import PlacementSettings
 from drystone.planner.search_settings import GoalSettings, SearchSettings
 from drystone.poses import orientation_step_deg
@@ -80,7 +81,7 @@ class PlannerSettings:
     pin : tuple of int
         Ids of stones that must be in the wall: they are preferred, and each that is missing counts
         10 units of merit against a wall.
-    clusters, placement, stabilise, settle, selection, policy, score, search, goal, stop
+    clusters, placement, stabilise, settle, wedge, selection, policy, score, search, goal, stop
         Settings of the stages.
     """
 
@@ -100,6 +101,7 @@ class PlannerSettings:
     placement: PlacementSettings = field(default_factory=PlacementSettings)
     stabilise: StabiliseSettings = field(default_factory=StabiliseSettings)
     settle: SettleSettings = field(default_factory=SettleSettings)
+    wedge: WedgeSettings = field(default_factory=WedgeSettings)
     selection: SelectionSettings = field(default_factory=SelectionSettings)
     policy: PolicySettings = field(default_factory=PolicySettings)
     score: ScoreSettings = field(default_factory=ScoreSettings)

@@ -64,7 +64,7 @@ class ExactProposer:
         self._build = build
         self._profile = profile
         self._views: dict[Side, tuple[Scene, HeightProfile]] = {}
-        self._limits = wedge_limits(settings, workshop.stock, build.wall.site.scale)
+        self._limits = wedge_limits(settings, workshop.stock, build.wall.site)
         self._terms: DropTerms | None = None
         self._dropped: dict[Key, Dropped] = {}
         self._settled: dict[tuple[Key, int], Proposal | None] = {}

@@ -44,6 +44,8 @@ class Stock:
         Width of the narrowest, which tells boundary stones from inner ones.
     mean_height_px, mean_area_px : float
         Means over the set.
+    median_area_px : float
+        Of the stones themselves, whatever their pixels.
     largest_id : int
         Wedges are numbered after it.
     sides : Sides
@@ -53,6 +55,7 @@ class Stock:
     narrowest_px: float
     mean_height_px: float
     mean_area_px: float
+    median_area_px: float
     largest_id: int
     sides: Sides = field(default_factory=Sides, compare=False)
 
@@ -63,16 +66,23 @@ class Stock:
         Each pose is looked at once, so that poses of a large set need not exist together.
         """
         found = [
-            (posed.height_px, posed.width_px, posed.area_px, posed.stone.id) for posed in initial
-        ]
-        heights, widths, areas, ids = zip(*found, strict=True)
+            (posed.height_px, posed.width_px, posed.area_px, posed.stone.id,
+             posed.stone.area_px * posed.scale**2) for posed in initial
+        ]  # fmt: skip
+        heights, widths, areas, ids, own = zip(*found, strict=True)
         return cls(
             narrowest_px=float(min(widths)),
             mean_height_px=sum(heights) / len(found),
             mean_area_px=sum(areas) / len(found),
+            median_area_px=float(np.median(own)),
             largest_id=max(ids),
             sides=Sides(Counter(map(_sorted, heights, widths))),
         )
+
+    @property
+    def least_side_px(self) -> int:
+        """Shortest side of a stone: where there is less room, none comes."""
+        return min((shorter for shorter, _ in self.sides.counts), default=0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -166,7 +166,7 @@ def wedged(
     may = settings.stabilise.method in ("both", "wedge")
     if found.build.wall.outlines is None or not (wedges and may and found.build.actions):
         return found
-    limits = wedge_limits(settings, workshop.stock, workshop.site.scale)
+    limits = wedge_limits(settings, workshop.stock, workshop.site)
     build, solves = wedged_up(found.build, workshop, settings, limits, wedges, until)
     found = replace(found, solves=found.solves + solves)
     if build is found.build:

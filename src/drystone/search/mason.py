@@ -97,7 +97,7 @@ class Mason:
         until: Deadline = NEVER,
     ) -> "Mason":
         """Return who lays stones of a workshop."""
-        limits = wedge_limits(settings, workshop.stock, workshop.site.scale)
+        limits = wedge_limits(settings, workshop.stock, workshop.site)
         hand = Hand(laying.let_go, settings.settle, limits, settings.stabilise.method)
         evaluator = Evaluator(settings, workshop.stock, until=until)
         return cls(workshop, settings, laying, hand, evaluator)

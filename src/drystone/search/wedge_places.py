@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from drystone.kernels.meetings import meetings
 from drystone.kernels.polygons import Points, area_and_centroid
+from drystone.model.wedge_shape import open_sides
 from drystone.settle.wedge import WedgeLimits, rests, wedges_below
 from drystone.statics.contacts.settled import PlacedPolygons
 from drystone.statics.model import GROUND
@@ -79,9 +80,10 @@ class WedgePlace:
 def wedge_places(
     placed: PlacedPolygons, step: int, first: int, width: float, limits: WedgeLimits
 ) -> Iterator[WedgePlace]:
-    """List wedges under a stone of a wall.
+    """List wedges under a stone of a finished wall.
 
-    They overlap nothing that is there, and rest on what was there before the stone.
+    They overlap nothing that is there, rest on what was there before the stone, and have something
+    beside them at both sides.
 
     Parameters
     ----------
@@ -98,7 +100,7 @@ def wedge_places(
     """
     before = placed.polygons.leading(first)
     for corners in wedges_below(placed.polygons, first, limits):
-        if rests(corners, before, width, limits):
+        if rests(corners, before, width, limits) and not any(open_sides(corners, placed.polygons)):
             yield WedgePlace.of(step, corners, placed, limits)
 
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.crevice import SAME, Crevice, between, crevice, slabs
+from drystone.kernels.crevice import Crevice, between, crevice, slabs
 from drystone.kernels.polygons import (
     Points,
     Polygons,
@@ -18,6 +18,7 @@ from drystone.kernels.polygons import (
     on_grid,
 )
 from drystone.kernels.settling import rest_margin
+from drystone.model.wedge_shape import ROUNDING, open_sides
 from drystone.settle.wedge_spans import (
     Slabs,
     Span,
@@ -25,7 +26,6 @@ from drystone.settle.wedge_spans import (
     all_spans,
     extent,
     fitted,
-    height_and_slope,
     parts,
 )
 
@@ -36,6 +36,7 @@ __all__ = [
     "in_order",
     "met_below",
     "rests",
+    "squeezed_out",
     "wedge_under",
     "wedges_below",
 ]
@@ -55,9 +56,9 @@ def wedge_under(
     """Cut the wedge that keeps a stone where it is (§3.7, Fig. 9c).
 
     Of the free space under the side to which the stone falls, the nearest piece is taken that is
-    far enough out to bring the centre of mass inside the support, has the size of a wedge and is
-    not steeper than friction allows, is as wide as high where there is room, rests by itself on
-    what is below, and holds the stone.
+    far enough out to bring the centre of mass inside the support, is a wedge that a mason would
+    cut, has something beside it or room for it, rests by itself on what is below, and holds the
+    stone.
 
     Parameters
     ----------
@@ -85,7 +86,9 @@ def wedge_under(
         return None
     near = _near(stone, around, limits)
     for wedge in _wedges(stone, centroid[0], near, falls, limits):
-        if _holds(wedge, (stone, centroid), near, width, limits):
+        if _holds(wedge, (stone, centroid), near, width, limits) and not squeezed_out(
+            wedge, stone, around, width, limits
+        ):
             return wedge
     return None
 
@@ -156,6 +159,32 @@ def rests(wedge: Points, around: Polygons, width: float, limits: WedgeLimits) ->
     return rest_margin(wedge, (x, y), around, width, mu, contact_px, steep=steep) >= 0.0
 
 
+def squeezed_out(
+    wedge: Points, stone: Points, around: Polygons, width: float, limits: WedgeLimits
+) -> bool:
+    """Say whether nothing is beside a wedge at a side, and no other stone can come there.
+
+    Parameters
+    ----------
+    wedge : (n, 2) float array
+        Its corners.
+    stone : (n, 2) float array
+        The stone that lies on it.
+    around : Polygons
+        What else is there, or will be; the wedge and the stone may be among them.
+    width : float
+        Of the wall.
+    limits : WedgeLimits
+        How much room another stone needs between the stone and the end of the wall.
+    """
+    left = stone[:, 0].min() < limits.room_px - ROUNDING
+    right = stone[:, 0].max() > width - limits.room_px + ROUNDING
+    if not (left or right):
+        return False
+    opened = open_sides(wedge, around.added([stone]))
+    return bool((left and opened[0]) or (right and opened[1]))
+
+
 def falling_side(stone: Points, x_c: float, around: Polygons, limits: WedgeLimits) -> int:
     """Say to which side a stone on its contacts falls: -1 left, +1 right.
 
@@ -214,27 +243,18 @@ def _wedges(
 
 
 def _spans(space: Crevice, x_c: float, limits: WedgeLimits) -> Iterator[Span]:
-    """List where a wedge may be that holds a stone which falls to the right.
-
-    The nearest come first; those that are higher than wide, which tip easily, after all others.
-    """
+    """List where a wedge may be that holds a stone which falls to the right, the nearest first."""
     table = Slabs.of(space)
     least = x_c + limits.margin * float(table.x[-1] - table.x[0])
-    high = []
     for part in parts(table, limits):
-        last = part[1] - limits.smallest_px
+        last = part[1] - limits.least_width
         if part[1] < least or part[0] > last:
             continue
         first = min(max(part[0], least), last)
         for left in np.linspace(first, last, PLACES if first < last else 1).tolist():
-            span = fitted(table, (left, min(left + limits.smallest_px, part[1])), part, limits)
-            if span is None:
-                continue
-            if height_and_slope(table, span)[0] <= span[1] - span[0] + SAME:
+            span = fitted(table, (left, min(left + limits.least_width, part[1])), part, limits)
+            if span is not None:
                 yield span
-            else:
-                high.append(span)
-    yield from high
 
 
 def met_below(stone: Points, around: Points, limits: WedgeLimits) -> NDArray[np.bool_]:
@@ -258,7 +278,7 @@ def met_below(stone: Points, around: Points, limits: WedgeLimits) -> NDArray[np.
     left, low = stone.min(axis=0) - reach
     right, high = stone.max(axis=0) + reach
     met = (around[:, 0] < right) & (around[:, 2] > left) & (around[:, 1] < high)
-    return np.asarray(met & (around[:, 3] > low - limits.largest_px))
+    return np.asarray(met & (around[:, 3] > low - limits.greatest_height))
 
 
 def _near(

@@ -28,9 +28,9 @@ class StabiliseSettings:
     max_shift_px : int
         How far a turned stone may be moved up or down, working px, to rest on pixels again.
     min_wedge_px : int
-        Smallest height and width of a wedge, working px.
+        Smallest height and width of a wedge that is pixels, working px.
     max_wedge_height : float
-        Largest height of a wedge, as a share of the mean stone height.
+        Largest height of a wedge that is pixels, as a share of the mean stone height.
     """
 
     method: Method = "both"

@@ -10,7 +10,8 @@ from drystone.model.overlap import deepest_overlap, shape_of
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.model.stone import StoneSet
-from drystone.model.wall import Labels
+from drystone.model.wall import Labels, Wall
+from drystone.planner.dropping import wedge_limits
 from drystone.statics.model import RigidBlockModel
 from drystone.verify.blocks import check_blocks
 from drystone.verify.buried import is_buried
@@ -131,14 +132,14 @@ def _check_outline(
 def _check_stages(replay: Replay, standing: Standing, reference: Reference) -> list[Problem]:
     """Verify indices and wedges of every stage."""
     problems = []
-    unit = replay.site.units_per_px
+    unit, wall = replay.site.units_per_px, replay.wall
     steps = {p.id: p.step for p in replay.pieces if isinstance(p.step, WedgeStep)}
     stages = zip(replay.stages, standing.resistances, standing.models, strict=True)
     for stage, resistance, model in stages:
         if resistance is not None:
             problems += check_indices(stage, resistance, reference, unit)
         for wedge in stage.group.wedges:
-            problems += _check_wedge(stage, (steps[wedge.id], wedge), model, reference)
+            problems += _check_wedge(stage, (steps[wedge.id], wedge), model, wall, reference)
     return problems
 
 
@@ -146,16 +147,26 @@ def _check_wedge(
     stage: Stage,
     wedge_and_step: tuple[WedgeStep, Wedge],
     model: RigidBlockModel | None,
+    wall: Wall,
     reference: Reference,
 ) -> list[Problem]:
     """Verify the rules of wedging on the geometry of the plan."""
     step, wedge = wedge_and_step
-    limits, height = reference.settings.stabilise, reference.stock.mean_height_px
-    if wedge.corners is None:
-        return check_wedge(step, wedge, stage.after.labels, limits, height)
-    touching = model or RigidBlockModel((), (), reference.settings.mu)
-    scale = stage.after.site.scale
-    return check_settled_wedge(step, wedge.corners, touching, limits, height, scale)
+    settings, stock = reference.settings, reference.stock
+    settled = stage.group.placement.settled
+    if wedge.corners is None or settled is None or wall.outlines is None:
+        return check_wedge(
+            step, wedge, stage.after.labels, settings.stabilise, stock.mean_height_px
+        )
+    return check_settled_wedge(
+        step,
+        wedge.corners,
+        model or RigidBlockModel((), (), settings.mu),
+        settled.corners,
+        wall.outlines.polygons,
+        wall.site.extent_px[0],
+        wedge_limits(settings, stock, wall.site),
+    )
 
 
 def _check_image(replay: Replay, wall_labels: Labels) -> list[Problem]:

@@ -72,7 +72,7 @@ class Reference:
             settings,
             book,
             cluster_stones(stones, book, settings.clusters),
-            Stock.of(initial) if initial else Stock(0.0, 0.0, 0.0, 0),
+            Stock.of(initial) if initial else Stock(0.0, 0.0, 0.0, 0.0, 0),
         )
 
 

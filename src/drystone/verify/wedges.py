@@ -1,14 +1,14 @@
-"""Wedges touch what they hold and what holds them, and have the size of wedges (§3.7)."""
-
-from itertools import pairwise
+"""Wedges touch what they hold and what holds them, and are what a mason would cut (§3.7)."""
 
 import numpy as np
 
-from drystone.kernels.polygons import Points
+from drystone.kernels.polygons import Points, Polygons
 from drystone.model.placement import Wedge
 from drystone.model.plan import WedgeStep
 from drystone.model.site import Site
 from drystone.model.wall import Labels
+from drystone.model.wedge_shape import WedgeShape
+from drystone.settle.wedge import WedgeLimits, squeezed_out
 from drystone.stabilise.settings import StabiliseSettings
 from drystone.statics.model import RigidBlockModel
 from drystone.verify.lengths import working_points
@@ -16,9 +16,6 @@ from drystone.verify.report import Problem
 
 AREA_TOLERANCE_PX = 1e-6
 """Between the area of a wedge's polygon and of its pixels, working px."""
-
-SIZE_TOLERANCE_PX = 1e-6
-"""Of the size of a wedge with an outline, source px: rounding only."""
 
 
 def check_wedge(
@@ -64,9 +61,10 @@ def check_settled_wedge(
     step: WedgeStep,
     corners: Points,
     model: RigidBlockModel,
-    settings: StabiliseSettings,
-    mean_height_px: float,
-    scale: float,
+    stone: Points,
+    wall: Polygons,
+    width: float,
+    limits: WedgeLimits,
 ) -> list[Problem]:
     """Verify the rules of wedging for a wedge that is an outline: E223 and E224.
 
@@ -78,50 +76,25 @@ def check_settled_wedge(
         Its outline, source px.
     model : RigidBlockModel
         Of the wall with the stone and its wedges: says what touches what.
-    settings : StabiliseSettings
-        Smallest size, in working px, and largest height.
-    mean_height_px : float
-        Mean height of the stones, working px, which limits the wedge's.
-    scale : float
-        Working resolution over source resolution.
+    stone : (n, 2) float array
+        The stone that lies on it.
+    wall : Polygons
+        The whole wall.
+    width : float
+        Of the wall, source px.
+    limits : WedgeLimits
+        What wedges may be.
     """
     above, below = _supports(step.id, model)
     stands = bool(below - {step.under})
     problems = _touching(step, holds=step.under in above, stands=stands)
-    width, high = np.ptp(corners, axis=0).tolist()
-    low = thinnest(corners)
-    smallest = settings.min_wedge_px / scale
-    largest = max(smallest, settings.max_wedge_height * mean_height_px / scale)
-    if min(low, width) < smallest - SIZE_TOLERANCE_PX or high > largest + SIZE_TOLERANCE_PX:
-        message = (
-            f"wedge {step.id} is {width:.6g} source px wide and {low:.6g} to {high:.6g} high; the "
-            f"settings allow {smallest:.6g} to a height of {largest:.6g}."
-        )
+    faults = list(limits.faults(WedgeShape.of(corners)))
+    if squeezed_out(corners, stone, wall, width, limits):
+        faults.append("nothing beside it at the end of the wall")
+    if faults:
+        message = f"no mason would cut wedge {step.id} (source px): {'; '.join(faults)}."
         problems.append(Problem("E224", step.step, message))
     return problems
-
-
-def thinnest(corners: Points) -> float:
-    """Return the smallest height of a polygon over any of its columns.
-
-    Examples
-    --------
-    >>> thinnest(np.array([[0.0, 0.0], [4.0, 1.0], [4.0, 3.0], [0.0, 5.0]]))
-    2.0
-    """
-    starts, ends = corners, np.roll(corners, -1, axis=0)
-    x = np.unique(corners[:, 0])
-    heights = []
-    for left, right in pairwise(x.tolist()):
-        # Edges from end to end of the column, from the lowest to the highest, in pairs.
-        spans = np.minimum(starts[:, 0], ends[:, 0]) <= left
-        spans &= np.maximum(starts[:, 0], ends[:, 0]) >= right
-        run = ends[spans] - starts[spans]
-        slope = run[:, 1] / run[:, 0]
-        at = [starts[spans, 1] + slope * (end - starts[spans, 0]) for end in (left, right)]
-        order = np.argsort(at[0] + at[1])
-        heights += [float((y[order][1::2] - y[order][::2]).min()) for y in at]
-    return min(heights)
 
 
 def check_polygon(step: WedgeStep, wedge: Wedge, site: Site) -> list[Problem]:

@@ -1,0 +1,150 @@
+"""What a wedge must be that a mason would cut: measured, and against slow twins."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.kernels.polygons import Points, no_polygons
+from drystone.model.wedge_shape import WedgeRule, WedgeSettings, WedgeShape, open_sides
+from tests.naive.wedge_shape import covered, measures
+from tests.polygons import simple_polygons
+from tests.settle.piles import moved
+from tests.strategies import repeatable
+
+RULE = WedgeRule(least_thickness=2.0, greatest_height=10.0, greatest_area=90.0)
+
+
+def quad(left: tuple[float, float], right: tuple[float, float], width: float = 10.0) -> Points:
+    """Low and high at the left end, and at the right end."""
+    return np.array([[0.0, left[0]], [width, right[0]], [width, right[1]], [0.0, left[1]]])
+
+
+def faults(corners: Points, rule: WedgeRule = RULE) -> list[str]:
+    return list(rule.faults(WedgeShape.of(corners)))
+
+
+@pytest.mark.parametrize(
+    ("corners", "fault"),
+    [
+        (quad((0, 2), (0, 2.1)), ""),
+        (quad((0, 1.9), (0, 5)), "1.9 thick, at least 2"),
+        (quad((0, 2), (0, 2), 6.0), ""),
+        (quad((0, 2), (0, 2), 5.9), "5.9 wide, at least 6"),
+        (quad((0, 6), (0, 6), 6.0), ""),
+        (quad((0, 6.3), (0, 6.3), 6.0), "1.05 times as high as wide, at most 1"),
+        (quad((0, 10), (0, 4), 12.0), ""),
+        (quad((0, 10.1), (0, 4), 12.0), "10.1 high, at most 10"),
+        (quad((0, 2), (0, 2.2), 10.4), ""),
+        (quad((0, 2), (0, 2), 10.4), "5.2 times as wide as thick, at most 5"),
+        (quad((0, 8), (0, 8), 11.2), ""),
+        (quad((0, 8), (0, 8), 11.3), "90.4 in area, at most 90"),
+        (quad((0, 2), (5.7, 7.7)), ""),
+        (
+            quad((0, 2), (5.9, 7.9)),
+            "30.5° steep below, at most 30.1°; 30.5° steep above, at most 30.1°",
+        ),
+        (quad((0, 2), (0, 7.7)), ""),
+        (quad((1, 3), (0, 8)), "32.3° between its faces, at most 30.1°"),
+        (np.array([[0, 0], [10, 0], [10, 3], [5, 4.0], [0, 3]], float), ""),
+        (
+            np.array([[0, 0], [10, 0], [10, 3], [5, 4.2], [0, 3]], float),
+            "0.12 of its width bent, at most 0.1",
+        ),
+        (
+            np.array([[0, 0], [5, 1.2], [10, 0], [10, 4], [0, 4]], float),
+            "0.12 of its width bent, at most 0.1",
+        ),
+    ],
+)
+def test_each_limit_is_named_when_it_is_missed(corners: Points, fault: str) -> None:
+    for mirrored in (corners, (corners * [-1.0, 1.0])[::-1], (corners * [1.0, -1.0])[::-1]):
+        named = "; ".join(faults(mirrored))
+        assert named.replace("above", "below") == fault.replace("above", "below")
+        assert RULE.allows(WedgeShape.of(mirrored)) == (fault == "")
+
+
+def test_limits_by_the_stones_and_by_the_scale() -> None:
+    sizes = WedgeSettings(thickness=0.05, thickness_mm=6.0, height=0.25, area=0.1)
+    rule = WedgeRule.of(sizes, 0.6, 200.0)
+    assert (rule.least_thickness, rule.greatest_height) == (10.0, 50.0)
+    assert (rule.greatest_area, rule.mu) == (4000.0, 0.6)
+    # 500 px are a metre; in metres; and stones so small that no wedge can be cut for them.
+    assert WedgeRule.of(sizes, 0.6, 200.0, 500.0).least_thickness == pytest.approx(3.0)
+    assert WedgeRule.of(sizes, 0.6, 0.4, 1.0).least_thickness == pytest.approx(0.006)
+    tiny = WedgeRule.of(sizes, 0.6, 20.0, 1000.0)
+    assert tiny.greatest_height == tiny.least_thickness == pytest.approx(6.0)
+
+
+def test_settings_and_limits_are_checked() -> None:
+    for name in ("thickness", "thickness_mm", "height", "area"):
+        with pytest.raises(ValueError, match="positive"):
+            WedgeSettings(**{name: 0.0})
+    good = {"least_thickness": 1.0, "greatest_height": 2.0, "greatest_area": 9.0}
+    for name, value in (
+        ("least_thickness", 0.0), ("greatest_height", 0.9), ("greatest_area", 0.0), ("mu", 0.0),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match="must be positive"):
+            WedgeRule(**{**good, name: value})
+
+
+@repeatable(60)
+@given(simple_polygons())
+def test_measures_are_those_of_many_upright_lines(corners: Points) -> None:
+    found, twin = WedgeShape.of(corners), measures(corners)
+    size = float(np.ptp(corners))
+    for name in ("width", "height", "area"):
+        assert getattr(found, name) == pytest.approx(twin[name], rel=1e-9)
+    assert found.thickness == pytest.approx(twin["thickness"], abs=1e-5 * (1.0 + size))
+    for name in ("bed", "top"):
+        assert getattr(found, name) == pytest.approx(twin[name], abs=1e-4 * (1.0 + size))
+    assert found.bend == pytest.approx(twin["bend"], abs=1e-4 * (1.0 + size))
+
+
+def test_a_fork_is_as_thick_as_its_thinner_prong() -> None:
+    fork = np.array([[0, 0], [9, 0], [9, 2], [3, 2], [3, 4], [9, 4], [9, 5], [0, 5]], float)
+    assert WedgeShape.of(fork).thickness == 1.0
+    assert WedgeShape.of(fork).area == 15.0 + 12.0 + 6.0
+    assert WedgeShape.of(np.array([[0.0, 0.0], [9.0, 0.0], [0.0, 4.0]])).thickness == 0.0
+
+
+def test_beside_a_wedge_is_what_fills_half_of_its_rows_up_to_the_end() -> None:
+    wedge = quad((0, 4), (0, 4))
+
+    def opened(*boxes: tuple[float, float, float, float]) -> tuple[bool, bool]:
+        beside = [np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]) for x0, y0, x1, y1 in boxes]
+        return open_sides(wedge, no_polygons().added([wedge, *beside]))
+
+    assert opened() == (True, True)
+    assert opened((11, -5, 12, 2)) == (True, False)
+    assert opened((11, -5, 12, 1.99)) == (True, True)
+    # Two that meet in the same rows count once; one behind the other counts.
+    assert opened((11, -5, 12, 1.5), (20, 1, 22, 1.9)) == (True, True)
+    assert opened((11, -5, 12, 1.5), (20, 1, 22, 2)) == (True, False)
+    assert opened((-9, 2, -8, 9)) == (False, True)
+    # Below it and above it is not beside it, in front of its end neither.
+    assert opened((-20, -5, 20, 0), (-20, 4, 20, 9), (3, 1, 10, 3)) == (True, True)
+
+
+@repeatable(40)
+@given(st.lists(simple_polygons(max_size=25.0), min_size=1, max_size=4), st.data())
+def test_open_sides_are_those_of_many_level_rays(
+    polygons: list[Points], data: st.DataObject
+) -> None:
+    shift = st.floats(-30.0, 30.0)
+    others = [moved(p, data.draw(shift), data.draw(st.floats(-15.0, 15.0))) for p in polygons]
+    wedge = quad((0, 4), (1, 6))
+    found = open_sides(wedge, no_polygons().added(others))
+    for side, share in zip(found, covered(wedge, others), strict=True):
+        if abs(share - 0.5) > 0.02:
+            assert side == (share < 0.5)
+
+
+def test_friction_is_that_of_the_rule() -> None:
+    slope = math.tan(math.radians(20.0))
+    leaning = quad((0, 4), (10 * slope, 4 + 10 * slope))
+    for mu, fine in ((0.37, True), (0.36, False)):
+        rule = WedgeRule(least_thickness=2.0, greatest_height=10.0, mu=mu)
+        assert (not faults(leaning, rule)) == fine

@@ -1,0 +1,80 @@
+"""A wedge measured along many upright and level lines, and what a mason would object to."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+
+from drystone.kernels.polygons import Points
+
+COLUMNS, ROWS = 400, 400
+NEAR = 1e-7
+"""So near to a corner a line is drawn beside it."""
+
+
+def chords(corners: Points) -> tuple[Points, Points]:
+    """Upright lines through a polygon: x, and y of the ends of the pieces inside, low to high."""
+    polygon = shapely.Polygon(corners)
+    left, low, right, high = polygon.bounds
+    beside = np.concatenate([corners[:, 0] - NEAR, corners[:, 0] + NEAR])
+    x = np.concatenate([np.linspace(left + NEAR, right - NEAR, COLUMNS), beside])
+    x = np.sort(x[(x > left) & (x < right)])
+    found = []
+    for at in x.tolist():
+        line = shapely.LineString([(at, low - 1.0), (at, high + 1.0)])
+        pieces = shapely.get_parts(line.intersection(polygon))
+        found.append(sorted((p.bounds[1], p.bounds[3]) for p in pieces if p.length > 0.0))
+    ends = [[pieces[0][0], pieces[-1][1], min(b - a for a, b in pieces)] for pieces in found]
+    return x, np.array(ends)
+
+
+def measures(corners: Points) -> dict[str, float]:
+    """Width, height, thickness, area, slopes and bend of a wedge."""
+    x, ends = chords(corners)
+    width = float(np.ptp(corners[:, 0]))
+    found = {
+        "width": width,
+        "height": float(np.ptp(corners[:, 1])),
+        "thickness": float(ends[:, 2].min()),
+        "area": float(shapely.Polygon(corners).area),
+        "bend": 0.0,
+    }
+    for name, face in (("bed", ends[:, 0]), ("top", ends[:, 1])):
+        found[name] = float(face[-1] - face[0]) / width
+        chord = face[0] + found[name] * (x - x[0])
+        found["bend"] = max(found["bend"], float(np.abs(face - chord).max()) / width)
+    return found
+
+
+def objections(
+    corners: Points, least_thickness: float, greatest_height: float, greatest_area: float, mu: float
+) -> dict[str, float]:
+    """By how much a wedge misses each limit; below 0 where it keeps it."""
+    one, friction = measures(corners), math.atan(mu)
+    bed, top = math.atan(one["bed"]), math.atan(one["top"])
+    return {
+        "thin": least_thickness - one["thickness"],
+        "narrow": 3.0 * least_thickness - one["width"],
+        "high": one["height"] - greatest_height,
+        "large": one["area"] - greatest_area,
+        "upright": one["height"] - one["width"],
+        "sliver": one["width"] - 5.0 * one["area"] / one["width"],
+        "bent": one["bend"] - 0.1,
+        "steep below": abs(bed) - friction,
+        "steep above": abs(top) - friction,
+        "opens": abs(top - bed) - friction,
+    }
+
+
+def covered(wedge: Points, others: Sequence[Points]) -> tuple[float, float]:
+    """Share of the rows of a wedge in which something lies to the left of it, and to the right."""
+    shapes = shapely.union_all([shapely.Polygon(other) for other in others])
+    left, low, right, high = shapely.Polygon(wedge).bounds
+    hit = [0, 0]
+    for y in (low + (np.arange(ROWS) + 0.5) / ROWS * (high - low)).tolist():
+        rays = ((left, -1e4), (right, 1e4))
+        for side, (x, far) in enumerate(rays):
+            ray = shapely.LineString([(x + math.copysign(NEAR, far), y), (far, y)])
+            hit[side] += bool(ray.intersection(shapes).length > 0.0)
+    return hit[0] / ROWS, hit[1] / ROWS
