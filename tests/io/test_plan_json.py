@@ -88,7 +88,7 @@ def test_keys_are_those_of_the_contract_in_its_order() -> None:
     assert list(data["metrics"]) == [
         "F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH", "alpha_left", "alpha_right",
         "wedge_area", "F_LR_half", "F_LR_double",
-        "F_LR_no_setback", "F_LR_coulomb",
+        "F_LR_no_setback", "F_LR_coulomb", "alpha_left_coulomb", "alpha_right_coulomb",
     ]  # fmt: skip
 
 

@@ -23,10 +23,10 @@ PLAN = exact_example().plan
 IDS = [step.stone for step in PLAN.stone_steps]
 
 
-def claiming(left: float | None, right: float | None, coulomb: float | None = None) -> Plan:
-    metrics = replace(PLAN.metrics, alpha_left=left, alpha_right=right)
-    object.__setattr__(metrics, "F_LR_coulomb", coulomb)
-    return replace(PLAN, metrics=metrics)
+def claiming(left: float | None, right: float | None, **without: float | None) -> Plan:
+    none = {"F_LR_coulomb": None, "alpha_left_coulomb": None, "alpha_right_coulomb": None}
+    claims = {"alpha_left": left, "alpha_right": right, **none, **without}
+    return replace(PLAN, metrics=replace(PLAN.metrics, **claims))
 
 
 def built(*fallen: int, first_fall: int | None = None) -> BuildUp:
@@ -64,10 +64,11 @@ def test_blocks_that_fall_are_named_with_the_step() -> None:
         (claiming(0.5, 0.4), (0.1, 0.1), ["left", "right"]),
         (claiming(0.5, 0.4), (None, None), []),
         (claiming(None, 0.4), (0.1, 0.4), []),
-        # Without dilatancy plans claim less of the weaker side, which is not named.
-        (claiming(0.5, 0.4, coulomb=0.2 / MU), (0.171, 0.171), []),
-        (claiming(0.5, 0.4, coulomb=0.2 / MU), (0.171, 0.16), ["right"]),
-        (claiming(0.5, 0.1, coulomb=0.2 / MU), (0.171, 0.086), []),
+        # Without dilatancy plans may claim less of a side.
+        (claiming(0.5, 0.4, alpha_left_coulomb=0.2), (0.171, 0.341), []),
+        (claiming(0.5, 0.4, alpha_left_coulomb=0.2), (0.171, 0.171), ["right"]),
+        (claiming(0.5, 0.4, alpha_right_coulomb=0.2), (0.171, 0.16), ["left", "right"]),
+        (claiming(0.5, 0.4, F_LR_coulomb=0.0), (0.01, 0.01), []),
     ],
 )
 def test_a_tilt_below_the_claim_is_named(
@@ -106,5 +107,5 @@ def test_a_stack_that_claims_full_interlock_is_found_out(courses: int) -> None:
     claimed = claiming(honest.left.alpha, honest.right.alpha)
     assert check_engine(claimed, stack, tilted) == []
     assert codes(check_engine(claiming(0.9, 0.9), stack, tilted)) == ["E242"] * 2
-    assert claimed_alpha(claimed, "left", 0.9) == honest.left.alpha
+    assert claimed_alpha(claimed, "left") == honest.left.alpha
     assert CONFIRMED == 0.85

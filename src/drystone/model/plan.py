@@ -98,8 +98,9 @@ class PlanMetrics:
     F_LR of a wall of outlines is that at the contact tolerance and the set-back of its settings.
     F_LR_half and F_LR_double are those at half and at twice this tolerance, F_LR_no_setback is
     that with contacts up to the ends of faces (DESIGN 4.8, 4.9); None for pixels.  F_LR_coulomb is
-    the least that was found without dilatancy, 0 where the wall can fall when it is let go; None
-    where nothing was found or looked for.
+    the least that was found without dilatancy, 0 where the wall can fall when it is let go;
+    alpha_left_coulomb and alpha_right_coulomb are the load multipliers.  None where nothing was
+    found or looked for.
     """
 
     F_SF: float
@@ -115,6 +116,8 @@ class PlanMetrics:
     F_LR_double: float | None = None
     F_LR_no_setback: float | None = None
     F_LR_coulomb: float | None = None
+    alpha_left_coulomb: float | None = None
+    alpha_right_coulomb: float | None = None
 
     def __str__(self) -> str:
         shown = {name: getattr(self, name) for name in FIGURES}

@@ -197,7 +197,7 @@ def other_resistances(
     settings: PlannerSettings,
     until: Deadline = NEVER,
 ) -> dict[str, float | None]:
-    """Return F_LR by other rules, by the names of a plan's metrics.
+    """Return F_LR by other rules, and load multipliers, by the names of a plan's metrics.
 
     Without dilatancy it is looked for in walls of up to :data:`MOST_WITHOUT_DILATANCY` blocks,
     where the wall stands, and where there is time.
@@ -216,8 +216,10 @@ def other_resistances(
     found: dict[str, float | None] = {}
     if resistance.stable and 0 < len(build.model.blocks) <= MOST_WITHOUT_DILATANCY:
         with suppress(TimeIsUp):
-            look = until.look
-            found["F_LR_coulomb"] = nonassociative_resistance(build.model, look=look).carried
+            without = nonassociative_resistance(build.model, look=until.look)
+            found["F_LR_coulomb"] = without.carried
+            found["alpha_left_coulomb"] = without.left.alpha
+            found["alpha_right_coulomb"] = without.right.alpha
     outlines, settle = build.wall.outlines, settings.settle
     if outlines is not None:
         for name, share, setback in (

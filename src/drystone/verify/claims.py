@@ -29,12 +29,13 @@ ANGLE_TOLERANCE_DEG = 1e-6
 
 _OPTIONAL_METRICS = (
     "T_LEVEL", "E_FLUSH", "F_LR_half", "F_LR_double", "F_LR_no_setback", "F_LR_coulomb",
+    "alpha_left_coulomb", "alpha_right_coulomb",
 )  # fmt: skip
 """Plans of other hands need not claim these."""
 
 _BY_STATICS = (
     "LLC", "F_LR", "F_LR_half", "F_LR_double", "F_LR_no_setback", "alpha_left", "alpha_right",
-    "F_LR_coulomb",
+    "F_LR_coulomb", "alpha_left_coulomb", "alpha_right_coulomb",
 )  # fmt: skip
 
 
@@ -211,7 +212,7 @@ def check_metrics(claimed: PlanMetrics, found: PlanMetrics) -> list[Problem]:
         if plan_says is None and field.name in _OPTIONAL_METRICS:
             continue
         # The least that is found: a plan may know of less, as other solvers lead elsewhere.
-        if field.name == "F_LR_coulomb" and value is not None and plan_says is not None:
+        if field.name.endswith("_coulomb") and value is not None and plan_says is not None:
             value = min(value, plan_says)
         if differs(plan_says, value, tolerance):
             problems.append(Problem("E234", None, contradicted(field.name, plan_says, value)))

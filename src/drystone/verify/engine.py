@@ -38,7 +38,7 @@ def check_engine(
         message = f"in the engine blocks fall, the first after this stone and its wedges: {fallen}."
         problems.append(Problem("E241", plan.stone_steps[built.first_fall - 1].step, message))
     for tilt in tilts or ():
-        alpha = claimed_alpha(plan, tilt.direction, built.mu)
+        alpha = claimed_alpha(plan, tilt.direction)
         found = 0.0 if tilt.fell_at_rest else tilt.high
         if alpha is not None and found is not None and found < CONFIRMED * alpha:
             message = (
@@ -50,13 +50,10 @@ def check_engine(
     return problems
 
 
-def claimed_alpha(plan: Plan, direction: Direction, mu: float) -> float | None:
-    """Return the load multiplier that a plan claims of a side, the smaller one of both flow rules.
-
-    Without dilatancy plans have one value for both sides, that of the weaker one.
-    """
+def claimed_alpha(plan: Plan, direction: Direction) -> float | None:
+    """Return the load multiplier that a plan claims of a side, the smaller of both flow rules."""
     metrics = plan.metrics
-    claims = [metrics.alpha_left if direction == "left" else metrics.alpha_right]
-    if metrics.F_LR_coulomb is not None:
-        claims.append(metrics.F_LR_coulomb * mu)
+    claims = [getattr(metrics, f"alpha_{direction}{rule}") for rule in ("", "_coulomb")]
+    if metrics.F_LR_coulomb == 0.0:  # it can fall by itself: nothing is claimed
+        claims.append(0.0)
     return min((claim for claim in claims if claim is not None), default=None)
