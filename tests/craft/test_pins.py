@@ -85,8 +85,8 @@ def named(masonry):
     [
         (box(1, 1, 0.5, 0.3), ""),
         (box(1, 1, 0.5, 0.082), "6.098 times as wide as thick, at most 5"),
-        (box(1, 1, 0.3, 0.078), "0.039 thick, at least 0.04"),
-        (box(1, 1, 0.2, 0.19), "0.1 wide, at least 0.12"),
+        (box(1, 1, 0.28, 0.06), "0.03 thick, at least 0.032"),
+        (box(1, 1, 0.18, 0.17), "0.09 wide, at least 0.096"),
         (box(1, 1, 0.3, 0.33), "1.1 times as high as wide, at most 1"),
         (box(1, 1, 0.7, 0.62), "0.31 high, at most 0.3"),
         (box(1, 1, 1.2, 0.59), "0.177 in area, at most 0.144"),
@@ -104,7 +104,7 @@ def test_wedges_that_no_mason_would_cut_are_named_in_stone_sizes(wedge, words, f
 
 
 def test_with_a_scale_thickness_is_judged_in_millimetres():
-    """A size of 2 is 200 mm, so the least is 6 mm less a fifth instead of a twentieth."""
+    """A size of 2 is 200 mm, so the least is 5 mm less a fifth, not 8 mm less a fifth."""
     masonry = slab_with(box(1, 1, 0.16, 0.05))
     assert "thick" in named(masonry)
     assert named(replace(masonry, per_m=10.0)) == ""

@@ -1,6 +1,7 @@
 """Small stone sets and planners."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from drystone.planner.settings import PlannerSettings, method_settings
 RUBBLE_SITE = Site(100, 36)
 """What :func:`rubble` is for."""
 
-WITH_WEDGES: Mapping[str, object] = {
+WITH_WEDGES: Mapping[str, Any] = {
     "selection_rule": "algorithm2",
     "stabilise": {"method": "wedge", "min_wedge_px": 1, "margin": 0.3, "max_wedge_height": 0.9},
     "wedge": {"thickness": 0.02, "thickness_mm": 1.0, "height": 0.9, "area": 0.9},

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from drystone.kernels.polygons import on_grid
 from drystone.model.outlines import Outlines
 from drystone.model.placement import Placement, Settled, Wedge
 from drystone.model.site import Site
@@ -198,6 +199,18 @@ def test_wedges_must_have_room_as_well(settings: PlannerSettings) -> None:
         build, left_out, _ = replayed(planner.build, steps, {}, planner.workshop, planner.settings)
         assert left_out == (() if room else (4,))
         assert [w.id for w in build.wall.wedges] == ([5] if room else [])
+
+
+def test_a_wedge_that_nothing_would_be_beside_is_not_taken_again() -> None:
+    """The second block reaches over the end of the first, up to the end of the wall or not."""
+    corners = np.array([[25.01, 0.01], [29.0, 0.01], [29.0, 10.01], [25.01, 10.01]])
+    wedge = Wedge(9, 2, np.ones((10, 4), bool), 30, 25, on_grid(corners))
+    for width, beside, room in ((80, False, True), (38, True, True), (38, False, False)):
+        planner = Planner(STONES, Site(width, 40), settings=greedy())
+        steps = [laid(planner, 1, 5, 0), Group(laid(planner, 2, 10, 1).placement, (wedge,))]
+        steps[1:1] = [laid(planner, 3, width - 8.0, 0)] if beside else []
+        _, left_out, _ = replayed(planner.build, steps, {}, planner.workshop, planner.settings)
+        assert left_out == (() if room else (2,))
 
 
 def test_what_needs_the_friction_of_upright_faces_is_left_out() -> None:

@@ -2,8 +2,11 @@
 
 import pytest
 
+from drystone.model.site import Site
 from drystone.model.wall import Wall
+from drystone.model.wedge_shape import WedgeShape
 from drystone.planner.build import Build
+from drystone.planner.dropping import wedge_limits
 from drystone.planner.planner import Planner
 from drystone.planner.replay import Replayed
 from drystone.planner.settings import PlannerSettings
@@ -11,7 +14,16 @@ from drystone.planner.solves import Solves
 from drystone.search.plan_wall import plan_wall
 from drystone.search.warm_start import begin_with
 from drystone.verify.check import check_plan
-from tests.planner.scenes import RUBBLE_SITE, finish, greedy, order, outlines, rubble
+from tests.planner.scenes import (
+    RUBBLE_SITE,
+    WITH_WEDGES,
+    few_stones,
+    finish,
+    greedy,
+    order,
+    outlines,
+    rubble,
+)
 from tests.search.test_anytime import SMALL
 
 
@@ -52,6 +64,21 @@ def test_banned_stones_are_taken_out_with_what_falls_then(geometry: str) -> None
     # Some fall without what carried them, and later ones that stand without these stay.
     assert fell
     assert stayed
+
+
+def test_wedges_that_are_none_by_the_new_settings_are_left_out() -> None:
+    site = Site.from_source(84.0, 34.0, 0.5)
+    old = finish(Planner(few_stones(), site, seed=3, settings=greedy(WITH_WEDGES)))
+    kept = set()
+    for change in ({}, {"thickness": 0.2}, {"height": 0.1}, {"area": 0.001}):
+        settings = greedy({**WITH_WEDGES, "wedge": {**WITH_WEDGES["wedge"], **change}})
+        planner = Planner(few_stones(), site, settings=settings)
+        begin_with(planner, old.build.wall, {})
+        limits = wedge_limits(settings, planner.workshop.stock, site)
+        wedges = [w.corners for w in planner.build.wall.wedges if w.corners is not None]
+        assert all(limits.allows(WedgeShape.of(corners)) for corners in wedges)
+        kept.add(len(wedges))
+    assert max(kept) == len(old.build.wall.wedges) > min(kept) == 0
 
 
 def test_steps_that_the_solver_gave_up_on_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -34,9 +34,6 @@ COVERED = 0.5
 ROUNDING = 1e-5
 """Lengths, slopes and shares this near to a limit are at it: outlines are put on a grid."""
 
-SAME = 1e-9
-"""The same before they are."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class WedgeSettings:
@@ -54,8 +51,8 @@ class WedgeSettings:
         Greatest area over that of the median stone.
     """
 
-    thickness: float = 0.05
-    thickness_mm: float = 6.0
+    thickness: float = 0.04
+    thickness_mm: float = 5.0
     height: float = 0.25
     area: float = 0.1
 
@@ -76,8 +73,8 @@ class WedgeSettings:
         Examples
         --------
         >>> sizes = WedgeSettings()
-        >>> sizes.least_thickness(120.0, None), sizes.least_thickness(120.0, 1032.0)
-        (6.0, 6.192)
+        >>> sizes.least_thickness(125.0, None), sizes.least_thickness(125.0, 1032.0)
+        (5.0, 5.16)
         """
         return self.thickness * size if per_m is None else self.thickness_mm * per_m / 1000.0
 
@@ -258,9 +255,9 @@ class WedgeRule:
             if angle > friction + rounding:
                 yield (f"{math.degrees(angle):.1f}° {words}, at most {math.degrees(friction):.1f}°")
 
-    def allows(self, shape: WedgeShape) -> bool:
-        """Say whether a mason would cut a wedge that is to be put on the grid."""
-        return next(self.faults(shape, SAME), None) is None
+    def allows(self, shape: WedgeShape, rounding: float = ROUNDING) -> bool:
+        """Say whether a mason would cut a wedge."""
+        return next(self.faults(shape, rounding), None) is None
 
 
 def open_sides(wedge: Points, others: Polygons) -> tuple[bool, bool]:

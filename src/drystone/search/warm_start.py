@@ -3,8 +3,11 @@
 from collections.abc import Mapping
 
 from drystone.model.wall import Group, Wall, outlined
+from drystone.model.wedge_shape import WedgeShape
+from drystone.planner.dropping import wedge_limits
 from drystone.planner.planner import Planner
 from drystone.planner.replay import replayed
+from drystone.settle.wedge import WedgeLimits, squeezed_out
 
 EDGE_PX = 1e-6
 """What rounding may add to `settle.beyond_px`, source px."""
@@ -14,6 +17,8 @@ def begin_with(
     planner: Planner, wall: Wall, course_heights_px: Mapping[int, float]
 ) -> tuple[int, ...]:
     """Let a planner begin with a wall, as far as its stones may be used and stand.
+
+    Without its wedges that are none by these settings.
 
     Parameters
     ----------
@@ -32,12 +37,13 @@ def begin_with(
         with these settings, as when what carried them is left out.
     """
     workshop, settings = planner.workshop, planner.settings
+    limits = wedge_limits(settings, workshop.stock, workshop.site)
     allowed, groups, last = set(workshop.fitting), [], -1
     for group in wall.groups:
         stone_id = group.placement.stone_id
         in_turn = settings.order == "free" or stone_id > last
         if stone_id in allowed and in_turn and _within(wall, group, settings.settle.beyond_px):
-            groups.append(group)
+            groups.append(_well_wedged(wall, group, limits))
             last = stone_id
     planner.build, _, solves = replayed(
         planner.build, groups, course_heights_px, workshop, settings, strict=False
@@ -58,3 +64,19 @@ def _within(wall: Wall, group: Group, beyond_px: float) -> bool:
         min(x.min(), width - x.max(), height - y.max()) >= least
         for x, y in (corners.T for _, corners in outlined(group.placement, group.wedges))
     )
+
+
+def _well_wedged(wall: Wall, group: Group, limits: WedgeLimits) -> Group:
+    """Leave out the wedges on outlines that no mason would cut, or with nothing beside them."""
+    settled = group.placement.settled
+    if wall.outlines is None or settled is None:
+        return group
+    around, width = wall.outlines.polygons, wall.site.extent_px[0]
+    kept = (
+        wedge
+        for wedge in group.wedges
+        if wedge.corners is not None
+        and limits.allows(WedgeShape.of(wedge.corners))
+        and not squeezed_out(wedge.corners, settled.corners, around, width, limits)
+    )
+    return Group(group.placement, tuple(kept))

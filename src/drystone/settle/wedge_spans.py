@@ -118,7 +118,7 @@ def all_spans(table: Slabs, places: int, limits: WedgeLimits) -> list[Span]:
             fitted(table, (left, min(left + limits.least_width, part[1])), part, limits)
             for left in np.linspace(part[0], last, places).tolist()
         ]
-        spans.append(part if limits.allows(table.shape(part)) else None)
+        spans.append(part if limits.allows(table.shape(part), SAME) else None)
         found += [span for span in dict.fromkeys(spans) if span is not None]
     return found
 
@@ -132,7 +132,7 @@ def fitted(table: Slabs, narrowest: Span, part: Span, limits: WedgeLimits) -> Sp
             break
         right = min(left + ASPECT * height, part[1])
         left = max(min(left, right - ASPECT * height), part[0])
-    return (left, right) if limits.allows(table.shape((left, right))) else None
+    return (left, right) if limits.allows(table.shape((left, right)), SAME) else None
 
 
 def parts(table: Slabs, limits: WedgeLimits) -> list[Span]:
