@@ -14,7 +14,7 @@ from tests.craft.walls import box
 
 def modelled(loops, wedges):
     blocks = [{"id": i, "polygon": loop.tolist()} for i, loop in loops.items()]
-    return Masonry(loops, model_from_json({"blocks": blocks}), wedges)
+    return Masonry(loops, model_from_json({"blocks": blocks}), wedges, cut=True)
 
 
 def slab_on(*, wedge_x, piers, slab=(0.0, 4.0)):
@@ -68,7 +68,7 @@ def slab_with(wedge, *more):
     """A slab of size 2 over a wedge, between two posts or what is given instead."""
     beside = more or (box(-3, 0, 2, 2), box(5, 0, 2, 2))
     loops = {1: box(0, 0, 4, 1), 8: box(0, 1.3, 4, 1), 9: np.asarray(wedge, float)}
-    return Masonry(loops | dict(enumerate(beside, 20)), wedge_ids={9})
+    return Masonry(loops | dict(enumerate(beside, 20)), wedge_ids={9}, cut=True)
 
 
 def named(masonry):
@@ -100,7 +100,9 @@ def test_wedges_that_no_mason_would_cut_are_named_in_stone_sizes(wedge, words, f
     masonry = slab_with(wedge)
     assert masonry.median_size == 2.0
     loops = {i: loop * factor for i, loop in masonry.loops.items()}
-    assert named(Masonry(loops, wedge_ids={9})) == words
+    assert named(Masonry(loops, wedge_ids={9}, cut=True)) == words
+    # Small stones are no wedges that were cut.
+    assert named(Masonry(loops, wedge_ids={9})) == ""
 
 
 def test_with_a_scale_thickness_is_judged_in_millimetres():

@@ -1,9 +1,14 @@
 """Searches that begin with a wall."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
+from drystone.kernels.polygons import on_grid
+from drystone.model.placement import Wedge
 from drystone.model.site import Site
-from drystone.model.wall import Wall
+from drystone.model.wall import Group, Wall
 from drystone.model.wedge_shape import WedgeShape
 from drystone.planner.build import Build
 from drystone.planner.dropping import wedge_limits
@@ -17,6 +22,7 @@ from drystone.verify.check import check_plan
 from tests.planner.scenes import (
     RUBBLE_SITE,
     WITH_WEDGES,
+    blocks,
     few_stones,
     finish,
     greedy,
@@ -79,6 +85,22 @@ def test_wedges_that_are_none_by_the_new_settings_are_left_out() -> None:
         assert all(limits.allows(WedgeShape.of(corners)) for corners in wedges)
         kept.add(len(wedges))
     assert max(kept) == len(old.build.wall.wedges) > min(kept) == 0
+
+
+def test_a_stone_stays_without_a_wedge_that_nothing_is_beside() -> None:
+    """A slab on two blocks reaches over the second; the wall ends 2 or 7 px further on."""
+    stones = blocks({1: (20, 4), 2: (20, 4), 3: (50, 10)})
+    settings = greedy({"order": "given", "vary": 0.0, "wedge": {"height": 1.0, "area": 1.0}})
+    corners = on_grid(np.array([[42.0, 0.01], [48.0, 0.01], [48.0, 4.01], [42.0, 4.01]]))
+    for width, wedges in ((52, 0), (57, 1)):
+        old = finish(Planner(stones, Site(width, 30), settings=settings))
+        *below, slab = old.build.wall.groups
+        assert slab.placement.stone_id == 3
+        with_it = Group(slab.placement, (Wedge(9, 3, np.ones((4, 6), bool), 26, 42, corners),))
+        planner = Planner(stones, Site(width, 30), settings=settings)
+        begin = replace(old.build.wall, groups=(*below, with_it))
+        assert begin_with(planner, begin, {}) == ()
+        assert len(planner.build.wall.wedges) == wedges
 
 
 def test_steps_that_the_solver_gave_up_on_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:

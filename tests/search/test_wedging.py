@@ -166,6 +166,18 @@ def test_time_that_is_up_leaves_the_wall_as_it_is() -> None:
     assert made.build.wall.wedges == ()
 
 
+def test_a_wedge_with_nothing_beside_it_is_none() -> None:
+    """At its other side is the stem of the stone."""
+    left, right, stone = built((1, 30.0, 0.01)).build.wall.groups
+    for beside, sides in (([], set()), ([left], {False}), ([right], {True})):
+        made = planner()
+        steps = [*beside, stone]
+        made.build, _, _ = replayed(made.build, steps, {}, made.workshop, made.settings)
+        places = all_places(made.build, limits_of(made))
+        assert {bool(place.corners[0, 0] > 40.0) for place in places} == sides
+        assert sides or wedged(made, 2) is made.build
+
+
 def test_where_two_stones_topple_at_once_one_wedge_is_of_no_use() -> None:
     made = built((1, 15.0, 0.01), (7, 50.0, 0.01))
     assert wedged(made, 1) is made.build

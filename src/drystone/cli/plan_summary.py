@@ -69,7 +69,8 @@ def _craft(result: PlanResult) -> CraftReport:
     wedges = {wedge.id for wedge in result.wall.wedges}
     if result.wall.outlines is None:
         return look(Masonry.from_labels(result.wall.labels, wedges))
-    return look(Masonry(dict(result.wall.outlines.blocks), result.model, wedges))
+    outlines, per_m = dict(result.wall.outlines.blocks), result.wall.site.px_per_m
+    return look(Masonry(outlines, result.model, wedges, cut=True, per_m=per_m))
 
 
 def _broken(result: PlanResult) -> str:

@@ -38,6 +38,9 @@ class Masonry:
         Step of the plan that places a stone or wedge; empty for what is no plan.
     settings : CraftSettings
         What counts as a joint, a bearing and so on.
+    cut : bool
+        Wedges are the outlines to which they shall be cut, as in plans on outlines; otherwise they
+        are small stones or pixels, and their shape is not judged.
     per_m : float or None
         Units of length in a metre, where that is known.
 
@@ -59,6 +62,7 @@ class Masonry:
     wedge_ids: Collection[int] = frozenset()
     steps: Mapping[int, int] = field(default_factory=dict)
     settings: CraftSettings = field(default_factory=CraftSettings)
+    cut: bool = False
     per_m: float | None = None
 
     def __post_init__(self) -> None:

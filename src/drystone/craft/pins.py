@@ -38,7 +38,8 @@ def find(masonry: Masonry, limit: Limit = RULE.limit) -> Finding:
     """Find wedges that carry, that stick out, and that no mason would cut.
 
     Wedges are known in plans; in a label image or block model they have to be named.  The verdict
-    is that of the number, or "broken" when a wedge sticks out or is none that a mason would cut.
+    is that of the number, or "broken" when a wedge sticks out, or is none that a mason would cut
+    where wedges shall be cut to their outlines.
 
     Parameters
     ----------
@@ -151,7 +152,7 @@ def _outside(masonry: Masonry, wedge: int, resting: dict[int, tuple[int, ...]]) 
 
 def _unfit(masonry: Masonry, wedge: int, resting: dict[int, tuple[int, ...]]) -> list[Case]:
     """Say what is wrong with a wedge that no mason would cut; lengths in sizes of the stones."""
-    if not masonry.stones:
+    if not (masonry.cut and masonry.stones):
         return []
     size = masonry.median_size
     mu = 0.58 if masonry.model is None else masonry.model.mu

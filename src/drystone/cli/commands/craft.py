@@ -70,9 +70,9 @@ def masonry_of(wall: GivenWall, wedge_ids: frozenset[int] = frozenset()) -> Maso
     steps = _steps(wall)
     if wall.blocks is not None:
         outlines = polygons_from_json(wall.blocks)
+        model, planned = model_from_json(wall.blocks), wall.plan is not None
         per_m = 1.0 if wall.plan is not None and wall.plan.px_per_m else None
-        model = model_from_json(wall.blocks)
-        return Masonry(outlines, model, wedges, steps, per_m=per_m)
+        return Masonry(outlines, model, wedges, steps, cut=planned, per_m=per_m)
     assert wall.labels is not None  # noqa: S101 - a wall without blocks has an image
     return Masonry.from_labels(wall.labels, wedges, steps=steps, mu=wall.mu)
 
