@@ -118,7 +118,7 @@ def test_wedges_are_in_no_photo() -> None:
     (wedge,) = wall.wedges
     assert wall.pick_pose(wedge) is None
     assert (wedge.kind, wedge.name, wedge.angle_deg) == ("wedge", "wedge_010", 0.0)
-    assert wedge.under == 1
+    assert wedge.under == 8
     with pytest.raises(TypeError, match="wedge_010 is in no image"):
         wall.source_corners(wedge)
 

@@ -141,7 +141,7 @@ def test_frames_are_laid_as_if_they_were_filled() -> None:
 def test_rings_among_discs_and_bricks_do_not_overlap() -> None:
     shapes = [ring(22, 9)] * 8 + [ring(6.9, 0)] * 8 + [np.ones((20, 35), bool)] * 8
     stones = stones_of_masks(dict(enumerate(shapes, 1)))
-    result = planned(stones, 150, 70)
+    result = planned(stones, 180, 90)
     placed = {step.stone for step in result.plan.stone_steps}
     assert len(placed) > 10
     assert placed & set(range(1, 9))
