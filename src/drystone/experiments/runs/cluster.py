@@ -130,7 +130,8 @@ def _client(distributed: Any, address: str, patience_s: float) -> Any:
     cure = "Start `dask scheduler` and `dask worker`, and give the address that they name."
     try:
         client = distributed.Client(address, timeout=patience_s, set_as_default=False)
-    except (OSError, ValueError) as error:  # a timeout is an OSError
+    except (OSError, ValueError, AssertionError) as error:
+        # A timeout is an OSError; Dask asserts that its own loop began within ten seconds.
         raise UsageError(
             "E404", f"no Dask scheduler answers at {address}.", where=OPTION, cure=cure
         ) from error
