@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import pytest
 from hypothesis import assume, given
-from hypothesis import strategies as st
 
 from drystone.experiments.arches import arch
 from drystone.statics import upright
@@ -14,17 +13,11 @@ from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.upright import held_by_upright_faces
-from tests.statics.walls import between_piers, brick_model, slot, under_a_roof
+from tests.statics.walls import JAMS, between_piers, brick_model, slot, under_a_roof
 from tests.strategies import repeatable
 
 
-@given(
-    pier=st.floats(0.6, 3.0),
-    height=st.floats(2.5, 5.0),
-    gap=st.floats(0.4, 1.5),
-    mu=st.sampled_from([0.4, 0.58, 0.84]),
-    covered=st.booleans(),
-)
+@given(**JAMS)
 @repeatable(25)
 def test_a_brick_between_piers_is_named(pier, height, gap, mu, covered):
     model = between_piers(pier, height, gap, mu, covered=covered)

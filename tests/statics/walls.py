@@ -5,12 +5,22 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from drystone.statics.contacts.given import model_from_json
 from drystone.statics.model import RigidBlockModel
 
 Labels = NDArray[np.uint32]
+
+JAMS = {
+    "pier": st.floats(0.6, 3.0),
+    "height": st.floats(2.5, 5.0),
+    "gap": st.floats(0.4, 1.5),
+    "mu": st.sampled_from([0.4, 0.58, 0.84]),
+    "covered": st.booleans(),
+}
+"""What :func:`between_piers` is given."""
 
 
 def stacked(*blocks: tuple[int, int, int]) -> Labels:

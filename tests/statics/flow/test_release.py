@@ -21,7 +21,15 @@ from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.program import assemble
 from drystone.statics.result import LimitStatus, Mechanism
 from tests.naive.release import greatest_power_of_a_fall
-from tests.statics.walls import between_piers, brick_model, irregular, slot, stacked, under_a_roof
+from tests.statics.walls import (
+    JAMS,
+    between_piers,
+    brick_model,
+    irregular,
+    slot,
+    stacked,
+    under_a_roof,
+)
 from tests.strategies import repeatable
 
 FEW = NonassociativeSettings(random_starts=0)
@@ -36,13 +44,7 @@ def moving(result):
     return [block for block, moves in zip(result.mechanism.block_ids, fast, strict=True) if moves]
 
 
-@given(
-    pier=st.floats(0.6, 3.0),
-    height=st.floats(2.5, 5.0),
-    gap=st.floats(0.4, 1.5),
-    mu=st.sampled_from([0.4, 0.58, 0.84]),
-    covered=st.booleans(),
-)
+@given(**JAMS)
 @repeatable(25)
 def test_a_brick_between_piers_falls_although_forces_exist_that_hold_it(
     pier, height, gap, mu, covered
