@@ -381,6 +381,10 @@ def test_contacts_from_outlines(tmp_path: Path, run: Run) -> None:
     outlines = run("analyse", tmp_path / "wall.png", "--json", "--contacts", "outlines").json()
     assert outlines["F_LR"] == pytest.approx(pixels["F_LR"], rel=0.02)
     assert outlines["remarks"]["contacts"].startswith("from sub-pixel outlines, set back; F_LR 0.")
+    # F_LR with other contacts would be of another friction or other loads.
+    for more in (["--mu-head", "0.1"], ["--tilt", "5"]):
+        other = run("analyse", tmp_path / "wall.png", "--json", "--contacts", "outlines", *more)
+        assert other.json()["remarks"]["contacts"] == "from sub-pixel outlines, set back"
 
 
 def test_head_joints_without_friction(tmp_path: Path, run: Run) -> None:

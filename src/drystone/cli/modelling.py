@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.cli.loads import is_range, load_case
+from drystone.cli.loads import is_plain, is_range, load_case
 from drystone.errors import InputError, Notice, UsageError
 from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
@@ -104,7 +104,7 @@ def _given(
         blocks = {**blocks, "mu_head": arguments.mu_head}
     remarks = {}
     bare = None if wall.plan is None else wall.plan.metrics.F_LR_no_setback
-    if bare is not None and arguments.mu is None:
+    if bare is not None and arguments.mu is None and _as_planned(arguments):
         remarks["contacts"] = f"set back; F_LR {bare:.3f} with contacts up to the ends of faces"
     return Modelled(
         model_from_json(blocks),
@@ -125,19 +125,24 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, arguments: argparse.Names
     # What a picture weighs it weighs by its pixels, not by what smoothing made of them.
     bare = replace(model_from_outlines(outlines, mu), blocks=picture.model.blocks)
     found = model_from_outlines(outlines, mu, setback=SETBACK)
-    strength = lateral_resistance(bare).value
-    with_ends = "falls" if strength is None else f"F_LR {strength:.3f}"
+    said = "from sub-pixel outlines, set back"
+    if _as_planned(arguments):
+        strength = lateral_resistance(bare).value
+        with_ends = "falls" if strength is None else f"F_LR {strength:.3f}"
+        said += f"; {with_ends} with contacts up to the ends of faces"
     return Modelled(
         replace(bare, interfaces=found.interfaces),
         outlines,
         "stone",
         wall.wedge_ids,
         picture.notices,
-        {
-            "contacts": "from sub-pixel outlines, set back; "
-            f"{with_ends} with contacts up to the ends of faces"
-        },
+        {"contacts": said},
     )
+
+
+def _as_planned(arguments: argparse.Namespace) -> bool:
+    """Whether loads and head joints are those that F_LR of a plan is of: a tilting table."""
+    return is_plain(arguments) and arguments.mu_head is None
 
 
 def _with_closed_gaps(
