@@ -19,7 +19,7 @@ from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
-from drystone.planner.sturdy import sturdy_model_with
+from drystone.planner.sturdy import falls_when_let_go, sturdy_model_with
 from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.contacts.blocks import model_with
 from drystone.statics.contacts.settled import model_with_outlines
@@ -115,10 +115,12 @@ class Evaluator:
         )  # fmt: skip
         if sturdy is None:
             return candidate
+        with self.profile.part("limit analysis"):
+            stands = sturdy.grown.resistance.stable and not falls_when_let_go(loaded.model)
         return replace(
             candidate,
             sturdy_model=sturdy.model,
-            sturdy=sturdy.grown.resistance.stable,
+            sturdy=stands,
             solved_cold=candidate.solved_cold or sturdy.grown.solved_cold,
             failed=candidate.failed or sturdy.grown.resistance.failed,
         )

@@ -34,7 +34,7 @@ class GoalSettings:
     horizontal: float = 0.25
     level: float = 0.5
     flush: float = 0.25
-    bond: float = 1.0
+    bond: float = 2.0
     F_SF: float = 0.0
     F_LR: float = 0.0
     F_AV: float = 0.0

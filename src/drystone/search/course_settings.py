@@ -71,7 +71,7 @@ class CourseSettings:
     step: float = 2.0
     level: float = 0.6
     top: float = 1.5
-    joint: float = 1.5
+    joint: float = 4.0
     reach: float = 0.6
     overflow: float = 20.0
     slack: float = 2.0

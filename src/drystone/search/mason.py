@@ -189,7 +189,7 @@ class Mason:
                 if sturdy is not None and not sturdy.grown.resistance.stable:
                     continue
                 action = self._action(build, stone, angle_deg, side, one, sturdy)
-                if action is not None:
+                if action is not None and action.sturdy:
                     return action, solves
         return None, solves
 

@@ -107,19 +107,19 @@ def fall_of(
     >>> fall_of(jammed, assemble(jammed), 9).acceleration.round(6)[-2]
     np.float64(-1.0)
     """
-    masses = _masses(model, program)
-    if not len(masses) or program.column_count == 1:
+    rows = masses(model, program)
+    if not len(rows) or program.column_count == 1:
         return None
     rates = ContactRates.of(program)
     dead, edges = -program.rhs, csc_array(program.matrix[:, 1:])
-    states = _States(program, rates, masses)
-    found = least_constraint(masses, dead, rates.normal, np.zeros(rates.normal.shape[1]))
+    states = _States(program, rates, rows)
+    found = least_constraint(rows, dead, rates.normal, np.zeros(rates.normal.shape[1]))
     for _ in range(rounds):
         look()
         if found is None or dead @ found[0] < AT_REST:
             return None
         slip = np.abs(rates.slip.T @ found[0])
-        found = least_constraint(masses, dead, edges, -np.repeat(slip, 2))
+        found = least_constraint(rows, dead, edges, -np.repeat(slip, 2))
         fall = None if found is None else states.exact(*found)
         if fall is not None and np.abs(fall.inertia).max() > UNBALANCED:
             return fall
@@ -141,7 +141,7 @@ def with_inertia(
     return Loads(dead, loads.dead, f"{loads.name}, let go")
 
 
-def _masses(model: RigidBlockModel, program: EquilibriumProgram) -> Floats:
+def masses(model: RigidBlockModel, program: EquilibriumProgram) -> Floats:
     """Return mass or moment of inertia of every row; a unit of weight has a mass of 1."""
     free = [block for block in model.blocks if not block.fixed]
     mass = np.array([block.weight for block in free]) / program.weight
