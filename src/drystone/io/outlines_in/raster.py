@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from drystone.errors import InputError, LabelImageError, Notice
-from drystone.io.images import check_size
 from drystone.io.outlines_in.fill import check_reach, trimmed
 from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile, PlacedMask
 from drystone.io.outlines_in.nested import meeting_boxes, overlap, pixels_of
 from drystone.io.patches import Patch
+from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
