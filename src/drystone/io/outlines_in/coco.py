@@ -73,7 +73,7 @@ def read_coco(content: Mapping[str, Any], where: str, settings: ReadSettings) ->
         notices.append(Notice("W119", text, "Skip the ids of those that are several stones."))
     if any(name in found for found in chosen for name in _OF_MODEL):
         check_reach(stones, where, room.max_px)
-        stones, nested = without_nested(stones, settings.skip)
+        stones, nested = without_nested(stones, where, settings.skip)
         notices += nested
     return OutlineFile(tuple(stones), size_px=size, notices=tuple(notices), names_images=True)
 

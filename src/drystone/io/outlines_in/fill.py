@@ -15,6 +15,8 @@ _AT_ONCE_PX = 2**22
 _FREE_ROWS = 10_000
 """Rows that any outline may cross; more than its pixels of a larger one are no outline."""
 
+_MOST_STONES = 10_000
+
 
 def box_of(area: Area) -> tuple[int, int, int, int]:
     """Return the rows and columns (first, end, first, end) that an area can fill."""
@@ -54,7 +56,12 @@ class Room:
 def check_reach(stones: Iterable[OutlinedStone], where: str, max_px: int) -> None:
     """Refuse outlines, in px, that would fill the memory (E110), naming the stone."""
     room = Room(where, max_px)
-    for stone in stones:
+    for number, stone in enumerate(stones, start=1):
+        if number > _MOST_STONES:
+            raise InputError(
+                "E110", f"there are more than {_MOST_STONES} stones in it.", where=where,
+                cure="Export those of one wall.",
+            )  # fmt: skip
         boxes = [box_of(area) for area in stone.areas]
         boxes += [_box_of_mask(placed) for placed in stone.masks]
         if not boxes:

@@ -20,6 +20,7 @@ METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft"
 
 _SHOWN = 8
 _LARGEST = 10**9
+_LONGEST = 300
 _STONE_NAME = re.compile(r"(?:stones?[ _-]*)?0*([1-9][0-9]*)", re.IGNORECASE)
 _WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
 
@@ -223,10 +224,13 @@ def entry(where: str, what: str) -> Iterator[None]:
         yield
     except KeyError as error:
         raise damaged(where, f"{what} has no {error}") from error
-    except (TypeError, ValueError, IndexError, AttributeError, OverflowError) as error:
+    except (TypeError, ValueError, IndexError, AttributeError, ArithmeticError) as error:
         raise damaged(where, f"{what} cannot be used ({error})") from error
 
 
 def damaged(where: str, what: str) -> InputError:
     """Make the error for a file whose content is not what its format says (E114)."""
-    return InputError("E114", f"{what}.", where=where, cure="Correct it, or export the file again.")
+    shown = what if len(what) <= _LONGEST else f"{what[:_LONGEST]} …"
+    return InputError(
+        "E114", f"{shown}.", where=where, cure="Correct it, or export the file again."
+    )

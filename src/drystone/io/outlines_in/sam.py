@@ -57,7 +57,7 @@ def read_sam(content: list[Mapping[str, Any]], where: str, settings: ReadSetting
                 sizes.add(size_of(segmentation))
             stones.append(OutlinedStone(number, "", areas, masks))
     check_reach(stones, where, room.max_px)
-    kept, notices = without_nested(stones, settings.skip)
+    kept, notices = without_nested(stones, where, settings.skip)
     return OutlineFile(
         tuple(kept),
         size_px=size_in(None, sizes, where),
