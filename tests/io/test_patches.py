@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
+from scipy import ndimage
 
 from drystone.io.census import take_census
 from drystone.io.necks import neck_width_px
@@ -45,6 +46,24 @@ def test_neck_width(width):
     mask[25 - width // 2 : 25 + width // 2, 30:60] = True
     assert neck_width_px(mask) == width
     assert neck_width_px(mask.T) == width
+
+
+@given(st.integers(0, 10**6), st.integers(3, 36), st.integers(3, 36), st.sampled_from([1, 2, 3]))
+def test_necks_of_any_mask(seed, height, width, smooth):
+    noise = ndimage.gaussian_filter(np.random.default_rng(seed).random((height, width)), smooth)
+    mask = noise > np.quantile(noise, 0.35)
+    assert neck_width_px(mask) == naive.neck_width(mask)
+
+
+def test_a_neck_in_a_coarser_picture():
+    mask = discs((200, 360), [(100, 88), (100, 272)], 80.3) >= 0.5
+    mask[80:120, 120:240] = True
+    assert neck_width_px(mask) == 40
+    assert neck_width_px(mask, 2 * 90 * 180) == 40  # half of its rows and columns are enough
+    assert neck_width_px(np.ones((200, 360), bool), 100) is None
+    mask[80:120, 150:210] = False
+    mask[99:100, 150:210] = True  # hit or missed, it is not thicker than a pixel of 4 px
+    assert neck_width_px(mask, 72_000 // 16) == 4
 
 
 def test_stones_without_a_neck():

@@ -7,13 +7,18 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from pycocotools import mask as coco_mask
 
+from drystone.io.outlines_in.fill import Room
 from drystone.io.outlines_in.run_lengths import mask_of, unpacked
 from tests.io.test_annotations import runs
 
 
+def room():
+    return Room("a.json", 10**8)
+
+
 @given(arrays(bool, st.tuples(st.integers(1, 40), st.integers(1, 40))), st.booleans())
 def test_any_mask_comes_back(mask, packed):
-    found = mask_of(runs(mask, packed=packed))
+    found = mask_of(runs(mask, packed=packed), room())
     whole = np.zeros_like(mask)
     if found is not None:
         height, width = found.mask.shape
@@ -33,7 +38,7 @@ def test_long_runs_come_back(height, width, data):
     text = packed["counts"]
     for given_text in (text, text.decode()):
         assert unpacked(given_text)[:3].tolist() == counts[: len(unpacked(given_text))]
-    assert mask_of({"size": [height, width], "counts": text}).mask.sum() == run
+    assert mask_of({"size": [height, width], "counts": text}, room()).mask.sum() == run
 
 
 @pytest.mark.parametrize(
@@ -50,9 +55,9 @@ def test_long_runs_come_back(height, width, data):
 )
 def test_damaged_counts(counts, text):
     with pytest.raises(ValueError, match=text):
-        mask_of({"size": [2, 3], "counts": counts})
+        mask_of({"size": [2, 3], "counts": counts}, room())
 
 
 def test_sizes_that_are_none():
     with pytest.raises(ValueError, match="-2 x 3"):
-        mask_of({"size": [3, -2], "counts": [6]})
+        mask_of({"size": [3, -2], "counts": [6]}, room())

@@ -23,6 +23,33 @@ def holes(mask):
     return (air & (outside == 0))[1:-1, 1:-1]
 
 
+def neck_width(mask):
+    """Twice the smallest erosion, px, that leaves two thick parts of some size; None without."""
+    air = np.argwhere(~np.pad(mask, 1))
+    depth = (
+        np.array(
+            [[np.hypot(*(air - place).T).min() for place in row] for row in places(mask.shape)]
+        )
+        * mask
+    )
+    for half in range(int(depth.max() / 1.6) + 1 if depth.max() >= 3.2 else 0):
+        labels, count = np.zeros(mask.shape, int), 0
+        for row, col in np.argwhere(depth > half):
+            if not labels[row, col]:
+                count += 1
+                _flood(depth > half, labels, (row, col), count, diagonal=False)
+        parts = [labels == i for i in range(1, count + 1)]
+        thick = [part for part in parts if depth[part].max() >= 1.6 * max(half, 1)]
+        if sum(part.sum() >= 0.15 * (depth > half).sum() for part in thick) > 1:
+            return 2 * half
+    return None
+
+
+def places(shape):
+    """Places in a picture of this shape with a rim around it."""
+    return [[(row + 1, col + 1) for col in range(shape[1])] for row in range(shape[0])]
+
+
 def colour_id(red, green, blue):
     """DESIGN 4.1, one pixel."""
     return red if red == green == blue else red + 256 * green + 65536 * blue

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageOps
+from PIL import ImageOps, JpegImagePlugin
 
 from drystone.errors import DrystoneError
 from drystone.experiments.photographs.camera import inverse, moved
@@ -143,7 +143,7 @@ def _scale_error(made: Photograph, result: SegmentedPhoto) -> float | None:
 
 def pixels(made: Photograph) -> NDArray[np.uint8]:
     """Return the photograph as a viewer shows it."""
-    return np.asarray(ImageOps.exif_transpose(Image.open(io.BytesIO(made.jpeg))))
+    return np.asarray(ImageOps.exif_transpose(JpegImagePlugin.JpegImageFile(io.BytesIO(made.jpeg))))
 
 
 def _row(level: Level) -> tuple[Cell, ...]:

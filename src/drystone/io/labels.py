@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from drystone.errors import InputError, LabelImageError, Notice
 from drystone.io.census import take_census
-from drystone.io.images import several_pages
+from drystone.io.pictures import several_pages
 
 MAX_ID = 2**32 - 1
 _GREY_TOLERANCE = 48

@@ -1,10 +1,13 @@
 """Stones that look like two touching stones under one id (W110)."""
 
+import math
+
 import numpy as np
 from scipy import ndimage
 
 from drystone.errors import Notice
 from drystone.io.patches import Patch
+from drystone.io.summits import Summits
 from drystone.kernels.raster import Mask
 
 LARGE = 1.5
@@ -17,7 +20,7 @@ _PART_SHARE = 0.15
 """Each part must have this share of the stone."""
 
 
-def neck_width_px(mask: Mask) -> int | None:
+def neck_width_px(mask: Mask, most_px: int = 2**22) -> int | None:
     """Return the width of the neck between two thick parts of a mask; None without one.
 
     A width of 0 means that the parts meet at a corner of pixels only.
@@ -26,6 +29,9 @@ def neck_width_px(mask: Mask) -> int | None:
     ----------
     mask : (h, w) bool array
         One 8-connected piece.
+    most_px : int
+        A larger mask is looked at in a coarser picture.  There a neck that is thinner than one of
+        its pixels counts as one of them.
 
     Notes
     -----
@@ -39,19 +45,24 @@ def neck_width_px(mask: Mask) -> int | None:
     >>> neck_width_px(mask)
     4
     """
-    depth = ndimage.distance_transform_edt(np.pad(mask, 1))
+    step = math.ceil(math.sqrt(mask.size / most_px))
+    depth = ndimage.distance_transform_edt(np.pad(mask[::step, ::step], 1))
     if depth.max() < 2 * _WAIST:
         return None
-    for half in range(int(depth.max() / _WAIST) + 1):
-        parts, count = ndimage.label(depth > half)
-        if count < 2:
-            continue
-        areas = np.bincount(parts.ravel())[1:]
-        thickness = np.atleast_1d(ndimage.maximum(depth, parts, np.arange(1, count + 1)))
-        thick = (thickness >= _WAIST * max(half, 1)) & (areas >= _PART_SHARE * areas.sum())
-        if thick.sum() >= 2:
-            return 2 * half
-    return None
+    summits = Summits(depth)
+    erosions = np.arange(int(depth.max() / _WAIST) + 1)
+    wide_px = _WAIST * np.maximum(erosions, 1)
+    least_px = _PART_SHARE * summits.left[: len(erosions)]
+    # Most summits are reached by a deeper part before an erosion leaves them thick enough.
+    apart = np.flatnonzero(summits.thickness >= _WAIST * np.maximum(summits.ends + 1, 1))
+    found = np.zeros(len(erosions), int)
+    for part in apart.tolist() if len(apart) > 1 else ():
+        areas = summits.areas(part)[: len(erosions)]
+        thick = summits.thickness[part] >= wide_px
+        found += (erosions > summits.ends[part]) & thick & (areas >= least_px)
+    if not (found > 1).any():
+        return None
+    return max(2 * step * int(np.argmax(found > 1)), step if step > 1 else 0)
 
 
 def suspect_necks(patches: list[Patch]) -> list[Notice]:

@@ -1,19 +1,20 @@
 """Photographs as 8-bit RGB, the right way up."""
 
 import hashlib
-import io
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tifffile
 from numpy.typing import NDArray
-from PIL import Image, ImageOps, JpegImagePlugin, PngImagePlugin, TiffImagePlugin
+from PIL import Image, ImageOps
 
 from drystone.errors import InputError, Notice
 from drystone.io import tiff
-from drystone.io.images import DAMAGE, check_size, several_pages
+from drystone.io.file_bytes import file_bytes
+from drystone.io.pictures import check_size, format_of, opened
+from drystone.io.tiff import ORIENTATION
 from drystone.model.stone import writable
 
 MAX_PX = 200_000_000
@@ -21,9 +22,6 @@ MAX_PX = 200_000_000
 
 MAX_SIDE_PX = 32_766
 """Wider or higher ones too: OpenCV turns none that are."""
-
-_ORIENTATION = 0x0112
-"""Tag of EXIF and TIFF: how the camera was held."""
 
 _REDUCE = "Reduce it or crop it; only in Python can the limit be raised (max_px)."
 
@@ -79,18 +77,7 @@ def read_photo(path: str | Path, max_px: int = MAX_PX) -> Photo:
     """
     path = Path(path)
     data = _bytes_of(path)
-    try:
-        values, orientation, deep = _decode(data, str(path), max_px)
-    except MemoryError as error:
-        raise InputError(
-            "E110", "there is not enough memory for this photograph.", where=str(path),
-            cure="Reduce it.",
-        ) from error  # fmt: skip
-    except DAMAGE as error:
-        raise InputError(
-            "E106", f"the file is damaged or cut short ({error}).", where=str(path),
-            cure="Copy or export it again.",
-        ) from error  # fmt: skip
+    values, orientation, deep = _decode(data, str(path), max_px)
     name = writable(path.name)
     rgb, notices = _to_rgb(values, str(path))
     if deep:
@@ -104,7 +91,7 @@ def read_photo(path: str | Path, max_px: int = MAX_PX) -> Photo:
 
 def _bytes_of(path: Path) -> bytes:
     try:
-        data = path.read_bytes()
+        data = file_bytes(path)
     except OSError as error:
         raise InputError(
             "E100", f"the photograph cannot be read ({error.strerror}).", where=str(path),
@@ -119,15 +106,13 @@ def _bytes_of(path: Path) -> bytes:
 
 def _decode(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int, bool]:
     """Return values (palettes and CMYK as RGB), the orientation, and if there were 16 bits."""
-    if data.startswith(b"\xff\xd8\xff"):
-        return *_by_pillow(JpegImagePlugin.JpegImageFile(io.BytesIO(data)), where, max_px), False
-    if data.startswith(b"\x89PNG\r\n\x1a\n"):
-        found = _by_pillow(PngImagePlugin.PngImageFile(io.BytesIO(data)), where, max_px)
-        # Colours of 16 bits come from Pillow as their upper 8.
-        return *found, data[24] == 16
-    if data.startswith((b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")):
+    kind = format_of(data)
+    if kind == "TIFF":
         values, orientation = _tiff(data, where, max_px)
         return values, orientation, values.dtype == np.uint16
+    if kind in ("JPEG", "PNG"):
+        # Colours of 16 bits come from Pillow as their upper 8.
+        return *_by_pillow(data, where, max_px), kind == "PNG" and data[24:25] == b"\x10"
     raise InputError(
         "E107", "this is no JPEG, PNG or TIFF.", where=where,
         cure="Export the photograph as JPEG (phones: 'most compatible').",
@@ -146,30 +131,27 @@ def _check(width: int, height: int, where: str, max_px: int) -> None:
         )
 
 
-def _by_pillow(image: Image.Image, where: str, max_px: int) -> tuple[NDArray[Any], int]:
-    _check(*image.size, where, max_px)
-    orientation = int(image.getexif().get(_ORIENTATION, 1))
-    if image.mode in ("1", "CMYK", "YCbCr", "LAB", "HSV"):
-        return np.asarray(image.convert("RGB")), orientation
-    if image.mode in ("P", "PA"):
-        transparent = image.mode == "PA" or "transparency" in image.info
-        return np.asarray(image.convert("RGBA" if transparent else "RGB")), orientation
-    if image.mode == "I":
-        # Pillow reads grey PNG of 16 bits so in some versions.
-        return np.asarray(image).astype(np.uint16), orientation
-    return np.asarray(image), orientation
+def _by_pillow(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int]:
+    with opened(data, where, partial(_check, where=where, max_px=max_px)) as image:
+        orientation = int(image.getexif().get(ORIENTATION, 1))
+        mode = image.mode
+        if mode in ("1", "CMYK", "YCbCr", "LAB", "HSV"):
+            values = np.asarray(image.convert("RGB"))
+        elif mode in ("P", "PA"):
+            transparent = mode == "PA" or "transparency" in image.info
+            values = np.asarray(image.convert("RGBA" if transparent else "RGB"))
+        else:
+            values = np.asarray(image)
+    # Pillow reads grey PNG of 16 bits as "I" in some versions.
+    return values.astype(np.uint16) if mode == "I" else values, orientation
 
 
 def _tiff(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int]:
-    page = tiff.inspect(data)
+    page = tiff.inspect(data, where)
     _check(page.width, page.height, where, max_px)
-    if page.pages > 1:
-        raise several_pages(f"{page.pages} pages", where)
-    bits, orientation, negative = _tiff_tags(data)
-    if bits <= 8:
+    if page.bits <= 8:
         # Pillow turns a TIFF by itself when it reads it: taken back, so that it is said.
-        image = TiffImagePlugin.TiffImageFile(io.BytesIO(data))
-        values, orientation = _by_pillow(image, where, max_px)
+        values, orientation = _by_pillow(data, where, max_px)
         return _turned(values, _BACK.get(orientation, orientation)), orientation
     if page.unreadable:
         raise InputError(
@@ -178,25 +160,16 @@ def _tiff(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int]:
         )  # fmt: skip
     if page.colours:
         raise InputError(
-            "E107", f"TIFF of {bits} bits a channel in {page.colours} cannot be read.", where=where,
-            cure="Export it in RGB, or with 8 bits a channel.",
+            "E107", f"TIFF of {page.bits} bits a channel in {page.colours} cannot be read.",
+            where=where, cure="Export it in RGB, or with 8 bits a channel.",
         )  # fmt: skip
-    values = tiff.values(data)
+    values = tiff.values(data, where, partial(_check, where=where, max_px=max_px))
     # Pillow takes this back for 8 bits; ids keep the numbers of the file, light does not.
-    if negative and values.dtype == np.uint16:
+    if page.negative and values.dtype == np.uint16:
+        values = values.copy()
         grey = np.atleast_3d(values)[..., :1]
         np.subtract(65535, grey, out=grey)
-    return values, orientation
-
-
-def _tiff_tags(data: bytes) -> tuple[int, int, bool]:
-    """Return bits of a channel, the orientation, and whether 0 is white."""
-    with tifffile.TiffFile(io.BytesIO(data)) as file:
-        page: Any = file.pages[0]
-        tag = page.tags.get(_ORIENTATION)
-        turned = 1 if tag is None else int(tag.value)
-        negative = page.photometric == tifffile.PHOTOMETRIC.MINISWHITE
-        return int(page.bitspersample), turned, negative
+    return values, page.orientation
 
 
 _BACK = {6: 8, 8: 6}
@@ -208,7 +181,7 @@ def _turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
     if orientation not in _TURNS:
         return values
     image = Image.fromarray(values)
-    image.getexif()[_ORIENTATION] = orientation
+    image.getexif()[ORIENTATION] = orientation
     return np.array(ImageOps.exif_transpose(image))
 
 

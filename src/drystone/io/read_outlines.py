@@ -4,12 +4,17 @@ import hashlib
 from collections.abc import Callable
 from dataclasses import replace
 
-from drystone.errors import UsageError
+import numpy as np
+
+from drystone.errors import InputError, UsageError
 from drystone.io.found import Found, stone_set
 from drystone.io.outlines_in.model import METRES, OutlineFile, numbered, without_wedges
 from drystone.io.outlines_in.raster import rastered
 from drystone.io.read_settings import ReadSettings
 from drystone.model.stone import Source, StoneSet
+
+MOST_TEXT_BYTES = 500_000_000
+"""Larger files of outlines are refused; that of all images of COCO has 450 MB."""
 
 
 def stones_of(
@@ -44,7 +49,15 @@ def stones_of(
         E118 when the file has another unit than the settings say, or says nothing of images and
         one is asked for; when a background or a mask is.
     """
-    file = read(data, where, settings)
+    if len(data) > MOST_TEXT_BYTES:
+        megabytes = f"{len(data) / 1e6:.0f} MB, and the limit is {MOST_TEXT_BYTES / 1e6:g} MB"
+        raise InputError(
+            "E110", f"it has {megabytes}.", where=where,
+            cure="Export the outlines of one image, with fewer corners.",
+        )  # fmt: skip
+    # What is not finite is refused; NumPy would warn of it as well.
+    with np.errstate(all="ignore"):
+        file = read(data, where, settings)
     check_unit(file.unit_m, settings, where)
     _check_of_outlines(settings, where)
     if not file.names_images:

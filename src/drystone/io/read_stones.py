@@ -19,6 +19,7 @@ from drystone.io.checks import (
     check_not_resampled,
     check_not_uniform,
 )
+from drystone.io.file_bytes import file_bytes
 from drystone.io.found import Found, stone_set
 from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
 from drystone.io.labels import IdImage, to_ids
@@ -127,7 +128,7 @@ def _max_px(settings: ReadSettings) -> int:
 
 def _bytes_of(path: Path) -> bytes:
     try:
-        return path.read_bytes()
+        return file_bytes(path)
     except FileNotFoundError:
         raise InputError(
             "E100", "there is no such file or folder.", where=str(path), cure="Check the path."

@@ -1,14 +1,22 @@
 """TIFF pages to values: tifffile where it can, Pillow for the codecs that it lacks."""
 
 import io
+import math
+import re
+import struct
+import zlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import tifffile
 from numpy.typing import NDArray
-from PIL import TiffImagePlugin
 from PIL.Image import Transpose
+
+from drystone.io.foreign import foreign
+from drystone.io.pictures import damaged, opened, several_pages
 
 _BY_TIFFFILE = {1, 8, 32773, 32946}
 """No compression, deflate, PackBits: decoded by tifffile without further packages."""
@@ -25,13 +33,23 @@ _NO_IDS = {5: "CMYK", 6: "YCbCr", 8: "LAB", 9: "LAB", 10: "LAB"}
 _TRANSPARENCY = {1, 2}
 """Extra channels that say of themselves that they are alpha."""
 
-_ORIENTATION = 0x0112
+ORIENTATION = 0x0112
+"""Tag of EXIF and TIFF: how the camera was held."""
+
+_PLANES = 33629
+"""Tag of MetaMorph, of which the number of values is that of planes behind one page."""
+
 _BACK = {
     2: Transpose.FLIP_LEFT_RIGHT, 3: Transpose.ROTATE_180, 4: Transpose.FLIP_TOP_BOTTOM,
     5: Transpose.TRANSPOSE, 6: Transpose.ROTATE_90, 7: Transpose.TRANSVERSE,
     8: Transpose.ROTATE_270,
 }  # fmt: skip
 """What takes back the turn of an orientation."""
+
+_MOST_PAGES = 10_000
+_MOST_BYTES_A_PX = 8
+_EXPANDS = 2**28
+"""Bytes that packed ones may become before it is looked at what they do become."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +60,6 @@ class TiffPage:
     ----------
     width, height : int
         Size in px.
-    pages : int
-        Number of pictures (planes, slices, pages).
     lossy : bool
         True for JPEG inside TIFF.
     unreadable : str
@@ -52,70 +68,199 @@ class TiffPage:
         Colour mode that holds no ids, such as CMYK; empty for all others.
     alpha : bool
         True when the last channel is transparency, and says so.
+    bits : int
+        Of a channel.
+    orientation : int
+        How the camera was held, 1 to 8.
+    negative : bool
+        True when 0 is white.
     """
 
     width: int
     height: int
-    pages: int
     lossy: bool
     unreadable: str
-    colours: str = ""
-    alpha: bool = False
+    colours: str
+    alpha: bool
+    bits: int
+    orientation: int
+    negative: bool
 
 
-def inspect(data: bytes) -> TiffPage:
-    """Read the tags of a TIFF and decode nothing."""
-    with tifffile.TiffFile(io.BytesIO(data)) as file:
-        page: Any = file.pages[0]
-        series = file.series[0]
-        planes = [n for axis, n in zip(series.axes, series.shape, strict=True) if axis not in "YXS"]
-        compression = int(page.compression)
+def inspect(data: bytes, where: str) -> TiffPage:
+    """Read the tags of a TIFF and decode nothing.
+
+    Raises
+    ------
+    InputError
+        E106 damaged, E109 several pages, planes or more channels than colours and alpha.
+    """
+    pages = _count_pages(data, where)
+    if pages > 1:
+        raise several_pages(f"{pages} pages", where)
+    with _page(data, where) as page:
+        planes, channels = _planes(page), int(page.samplesperpixel)
+        compression, photometric = int(page.compression), int(page.photometric)
+        orientation = page.tags.get(ORIENTATION)
         lossy = compression in _LOSSY
-        unreadable = ""
-        if compression not in _BY_TIFFFILE | _BY_PILLOW | _LOSSY:
-            unreadable = f"compression {page.compression.name}"
-        elif (
-            compression not in _BY_TIFFFILE and page.samplesperpixel > 1 and page.bitspersample > 8
-        ):
-            unreadable = f"{page.bitspersample} bits a colour channel and compression"
-        return TiffPage(
+        found = TiffPage(
             width=int(page.imagewidth),
             height=int(page.imagelength),
-            pages=max(len(file.series), int(np.prod(planes, dtype=int))),
             lossy=lossy,
-            unreadable=unreadable,
-            colours="" if lossy and page.photometric == 6 else _NO_IDS.get(page.photometric, ""),
+            unreadable=_unreadable(page),
+            colours="" if lossy and photometric == 6 else _NO_IDS.get(photometric, ""),
             alpha=bool(page.extrasamples) and int(page.extrasamples[-1]) in _TRANSPARENCY,
+            bits=int(np.max(page.bitspersample)),
+            orientation=1 if orientation is None else int(orientation.value),
+            negative=photometric == 0,
         )
+    if planes > 1 or channels > 4:
+        said = f"{planes} planes" if planes > 1 else f"{channels} channels"
+        raise several_pages(said, where)
+    return found
 
 
-def values(data: bytes) -> NDArray[Any]:
+def values(data: bytes, where: str, check: Callable[[int, int], None]) -> NDArray[Any]:
     """Decode the only page of a TIFF, channels last; palette indices and numbers are kept.
 
     Pixels are where the file has them: its orientation turns nothing, however it is compressed.
+
+    Parameters
+    ----------
+    data : bytes
+        Of a file that was inspected, and found readable.
+    where : str
+        Its name, for messages.
+    check : callable
+        Refuses a width and a height.
     """
-    with tifffile.TiffFile(io.BytesIO(data)) as file:
-        page: Any = file.pages[0]
-        series = file.series[0]
-        if int(page.compression) not in _BY_TIFFFILE:
-            return _values_by_pillow(data, page)
-        found = np.asarray(series.asarray())
-        keep = [i for i, axis in enumerate(series.axes) if axis in "YXS"]
-        found = found.reshape([found.shape[i] for i in keep])
-        if "S" in series.axes and series.axes.index("S") < series.axes.index("Y"):
-            found = np.moveaxis(found, 0, -1)
-        return found
+    with _page(data, where) as page:
+        compression, bits, kind = (
+            int(n) for n in (page.compression, page.bitspersample, page.sampleformat)
+        )
+        negative = int(page.photometric) == 0
+        size = math.prod(page.shaped) * max(1, bits // 8)
+        packed = [
+            (int(a), int(n)) for a, n in zip(page.dataoffsets, page.databytecounts, strict=False)
+        ]
+    if compression not in _BY_TIFFFILE:
+        return _values_by_pillow(
+            data, where, check, unsigned=bits == 32 and kind == 1, negative=negative
+        )
+    if compression != 1:
+        _check_expanded(data, packed, compression, size, where)
+    with _page(data, where) as page:
+        found = np.asarray(page.asarray())
+        return np.moveaxis(found, 0, -1) if page.axes == "SYX" else found
 
 
-def _values_by_pillow(data: bytes, page: Any) -> NDArray[Any]:
-    image = TiffImagePlugin.TiffImageFile(io.BytesIO(data))
-    # Pillow turns a picture when it loads it.
-    back = _BACK.get(image.getexif().get(_ORIENTATION, 1))
-    found = np.asarray(image if back is None else image.transpose(back))
-    if page.bitspersample == 32 and int(page.sampleformat) == 1:
+@contextmanager
+def _page(data: bytes, where: str) -> Iterator[Any]:
+    """Open the first page with tifffile, the variants of microscopes that lead elsewhere aside."""
+    with foreign(lambda why: damaged(why, where)):
+        file = tifffile.TiffFile(  # noqa: TID251 - its chain was followed
+            io.BytesIO(data), is_lsm=False, is_ndpi=False, is_scanimage=False
+        )
+        yield file.pages[0]
+
+
+def _count_pages(data: bytes, where: str) -> int:
+    """Follow the chain of pages, which tifffile does without end where it runs in a circle."""
+    order = "<" if data[:2] == b"II" else ">"
+    big = data[2:4] in (b"+\0", b"\0+")
+    count, offset, entry, place = ("Q", "Q", 20, 8) if big else ("H", "I", 12, 4)
+    seen: set[int] = set()
+    try:
+        (place,) = struct.unpack_from(f"{order}{offset}", data, place)
+        while place and place < len(data) and len(seen) < _MOST_PAGES:
+            if place in seen:
+                raise damaged("its pages lead in a circle", where)
+            seen.add(place)
+            (entries,) = struct.unpack_from(f"{order}{count}", data, place)
+            place += struct.calcsize(f"{order}{count}") + entry * entries
+            (place,) = struct.unpack_from(f"{order}{offset}", data, place)
+    except struct.error:  # cut short: what there is may be enough
+        pass
+    return len(seen)
+
+
+def _planes(page: Any) -> int:
+    """Return how many pictures lie behind one page, as programs for microscopes write them."""
+    said = page.description
+    stack = re.search(r"^images=(\d{1,9})\s*$", said, re.MULTILINE) if page.is_imagej else None
+    shape = re.search(r'"shape": \[([\d, ]{1,99})\]', said) if page.is_shaped else None
+    tag = page.tags.get(_PLANES) if page.is_stk else None
+    counts = [
+        int(page.imagedepth),
+        0 if stack is None else int(stack[1]),
+        0 if shape is None else math.prod(map(int, shape[1].split(","))) // math.prod(page.shape),
+        0 if tag is None else int(tag.count),
+    ]
+    return max(counts)
+
+
+def _unreadable(page: Any) -> str:
+    """Say why a page cannot be decoded without loss; nothing when it can."""
+    compression, channels = page.compression, int(page.samplesperpixel)
+    bits = page.bitspersample
+    if int(compression) not in _BY_TIFFFILE | _BY_PILLOW | _LOSSY:
+        return f"compression {getattr(compression, 'name', int(compression))}"
+    if page.dtype is None or page.dtype.itemsize * channels > _MOST_BYTES_A_PX:
+        return f"{channels} channels of {bits} bits"
+    if int(compression) not in _BY_TIFFFILE and channels > 1 and bits > 8:
+        return f"{bits} bits a colour channel and compression"
+    return ""
+
+
+def _check_expanded(
+    data: bytes, packed: list[tuple[int, int]], compression: int, size: int, where: str
+) -> None:
+    """Refuse packed bytes that become many more than the picture has."""
+    total, most = sum(count for _, count in packed), 2 * size + _EXPANDS
+    if total > len(data):
+        raise damaged("its strips lie in each other", where)
+    if total * 1032 <= _EXPANDS:  # the most that deflate can do
+        return
+    expanded = 0
+    for start, count in packed:
+        piece = data[start : start + count]
+        with foreign(lambda why: damaged(why, where)):
+            expanded += (_inflated if compression != 32773 else _unpacked)(piece, most)
+        if expanded > most:
+            raise damaged("its strips are larger than the picture", where)
+
+
+def _inflated(piece: bytes, most: int) -> int:
+    """Return how many bytes deflate makes of some, counted until there are too many."""
+    decoder, total = zlib.decompressobj(), 0
+    while piece and total <= most:
+        total += len(decoder.decompress(piece, 2**24))
+        piece = decoder.unconsumed_tail
+    return total
+
+
+def _unpacked(piece: bytes, most: int) -> int:
+    """Return the same of PackBits."""
+    place = total = 0
+    while place < len(piece) and total <= most:
+        number = piece[place]
+        total += number + 1 if number < 128 else 257 - number
+        place += number + 2 if number < 128 else 2
+    return total
+
+
+def _values_by_pillow(
+    data: bytes, where: str, check: Callable[[int, int], None], *, unsigned: bool, negative: bool
+) -> NDArray[Any]:
+    with opened(data, where, check) as image:
+        # Pillow turns a picture when it loads it.
+        back = _BACK.get(image.getexif().get(ORIENTATION, 1))
+        mode = image.mode
+        found = np.asarray(image if back is None else image.transpose(back))
+    if unsigned and found.dtype.itemsize == 4:
         # Pillow has no unsigned 32-bit mode: the bits are right, the sign is not.
         found = found.view(np.uint32)
-    if int(page.photometric) == 0 and image.mode in ("1", "L"):
+    if negative and mode in ("1", "L"):
         # Pillow inverts white-is-zero pictures; values are the file's own, as in tifffile.
         found = ~found
     return found

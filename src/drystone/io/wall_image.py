@@ -17,6 +17,7 @@ from drystone.io.checks import (
     check_not_resampled,
     check_not_uniform,
 )
+from drystone.io.file_bytes import file_bytes
 from drystone.io.images import decode
 from drystone.io.labels import IdImage, to_ids
 from drystone.model.wall import Labels
@@ -117,7 +118,7 @@ def read_wall_image(
     path = Path(path)
     where = path.name
     try:
-        data = path.read_bytes()
+        data = file_bytes(path)
     except OSError as error:
         raise InputError(
             "E100",

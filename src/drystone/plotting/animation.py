@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.transforms import Bbox
-from PIL import Image
+from PIL import Image, PngImagePlugin
 
 from drystone.model.wall import Labels
 from drystone.plotting.canvas import block_path
@@ -121,7 +121,7 @@ def _move(ax: Axes, motion: Motion, amplitude: float) -> None:
 def _picture(figure: Figure, box: Bbox, dpi: float) -> Image.Image:
     with BytesIO() as file:
         figure.savefig(file, format="png", dpi=dpi, bbox_inches=box, facecolor="white")
-        return Image.open(file).convert("RGB")
+        return PngImagePlugin.PngImageFile(file).convert("RGB")
 
 
 def _few_colours() -> Image.Image:

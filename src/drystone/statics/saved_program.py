@@ -33,7 +33,7 @@ def save_program(model: RigidBlockModel, loads: Loads | None, path: Path) -> Non
 
 def load_program(path: Path) -> EquilibriumProgram:
     """Read what :func:`save_program` wrote."""
-    with np.load(path) as saved:
+    with np.load(path) as saved:  # noqa: TID251 - what this module wrote
         length, weight = saved["scales"].tolist()
         arrays = {name: saved[name] for name in _ARRAYS}
         return EquilibriumProgram(

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from PIL import Image
+from PIL import PngImagePlugin
 
 from drystone.experiments.reproduce.item import Output, Picture
 from drystone.experiments.table import Cell, Table
@@ -53,7 +53,7 @@ def write_picture(folder: Path, picture: Picture) -> dict[str, Any]:
     png, svg = f"{picture.name}.png", f"{picture.name}.svg"
     for name in (png, svg):
         save(picture.figure, folder / name)
-    with Image.open(folder / png) as image:
+    with PngImagePlugin.PngImageFile(folder / png) as image:
         width, height = image.size
     return {
         "name": picture.name, "png": png, "svg": svg, "width_px": width, "height_px": height,

@@ -6,7 +6,7 @@ from pathlib import PurePath
 from typing import Any
 
 from drystone.errors import InputError, Notice
-from drystone.io.outlines_in.fill import check_reach
+from drystone.io.outlines_in.fill import Room, check_reach
 from drystone.io.outlines_in.model import (
     Area,
     OutlinedStone,
@@ -16,6 +16,7 @@ from drystone.io.outlines_in.model import (
     left_aside,
     number_in,
     ring,
+    side_px,
 )
 from drystone.io.outlines_in.nested import without_nested
 from drystone.io.outlines_in.run_lengths import is_runs, mask_of, size_of
@@ -46,6 +47,7 @@ def read_coco(content: Mapping[str, Any], where: str, settings: ReadSettings) ->
         categories = {c.get("id"): str(c.get("name", "")) for c in content.get("categories") or ()}
     shown = categories if len(categories) > 1 else {}
     stones, sizes, aside, masks_of_crowds = [], set(), Counter[str](), 0
+    room = Room(where, int(settings.max_image_mpx * 1e6))
     only_crowds = all(map(_is_crowd, chosen))
     for number, found in enumerate(chosen):
         with entry(where, f"annotation {found.get('id', number)}"):
@@ -59,7 +61,7 @@ def read_coco(content: Mapping[str, Any], where: str, settings: ReadSettings) ->
             if not segmentation:
                 aside["annotations without an outline"] += 1
                 continue
-            areas, masks = shape_of(segmentation)
+            areas, masks = shape_of(segmentation, room)
             if is_runs(segmentation):
                 sizes.add(size_of(segmentation))
             name = shown.get(found.get("category_id"), "")
@@ -70,8 +72,8 @@ def read_coco(content: Mapping[str, Any], where: str, settings: ReadSettings) ->
         text = f"{masks_of_crowds} masks are marked as crowds, as CVAT marks all: a stone each."
         notices.append(Notice("W119", text, "Skip the ids of those that are several stones."))
     if any(name in found for found in chosen for name in _OF_MODEL):
-        check_reach(stones, where, int(settings.max_image_mpx * 1e6))
-        stones, nested = without_nested(stones, settings.skip)
+        check_reach(stones, where, room.max_px)
+        stones, nested = without_nested(stones, where, settings.skip)
         notices += nested
     return OutlineFile(tuple(stones), size_px=size, notices=tuple(notices), names_images=True)
 
@@ -80,10 +82,10 @@ def _is_crowd(found: Mapping[str, Any]) -> bool:
     return found.get("iscrowd") not in (None, 0, "0", "")
 
 
-def shape_of(segmentation: Any) -> tuple[tuple[Area, ...], tuple[PlacedMask, ...]]:
-    """Return a segmentation as areas or as a mask."""
+def shape_of(segmentation: Any, room: Room) -> tuple[tuple[Area, ...], tuple[PlacedMask, ...]]:
+    """Return a segmentation as areas or as a mask, which takes of the room."""
     if is_runs(segmentation):
-        mask = mask_of(segmentation)
+        mask = mask_of(segmentation, room)
         return (), () if mask is None else (mask,)
     polygons = []
     for flat in segmentation:
@@ -100,7 +102,7 @@ def size_in(
     sizes = set(masks)
     with entry(where, "the image"):
         if image is not None and image.get("width") and image.get("height"):
-            sizes.add((int(image["width"]), int(image["height"])))
+            sizes.add((side_px(image["width"]), side_px(image["height"])))
         if len(sizes) > 1:
             listed = ", ".join(f"{width} x {height}" for width, height in sorted(sizes))
             raise ValueError(f"its sizes differ: {listed} px")

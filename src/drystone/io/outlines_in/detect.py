@@ -7,6 +7,9 @@ from pathlib import PurePath
 from typing import Any
 
 from drystone.errors import InputError
+from drystone.io.foreign import foreign
+from drystone.io.json_text import json_of
+from drystone.io.npy import BEGINNING
 from drystone.io.outlines_in.coco import is_coco, read_coco
 from drystone.io.outlines_in.dxf import is_dxf, read_dxf
 from drystone.io.outlines_in.geojson import is_geojson, read_geojson
@@ -16,6 +19,7 @@ from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.outlines_in.sam import is_sam, read_sam
 from drystone.io.outlines_in.svg import is_svg, read_svg
 from drystone.io.photo_sidecar import LABELS, SCHEMA
+from drystone.io.pictures import format_of
 from drystone.io.read_settings import ReadSettings
 
 Reader = Callable[[bytes, str, ReadSettings], OutlineFile]
@@ -29,16 +33,6 @@ _JSON: tuple[tuple[Callable[[object], bool], Callable[..., OutlineFile]], ...] =
 _EXPECTED = (
     "labelme (shapes), COCO (annotations, images), masks of SAM (a list with segmentation each) "
     "or GeoJSON (type, features)"
-)
-_PICTURES = (
-    b"\x89PNG",
-    b"II*\0",
-    b"MM\0*",
-    b"II+\0",
-    b"MM\0+",
-    b"GIF8",
-    b"\xff\xd8\xff",
-    b"\x93NUMPY",
 )
 
 
@@ -58,7 +52,8 @@ def outline_reader(data: bytes, name: str) -> Reader | None:
     True
     """
     suffix = PurePath(name).suffix.lower()
-    if not data or data.startswith(_PICTURES):
+    # The two letters of a BMP may begin a text, too.
+    if not data or data.startswith(BEGINNING) or format_of(data) not in ("", "BMP"):
         return None
     if suffix in {".json", ".geojson"} or _begins_json(data):
         return _read_json
@@ -78,11 +73,8 @@ def _begins_json(data: bytes) -> bool:
 
 
 def _read_json(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
-    try:
-        content = json.loads(data)
-    except (ValueError, RecursionError) as error:
-        what = f"cannot be read, it may be cut short ({error})"
-        raise _no_stones(what, where=where) from error
+    with foreign(lambda why: _no_stones(f"cannot be read, it may be cut short ({why})", "", where)):
+        content = json_of(data.decode(json.detect_encoding(data), "surrogatepass"))
     for is_format, read in _JSON:
         if is_format(content):
             return read(content, where, settings)

@@ -9,9 +9,11 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from drystone.errors import InputError, Notice, UsageError
+from drystone.io.foreign import foreign
 from drystone.io.outlines_in.dxf_blocks import Drawn, drawn_entities
 from drystone.io.outlines_in.model import (
     METRES,
+    Area,
     OutlinedStone,
     OutlineFile,
     damaged,
@@ -33,6 +35,8 @@ _CLOSED = 1e-6
 """How far the ends of a closed spline may be apart, as a share of its size."""
 _FLATNESS = 2e-4
 """How far chords may stay away from a curve, as a share of the size of the outline."""
+_MOST_CORNERS = 10_000_000
+_MOST_DEGREE = 32
 
 
 def is_dxf(data: bytes, suffix: str) -> bool:
@@ -66,12 +70,23 @@ def read_dxf(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
     if named:
         aside["entities outside the layer STONES"] = len(shown) - len(named)
     rings, names = [], []
+    room = _MOST_CORNERS
     for drawn in named or shown:
         corners = _outline(drawn, where, aside)
-        if corners is not None:
-            rings.append(corners)
+        if corners is None:
+            continue
+        room -= len(corners)
+        if room < 0:
+            raise InputError(
+                "E110", f"the drawing has more than {_MOST_CORNERS} corners, those on curves.",
+                where=where, cure="Export the outlines of stones only, with fewer corners.",
+            )  # fmt: skip
+        rings.append(corners)
+        with foreign(lambda why: damaged(where, f"the name of an outline cannot be used ({why})")):
             names.append(_name(drawn))
-    return _file(rings, names, unit_m, +aside)
+    with foreign(lambda why: damaged(where, f"its outlines cannot be put in order ({why})")):
+        found = with_holes(rings)
+    return _file(found, rings, names, unit_m, +aside)
 
 
 def load_ezdxf() -> Any:
@@ -86,17 +101,18 @@ def load_ezdxf() -> Any:
 
 
 def _document(ezdxf: Any, data: bytes, where: str) -> Any:
-    try:
+    def cut(why: str) -> InputError:
+        return InputError(
+            "E106", f"the drawing is damaged or cut short ({why}).", where=where,
+            cure="Copy or export it again.",
+        )  # fmt: skip
+
+    with foreign(cut):
         if data.startswith(BINARY):
             tagger = import_module("ezdxf.lldxf.tagger")
             drawing = import_module("ezdxf.document").Drawing
             return drawing.load(tagger.binary_tags_loader(data, errors="surrogateescape"))
         return ezdxf.read(io.StringIO(_text(data)))
-    except (ezdxf.DXFError, ValueError, TypeError, KeyError, IndexError, AttributeError) as error:
-        raise InputError(
-            "E106", f"the drawing is damaged or cut short ({error}).", where=where,
-            cure="Copy or export it again.",
-        ) from error  # fmt: skip
 
 
 def _text(data: bytes) -> str:
@@ -111,7 +127,8 @@ def _text(data: bytes) -> str:
 
 def _unit(ezdxf: Any, document: Any, where: str, settings: ReadSettings) -> float | None:
     units = import_module("ezdxf.units")
-    number = int(document.header.get("$INSUNITS", 0))
+    with foreign(lambda why: damaged(where, f"its unit cannot be used ({why})")):
+        number = int(document.header.get("$INSUNITS", 0))
     if number in {int(known) for known in ezdxf.units.InsertUnits} - {0}:
         return float(units.conversion_factor(ezdxf.units.InsertUnits(number), units.M))
     if settings.unit:
@@ -129,12 +146,12 @@ def _unit(ezdxf: Any, document: Any, where: str, settings: ReadSettings) -> floa
 def _outline(drawn: Drawn, where: str, aside: Counter[str]) -> Points | None:
     """Return the corners of a closed outline; what is none is counted."""
     entity = drawn.entity
-    kind = entity.dxftype()
-    if kind not in _OUTLINES or (kind == "POLYLINE" and not _is_line(entity)):
-        aside[kind] += 1
-        return None
-    handle = entity.dxf.get("handle", "?")
-    try:
+    kind, handle = entity.dxftype(), entity.dxf.get("handle", "?")
+    unusable = f"the {kind} of handle {handle} cannot be used"
+    with foreign(lambda why: damaged(where, f"{unusable} ({why})")):
+        if kind not in _OUTLINES or (kind == "POLYLINE" and not _is_line(entity)):
+            aside[kind] += 1
+            return None
         if kind == "SPLINE" and len(entity.control_points):
             control = [v.xyz for v in drawn.matrix.transform_vertices(entity.control_points)]
             corners = spline(control, entity.knots, entity.weights, entity.dxf.degree)
@@ -149,12 +166,10 @@ def _outline(drawn: Drawn, where: str, aside: Counter[str]) -> Points | None:
         # Curves stay curves also where a block is stretched, or mirrored.
         path = path.transform(drawn.matrix)
         # Few corners are enough to see how large it is.
-        rough = np.array([(v.x, v.y) for v in path.control_vertices()])
+        rough = ring([(v.x, v.y) for v in path.control_vertices()])
         size = float(np.ptp(rough, axis=0).max())
         chords = path.flattening(max(size * _FLATNESS, 1e-12), segments=8)
         return ring([(v.x, v.y) for v in chords])
-    except (ValueError, TypeError, ArithmeticError) as error:
-        raise damaged(where, f"the {kind} of handle {handle} cannot be used ({error})") from error
 
 
 def spline(control: Any, knots: Any, weights: Any, degree: int) -> Points:
@@ -172,6 +187,8 @@ def spline(control: Any, knots: Any, weights: Any, degree: int) -> Points:
     degree : int
         From 1.
     """
+    if degree > _MOST_DEGREE:
+        raise ValueError(f"its degree is {degree}; the limit is {_MOST_DEGREE}")
     points = np.asarray(control, dtype=float)[:, :2]
     heavy = np.asarray(weights, dtype=float) if len(weights) else np.ones(len(points))
     t = np.asarray(knots, dtype=float)
@@ -197,9 +214,12 @@ def _name(drawn: Drawn) -> str:
 
 
 def _file(
-    rings: list[Points], names: list[str], unit_m: float | None, aside: Counter[str]
+    found: list[tuple[int, Area]],
+    rings: list[Points],
+    names: list[str],
+    unit_m: float | None,
+    aside: Counter[str],
 ) -> OutlineFile:
-    found = with_holes(rings)
     # The one layer that all stones are on says nothing of a stone.
     shown = names if len(set(names)) > 1 or len(names) == 1 else [""] * len(names)
     stones = tuple(OutlinedStone(number_in(shown[i]), shown[i], (area,)) for i, area in found)

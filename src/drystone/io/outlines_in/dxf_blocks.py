@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
+from drystone.io.foreign import foreign
 from drystone.io.outlines_in.model import damaged
 
 _DEEPEST = 64
 _MOST = 100_000
-"""Block references, those in rows and columns one by one."""
+"""Entities and block references, those in rows and columns, and in blocks, one by one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +54,9 @@ def drawn_entities(document: Any, where: str, aside: Counter[str]) -> list[Drawn
         E114 for blocks that cannot be used, or that are in each other.
     """
     start = _Place(import_module("ezdxf.math").Matrix44())
-    error = import_module("ezdxf").DXFError
     walk = _Walk(document, where, aside)
-    try:
+    with foreign(lambda why: damaged(where, f"a block or a dimension cannot be used ({why})")):
         return list(walk.drawn(document.modelspace(), start))
-    except (error, ValueError, TypeError, ArithmeticError, AttributeError) as wrong:
-        raise damaged(where, f"a block or a dimension cannot be used ({wrong})") from wrong
 
 
 class _Walk:
@@ -72,6 +70,7 @@ class _Walk:
     def drawn(self, entities: Iterable[Any], place: _Place) -> Iterator[Drawn]:
         """Yield entities, and the parts of those that have parts, in the order of the file."""
         for entity in entities:
+            self._count(place)
             own = str(_said(entity, "layer", "0"))
             layer = place.layer if own == "0" else own
             if self._is_hidden(entity, layer):
@@ -98,11 +97,14 @@ class _Walk:
         # Definitions of attributes are not drawn, only the attributes of the block reference.
         entities = [entity for entity in block if entity.dxftype() != "ATTDEF"]
         for one in insert.multi_insert() if insert.mcount > 1 else [insert]:
-            self.count += 1
-            if self.count > _MOST or place.depth > _DEEPEST:
-                raise damaged(self.where, "blocks are in each other too often or too deeply")
+            self._count(place)
             matrix = one.matrix44() @ place.matrix
             yield from self.drawn(entities, _Place(matrix, place.layer, place.depth))
+
+    def _count(self, place: _Place) -> None:
+        self.count += 1
+        if self.count > _MOST or place.depth > _DEEPEST:
+            raise damaged(self.where, "blocks are in each other too often or too deeply")
 
     def _is_hidden(self, entity: Any, layer: str) -> bool:
         if _said(entity, "invisible", 0):

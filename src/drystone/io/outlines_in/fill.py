@@ -9,6 +9,14 @@ from drystone.errors import InputError
 from drystone.io.outlines_in.model import Area, OutlinedStone, PlacedMask
 from drystone.kernels.polygons import Points
 
+_AT_ONCE_PX = 2**22
+"""Pixels that are filled at once."""
+
+_FREE_ROWS = 10_000
+"""Rows that any outline may cross; more than its pixels of a larger one are no outline."""
+
+_MOST_STONES = 10_000
+
 
 def box_of(area: Area) -> tuple[int, int, int, int]:
     """Return the rows and columns (first, end, first, end) that an area can fill."""
@@ -17,20 +25,75 @@ def box_of(area: Area) -> tuple[int, int, int, int]:
     return int(np.floor(top)), int(np.ceil(bottom)), int(np.floor(left)), int(np.ceil(right))
 
 
+class Room:
+    """Pixels that the stones of a file may fill, boxes around them included, asked for before.
+
+    Parameters
+    ----------
+    where : str
+        Name of the file, for messages.
+    max_px : int
+        Of a picture; all stones together may have twice as many.
+    """
+
+    def __init__(self, where: str, max_px: int) -> None:
+        self.where, self.max_px = where, max_px
+        self.left = 2 * max_px
+
+    def take(self, px: int) -> None:
+        """Take some for one more mask; E110 when there is no room."""
+        self.left -= px
+        if self.left < 0:
+            raise InputError(
+                "E110",
+                f"its stones fill more than {2 * self.max_px / 1e6:g} million px together.",
+                where=self.where,
+                cure="Reduce or crop its image, or give it a smaller resolution; only in Python "
+                "can the limit be raised (max_image_mpx).",
+            )
+
+
 def check_reach(stones: Iterable[OutlinedStone], where: str, max_px: int) -> None:
     """Refuse outlines, in px, that would fill the memory (E110), naming the stone."""
-    for stone in stones:
-        for area in stone.areas:
-            top, bottom, left, right = box_of(area)
-            if (right - left) * (bottom - top) > max_px:
-                raise InputError(
-                    "E110",
-                    f"stone {stone.name or stone.id} reaches over {right - left} x {bottom - top} "
-                    f"px; the limit is {max_px / 1e6:g} million.",
-                    where=where,
-                    cure="Is a corner of it far away from the picture? Correct it; only in Python "
-                    "can the limit be raised (max_image_mpx).",
-                )
+    room = Room(where, max_px)
+    for number, stone in enumerate(stones, start=1):
+        if number > _MOST_STONES:
+            raise InputError(
+                "E110", f"there are more than {_MOST_STONES} stones in it.", where=where,
+                cure="Export those of one wall.",
+            )  # fmt: skip
+        boxes = [box_of(area) for area in stone.areas]
+        boxes += [_box_of_mask(placed) for placed in stone.masks]
+        if not boxes:
+            continue
+        (top, left), (bottom, right) = np.min(boxes, axis=0)[::2], np.max(boxes, axis=0)[1::2]
+        width, height = int(right - left), int(bottom - top)
+        # A mask of pixels may be that of the ground; an outline is drawn.
+        most = max_px if stone.masks else max_px // 4
+        if width * height > most:
+            raise InputError(
+                "E110",
+                f"stone {stone.name or stone.id} reaches over {width} x {height} px; the limit is "
+                f"{most / 1e6:g} million.",
+                where=where,
+                cure="Is a corner of it far away from the picture? Correct it; only in Python "
+                "can the limit be raised (max_image_mpx).",
+            )
+        room.take(width * height)
+        crossed = sum(_rows_crossed(ring) for area in stone.areas for ring in area.rings)
+        if crossed > width * height + _FREE_ROWS:
+            raise InputError(
+                "E110",
+                f"the outline of stone {stone.name or stone.id} goes up and down over {crossed} "
+                f"rows of pixels, and it has {width} x {height} px.",
+                where=where,
+                cure="Draw it with fewer corners.",
+            )
+
+
+def _box_of_mask(placed: PlacedMask) -> tuple[int, int, int, int]:
+    height, width = placed.mask.shape
+    return placed.row, placed.row + height, placed.col, placed.col + width
 
 
 def filled_area(area: Area) -> PlacedMask | None:
@@ -53,12 +116,16 @@ def filled_area(area: Area) -> PlacedMask | None:
     height, width = bottom - top, right - left
     if height < 1 or width < 1:
         return None
-    turns = np.zeros((height, width + 1), np.int32)
-    for ring in area.rings:
-        _add_crossings(turns, ring, top, left)
-    winding = np.cumsum(turns, axis=1)[:, :-1]
-    mask = winding % 2 == 1 if area.rule == "evenodd" else winding != 0
-    return trimmed(PlacedMask(np.asarray(mask), top, left))
+    mask = np.zeros((height, width), bool)
+    rows_at_once = max(1, _AT_ONCE_PX // width)
+    for begin in range(0, height, rows_at_once):
+        band = mask[begin : begin + rows_at_once]
+        turns = np.zeros((len(band), width + 1), np.int32)
+        for ring in area.rings:
+            _add_crossings(turns, ring, top + begin, left)
+        winding = np.cumsum(turns, axis=1, dtype=np.int32, out=turns)[:, :-1]
+        band[:] = winding % 2 == 1 if area.rule == "evenodd" else winding != 0
+    return trimmed(PlacedMask(mask, top, left))
 
 
 def trimmed(placed: PlacedMask) -> PlacedMask | None:
@@ -88,6 +155,10 @@ def united(masks: list[PlacedMask]) -> PlacedMask | None:
     return PlacedMask(whole, top, left)
 
 
+def _rows_crossed(ring: Points) -> int:
+    return int(np.abs(np.diff(np.ceil(ring[:, 1] - 0.5), append=np.ceil(ring[:1, 1] - 0.5))).sum())
+
+
 def _add_crossings(turns: NDArray[np.int32], ring: Points, top: int, left: int) -> None:
     """Add, row by row, where edges cross the line of pixel centres, and in which sense."""
     height, width = turns.shape[0], turns.shape[1] - 1
@@ -97,12 +168,10 @@ def _add_crossings(turns: NDArray[np.int32], ring: Points, top: int, left: int) 
     # in common is crossed at the same number in both.
     down = (sense > 0)[:, None]
     (x0, y0), (x1, y1) = np.where(down, ring, ends).T, np.where(down, ends, ring).T
-    first = np.ceil(y0 - 0.5).astype(np.int64)
-    number = np.ceil(y1 - 0.5).astype(np.int64) - first
+    first, last = (np.clip(np.ceil(y - 0.5), top, top + height).astype(int) for y in (y0, y1))
+    number = last - first
     edge = np.repeat(np.arange(len(ring)), number)
     row = first[edge] + np.arange(len(edge)) - (np.cumsum(number) - number)[edge]
     x = x0[edge] + (row + 0.5 - y0[edge]) / (y1 - y0)[edge] * (x1 - x0)[edge]
-    col = np.clip(np.ceil(x - 0.5).astype(np.int64) - left, 0, width)
-    row -= top
-    inside = (row >= 0) & (row < height)
-    np.add.at(turns, (row[inside], col[inside]), sense[edge][inside])
+    col = np.clip(np.ceil(x - 0.5) - left, 0, width).astype(int)
+    np.add.at(turns, (row - top, col), sense[edge])

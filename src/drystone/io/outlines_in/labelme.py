@@ -1,15 +1,15 @@
 """labelme: a JSON file an image, with polygons and other shapes in px."""
 
 import base64
-import io
 import math
 from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from PIL import Image
 
+from drystone.errors import InputError
+from drystone.io.outlines_in.fill import Room
 from drystone.io.outlines_in.model import (
     Area,
     OutlinedStone,
@@ -19,7 +19,9 @@ from drystone.io.outlines_in.model import (
     left_aside,
     number_in,
     ring,
+    side_px,
 )
+from drystone.io.pictures import check_size, opened
 from drystone.io.read_settings import ReadSettings
 
 _CORNERS_OF_CIRCLE = 256
@@ -30,7 +32,7 @@ def is_labelme(content: object) -> bool:
     return isinstance(content, Mapping) and isinstance(content.get("shapes"), list)
 
 
-def read_labelme(content: Mapping[str, Any], where: str, _: ReadSettings) -> OutlineFile:
+def read_labelme(content: Mapping[str, Any], where: str, settings: ReadSettings) -> OutlineFile:
     """Read polygons, rectangles, circles and masks.
 
     Shapes of one label and ``group_id`` are one stone.  A label that is a number, also after
@@ -44,9 +46,12 @@ def read_labelme(content: Mapping[str, Any], where: str, _: ReadSettings) -> Out
     parts: dict[object, list[tuple[tuple[Area, ...], tuple[PlacedMask, ...]]]] = {}
     names: dict[object, str] = {}
     aside: Counter[str] = Counter()
+    room = Room(where, int(settings.max_image_mpx * 1e6))
     for number, shape in enumerate(content["shapes"]):
         with entry(where, f"shape {number} (from 0)"):
-            read = _areas(shape) if shape.get("shape_type") != "mask" else ((), (_mask(shape),))
+            read = (
+                _areas(shape) if shape.get("shape_type") != "mask" else ((), (_mask(shape, room),))
+            )
             kind, label = shape.get("shape_type") or "polygon", str(shape.get("label") or "")
             if read is None:
                 aside[f"{kind}s"] += 1
@@ -72,10 +77,7 @@ def _size(content: Mapping[str, Any], where: str) -> tuple[int, int] | None:
         width, height = content.get("imageWidth"), content.get("imageHeight")
         if width is None or height is None:
             return None
-        size = int(width), int(height)
-        if min(size) < 1:
-            raise ValueError(f"it is {width} x {height} px")
-        return size
+        return side_px(width), side_px(height)
 
 
 def _areas(shape: Mapping[str, Any]) -> tuple[tuple[Area, ...], tuple[PlacedMask, ...]] | None:
@@ -96,12 +98,20 @@ def _areas(shape: Mapping[str, Any]) -> tuple[tuple[Area, ...], tuple[PlacedMask
     return None
 
 
-def _mask(shape: Mapping[str, Any]) -> PlacedMask:
+def _mask(shape: Mapping[str, Any], room: Room) -> PlacedMask:
     """Return a shape that is a picture within a box, as a model draws it."""
+
+    def check(width: int, height: int) -> None:
+        check_size(width, height, room.where, room.max_px)
+        room.take(width * height)
+
     (x0, y0), _ = shape["points"]
+    data = base64.b64decode(shape["mask"], validate=True)
     try:
-        with Image.open(io.BytesIO(base64.b64decode(shape["mask"], validate=True))) as image:
+        with opened(data, room.where, check) as image:
             mask = np.asarray(image.convert("L")) > 0
-    except (OSError, SyntaxError) as error:
-        raise ValueError(f"its mask is no picture: {error}") from error
+    except InputError as error:
+        if error.code == "E110":
+            raise
+        raise ValueError(f"its mask is no picture: {error.what}") from error
     return PlacedMask(mask, round(float(y0)), round(float(x0)))

@@ -13,6 +13,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from drystone.errors import InputError, Notice, UsageError
+from drystone.io.foreign import foreign
 from drystone.io.outlines_in.model import (
     METRES,
     OutlinedStone,
@@ -35,7 +36,7 @@ _HEAD = 400
 _SHOWN = 8
 _STL_FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _STL_VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
-_PLY_FACES = re.compile(rb"^element\s+face\s+(\d+)", re.MULTILINE)
+_PLY_FACES = re.compile(rb"^element\s+face\s+(\d{1,18})", re.MULTILINE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,13 +97,11 @@ def read_mesh(kind: str, data: bytes, where: str, settings: ReadSettings) -> Out
     ours = data.startswith(_OURS)
     axis = 1 if ours else int(np.argmin(np.ptp(vertices, axis=0)))
     plane = _PLANES[axis]
+    with foreign(lambda why: damaged(where, f"its faces cannot be united ({why})")):
+        areas = [shadow([b.vertices[face][:, plane] for face in b.faces]) for b in bodies]
     stones = tuple(
-        OutlinedStone(
-            number_in(body.name),
-            body.name,
-            shadow([body.vertices[face][:, plane] for face in body.faces]),
-        )
-        for body in bodies
+        OutlinedStone(number_in(body.name), body.name, area)
+        for body, area in zip(bodies, areas, strict=True)
     )
     why = "as drystone writes meshes" if ours else "in which the mesh is thinnest"
     notices = [Notice("W119", f"{len(stones)} bodies, seen {_WORDS[axis]} ({why}).")]
@@ -165,11 +164,9 @@ def _is_text(data: bytes) -> bool:
 
 def _ply_bodies(data: bytes, where: str) -> list[Body]:
     trimesh = load_trimesh()
-    try:
+    with foreign(lambda why: _cut(why, where)):
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type="ply", process=True)
         vertices, faces = np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.int64)
-    except Exception as error:  # damaged bytes in a parser of another package
-        raise _cut(str(error), where) from error
     said = _PLY_FACES.search(data)
     if said and len(faces) < int(said[1]):
         raise _cut(f"{len(faces)} of {int(said[1])} faces", where)

@@ -19,6 +19,8 @@ METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft"
 """Metres in each unit that a user may name."""
 
 _SHOWN = 8
+_LARGEST = 10**9
+_LONGEST = 300
 _STONE_NAME = re.compile(r"(?:stones?[ _-]*)?0*([1-9][0-9]*)", re.IGNORECASE)
 _WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
 
@@ -183,6 +185,15 @@ def left_aside(kinds: Counter[str], cure: str = "") -> list[Notice]:
     return [Notice("W119", f"no outlines of stones, left aside: {listed}.", cure)]
 
 
+def side_px(value: Any) -> int:
+    """Return a side of an image; ValueError when it is none."""
+    number = int(value)
+    if not 0 < number <= _LARGEST:
+        shown = number if number <= 0 else "more than 1e9"
+        raise ValueError(f"a side of it is {shown} px")
+    return number
+
+
 def ring(points: Any) -> Points:
     """Return a ring from numbers; ValueError when it is none.
 
@@ -201,7 +212,7 @@ def ring(points: Any) -> Points:
         raise ValueError(f"an outline needs 3 points, not {len(corners)}")
     if not np.isfinite(corners).all():
         raise ValueError("a coordinate is not finite")
-    if np.abs(corners).max() > 1e9:
+    if np.abs(corners).max() > _LARGEST:
         raise ValueError("a coordinate is beyond 1e9")
     return corners
 
@@ -213,10 +224,13 @@ def entry(where: str, what: str) -> Iterator[None]:
         yield
     except KeyError as error:
         raise damaged(where, f"{what} has no {error}") from error
-    except (TypeError, ValueError, IndexError, AttributeError, OverflowError) as error:
+    except (TypeError, ValueError, IndexError, AttributeError, ArithmeticError) as error:
         raise damaged(where, f"{what} cannot be used ({error})") from error
 
 
 def damaged(where: str, what: str) -> InputError:
     """Make the error for a file whose content is not what its format says (E114)."""
-    return InputError("E114", f"{what}.", where=where, cure="Correct it, or export the file again.")
+    shown = what if len(what) <= _LONGEST else f"{what[:_LONGEST]} …"
+    return InputError(
+        "E114", f"{shown}.", where=where, cure="Correct it, or export the file again."
+    )

@@ -1,18 +1,21 @@
 """Which of many masks that lie in each other are stones."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.errors import Notice
+from drystone.errors import InputError, Notice
 from drystone.io.outlines_in.fill import filled_area, united
 from drystone.io.outlines_in.model import OutlinedStone, PlacedMask
 from drystone.io.patches import enclosed
 
 INSIDE = 0.8
 """Share of a mask that lies in another one for it to count as its part."""
+
+_MOST_PAIRS = 200_000
+_MOST_SHARED_PX = 1_000_000_000
 
 
 def pixels_of(stone: OutlinedStone) -> PlacedMask | None:
@@ -40,21 +43,35 @@ def overlap(one: PlacedMask, other: PlacedMask) -> NDArray[np.bool_] | None:
     return np.asarray(first & second)
 
 
-def meeting_boxes(masks: list[PlacedMask]) -> list[tuple[int, int]]:
-    """Return the pairs (i, j), i < j, of masks whose boxes overlap."""
+def meeting_boxes(masks: Sequence[PlacedMask], where: str) -> list[tuple[int, int]]:
+    """Return the pairs (i, j), i < j, of masks whose boxes overlap.
+
+    Raises
+    ------
+    InputError
+        E110 when there are more of them, or larger ones, than can be compared.
+    """
     sides = [(m.row, m.col, m.row + m.mask.shape[0], m.col + m.mask.shape[1]) for m in masks]
     top, left, bottom, right = np.array(sides, dtype=np.int64).reshape(-1, 4).T
-    pairs = []
+    pairs: list[tuple[int, int]] = []
+    shared_px = 0
     for i in range(len(masks)):
         rest = slice(i + 1, None)
-        meet = (top[rest] < bottom[i]) & (bottom[rest] > top[i])
-        meet &= (left[rest] < right[i]) & (right[rest] > left[i])
+        height = np.minimum(bottom[rest], bottom[i]) - np.maximum(top[rest], top[i])
+        width = np.minimum(right[rest], right[i]) - np.maximum(left[rest], left[i])
+        meet = (height > 0) & (width > 0)
         pairs += [(i, i + 1 + int(j)) for j in np.flatnonzero(meet)]
+        shared_px += int((height * width)[meet].sum())
+        if len(pairs) > _MOST_PAIRS or shared_px > _MOST_SHARED_PX:
+            raise InputError(
+                "E110", "its stones lie over each other more often than can be compared.",
+                where=where, cure="Export every stone once.",
+            )  # fmt: skip
     return pairs
 
 
 def without_nested(
-    stones: list[OutlinedStone], skip: tuple[int, ...] = ()
+    stones: list[OutlinedStone], where: str, skip: tuple[int, ...] = ()
 ) -> tuple[list[OutlinedStone], list[Notice]]:
     """Leave out the ground, groups of stones, and parts of stones.
 
@@ -70,6 +87,8 @@ def without_nested(
     ----------
     stones : list of OutlinedStone
         With ids.
+    where : str
+        Name of the file, for messages.
     skip : tuple of int
         Ids that do not count; naming parts there makes their group a stone.
 
@@ -82,12 +101,15 @@ def without_nested(
     """
     placed = {i: pixels_of(stone) for i, stone in enumerate(stones) if stone.id not in skip}
     masks = {i: mask for i, mask in placed.items() if mask is not None}
-    ground = _with_stones_in_holes(masks)
+    keys = list(masks)
+    meeting = [(keys[i], keys[j]) for i, j in meeting_boxes(list(masks.values()), where)]
+    ground = _with_stones_in_holes(masks, meeting)
     masks = {i: mask for i, mask in masks.items() if i not in ground}
-    again = _Shares(masks).same()
-    shares = _Shares({i: mask for i, mask in masks.items() if i not in again})
+    again = _Shares(masks, meeting).same()
+    shares = _Shares({i: mask for i, mask in masks.items() if i not in again}, meeting)
     groups = shares.groups()
-    shares = _Shares({i: m for i, m in masks.items() if i not in again and i not in groups})
+    rest = {i: m for i, m in masks.items() if i not in again and i not in groups}
+    shares = _Shares(rest, meeting)
     parts_of = shares.wholes()
     left = {*ground, *again, *groups, *parts_of}
     name = [stone.id for stone in stones]
@@ -107,29 +129,31 @@ def _with_pixels(stone: OutlinedStone, mask: PlacedMask | None) -> OutlinedStone
     return stone if mask is None else replace(stone, areas=(), masks=(mask,))
 
 
-def _with_stones_in_holes(masks: dict[int, PlacedMask]) -> set[int]:
-    found = set()
-    for i, mask in masks.items():
-        holes = PlacedMask(enclosed(mask.mask), mask.row, mask.col)
-        if holes.mask.any() and any(
-            j != i and common_px(holes, other) >= INSIDE * other.mask.sum()
-            for j, other in masks.items()
-        ):
-            found.add(i)
-    return found
+def _with_stones_in_holes(
+    masks: dict[int, PlacedMask], meeting: Iterable[tuple[int, int]]
+) -> set[int]:
+    holes = {
+        i: PlacedMask(inside, mask.row, mask.col)
+        for i, mask in masks.items()
+        if (inside := enclosed(mask.mask)).any()
+    }
+    return {
+        i
+        for pair in meeting
+        for i, j in (pair, pair[::-1])
+        if i in holes and common_px(holes[i], masks[j]) >= INSIDE * masks[j].mask.sum()
+    }
 
 
 class _Shares:
     """How much of which mask lies in which."""
 
-    def __init__(self, masks: dict[int, PlacedMask]) -> None:
+    def __init__(self, masks: dict[int, PlacedMask], meeting: Iterable[tuple[int, int]]) -> None:
         self._masks = masks
         self._areas = {i: int(mask.mask.sum()) for i, mask in masks.items()}
-        keys = list(masks)
-        self._common: dict[int, dict[int, int]] = {i: {} for i in keys}
-        for a, b in meeting_boxes(list(masks.values())):
-            i, j = keys[a], keys[b]
-            common = common_px(masks[i], masks[j])
+        self._common: dict[int, dict[int, int]] = {i: {} for i in masks}
+        for i, j in meeting:
+            common = common_px(masks[i], masks[j]) if i in masks and j in masks else 0
             if common:
                 self._common[i][j] = self._common[j][i] = common
 

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import InputError
-from drystone.io.images import DAMAGE, check_size
+from drystone.io.foreign import foreign
+from drystone.io.npy import array_of
 from drystone.io.outlines_in.fill import trimmed
 from drystone.io.outlines_in.model import (
     OutlinedStone,
@@ -18,6 +19,7 @@ from drystone.io.outlines_in.model import (
     damaged,
     number_in,
 )
+from drystone.io.pictures import check_size
 
 _LABELS = "labels"
 _BYTES_PER_PX = 8
@@ -42,22 +44,38 @@ def read_npz(data: bytes, where: str, max_px: int) -> NDArray[Any] | OutlineFile
         E106 for a damaged file, E110 for arrays that are too large, E114 for arrays that are no
         masks of one picture.
     """
-    try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            largest = max((entry.file_size for entry in archive.infolist()), default=0)
-        check_size(largest // _BYTES_PER_PX, 1, where, max_px)
-        with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
-            found = {name: arrays[name] for name in arrays.files}
-    except (*DAMAGE, zipfile.BadZipFile) as error:
-        raise InputError(
-            "E106", f"the file is damaged or cut short ({error}).", where=where,
-            cure="Export it again, without pickled objects.",
-        ) from error  # fmt: skip
+    found = {
+        name.removesuffix(".npy"): array_of(member, where, max_px)
+        for name, member in _members(data, where, max_px).items()
+    }
     if _LABELS in found:
         return np.asarray(found[_LABELS])
     if len(found) == 1:
         return np.asarray(next(iter(found.values())))
     return _masks(found, where)
+
+
+def _members(data: bytes, where: str, max_px: int) -> dict[str, bytes]:
+    """Unpack the arrays of an archive, of which the sizes are added up first."""
+    with foreign(lambda why: _broken(why, where)):
+        archive = zipfile.ZipFile(io.BytesIO(data))
+        entries = archive.infolist()
+    check_size(sum(entry.file_size for entry in entries) // _BYTES_PER_PX, 1, where, max_px)
+    found = {}
+    for entry in entries:
+        # Of others zipfile unpacks all that there is, whatever size they name.
+        if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise _broken("it is packed as NumPy packs none", where)
+        with foreign(lambda why: _broken(why, where)), archive.open(entry) as member:
+            found[entry.filename] = member.read(entry.file_size)
+    return found
+
+
+def _broken(why: str, where: str) -> InputError:
+    return InputError(
+        "E106", f"the file is damaged or cut short ({why}).", where=where,
+        cure="Export it again, without pickled objects.",
+    )  # fmt: skip
 
 
 def _masks(found: Mapping[str, NDArray[Any]], where: str) -> OutlineFile:

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from drystone.errors import InputError, LabelImageError, Notice
-from drystone.io.images import check_size
 from drystone.io.outlines_in.fill import check_reach, trimmed
 from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile, PlacedMask
 from drystone.io.outlines_in.nested import meeting_boxes, overlap, pixels_of
 from drystone.io.patches import Patch
+from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
@@ -107,7 +107,7 @@ def rastered(file: OutlineFile, settings: ReadSettings, where: str) -> Rastered:
         notices.append(Notice("W119", f"outside the image, cut off: {_listed(lost)}."))
     if empty:
         notices.append(Notice("W119", f"without a pixel, left out: {_listed(empty)}."))
-    patches, overlaps = _beside_others(patches)
+    patches, overlaps = _beside_others(patches, where)
     return Rastered(patches, width, height, px_per_m, notices + overlaps)
 
 
@@ -186,12 +186,12 @@ def _within(placed: PlacedMask, width: int, height: int) -> PlacedMask | None:
     return trimmed(PlacedMask(inside, placed.row + top, placed.col + left))
 
 
-def _beside_others(patches: list[Patch]) -> tuple[list[Patch], list[Notice]]:
+def _beside_others(patches: list[Patch], where: str) -> tuple[list[Patch], list[Notice]]:
     """Tell every patch which pixels of its box are others', and say which overlap."""
     masks = [PlacedMask(patch.mask, patch.row, patch.col) for patch in patches]
     others: dict[int, Mask] = {}
     overlaps = []
-    for i, j in meeting_boxes(masks):
+    for i, j in meeting_boxes(masks, where):
         for one, other in ((i, j), (j, i)):
             _mark(others.setdefault(one, np.zeros_like(masks[one].mask)), masks[one], masks[other])
         both = overlap(masks[i], masks[j])

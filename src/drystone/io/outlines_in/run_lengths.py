@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.io.outlines_in.fill import Room
 from drystone.io.outlines_in.model import PlacedMask
+from drystone.io.pictures import check_size
 
 _MOST_PX = 2**31
 
@@ -24,26 +26,31 @@ def size_of(value: Mapping[str, Any]) -> tuple[int, int]:
     return width, height
 
 
-def mask_of(value: Mapping[str, Any]) -> PlacedMask | None:
+def mask_of(value: Mapping[str, Any], room: Room) -> PlacedMask | None:
     """Return the mask of run lengths, cut to its bounding box; None when no pixel is set.
 
     Parameters
     ----------
     value : mapping
         With ``size`` (height, width) and ``counts``: numbers, or text as pycocotools packs them.
+    room : Room
+        For its pixels.
 
     Raises
     ------
     ValueError
         When the counts do not add up to the size, or the text is none of this kind.
+    InputError
+        E110 when it is too large.
 
     Examples
     --------
-    >>> mask_of({"size": [2, 3], "counts": [1, 2, 3]}).mask.astype(int)
+    >>> mask_of({"size": [2, 3], "counts": [1, 2, 3]}, Room("a.json", 9)).mask.astype(int)
     array([[0, 1],
            [1, 0]])
     """
     width, height = size_of(value)
+    check_size(width, height, room.where, room.max_px)
     counts = value["counts"]
     runs = unpacked(counts) if isinstance(counts, str | bytes) else _numbers(counts)
     if int(runs.sum()) != width * height:
@@ -57,9 +64,11 @@ def mask_of(value: Mapping[str, Any]) -> PlacedMask | None:
     change = np.zeros((last - first + 1) * height + 1, np.int8)
     np.add.at(change, starts - first * height, 1)
     np.add.at(change, stops - first * height, -1)
-    columns = np.cumsum(change[:-1], dtype=np.int8).astype(bool).reshape(-1, height)
+    # In place: a bit that is set is a byte of 1.
+    columns = np.cumsum(change[:-1], dtype=np.int8, out=change[:-1]).view(bool).reshape(-1, height)
     rows = np.flatnonzero(columns.any(axis=0))
     top, bottom = int(rows[0]), int(rows[-1]) + 1
+    room.take((bottom - top) * len(columns))
     return PlacedMask(np.ascontiguousarray(columns[:, top:bottom].T), top, first)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from drystone.io.outlines_in.coco import image_needed, shape_of, size_in
-from drystone.io.outlines_in.fill import check_reach, trimmed
+from drystone.io.outlines_in.fill import Room, check_reach, trimmed
 from drystone.io.outlines_in.model import OutlinedStone, OutlineFile, PlacedMask, entry
 from drystone.io.outlines_in.nested import without_nested
 from drystone.io.outlines_in.run_lengths import is_runs, size_of
@@ -40,6 +40,7 @@ def read_sam(content: list[Mapping[str, Any]], where: str, settings: ReadSetting
             raise image_needed(what, where, sorted(images))
         content = [found for found in content if str(found.get("image_id")) == settings.image]
     stones, sizes = [], set()
+    room = Room(where, int(settings.max_image_mpx * 1e6))
     for number, found in enumerate(content, start=1):
         with entry(where, f"mask {number}"):
             segmentation = found["segmentation"]
@@ -51,12 +52,12 @@ def read_sam(content: list[Mapping[str, Any]], where: str, settings: ReadSetting
                 mask = trimmed(PlacedMask(rows.astype(bool), 0, 0))
                 stones.append(OutlinedStone(number, masks=() if mask is None else (mask,)))
                 continue
-            areas, masks = shape_of(segmentation)
+            areas, masks = shape_of(segmentation, room)
             if is_runs(segmentation):
                 sizes.add(size_of(segmentation))
             stones.append(OutlinedStone(number, "", areas, masks))
-    check_reach(stones, where, int(settings.max_image_mpx * 1e6))
-    kept, notices = without_nested(stones, settings.skip)
+    check_reach(stones, where, room.max_px)
+    kept, notices = without_nested(stones, where, settings.skip)
     return OutlineFile(
         tuple(kept),
         size_px=size_in(None, sizes, where),

@@ -5,9 +5,14 @@ from typing import Any
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from drystone.io.outlines_in.model import Area
 from drystone.kernels.polygons import Points
+
+_MOST_CROSSINGS = 2000
+_MOST_PAIRS = 1_000_000
+_AT_ONCE = 256
 
 
 def areas_of(shape: Any) -> tuple[Area, ...]:
@@ -32,15 +37,25 @@ def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
     list of (int, Area)
         Outlines with their holes, and the position of the outline; a ring in a hole is an
         outline again.
+
+    Raises
+    ------
+    ValueError
+        When there are too many crossings, or rings in each other, to find out.
     """
-    shapes = np.array([shapely.make_valid(shapely.Polygon(ring)) for ring in rings], dtype=object)
+    shapes = _valid(np.array([shapely.Polygon(ring) for ring in rings], dtype=object))
     tree = shapely.STRtree(shapes)
-    inner, outer = tree.query(shapes, predicate="covered_by")
     size = shapely.area(shapes)
     around: dict[int, list[int]] = {i: [] for i in range(len(rings))}
-    for i, j in zip(inner.tolist(), outer.tolist(), strict=True):
-        if i != j and size[i] < size[j]:
-            around[i].append(j)
+    count = 0
+    for begin in range(0, len(shapes), _AT_ONCE):
+        pairs = tree.query(shapes[begin : begin + _AT_ONCE], predicate="covered_by")
+        count += pairs.shape[1]
+        if count > _MOST_PAIRS:
+            raise ValueError("outlines lie in each other too often")
+        for i, j in zip((pairs[0] + begin).tolist(), pairs[1].tolist(), strict=True):
+            if i != j and size[i] < size[j]:
+                around[i].append(j)
     holes: dict[int, list[int]] = {i: [] for i, found in around.items() if len(found) % 2 == 0}
     for i, found in around.items():
         if i not in holes:
@@ -55,6 +70,11 @@ def shadow(polygons: Sequence[Points]) -> tuple[Area, ...]:
     ----------
     polygons : sequence of (n, 2) arrays
         Its faces in the plane of the picture; those seen from the side have no area.
+
+    Raises
+    ------
+    ValueError
+        When faces cross themselves too often.
     """
     # Edges of neighbours are the same numbers, so the union leaves no slits.
     seen = shapely.polygons([np.asarray(p) for p in polygons]) if _alike(polygons) else [
@@ -62,7 +82,30 @@ def shadow(polygons: Sequence[Points]) -> tuple[Area, ...]:
     ]  # fmt: skip
     shapes = np.asarray(seen, dtype=object)
     shapes = shapes[shapely.area(shapes) > 0.0]
-    return areas_of(shapely.union_all(shapely.make_valid(shapes)))
+    return areas_of(shapely.union_all(_valid(shapes)))
+
+
+def _valid(shapes: NDArray[Any]) -> NDArray[Any]:
+    """Make valid polygons; ValueError when that takes too long, as it is quadratic in crossings."""
+    left = _MOST_CROSSINGS
+    for shape in shapes[~shapely.is_valid(shapes)]:
+        left -= _crossings(shapely.get_coordinates(shape.exterior), left)
+        if left < 0:
+            raise ValueError(f"outlines cross themselves more than {_MOST_CROSSINGS} times")
+    return np.asarray(shapely.make_valid(shapes))
+
+
+def _crossings(ring: Points, most: int) -> int:
+    """Count how often edges of a closed ring meet that are no neighbours, up to some number."""
+    edges = shapely.linestrings(np.stack([ring[:-1], ring[1:]], axis=1))
+    tree, found = shapely.STRtree(edges), 0
+    for begin in range(0, len(edges), _AT_ONCE):
+        # Each meets itself and its two neighbours.
+        some = edges[begin : begin + _AT_ONCE]
+        found += tree.query(some, predicate="intersects").shape[1] - 3 * len(some)
+        if found > 2 * most:
+            break
+    return found // 2
 
 
 def _alike(polygons: Sequence[Points]) -> bool:

@@ -8,6 +8,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from drystone.errors import InputError, Notice
+from drystone.io.foreign import foreign
 from drystone.io.outlines_in.model import (
     Area,
     OutlinedStone,
@@ -37,6 +38,10 @@ _LAYER = "stones"
 _UNSEEN = "elements that are hidden"
 _DEEPEST = 64
 _MOST = 100_000
+_MOST_ELEMENTS = 1_000_000
+_MOST_CORNERS = 10_000_000
+_MOST_TEXT = 5_000_000
+"""Of attributes of what is drawn, beside two times what the file has: a use draws things again."""
 _VISIBLE = {"visible": True, "hidden": False, "collapse": False}
 
 Style = dict[str, str]
@@ -85,16 +90,13 @@ def read_svg(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
     InputError
         E106 for what is no XML, E114 naming the element that cannot be used.
     """
-    try:
+    if data.count(b"<") > 2 * _MOST_ELEMENTS:
+        raise _too_large(f"more than {_MOST_ELEMENTS} elements", where)
+    with foreign(lambda why: _cut(why, where)):
         root = ET.fromstring(data)  # noqa: S314 - expat bounds what entities expand to
-    except (ET.ParseError, ValueError, LookupError) as error:
-        raise InputError(
-            "E106", f"the drawing is damaged or cut short ({error}).", where=where,
-            cure="Copy or export it again.",
-        ) from error  # fmt: skip
     if tag(root) != "svg":
-        raise damaged(where, f"its root element is {tag(root)}, not svg")
-    walk = _Walk(root, where)
+        raise damaged(where, f"its root element is {tag(root)[:40]}, not svg")
+    walk = _Walk(root, where, _MOST_TEXT + 2 * len(data))
     with entry(where, "the element svg"):
         page = page_of(root_geometry(walk.styles.of(root), root.attrib), settings)
     shapes = list(walk.shapes(page))
@@ -122,12 +124,13 @@ def read_svg(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
 class _Walk:
     """Through all that is drawn."""
 
-    def __init__(self, root: ET.Element, where: str) -> None:
+    def __init__(self, root: ET.Element, where: str, most_text: int) -> None:
         self.root, self.where = root, where
-        self.styles = Styles(root)
+        self.styles = Styles(root, where)
         self.aside: Counter[str] = Counter()
         self.known = {e.get("id"): e for e in root.iter() if e.get("id")}
         self.count = 0
+        self.left_text, self.left_corners = most_text, _MOST_CORNERS
 
     def shapes(self, page: Page) -> Iterator[_Shape]:
         """Yield the shapes in the order in which they are drawn."""
@@ -148,6 +151,9 @@ class _Walk:
         self.count += 1
         if self.count > _MOST or place.depth > _DEEPEST:
             raise damaged(self.where, "elements use each other too often or too deeply")
+        self.left_text -= sum(map(len, element.attrib.values()))
+        if self.left_text < 0:
+            raise _too_large("long paths that are used too often", self.where)
         style = self.styles.of(element, place.top)
         if _vanishes(element, style):
             self.aside[_UNSEEN] += 1
@@ -228,6 +234,9 @@ class _Walk:
         closed = [line.points for line in lines if line.closed and len(line.points) > 2]
         if len(closed) < len(lines):
             self.aside[f"open lines in {kind}"] += len(lines) - len(closed)
+        self.left_corners -= sum(map(len, closed))
+        if self.left_corners < 0:
+            raise _too_large(f"more than {_MOST_CORNERS} corners, those on curves", self.where)
         rings = tuple(moved(place.matrix, points) for points in closed)
         if not all(np.isfinite(ring).all() and np.abs(ring).max() < 1e9 for ring in rings):
             raise ValueError("a coordinate is not finite or beyond 1e9")
@@ -235,6 +244,20 @@ class _Walk:
             yield _Shape(rings, place, kind)
         elif rings:
             self.aside[f"{kind} without an area"] += 1
+
+
+def _cut(why: str, where: str) -> InputError:
+    return InputError(
+        "E106", f"the drawing is damaged or cut short ({why}).", where=where,
+        cure="Copy or export it again.",
+    )  # fmt: skip
+
+
+def _too_large(what: str, where: str) -> InputError:
+    return InputError(
+        "E110", f"the drawing has {what}.", where=where,
+        cure="Export the outlines of stones only, with fewer corners.",
+    )  # fmt: skip
 
 
 def _covers(shape: _Shape, page: tuple[float, float]) -> bool:

@@ -14,9 +14,16 @@ CORNERS_OF_CIRCLE = 256
 CORNERS_OF_CURVE = 128
 """Chords of a full turn stay within 8e-5 of the radius."""
 
+NUMBER = r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?"
+"""A number of SVG, as a regular expression."""
+
+_MOST_CORNERS = 2_000_000
+"""Of a path; a stone has some hundred."""
+
 _COMMAND = re.compile(r"([MmZzLlHhVvCcSsQqTtAa])")
-_NUMBER = re.compile(r"\s*,?\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)")
-_FLAG = re.compile(r"\s*,?\s*([01])")
+# Possessive: what was taken is not given back, so no text takes longer than it is long.
+_NUMBER = re.compile(rf"\s*+(?:,\s*+)?({NUMBER})")
+_FLAG = re.compile(r"\s*+(?:,\s*+)?([01])")
 _ARGUMENTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
 
 Corner = NDArray[np.float64]
@@ -66,7 +73,7 @@ def bounded(text: str) -> float:
     """Return a number; ValueError for one beyond 1e12, which no drawing has."""
     value = float(text)
     if not abs(value) < 1e12:
-        raise ValueError(f"{text} is too large")
+        raise ValueError(f"{text[:20]} is too large")
     return value
 
 
@@ -110,7 +117,8 @@ class _Pen:
     """Where a path has come to."""
 
     done: list[Subpath] = field(default_factory=list)
-    line: list[Corner] = field(default_factory=list)
+    line: list[Points] = field(default_factory=list)
+    corners: int = 0
     at: Corner = field(default_factory=lambda: np.zeros(2))
     begun: Corner = field(default_factory=lambda: np.zeros(2))
     handle: Corner | None = None
@@ -162,14 +170,17 @@ class _Pen:
         self._to(bezier(np.concatenate([[self.at], points])))
 
     def _to(self, points: Points) -> None:
+        self.corners += len(points)
+        if self.corners > _MOST_CORNERS:
+            raise ValueError(f"a path has more than {_MOST_CORNERS} corners, those on curves")
         if not self.line:
-            self.line = [self.at]
-        self.line += list(points)
+            self.line = [self.at[None]]
+        self.line.append(points)
         self.at = points[-1]
 
     def _end(self, *, closed: bool) -> None:
         if self.line:
-            points = np.array(self.line)
+            points = np.concatenate(self.line)
             returns = bool(np.allclose(points[0], points[-1], rtol=0.0, atol=1e-9))
             points = points[:-1] if returns else points
             self.done.append(Subpath(points, closed or returns))

@@ -7,16 +7,23 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.io.outlines_in.svg_path import CORNERS_OF_CIRCLE, Subpath, arc, bounded, subpaths
+from drystone.io.outlines_in.svg_path import (
+    CORNERS_OF_CIRCLE,
+    NUMBER,
+    Subpath,
+    arc,
+    bounded,
+    subpaths,
+)
 from drystone.kernels.polygons import Points
 
 SHAPES = frozenset({"path", "polygon", "polyline", "rect", "circle", "ellipse"})
 
 Matrix = NDArray[np.float64]
 
-TRANSFORM = re.compile(r"\s*,?\s*([a-zA-Z]+)\s*\(([^)]*)\)")
+TRANSFORM = re.compile(r"\s*+(?:,\s*+)?([a-zA-Z]++)\s*+\(([^)]*+)\)")
 """A function of a transform, and what it is of."""
-_LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-z%]*)\s*")
+_LENGTH = re.compile(rf"({NUMBER})\s*+([a-z%]*+)", re.IGNORECASE)
 UNITS_M = {
     "mm": 0.001, "cm": 0.01, "q": 0.00025, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6,
 }  # fmt: skip
@@ -33,10 +40,10 @@ def length(text: str) -> tuple[float, str]:
     >>> length("120.5mm"), length("30")
     ((120.5, 'mm'), (30.0, ''))
     """
-    found = _LENGTH.fullmatch(text.lower())
+    found = _LENGTH.fullmatch(text.strip())
     if found is None:
-        raise ValueError(f"{text!r} is no length")
-    return bounded(found[1]), found[2]
+        raise ValueError(f"{text[:30]!r} is no length")
+    return bounded(found[1]), found[2].lower()
 
 
 def css_length(text: str) -> tuple[float, str]:
@@ -46,7 +53,7 @@ def css_length(text: str) -> tuple[float, str]:
     """
     value, unit = length(text)
     if len(text.split()) > 1:
-        raise ValueError(f"{text!r} is no length")
+        raise ValueError(f"{text[:30]!r} is no length")
     if value and not unit:
         raise ValueError(f"{text} in CSS has no unit (px)")
     return value, unit
@@ -61,8 +68,8 @@ def transform(text: str) -> Matrix:
     [[2.0, 0.0, 10.0], [0.0, 3.0, 0.0], [0.0, 0.0, 1.0]]
     """
     matrix, place = np.eye(3), 0
-    text = "" if text.strip() == "none" else text
-    while place < len(text.rstrip()):
+    text = "" if text.strip() == "none" else text.rstrip()
+    while place < len(text):
         found = TRANSFORM.match(text, place)
         if found is None:
             raise ValueError(f"{text[place:][:30]!r} is no transform")

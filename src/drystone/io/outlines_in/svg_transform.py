@@ -77,8 +77,8 @@ def css_transform(text: str, view: tuple[float, float] | None = None) -> Matrix:
     >>> css_transform("translate(1in, 5px) scale(2)").tolist()
     [[2.0, 0.0, 96.0], [0.0, 2.0, 5.0], [0.0, 0.0, 1.0]]
     """
-    matrix, place = np.eye(3), 0
-    while place < len(text.rstrip()):
+    matrix, place, text = np.eye(3), 0, text.rstrip()
+    while place < len(text):
         found = TRANSFORM.match(text, place)
         if found is None:
             raise ValueError(f"{text[place:][:30]!r} is no transform")

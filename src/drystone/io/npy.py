@@ -1,0 +1,50 @@
+"""Arrays of NumPy from bytes: nothing is made before the bytes for it are known to be there."""
+
+import io
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.io.foreign import foreign
+from drystone.io.pictures import check_size, damaged
+
+BEGINNING = b"\x93NUMPY"
+
+
+def array_of(data: bytes, where: str, max_px: int) -> NDArray[Any]:
+    """Return the array of an NPY file; it can be read only.
+
+    Parameters
+    ----------
+    data : bytes
+        The whole file.
+    where : str
+        Its name, for messages.
+    max_px : int
+        Larger arrays are refused.
+
+    Raises
+    ------
+    InputError
+        E106 damaged, or with Python objects in it, E110 too large.
+    """
+    with foreign(lambda why: damaged(why, where)):
+        file = io.BytesIO(data)
+        version = np.lib.format.read_magic(file)
+        read = np.lib.format.read_array_header_1_0
+        if version != (1, 0):
+            read = np.lib.format.read_array_header_2_0
+        shape, fortran, dtype = read(file)
+    if dtype.hasobject:
+        raise damaged("it holds Python objects, and pickle is not read", where)
+    count, start = math.prod(shape), file.tell()
+    if count * dtype.itemsize > len(data) - start:
+        raise damaged("there are fewer bytes than its shape asks for", where)
+    if count:
+        height, width = (*shape, 1, 1)[:2]
+        check_size(width, height, where, max_px)
+    with foreign(lambda why: damaged(why, where)):
+        values = np.frombuffer(data, dtype, count, start)
+        return values.reshape(shape, order="F" if fortran else "C")

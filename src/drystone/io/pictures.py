@@ -1,0 +1,107 @@
+"""Picture files through Pillow: the formats that are read, each told by its first bytes.
+
+Nothing else opens pictures (a rule of the linter): ``Image.open`` tries all that Pillow knows, of
+which one format starts another program, and its guard against huge pictures is a module global.
+"""
+
+import io
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+
+from PIL import (
+    BmpImagePlugin,
+    GifImagePlugin,
+    Image,
+    ImageFile,
+    JpegImagePlugin,
+    PngImagePlugin,
+    TiffImagePlugin,
+)
+
+from drystone.errors import InputError
+from drystone.io.foreign import foreign, silent_stderr
+
+_FORMATS: tuple[tuple[str, tuple[bytes, ...], type[ImageFile.ImageFile]], ...] = (
+    ("PNG", (b"\x89PNG\r\n\x1a\n",), PngImagePlugin.PngImageFile),
+    ("TIFF", (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"), TiffImagePlugin.TiffImageFile),
+    ("GIF", (b"GIF87a", b"GIF89a"), GifImagePlugin.GifImageFile),
+    ("BMP", (b"BM",), BmpImagePlugin.BmpImageFile),
+    ("JPEG", (b"\xff\xd8\xff",), JpegImagePlugin.JpegImageFile),
+)
+
+_CURE = (
+    "Reduce the picture (nearest neighbour, so that ids survive) or crop it; only in Python can "
+    "the limit be raised (max_image_mpx)."
+)
+
+
+def format_of(data: bytes) -> str:
+    """Return the format of a picture by its first bytes: PNG, TIFF, GIF, BMP, JPEG or nothing."""
+    return next((name for name, starts, _ in _FORMATS if data.startswith(starts)), "")
+
+
+@contextmanager
+def opened(data: bytes, where: str, check: Callable[[int, int], None]) -> Iterator[Image.Image]:
+    """Open a picture; what Pillow raises while it is decoded, inside, is a coded error too.
+
+    Parameters
+    ----------
+    data : bytes
+        The whole file, in one of the formats.
+    where : str
+        Its name, for messages.
+    check : callable
+        Refuses a width and a height, before anything is decoded.
+
+    Raises
+    ------
+    InputError
+        E106 damaged, E107 unknown format, E110 too large.
+    """
+    kind = format_of(data)
+    plugin = next((plugin for name, _, plugin in _FORMATS if name == kind), None)
+    if plugin is None:
+        raise InputError(
+            "E107", f"this is no picture ({', '.join(name for name, _, _ in _FORMATS)}).",
+            where=where, cure="Export it as PNG.",
+        )  # fmt: skip
+    with ExitStack() as around:
+        around.enter_context(foreign(lambda why: damaged(why, where)))
+        if kind == "TIFF":
+            around.enter_context(silent_stderr())
+        try:
+            image = plugin(io.BytesIO(data))
+            check(*image.size)
+            yield image
+        except Image.DecompressionBombError as error:  # a frame larger than the picture
+            raise InputError("E110", f"{error}.", where=where, cure=_CURE) from error
+
+
+def damaged(why: str, where: str) -> InputError:
+    """Make the error for bytes that are not what their format says (E106)."""
+    return InputError(
+        "E106", f"the file is damaged or cut short ({why}).", where=where,
+        cure="Copy or export it again.",
+    )  # fmt: skip
+
+
+def check_size(width: int, height: int, where: str, max_px: int, cure: str = _CURE) -> None:
+    """Refuse pictures that would fill the memory (E110)."""
+    if width * height > max_px:
+        raise InputError(
+            "E110",
+            f"{width} x {height} px are {width * height / 1e6:.0f} million; the limit is "
+            f"{max_px / 1e6:g} million.",
+            where=where,
+            cure=cure,
+        )
+
+
+def several_pages(found: str, where: str) -> InputError:
+    """Make the error for stacks and animations (E109)."""
+    return InputError(
+        "E109",
+        f"{found} were found where one picture is needed.",
+        where=where,
+        cure="Give one page as a picture of its own, or a folder of one-stone masks.",
+    )
