@@ -1,6 +1,8 @@
 """Fixtures that every room of tests may use."""
 
 import os
+import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -25,3 +27,11 @@ def data_dir() -> Path:
     if not folder.is_dir():
         pytest.skip("published stone sets are absent (set DRYSTONE_DATA to their folder)")
     return folder
+
+
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Have interrupts raise KeyboardInterrupt, also where a shell ignores them."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

@@ -1,5 +1,6 @@
 """Files are whole or as they were, whatever stops the writing."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -7,7 +8,7 @@ import pytest
 
 from drystone.errors import PlanError
 from drystone.io.atomic import write_atomically
-from drystone.whole_files import write_whole
+from drystone.whole_files import remove_parts, write_whole
 
 WAYS = pytest.mark.parametrize("write", [write_whole, write_atomically])
 
@@ -24,17 +25,15 @@ def test_a_file_is_written_and_replaced(write: Write, tmp_path: Path) -> None:
 
 
 @WAYS
-@pytest.mark.parametrize("place", ["write_bytes", "replace"])
+@pytest.mark.parametrize("place", ["fsync", "replace"])
 def test_an_interrupt_leaves_nothing_behind(
     write: Write, place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def interrupt(path: Path, *_: object) -> None:
-        with path.open("wb") as file:
-            file.write(b"o")
+    def interrupt(*_: object) -> None:
+        assert len(list(tmp_path.iterdir())) == 1
         raise KeyboardInterrupt
 
-    where = "os.replace" if place == "replace" else "pathlib.Path.write_bytes"
-    monkeypatch.setattr(where, interrupt)
+    monkeypatch.setattr(f"os.{place}", interrupt)
     with pytest.raises(KeyboardInterrupt):
         write(tmp_path / "a.txt", b"one")
     monkeypatch.undo()
@@ -44,14 +43,12 @@ def test_an_interrupt_leaves_nothing_behind(
 def test_a_full_disk_names_the_file_and_leaves_it_as_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def full(path: Path, data: bytes) -> int:
-        with path.open("wb") as file:
-            file.write(data[:1])
+    def full(_: int) -> None:
         raise OSError(28, "No space left on device")
 
     path = tmp_path / "a.txt"
     path.write_bytes(b"one")
-    monkeypatch.setattr(Path, "write_bytes", full)
+    monkeypatch.setattr("os.fsync", full)
     with pytest.raises(OSError, match="No space left") as caught:
         write_whole(path, b"two")
     assert caught.value.filename == str(path)
@@ -65,3 +62,31 @@ def test_a_folder_that_is_none_is_an_error_of_the_path(tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(b"")
     with pytest.raises(OSError, match=r"a\.txt"):
         write_whole(tmp_path / "file" / "a.txt", b"one")
+
+
+def test_a_file_is_on_the_disk_before_it_has_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done: list[str] = []
+    synced, replaced = os.fsync, os.replace
+    monkeypatch.setattr("os.fsync", lambda file: (done.append("fsync"), synced(file)))
+    monkeypatch.setattr("os.replace", lambda a, b: (done.append("replace"), replaced(a, b)))
+    write_whole(tmp_path / "a.txt", b"one")
+    assert done == ["fsync", "replace"]
+
+
+def test_what_a_killed_run_was_writing_is_removed_and_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("a.txt", ".b.part", ".c.0123.part", "d.part"):
+        (tmp_path / name).write_bytes(b"one")
+    before = sorted(tmp_path.iterdir())
+    # A process that is killed unlinks nothing.
+    with monkeypatch.context() as patch:
+        patch.setattr("os.fsync", lambda _: 1 / 0)
+        patch.setattr(Path, "unlink", lambda _: None)
+        with pytest.raises(ZeroDivisionError):
+            write_whole(tmp_path / "a.txt", b"two")
+    assert len(list(tmp_path.iterdir())) == len(before) + 1
+    remove_parts(tmp_path)
+    assert sorted(tmp_path.iterdir()) == before

@@ -1,5 +1,7 @@
 """Errors and notices: each has a code and says what is wrong, where, and what to do."""
 
+import errno
+import os
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -13,6 +15,7 @@ class ExitCode(IntEnum):
     INCOMPLETE = 4
     CHECK_FAILED = 5
     INTERRUPTED = 130
+    TERMINATED = 143
 
 
 @dataclass(frozen=True)
@@ -83,3 +86,17 @@ class UsageError(DrystoneError):
 
 class PlanError(DrystoneError):
     """A plan file is not valid or does not belong to these stones."""
+
+
+NO_ROOM = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))
+"""What the system says when the disk, or the user's share of it, is full."""
+
+
+def not_written(error: OSError) -> PlanError:
+    """Return the error with a code (E206) of a file that the system does not write."""
+    return PlanError(
+        "E206",
+        f"the file cannot be written ({error.strerror or error}).",
+        where=os.fspath(error.filename or ""),
+        cure="Give a folder that exists, has room and may be written to.",
+    )

@@ -1,15 +1,20 @@
 """Files that are either whole or not there."""
 
 import os
+import re
 import uuid
 from contextlib import suppress
 from pathlib import Path
+
+PART = re.compile(r"\..+\.[0-9a-f]{32}\.part")
+"""Names of files that are being written."""
 
 
 def write_whole(path: Path, data: bytes) -> None:
     """Write a file beside its place and move it there, so that no reader ever sees half of it.
 
-    Whatever stops it, an interrupt too, leaves an existing file as it was and no other behind.
+    Whatever stops it, an interrupt too, leaves an existing file as it was and no other behind; a
+    power cut leaves the old one or the new one.
 
     Parameters
     ----------
@@ -25,7 +30,10 @@ def write_whole(path: Path, data: bytes) -> None:
     """
     part = path.with_name(f".{path.name}.{uuid.uuid4().hex}.part")
     try:
-        part.write_bytes(data)
+        with part.open("xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
         os.replace(part, path)  # noqa: PTH105 - Path.replace says the same, os.replace says atomic
     except BaseException as error:
         with suppress(OSError):
@@ -33,3 +41,10 @@ def write_whole(path: Path, data: bytes) -> None:
         if isinstance(error, OSError):
             raise OSError(error.errno, error.strerror or str(error), str(path)) from error
         raise
+
+
+def remove_parts(folder: Path) -> None:
+    """Remove what runs that were killed have left of files that they were writing."""
+    for part in folder.glob(".*.part"):
+        if PART.fullmatch(part.name):
+            part.unlink(missing_ok=True)

@@ -18,15 +18,17 @@ from drystone.planner.planner import Planner
 from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.solves import Solves
 from drystone.search import anytime, work
-from drystone.search.anytime import PROMISING, Progress, _links, _shared, searching
+from drystone.search.anytime import PROMISING, _links, _shared, searching
 from drystone.search.chain import in_cycle, wedged
 from drystone.search.course_plan import CoursePlan
 from drystone.search.first_walls import PROMISE
 from drystone.search.found import Courses, Found
 from drystone.search.packed import Packed, found_again
-from drystone.search.plan_wall import plan_wall, run_to_end
+from drystone.search.plan_wall import SoFar, plan_wall
 from drystone.search.processes import processes
-from drystone.search.work import Job, PackedLink, planned_first
+from drystone.search.standing import PackedLink, Progress, Standing
+from drystone.search.whole_search import run_to_end
+from drystone.search.work import Job, planned_first
 from drystone.verify.check import check_plan
 from tests.planner.scenes import RUBBLE_SITE, Ticks, after_looks, finish, greedy, order, rubble
 
@@ -287,15 +289,65 @@ def test_an_interrupt_keeps_the_best_wall_so_far() -> None:
     result = plan_wall(stones, 100, 36, scale=1.0, seed=1, settings=settings, callbacks=Impatient())
     assert [one.walls for one in told] == [1, 2, 3, 5]
     assert result.plan.settings["search"]["budget"] == 5
-    assert result.plan.stopped != "interrupted"
-    (notice,) = result.notices
-    assert notice.code == "W125"
-    assert "after 5 walls" in notice.message
+    assert (result.status, result.plan.stopped) == ("interrupted", "interrupted")
+    assert result.notices == ()
     assert check_plan(result.plan, stones, wall_labels=result.wall.labels).problems == ()
     best = searched(first(5))[-1].best
     assert [step.stone for step in result.plan.stone_steps] == [g.stone_id for g in best.groups]
     assert told[-1].merit == best.merit
     assert told[-1].stones == len(best.groups)
+
+
+@pytest.mark.parametrize("geometry", ["raster", "exact"])
+def test_a_search_goes_on_from_where_it_stood_to_the_walls_that_it_would_have_found(
+    geometry: str,
+) -> None:
+    planner = first(25, geometry, seed=4, patience=1)
+    whole = searched(planner)
+    stood = [k for k, one in enumerate(whole) if one.standing is not None]
+    rounds = {standing(whole[k]).number for k in stood}
+    assert len(rounds) > 1
+    assert {standing(whole[k]).chains is None for k in stood} == {True, False}
+    # Where there is but a first wall, and where the budget cut a chain short, there is nothing.
+    assert set(range(len(whole))) - set(stood) <= {0, len(whole) - 1}
+    for k in stood:
+        again = list(
+            searching(standing(whole[k]), planner.workshop, planner.settings, planner.seed)
+        )
+        assert [one.walls for one in again] == [one.walls for one in whole[k:]]
+        assert standing(whole[k]).walls == whole[k].walls
+        for one, other in zip(again, whole[k:], strict=True):
+            assert same(one.best, other.best)
+            assert one.solves == other.solves
+            assert [wall.merit for wall in one.kept] == [wall.merit for wall in other.kept]
+
+
+def standing(progress: Progress) -> Standing:
+    assert progress.standing is not None
+    return progress.standing
+
+
+def test_a_plan_that_is_kept_is_that_of_an_interrupt_and_leads_to_the_whole_one() -> None:
+    settings = greedy({"search": {"budget": 9, **SMALL}})
+    told: list[SoFar] = []
+    stones = rubble()
+    whole = plan_wall(stones, 100, 36, scale=1.0, seed=1, settings=settings, keep=told.append)
+    placed = [one for one in told if one.progress is None]
+    assert len(placed) > 3
+    assert [one.progress.walls for one in told if one.progress] == [1, 2, 3, 5, 7, 9]
+    for one in (told[len(placed) + 1], told[-1]):
+        partial = one.plan()
+        assert partial.status == "interrupted"
+        assert check_plan(partial.plan, stones, wall_labels=partial.wall.labels).problems == ()
+    assert one.progress is not None
+    assert [step.stone for step in partial.plan.stone_steps] == [
+        group.stone_id for group in one.progress.best.groups
+    ]
+    for one in told[len(placed) + 1 :]:
+        again = plan_wall(
+            stones, 100, 36, scale=1.0, seed=1, settings=settings, standing=standing(one.progress)
+        )
+        assert again.plan == whole.plan
 
 
 def test_nothing_to_build_is_no_trouble() -> None:

@@ -9,15 +9,15 @@ import pytest
 
 from drystone import generate
 from drystone.planner.deadline import Deadline, TimeIsUp
-from drystone.planner.events import Callbacks, Step, Stopped
+from drystone.planner.events import INTERRUPTED, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
 from drystone.search.ending import as_found, surest, with_the_rest
 from drystone.search.found import Found
-from drystone.search.interrupts import insisted
 from drystone.search.packed import Packed
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
+from drystone.search.whole_search import run_to_end
 from drystone.search.work import _opened
 from tests.planner.scenes import RUBBLE_SITE, Ticks, after_looks, greedy, rubble
 
@@ -65,28 +65,20 @@ def test_a_wall_to_choose_is_as_it_was_found(planner: Planner) -> None:
     assert as_found(full, half)[1] == Stopped("filled", "filling above 0.1")
 
 
-def test_an_interrupt_at_the_end_loses_nothing(
-    planner: Planner, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("place", ["surest", "with_the_rest"])
+def test_an_interrupt_at_the_end_keeps_the_best_as_it_was_found(
+    place: str, planner: Planner, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    half = half_of(planner)
+    found = run_to_end(planner)
 
-    def interrupt(_: Callbacks, __: Step) -> None:
+    def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Callbacks, "on_step", interrupt)
-    found, why, interrupted = with_the_rest(planner, half)
-    assert interrupted
-    assert ids(found) == [group.stone_id for group in half.groups]
-    assert why.reason == "search"
-    calls: list[int] = []
-
-    def once() -> int:
-        calls.append(1)
-        if len(calls) == 1:
-            raise KeyboardInterrupt
-        return len(calls)
-
-    assert insisted(once) == 2
+    monkeypatch.setattr(f"drystone.search.whole_search.{place}", interrupt)
+    cut = run_to_end(planner)
+    assert (cut.stopped, cut.walls) == (INTERRUPTED, found.walls)
+    best = max(found.kept, key=lambda wall: wall.merit)
+    assert ids(cut.planner) == [group.stone_id for group in best.groups]
 
 
 def test_time_that_is_up_at_the_end_loses_nothing(planner: Planner) -> None:
@@ -150,9 +142,9 @@ def test_an_interrupt_while_others_are_finished_keeps_the_best(
 
     monkeypatch.setattr("drystone.search.plan_wall.as_found", interrupted)
     result = plan_wall(rubble(), 100, 36, scale=1.0, seed=1, settings=settings, choice=True)
-    assert result.plan == whole.plan
-    assert [one.plan for one in result.choice] == [whole.plan]
-    assert [notice.code for notice in result.notices] == ["W125"]
+    assert (result.status, result.plan.stopped) == ("interrupted", "interrupted")
+    assert result.plan.steps == whole.plan.steps
+    assert result.choice == ()
 
 
 def test_what_the_solver_gave_up_on_at_the_end_is_counted(
@@ -167,7 +159,7 @@ def test_what_the_solver_gave_up_on_at_the_end_is_counted(
         last.failed_solves += 5
         return last, stopped, cut
 
-    monkeypatch.setattr("drystone.search.plan_wall.with_the_rest", with_trouble)
+    monkeypatch.setattr("drystone.search.whole_search.with_the_rest", with_trouble)
     result = plan_wall(rubble(), 100, 36, scale=1.0, seed=1, settings=settings)
     assert result.solves.failed == 5
     assert "W303" in [notice.code for notice in result.notices]

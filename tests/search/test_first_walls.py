@@ -47,6 +47,16 @@ def test_batches_number_every_wall_but_the_very_first(count: int) -> None:
     assert numbers(SearchSettings(budget=60, passes=count)) == listed
 
 
+def test_a_batch_goes_on_as_it_began() -> None:
+    found = [wall(float(k % 3), planned=k % 2 > 0) for k in range(3 * BATCH)]
+    search = SearchSettings(budget=60)
+    for begun in range(0, len(found), BATCH):
+        numbers, share = next_batch(found[:begun], search, "exact") or (range(0), 0.0)
+        for done in range(begun + 1, begun + BATCH):
+            rest = range(done, numbers.stop)
+            assert next_batch(found[:done], search, "exact") == (rest, share)
+
+
 @pytest.mark.parametrize("geometry", ["exact", "raster"])
 def test_nothing_is_known_of_a_single_wall(geometry: str) -> None:
     assert planned_share([wall(1.0, planned=False)], geometry) == SHARE[geometry]
@@ -77,8 +87,11 @@ def test_first_walls_end_when_they_beat_none_that_was_not_planned() -> None:
     assert not any(stale(rising[: k + 1]) for k in range(20))
     level = [wall(1.0, planned=False), *(wall(0.3, planned=k % 2 > 0) for k in range(STALE))]
     assert stale(level)
-    assert next_batch(level, SearchSettings(budget=60), "exact") is None
     assert not stale(level[:-1])
+    # It is looked at when a batch begins; one that is begun is built to its end.
+    more = [wall(0.3, planned=False)] * (BATCH - len(level) % BATCH)
+    assert next_batch(level, SearchSettings(budget=60), "exact") is not None
+    assert next_batch([*level, *more], SearchSettings(budget=60), "exact") is None
     assert not stale([*level, wall(2.0, planned=False)])
     assert not stale([*level, wall(2.0, planned=True), *level[1:]])
     # A planned wall that is a little behind promises more.

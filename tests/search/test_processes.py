@@ -1,4 +1,7 @@
 import os
+import signal
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import Executor, ThreadPoolExecutor
@@ -24,10 +27,11 @@ def test_a_process_that_remembers_much_is_kept() -> None:
         assert grown <= both_at_work(workers)
 
 
+@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize(
     ("start", "pool"), [(processes, ProcessPoolExecutor), (threads, ThreadPoolExecutor)]
 )
-def test_an_interrupt_while_they_end_loses_nothing(
+def test_an_interrupt_while_they_end_waits_until_they_have(
     start: Callable[[int], AbstractContextManager[Executor | None]],
     pool: type[Executor],
     monkeypatch: pytest.MonkeyPatch,
@@ -35,17 +39,58 @@ def test_an_interrupt_while_they_end_loses_nothing(
     ended, calls = pool.shutdown, []
 
     def impatient(self: Executor, *args: Any, **options: Any) -> None:
-        calls.append(1)
-        if len(calls) == 1:
-            raise KeyboardInterrupt
+        signal.raise_signal(signal.SIGINT)
         ended(self, *args, **options)
+        calls.append(1)
 
     monkeypatch.setattr(pool, "shutdown", impatient)
-    with start(2) as workers:
+    with pytest.raises(KeyboardInterrupt), start(2) as workers:
         assert workers is not None
-    assert len(calls) == 2
+    assert calls == [1]
     with pytest.raises(RuntimeError, match="shutdown"):
         workers.submit(int)
+
+
+ASKING = """
+import time
+from loky.backend.resource_tracker import _resource_tracker
+from drystone.search.processes import processes
+
+with processes(2) as workers:
+    busy = [workers.submit(time.sleep, 0.0 if k < 2 else 1000.0) for k in range(4)]
+    busy[0].result()
+    print(*workers._processes, _resource_tracker._pid, flush=True)
+    time.sleep(1000)
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="there is no such signal here")
+def test_processes_end_with_the_one_that_asks_whatever_kills_it() -> None:
+    command = [sys.executable, "-c", ASKING]
+    with subprocess.Popen(  # noqa: S603 - our own code
+        command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    ) as asking:
+        assert asking.stdout is not None
+        left = {int(one) for one in asking.stdout.readline().split()}
+        assert len(left) == 3
+        assert all(alive(one) for one in left)
+        asking.kill()
+    for _ in range(100):
+        if not any(alive(one) for one in left):
+            return
+        time.sleep(0.1)
+    raise AssertionError(f"{[one for one in left if alive(one)]} are left")
+
+
+def alive(process: int) -> bool:
+    """Say whether a process is at work; one that nobody has asked after is not."""
+    said = subprocess.run(  # noqa: S603 - the number is ours
+        ["ps", "-o", "stat=", "-p", str(process)],  # noqa: S607
+        stdout=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    return said.stdout.strip() != "" and not said.stdout.strip().startswith("Z")
 
 
 def both_at_work(workers: Executor) -> set[int]:

@@ -7,8 +7,9 @@ from importlib import import_module
 from io import TextIOWrapper
 
 from drystone.cli.parser import build_parser
-from drystone.errors import DrystoneError, ExitCode, InputError, UsageError
+from drystone.errors import NO_ROOM, DrystoneError, ExitCode, InputError, UsageError, not_written
 from drystone.kernels.backend import CHOICES, VARIABLE, fault
+from drystone.search.interrupts import Terminated, terminable
 
 _SMALLER = {
     "plan": "--scale or wall",
@@ -22,8 +23,16 @@ _SMALLER = {
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code (DESIGN 2).
 
-    0 done, 2 usage, 3 bad input, 4 wall incomplete, 5 a check failed, 130 interrupted.
+    0 done, 2 usage, 3 bad input, 4 wall incomplete, 5 a check failed, 130 interrupted, 143
+    terminated.
     """
+    with terminable() as terminated:
+        code = _called(argv)
+    return int(ExitCode.TERMINATED) if code == ExitCode.INTERRUPTED and terminated() else code
+
+
+def _called(argv: Sequence[str] | None) -> int:
+    """Do what the command line says, and turn what went wrong into an exit code."""
     if isinstance(sys.stdout, TextIOWrapper):
         # Names of stones are in any script, terminals and files on some systems are not.
         sys.stdout.reconfigure(errors="backslashreplace")
@@ -37,16 +46,17 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"drystone: {error}", file=sys.stderr)
         return int(error.exit_code)
     arguments = build_parser().parse_args(argv)
-    # Commands are imported when they are called: --help must not wait for NumPy.
-    command = import_module(f"drystone.cli.commands.{arguments.command}")
     try:
+        # Commands are imported when they are called: --help must not wait for NumPy.
+        command = import_module(f"drystone.cli.commands.{arguments.command}")
         code = int(command.run(arguments))
         # A reader that went away is noticed here and not when the interpreter ends.
         sys.stdout.flush()
     except BrokenPipeError:
         return _leave_pipe()
-    except KeyboardInterrupt:
-        print("drystone: interrupted", file=sys.stderr)
+    except KeyboardInterrupt as error:
+        how = "terminated" if isinstance(error, Terminated) else "interrupted"
+        print(f"drystone: {how}", file=sys.stderr)
         return int(ExitCode.INTERRUPTED)
     except (DrystoneError, OSError, MemoryError) as error:
         if arguments.debug:
@@ -64,6 +74,8 @@ def _coded(error: DrystoneError | OSError | MemoryError, command: str) -> Drysto
     if isinstance(error, MemoryError):
         less = _SMALLER.get(command, "wall or picture")
         return InputError("E142", "the memory is not large enough.", cure=f"Use a smaller {less}.")
+    if error.errno in NO_ROOM:
+        return not_written(error)
     return InputError(
         "E141",
         f"the system refuses this: {error.strerror or error}.",

@@ -3,13 +3,15 @@
 import codecs
 import json
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
 from drystone.errors import PlanError, UsageError
 from drystone.io.atomic import refuse_existing
+from drystone.io.folder_lock import has_files, locked
 
 _PICTURES = (".png", ".pdf", ".svg")
 
@@ -36,7 +38,7 @@ def prepare_folder(path: Path, names: Sequence[str], *, overwrite: bool) -> Path
     for name in names:
         refuse_existing(path / name, overwrite=True)
     make_folder(path)
-    if any(path.iterdir()) and not overwrite:
+    if has_files(path) and not overwrite:
         raise UsageError(
             "E129",
             "the folder is not empty.",
@@ -53,6 +55,23 @@ def prepare_folder(path: Path, names: Sequence[str], *, overwrite: bool) -> Path
             cure="Choose another folder with -o, one that has room and may be written to.",
         ) from error
     return path
+
+
+@contextmanager
+def working_in(path: Path, names: Sequence[str], *, overwrite: bool) -> Iterator[None]:
+    """Prepare a folder (:func:`prepare_folder`), and keep other runs out of it meanwhile.
+
+    Raises
+    ------
+    UsageError
+        E129, and E149: another run works there.
+    PlanError
+        E206.
+    """
+    make_folder(path)
+    with locked(path):
+        prepare_folder(path, names, overwrite=overwrite)
+        yield
 
 
 def prepare_files(paths: Sequence[Path], *, overwrite: bool) -> None:

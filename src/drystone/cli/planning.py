@@ -3,6 +3,7 @@
 import argparse
 import math
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 from drystone.cli.announce import (
@@ -20,22 +21,25 @@ from drystone.cli.choice import (
     print_choice,
     write_choice,
 )
-from drystone.cli.output import prepare_folder, print_json
+from drystone.cli.keeping import Keeper
+from drystone.cli.output import print_json, working_in
 from drystone.cli.plan_photo import check_photo, with_photo
 from drystone.cli.plan_summary import print_summary, summary
 from drystone.cli.progress import step_bar
-from drystone.cli.resuming import course_heights, partial_plan, tell_finished
+from drystone.cli.resuming import Earlier, course_heights, earlier_run, made_of, tell_finished
 from drystone.cli.scale import picture_size_px, refuse_outside, scale_notice
 from drystone.cli.settings import recorded_method, search_seconds, settings_from
 from drystone.cli.timing import print_profile, profile_summary
-from drystone.errors import ExitCode, UsageError
+from drystone.errors import DrystoneError, ExitCode, UsageError
+from drystone.io.checkpoint import CHECKPOINT
 from drystone.io.plan_folder import write_plan_folder
+from drystone.model.plan import Plan
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.stone_size import median_sides, sides_px
-from drystone.planner.events import UNFINISHED
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.planner.workshop import fitting_stones
+from drystone.search.interrupts import held
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall, working_scale
 from drystone.verify.replay import rebuild_wall
@@ -52,31 +56,66 @@ def plan_and_write(
     wall: tuple[float, float],
     arguments: argparse.Namespace,
     photo: Path | None = None,
+    *,
+    prepared: bool = False,
 ) -> ExitCode:
-    """Plan a wall of given size in source px, write all files, print the summary."""
+    """Plan a wall of given size in source px, write all files, print the summary.
+
+    Parameters
+    ----------
+    stones : StoneSet
+        To build with.
+    wall : (float, float)
+        Width and height, source px.
+    arguments : argparse.Namespace
+        Of the command.
+    photo : Path or None
+        Of the stones.
+    prepared : bool
+        Whether the folder is ready and locked.
+    """
     folder = Path(arguments.output)
-    settings, method = settings_from(arguments), recorded_method(arguments)
-    partial = partial_plan(folder, stones, wall, arguments, settings)
-    if partial is not None and partial.stopped not in UNFINISHED:
-        return _EXIT[tell_finished(partial, stones, settings, arguments)]
-    if partial is not None:
-        print(f"drystone: going on after {len(partial.stone_steps)} stones", file=sys.stderr)
+    settings = settings_from(arguments)
+    earlier = earlier_run(folder, stones, wall, arguments, settings)
+    if earlier.plan is not None and earlier.finished:
+        return _EXIT[tell_finished(earlier.plan, stones, settings, arguments)]
+    earlier.tell()
     begin = plan_to_begin_with(stones, wall, arguments, settings)
     _check_stones(stones, wall, arguments, settings)
     check_photo(photo, stones, folder)
     if arguments.pareto:
         prepare_choice(folder)
-    prepare_folder(folder, WRITTEN, overwrite=arguments.overwrite or partial is not None)
+    overwrite = arguments.overwrite or earlier.begun
+    names = (*WRITTEN, CHECKPOINT)
+    with nullcontext() if prepared else working_in(folder, names, overwrite=overwrite):
+        keeper = Keeper(folder, made_of(stones, wall, arguments, settings), photo)
+        keeper.begin(earlier.standing)
+        result = _planned(stones, wall, arguments, settings, earlier, begin, keeper)
+        # What it has come to is not lost by a second interrupt.
+        with held():
+            return _written_and_told(result, stones, arguments, photo, keeper)
+
+
+def _planned(
+    stones: StoneSet,
+    wall: tuple[float, float],
+    arguments: argparse.Namespace,
+    settings: PlannerSettings,
+    earlier: Earlier,
+    begin: Plan | None,
+    keeper: Keeper,
+) -> PlanResult:
+    """Plan a wall, and say how long that takes."""
     seconds = search_seconds(method_settings(arguments.method), len(stones), arguments)
     _announce(stones, wall, arguments, seconds if settings.search.budget > 1 else None)
     with step_bar(
         len(stones), settings, seconds, quiet=arguments.quiet or arguments.json
     ) as callbacks:
-        result = plan_wall(
+        return plan_wall(
             stones,
             *wall,
             seed=arguments.seed,
-            method=method,
+            method=recorded_method(arguments),
             settings=settings,
             scale=arguments.scale,
             px_per_m=arguments.px_per_m,
@@ -84,27 +123,47 @@ def plan_and_write(
             first_whole=arguments.time is None,
             n_jobs=arguments.jobs,
             callbacks=callbacks,
-            built=None if partial is None else rebuild_wall(partial, stones),
-            course_heights_px=course_heights(partial or begin),
+            built=None if earlier.plan is None else rebuild_wall(earlier.plan, stones),
+            course_heights_px=course_heights(earlier.plan or begin),
             begin=None if begin is None else rebuild_wall(begin, stones),
             choice=arguments.pareto,
+            keep=keeper,
+            standing=earlier.standing,
         )
+
+
+def _written_and_told(
+    result: PlanResult,
+    stones: StoneSet,
+    arguments: argparse.Namespace,
+    photo: Path | None,
+    keeper: Keeper,
+) -> ExitCode:
+    """Write all files and print the summary; also that of a wall that cannot be written."""
+    folder = Path(arguments.output)
     for notice in result.notices:
         print(f"drystone: {notice}", file=sys.stderr)
-    result = _write(result, stones, folder, photo, choice=arguments.pareto)
+    failed: Exception | None = None
+    try:
+        result = _write(result, stones, folder, photo, choice=arguments.pareto)
+        keeper.end(result)
+    except (DrystoneError, OSError) as error:
+        failed = error
     profile = profile_summary(result, arguments.jobs) if arguments.profile else None
     if arguments.json:
         told = summary(result, folder)
         if arguments.pareto:
             told["pareto"] = choice_summary(result, folder)
         print_json(told | ({} if profile is None else {"profile": profile}))
-        return _EXIT[result.status]
-    print_summary(result, folder)
-    if arguments.pareto:
-        print_choice(result)
-    if profile is not None:
-        print_profile(profile)
-    if not arguments.quiet:
+    else:
+        print_summary(result, folder)
+        if arguments.pareto:
+            print_choice(result)
+        if profile is not None:
+            print_profile(profile)
+    if failed is not None:
+        raise failed
+    if not (arguments.quiet or arguments.json):
         say_written(folder)
     return _EXIT[result.status]
 

@@ -1,8 +1,10 @@
-"""The plan that is in the output folder already, and going on with it (`--resume`)."""
+"""What an earlier run has left in the output folder, and going on with it (`--resume`)."""
 
 import argparse
+import json
 import sys
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,44 +13,126 @@ import numpy as np
 from drystone.cli.output import print_json
 from drystone.cli.plan_summary import summary_of_plan
 from drystone.cli.settings import recorded_method
-from drystone.errors import UsageError
+from drystone.errors import Notice, PlanError, UsageError
+from drystone.io.checkpoint import CHECKPOINT, read_checkpoint
 from drystone.io.plan_json import read_plan
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
-from drystone.planner.events import Stopped
+from drystone.planner.events import UNFINISHED, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_result import result_of
 from drystone.search.plan_wall import working_scale
+from drystone.search.standing import Standing
 from drystone.verify.replay import rebuild_wall
 
 
-def partial_plan(
+@dataclass(frozen=True, eq=False)
+class Earlier:
+    """What an earlier run of the same command has left.
+
+    Parameters
+    ----------
+    plan : Plan or None
+        Partial, to be gone on with; or finished.
+    standing : Standing or None
+        Where its search stands, which goes on whatever the plan is.
+    begun : bool
+        Whether there is anything of it.
+    """
+
+    plan: Plan | None = None
+    standing: Standing | None = None
+    begun: bool = False
+
+    @property
+    def finished(self) -> bool:
+        """Whether there is nothing to go on with."""
+        return self.plan is not None and self.plan.stopped not in UNFINISHED
+
+    def tell(self) -> None:
+        """Say what is gone on with."""
+        if self.standing is not None:
+            print(f"drystone: going on after {self.standing.walls} walls", file=sys.stderr)
+        elif self.plan is not None:
+            print(f"drystone: going on after {len(self.plan.stone_steps)} stones", file=sys.stderr)
+        elif self.begun:
+            print("drystone: nothing to go on with yet, planning begins anew", file=sys.stderr)
+
+
+def made_of(
+    stones: StoneSet,
+    wall: tuple[float, float],
+    arguments: argparse.Namespace,
+    settings: PlannerSettings,
+) -> dict[str, Any]:
+    """Return all that shapes the plan of a command, by what the user gives, as JSON has it."""
+    shaped: dict[str, Any] = json.loads(
+        json.dumps(
+            {
+                "stones": stones.source.sha256,
+                "reading": dict(stones.source.reading),
+                "--wall": wall,
+                "--px-per-m": arguments.px_per_m,
+                "--scale": arguments.scale or working_scale(stones),
+                "--seed": arguments.seed,
+                "--method": recorded_method(arguments),
+                "settings": _without_budget(settings.as_dict()),
+            }
+        )
+    )
+    return shaped
+
+
+def earlier_run(
     folder: Path,
     stones: StoneSet,
     wall: tuple[float, float],
     arguments: argparse.Namespace,
     settings: PlannerSettings,
-) -> Plan | None:
-    """Return the plan to go on from; refuse one that was made of or for something else (E136)."""
-    path = folder / "plan.json"
-    if not getattr(arguments, "resume", False) or not path.exists():
-        return None
-    plan = read_plan(path)
+) -> Earlier:
+    """Return what to go on from, if that is asked for; refuse what is of something else (E136)."""
+    if not getattr(arguments, "resume", False):
+        return Earlier()
+    asked, path = made_of(stones, wall, arguments, settings), folder / "plan.json"
+    plan = read_plan(path) if path.exists() else None
+    different = [] if plan is None else _differences(plan, asked, arguments)
+    try:
+        kept = read_checkpoint(folder, [stone.id for stone in stones], settings.search)
+    except PlanError as error:
+        cure = "The partial plan is gone on from." if plan is not None else "Planning begins anew."
+        print(f"drystone: {Notice('W129', f'{error.what[:-1]}: {path}.', cure)}", file=sys.stderr)
+        kept = None
+    if kept is None:
+        if plan is not None:
+            _refuse(different, path)
+        return Earlier(plan, begun=(folder / CHECKPOINT).exists() or plan is not None)
+    _refuse([n for n in asked if kept.made_of.get(n) != asked[n]], folder / CHECKPOINT)
+    if kept.standing is not None:
+        return Earlier(standing=kept.standing, begun=True)
+    # Beside a checkpoint a finished plan is an earlier one, or was not written to the end.
+    partial = plan is not None and not different and plan.stopped in UNFINISHED
+    return Earlier(plan if partial else None, begun=True)
+
+
+def _differences(plan: Plan, asked: Mapping[str, Any], arguments: argparse.Namespace) -> list[str]:
+    """Name what a plan was made of that is not what is asked for."""
     px_per_m = arguments.px_per_m or 1.0
-    scale = arguments.scale or working_scale(stones)
     size = plan.width * px_per_m, plan.height * px_per_m
     equal = {
-        "stones": plan.source["sha256"] == stones.source.sha256,
-        "reading": plan.source.get("reading", {}) == dict(stones.source.reading),
-        "--wall": np.allclose(size, wall, rtol=0, atol=1e-6),
-        "--px-per-m": plan.px_per_m == arguments.px_per_m,
-        "--scale": plan.working_scale == scale,
-        "--seed": plan.seed == arguments.seed,
-        "--method": plan.method in (recorded_method(arguments), arguments.method),
-        "settings": _without_budget(plan.settings) == _without_budget(settings.as_dict()),
+        "stones": plan.source["sha256"] == asked["stones"],
+        "reading": plan.source.get("reading", {}) == asked["reading"],
+        "--wall": np.allclose(size, asked["--wall"], rtol=0, atol=1e-6),
+        "--px-per-m": plan.px_per_m == asked["--px-per-m"],
+        "--scale": plan.working_scale == asked["--scale"],
+        "--seed": plan.seed == asked["--seed"],
+        "--method": plan.method in (asked["--method"], arguments.method),
+        "settings": _without_budget(plan.settings) == asked["settings"],
     }
-    different = [name for name, same in equal.items() if not same]
+    return [name for name, same in equal.items() if not same]
+
+
+def _refuse(different: list[str], path: Path) -> None:
     if different:
         raise UsageError(
             "E136",
@@ -56,7 +140,6 @@ def partial_plan(
             where=str(path),
             cure="Give the same command again with --resume added, or plan into another folder.",
         )
-    return plan
 
 
 def tell_finished(

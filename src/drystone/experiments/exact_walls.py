@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.random import Generator
 
+from drystone.experiments.runs.outcome import uninterrupted
 from drystone.experiments.table import BenchSettings
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.generate.fourier import FourierSettings, fourier_stones
@@ -172,4 +173,4 @@ def built_walls(
                     settings=one_pass(geometry, budget),
                     scale=target.scale,
                 )
-                yield BuiltWall(target, geometry, seed, stones, result)
+                yield BuiltWall(target, geometry, seed, stones, uninterrupted(result))

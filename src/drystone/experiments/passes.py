@@ -7,6 +7,7 @@ from statistics import median
 
 from drystone.experiments.exact_walls import BuiltWall, Target, one_pass, targets
 from drystone.experiments.planned_walls import missing_data
+from drystone.experiments.runs.outcome import uninterrupted
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.kernels.polygons import Points, no_polygons
 from drystone.model.stone import StoneSet
@@ -97,7 +98,7 @@ def _pass(target: Target, stones: StoneSet, way: Way, seed: int) -> BuiltWall:
         settings=way.change(one_pass("exact")),
         scale=target.scale,
     )
-    return BuiltWall(target, "exact", seed, stones, result)
+    return BuiltWall(target, "exact", seed, stones, uninterrupted(result))
 
 
 def _row(way: Way, walls: Sequence[BuiltWall]) -> tuple[Cell, ...]:

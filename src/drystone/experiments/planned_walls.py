@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
+from drystone.experiments.runs.outcome import uninterrupted
 from drystone.experiments.table import BenchSettings
 from drystone.io.published import published_file
 from drystone.io.read_stones import read_stones
@@ -83,7 +84,8 @@ def planned_walls(
         for method in methods[:1] if settings.quick else methods:
             for seed in range(settings.seed, settings.seed + (1 if settings.quick else seeds)):
                 result = plan_wall(stones, width, height, seed=seed, method=method, scale=scale)
-                yield PlannedWall(f"{name}, {method}, seed {seed}", result.plan, stones)
+                plan = uninterrupted(result).plan
+                yield PlannedWall(f"{name}, {method}, seed {seed}", plan, stones)
 
 
 def missing_data(settings: BenchSettings) -> tuple[str, ...]:

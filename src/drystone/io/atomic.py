@@ -1,9 +1,8 @@
 """Files that are either whole or not there, and none that is replaced unasked."""
 
-import os
 from pathlib import Path
 
-from drystone.errors import PlanError, UsageError
+from drystone.errors import UsageError, not_written
 from drystone.whole_files import write_whole
 
 
@@ -25,12 +24,7 @@ def write_atomically(path: Path, data: bytes) -> None:
     try:
         write_whole(path, data)
     except OSError as error:
-        raise PlanError(
-            "E206",
-            f"the file cannot be written ({error.strerror}).",
-            where=os.fspath(path),
-            cure="Give a folder that exists, has room and may be written to.",
-        ) from error
+        raise not_written(error) from error
 
 
 def refuse_existing(path: Path, *, overwrite: bool) -> None:

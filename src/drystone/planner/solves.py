@@ -28,3 +28,7 @@ class Solves:
     def __add__(self, other: "Solves") -> "Solves":
         """Add up."""
         return Solves(self.failed + other.failed, self.cold + other.cold)
+
+    def __sub__(self, other: "Solves") -> "Solves":
+        """Return the trouble since then."""
+        return Solves(self.failed - other.failed, self.cold - other.cold)

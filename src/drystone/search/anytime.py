@@ -3,10 +3,10 @@
 Once chains find nothing better for long, another round begins with other first walls.  Everything
 that is drawn depends on the seed and on the number of a wall, and what chains share on how many
 walls they have built: the same budget gives the same wall, however many processes work and whatever
-the clock says.  The clock decides only how large the budget is.
+the clock says.  The clock decides only how large the budget is.  So a search that was cut off goes
+on from where it stood (:mod:`drystone.search.standing`) to the same walls.
 """
 
-import itertools
 import pickle
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Executor
@@ -25,7 +25,8 @@ from drystone.search.first_walls import next_batch, promised
 from drystone.search.found import Found
 from drystone.search.operators import Credits
 from drystone.search.packed import Packed
-from drystone.search.work import Job, PackedLink, more_links, one_pass
+from drystone.search.standing import Chains, PackedLink, Progress, Reached, Standing
+from drystone.search.work import Job, more_links, one_pass
 
 NOTABLE = 0.01
 """A round goes on for walls that are so much better, in units of merit, than at the last time."""
@@ -36,30 +37,8 @@ PROMISING = 32
 Result = TypeVar("Result")
 
 
-@dataclass(frozen=True, eq=False)
-class Progress:
-    """How far a search is.
-
-    Parameters
-    ----------
-    walls : int
-        How many walls it has built that count: the budget that repeats it.
-    best : Packed
-        The best of them.
-    solves : Solves
-        What trouble there was with all of them.
-    kept : tuple of Packed
-        Those that none beats in every figure of merit (:mod:`drystone.search.archive`).
-    """
-
-    walls: int
-    best: Packed
-    solves: Solves
-    kept: tuple[Packed, ...]
-
-
 def searching(
-    first: Found,
+    start: Found | Standing,
     workshop: Workshop,
     settings: PlannerSettings,
     seed: int,
@@ -71,8 +50,8 @@ def searching(
 
     Parameters
     ----------
-    first : Found
-        The wall of the seed itself.
+    start : Found or Standing
+        The wall of the seed itself, or where the search was cut off.
     workshop : Workshop
         Stones and site.
     settings : PlannerSettings
@@ -88,31 +67,35 @@ def searching(
     Yields
     ------
     Progress
-        After the first wall, and whenever walls have been added.
+        After the first wall, and whenever walls have been added.  Of a search that goes on, first
+        what it had come to.
     """
     tools = pickle.dumps((workshop.stones, workshop.site, settings))
     job = Job(tools, seed, until)
-    with suppress(TimeIsUp):
-        first = first.judged(workshop, settings, until=until)
-    search, start = settings.search, Packed.of(first)
-    yield Progress(1, start, start.solves, archived((), [start]))
-    if search.budget == 1:
-        return
-    # Its wedges are told of with the next wall: a search that ends before that is repeated by the
-    # budget 1, which is the wall without them.
-    try:
-        until.look()
-        found = [Packed.of(wedged(first, workshop, settings, until))]
-    except TimeIsUp:
-        return
-    before: Progress | None = None
-    for number in itertools.count():
-        one = _Round(number, before, job, settings, executor)
-        kept = yield from one.first_walls(found)
-        before = None if kept is None else (yield from one.chains(found, kept))
+    if isinstance(start, Standing):
+        at = start
+        yield _Round(at.number, at.before, job, settings, executor).again(at)
+    else:
+        with suppress(TimeIsUp):
+            start = start.judged(workshop, settings, until=until)
+        first = Packed.of(start)
+        yield Progress(1, first, first.solves, archived((), [first]))
+        if settings.search.budget == 1:
+            return
+        # Its wedges are told of with the next wall: a search that ends before that is repeated by
+        # the budget 1, which is the wall without them.
+        try:
+            until.look()
+            at = Standing(0, None, (Packed.of(wedged(start, workshop, settings, until)),))
+        except TimeIsUp:
+            return
+    while True:
+        one = _Round(at.number, at.before, job, settings, executor)
+        chains = at.chains or (yield from one.first_walls(at.found))
+        before = None if chains is None else (yield from one.improved(chains))
         if before is None:
             return
-        found = []
+        at = Standing(at.number + 1, before, ())
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,14 +106,14 @@ class _Round:
     ----------
     number : int
         Of the round, from 0.
-    before : Progress or None
+    before : Reached or None
         What the rounds before it came to.
     job, settings, executor
         See :func:`searching`.
     """
 
     number: int
-    before: Progress | None
+    before: Reached | None
     job: Job
     settings: PlannerSettings
     executor: Executor | None
@@ -142,75 +125,109 @@ class _Round:
         spent = self.before.walls if self.before else 0
         return replace(search, budget=search.budget - spent)
 
-    def first_walls(
-        self, found: list[Packed]
-    ) -> Generator[Progress, None, tuple[Packed, ...] | None]:
-        """Add first walls to those that are found; return which to keep, None where time is up."""
+    def again(self, at: Standing) -> Progress:
+        """Say what a search had come to that goes on from where it stood."""
+        reached = at.chains.reached if at.chains else _together(at.found)
+        return self._after(reached, at)
+
+    def first_walls(self, found: Sequence[Packed]) -> Generator[Progress, None, Chains | None]:
+        """Add first walls to those that are found; return what chains begin with.
+
+        None where time is up.
+        """
         search, geometry = self.search, self.settings.geometry
-        kept = archived((), found)
+        reached = _together(found) if found else None
         while (batch := next_batch(found, search, geometry)) is not None:
             numbers, share = batch
             tasks = [(self.job, self.number * search.passes + k, share) for k in numbers]
             for wall in _mapped(self.executor, one_pass, tasks):
                 if wall is None:
                     return None
-                found.append(wall)
-                kept = archived(kept, [wall])
-                yield self._after(len(found), _best(found), _all_solves(found), kept)
-        return kept
+                found = (*found, wall)
+                reached = _together([wall], reached)
+                yield self._after(reached, Standing(self.number, self.before, found))
+        assert reached is not None  # noqa: S101 - a round has at least one first wall
+        links = tuple(_links(found, self.number, search.chains))
+        return Chains(reached, links, 0, reached.walls, reached.best.merit + NOTABLE)
 
-    def chains(
-        self, found: Sequence[Packed], kept: tuple[Packed, ...]
-    ) -> Generator[Progress, None, Progress | None]:
-        """Improve the first walls; return where another round begins, None where it is the end."""
+    def improved(self, at: Chains) -> Generator[Progress, None, Reached | None]:
+        """Improve the first walls; return what another round begins after, None at the end."""
         search = self.search
-        links = _links(found, self.number, search.chains)
-        walls, before, best = len(found), _all_solves(found), _best(found)
-        better, goal = walls, best.merit + NOTABLE
-        while walls < search.budget:
-            counts = _shares(search.budget - walls, search.chains, search.share_every)
-            tasks = [(self.job, link, n) for link, n in zip(links, counts, strict=True) if n]
-            for k, link in enumerate(_mapped(self.executor, more_links, tasks)):
+        while at.reached.walls < search.budget:
+            left = search.budget - at.reached.walls + at.turn * search.share_every
+            counts = _shares(left, search.chains, search.share_every)
+            asked = range(at.turn, sum(count > 0 for count in counts))
+            tasks = [(self.job, at.links[k], counts[k]) for k in asked]
+            for link, k in zip(_mapped(self.executor, more_links, tasks), asked, strict=True):
                 if link is None:
                     return None
-                built = link.done - links[k].done
-                links[k] = link
-                walls += built
-                best = _best([best, link.best])
-                kept = archived(kept, link.kept)
-                progress = self._after(walls, best, before + _all_solves(links), kept)
-                yield progress
+                built = link.done - at.links[k].done
+                at = _lengthened(at, link, built)
+                whole = built == search.share_every
+                standing = Standing(self.number, self.before, (), at) if whole else None
+                yield self._after(at.reached, standing)
                 if built < counts[k]:
                     # It became too late; what later chains have built is not in the budget.
                     return None
-            if best.merit >= goal:
-                better, goal = walls, best.merit + NOTABLE
-            if walls - better >= search.patience * len(best.groups) and walls < search.budget:
-                return progress
-            links = _shared(_knowing(links))
+            best, walls = at.reached.best, at.reached.walls
+            if best.merit >= at.goal:
+                at = replace(at, better=walls, goal=best.merit + NOTABLE)
+            if walls - at.better >= search.patience * len(best.groups) and walls < search.budget:
+                return self._in_all(at.reached)
+            at = replace(at, links=tuple(_shared(_knowing(at.links))), turn=0)
         return None
 
-    def _after(
-        self, walls: int, best: Packed, solves: Solves, kept: tuple[Packed, ...]
-    ) -> Progress:
+    def _after(self, reached: Reached, standing: Standing | None) -> Progress:
         """Say how far the search is, from what this round has come to."""
-        if self.before is None:
-            return Progress(walls, best, solves, kept)
-        return Progress(
-            self.before.walls + walls,
-            _best([self.before.best, best]),
-            self.before.solves + solves,
-            archived(self.before.kept, kept),
+        whole = self._in_all(reached)
+        return Progress(whole.walls, whole.best, whole.solves, whole.kept, standing)
+
+    def _in_all(self, reached: Reached) -> Reached:
+        """Add what the rounds before have come to."""
+        before = self.before
+        if before is None:
+            return reached
+        return Reached(
+            before.walls + reached.walls,
+            _best([before.best, reached.best]),
+            before.solves + reached.solves,
+            archived(before.kept, reached.kept),
         )
+
+
+def _together(walls: Sequence[Packed], before: Reached | None = None) -> Reached:
+    """Add first walls to what a round has come to, one after the other."""
+    for wall in walls:
+        before = (
+            Reached(1, wall, wall.solves, archived((), [wall]))
+            if before is None
+            else Reached(
+                before.walls + 1,
+                _best([before.best, wall]),
+                before.solves + wall.solves,
+                archived(before.kept, [wall]),
+            )
+        )
+    assert before is not None  # noqa: S101 - there is at least one
+    return before
+
+
+def _lengthened(at: Chains, link: PackedLink, built: int) -> Chains:
+    """Add the walls of the chain whose turn it is."""
+    reached, last = at.reached, at.links[at.turn]
+    reached = Reached(
+        reached.walls + built,
+        _best([reached.best, link.best]),
+        reached.solves + link.solves - last.solves,
+        archived(reached.kept, link.kept),
+    )
+    links = (*at.links[: at.turn], replace(link, kept=()), *at.links[at.turn + 1 :])
+    return replace(at, reached=reached, links=links, turn=at.turn + 1)
 
 
 def _best(walls: Sequence[Packed]) -> Packed:
     """Return the best wall; of equal ones the first."""
     return max(walls, key=lambda wall: wall.merit)
-
-
-def _all_solves(walls: Sequence[Packed] | Sequence[PackedLink]) -> Solves:
-    return sum((wall.solves for wall in walls), Solves())
 
 
 def _links(found: Sequence[Packed], number: int, chains: int) -> list[PackedLink]:
@@ -226,7 +243,7 @@ def _shares(left: int, chains: int, each: int) -> list[int]:
     return [min(each, max(0, left - k * each)) for k in range(chains)]
 
 
-def _knowing(links: list[PackedLink]) -> list[PackedLink]:
+def _knowing(links: Sequence[PackedLink]) -> list[PackedLink]:
     """Let all chains know which changes have helped in each."""
     known = sum((link.learnt for link in links), links[0].known)
     return [replace(link, known=known, learnt=Credits()) for link in links]

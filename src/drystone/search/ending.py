@@ -7,7 +7,6 @@ from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
 from drystone.planner.events import Stopped
 from drystone.planner.planner import Planner
 from drystone.search.found import Found
-from drystone.search.interrupts import insisted
 from drystone.search.packed import Packed, found_again
 from drystone.statics.flow.flow_search import NonassociativeSettings
 
@@ -38,7 +37,7 @@ def surest(
     -------
     best : Packed or None
         One of the walls.
-    interrupted : bool
+    cut : bool
         Not all were looked at.
     """
     workshop, settings = planner.workshop, planner.settings
@@ -86,7 +85,7 @@ def with_the_rest(
     best : Packed
         From the search.
     until : Deadline
-        Ends it, as an interrupt does.
+        Ends it.
 
     Returns
     -------
@@ -94,11 +93,11 @@ def with_the_rest(
         With the wall.
     stopped : Stopped
         Why no more.
-    interrupted : bool
+    cut : bool
         Not all was tried.
     """
-    last = insisted(lambda: _planner_of(planner, best, NEVER))
-    build, merit, interrupted = last.build, best.merit, False
+    last = _planner_of(planner, best, NEVER)
+    build, merit, cut = last.build, best.merit, False
     try:
         for _ in last.steps(until):
             now = Found.of(last)
@@ -106,12 +105,12 @@ def with_the_rest(
                 now = now.judged(planner.workshop, planner.settings, THOROUGH, until)
             if now.merit > merit:
                 build, merit = last.build, now.merit
-    except (KeyboardInterrupt, TimeIsUp):
-        interrupted = True
+    except TimeIsUp:
+        cut = True
     if last.stopped is not None and last.build is build:
-        return last, last.stopped, interrupted
+        return last, last.stopped, cut
     last.build = build
-    if interrupted:
+    if cut:
         return last, last.finished or _FOUND, True
     return last, Stopped("search", "the stones that are left do not make the wall better"), False
 

@@ -55,11 +55,12 @@ def next_batch(
         None when there are enough, and it is time to improve the best of them.
     """
     done = len(found)
-    if done >= search.passes or (found and stale(found)):
+    # Of a batch that is begun all is as when it began; the very first wall is of the first batch.
+    before = found[: done - done % BATCH]
+    if done >= search.passes or (before and stale(before)):
         return None
-    # The very first wall is of the first batch.
-    end = min(done - done % BATCH + BATCH, search.passes, search.budget)
-    return (range(done, end), planned_share(found, geometry)) if end > done else None
+    end = min(len(before) + BATCH, search.passes, search.budget)
+    return (range(done, end), planned_share(before, geometry)) if end > done else None
 
 
 def stale(found: Sequence[Packed]) -> bool:

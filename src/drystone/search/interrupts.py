@@ -1,14 +1,69 @@
-"""What an interrupt (Ctrl-C) must not take away: the end of a search that has found something."""
+"""Interrupts (Ctrl-C) and termination (SIGTERM), and what they must not take away."""
 
-from collections.abc import Callable
-from typing import TypeVar
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
 
-Result = TypeVar("Result")
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-def insisted(work: Callable[[], Result]) -> Result:
-    """Do some work in spite of one interrupt, so that a search is not lost at its end."""
+class Terminated(KeyboardInterrupt):
+    """The system wants an end: whatever catches an interrupt catches this too."""
+
+
+@contextmanager
+def terminable() -> Iterator[Callable[[], bool]]:
+    """Let SIGTERM raise :class:`Terminated`, as Ctrl-C raises an interrupt.
+
+    Only the main thread may set handlers; in others nothing changes.
+
+    Yields
+    ------
+    callable
+        Says whether the signal has come.
+    """
+    came: list[int] = []
+
+    def terminate(number: int, _: FrameType | None) -> None:
+        came.append(number)
+        raise Terminated
+
+    if not _may_set():
+        yield lambda: False
+        return
+    before = signal.signal(signal.SIGTERM, terminate)
     try:
-        return work()
-    except KeyboardInterrupt:
-        return work()
+        yield lambda: bool(came)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+@contextmanager
+def held() -> Iterator[None]:
+    """Put interrupts and termination off until the block has ended; the first is raised then.
+
+    For the end of a work: a second signal must not take away what the first one has left.
+    """
+    if not _may_set():
+        yield
+        return
+    came: list[int] = []
+    before = {one: signal.getsignal(one) for one in SIGNALS}
+    for one in SIGNALS:
+        signal.signal(one, lambda number, _: came.append(number))
+    try:
+        yield
+    finally:
+        for one, handler in before.items():
+            signal.signal(one, handler)
+        if came:
+            signal.raise_signal(came[0])
+
+
+def _may_set() -> bool:
+    """Say whether handlers may be set here, and those that are there can be put back."""
+    return threading.current_thread() is threading.main_thread() and not any(
+        signal.getsignal(one) is None for one in SIGNALS
+    )

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from drystone.errors import Notice
+from drystone.planner.events import OUT_OF_TIME, Stopped
 from drystone.planner.planner import Planner
 
 
@@ -19,8 +20,8 @@ def planning_notices(
     *,
     lost: bool = False,
     fallen: Sequence[int] = (),
-    interrupted_after: int | None = None,
-    cut_short: bool = False,
+    cut_after: int | None = None,
+    stopped: Stopped | None = None,
 ) -> tuple[Notice, ...]:
     """Return the notices of a plan.
 
@@ -36,13 +37,13 @@ def planning_notices(
         A process of the search died.
     fallen : sequence of int
         Stones after which the wall to begin with does not stand.
-    interrupted_after : int, optional
-        So many walls the search had built when it was interrupted, or what was done after it.
-    cut_short : bool
-        The time limit struck inside the first wall.
+    cut_after : int, optional
+        So many walls a search had built after which what follows it took too long.
+    stopped : Stopped, optional
+        Why the construction of the wall ended.
     """
     missing = _missing(missing_stones(built))
-    cut = (*_interrupted(interrupted_after), *_cut_short(built, cut_short=cut_short))
+    cut = (*_cut(cut_after), *_cut_short(built, cut_short=stopped == OUT_OF_TIME))
     begun = (*_left_out(left_out), *_fallen(fallen))
     return (*begun, *missing, *_lost(lost=lost), *cut, *_solves(asked))
 
@@ -84,11 +85,11 @@ def _lost(*, lost: bool) -> Iterator[Notice]:
         )
 
 
-def _interrupted(walls: int | None) -> Iterator[Notice]:
+def _cut(walls: int | None) -> Iterator[Notice]:
     if walls is not None:
         yield Notice(
             "W125",
-            f"planning was interrupted after {walls} walls; this is the best of them.",
+            f"what follows a search was cut short after {walls} walls; this is the best of them.",
             "To look for a better one from here, give this plan to --from.",
         )
 

@@ -1,13 +1,16 @@
-"""Walls in few bytes: what is sent to other processes, where they are built again."""
+"""Walls in few bytes: what is sent to other processes, and kept, to be built again.
+
+All of it is plain: numbers, words and tuples of them.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
 from drystone.model.placement import Placement, Settled, Side, Wedge
 from drystone.model.pose import PosedStone
+from drystone.model.stone import Stone
 from drystone.model.wall import Group
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.planner import Planner
@@ -17,12 +20,48 @@ from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.found import Courses, Found
 from drystone.search.goal import Figures
+from drystone.settle.rest import placed_outline
 
 UNSEEN: Mask = np.ones((1, 1), bool)
-"""Stands for the pixels of a settled stone, which are found when it is placed."""
+"""Stands for the pixels of what is settled, which are found when it is placed."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
+class PackedWedge:
+    """A wedge.
+
+    Parameters
+    ----------
+    corners : tuple of (float, float)
+        Its outline, source px; none of one that is its pixels.
+    pixels : tuple of str
+        Rows of its mask, in 0 and 1; none of one that is an outline.
+    row, col : int
+        Where they are.
+    """
+
+    corners: tuple[tuple[float, float], ...]
+    pixels: tuple[str, ...]
+    row: int
+    col: int
+
+    @classmethod
+    def of(cls, wedge: Wedge) -> "PackedWedge":
+        """Pack a wedge."""
+        if wedge.corners is not None:
+            return cls(tuple((x, y) for x, y in wedge.corners.tolist()), (), 0, 0)
+        rows = ("".join("01"[pixel] for pixel in row) for row in wedge.mask.tolist())
+        return cls((), tuple(rows), int(wedge.row), int(wedge.col))
+
+    def under(self, stone_id: int) -> Wedge:
+        """Return the wedge again, not numbered yet."""
+        if self.corners:
+            return Wedge(0, stone_id, UNSEEN.copy(), 0, 0, np.array(self.corners))
+        mask = np.array([[pixel == "1" for pixel in row] for row in self.pixels], bool)
+        return Wedge(0, stone_id, mask, self.row, self.col)
+
+
+@dataclass(frozen=True)
 class PackedGroup:
     """One step of construction.
 
@@ -32,24 +71,24 @@ class PackedGroup:
         Of the stone.
     angle_deg : float
         Its pose.
-    place : tuple of int or Settled
-        Row and column of its mask; where it lies when it is settled.
+    place : (int, int) or (float, float)
+        Row and column of its mask; where its centroid lies when it is settled.
     side : {"left", "right"}
         From which end it was placed.
     rotation_moves : int
         See :class:`drystone.model.placement.Placement`.
-    wedges : tuple of ((h, w) bool array, int, int, (n, 2) float array or None)
-        Mask, row, column and corners of each wedge.
+    wedges : tuple of PackedWedge
+        Under it.
     course_height_px : float or None
         See :class:`drystone.planner.build.Candidate`.
     """
 
     stone_id: int
     angle_deg: float
-    place: tuple[int, int] | Settled
+    place: tuple[int, int] | tuple[float, float]
     side: Side
     rotation_moves: int
-    wedges: tuple[tuple[Mask, int, int, Points | None], ...]
+    wedges: tuple[PackedWedge, ...]
     course_height_px: float | None
 
 
@@ -86,14 +125,14 @@ class Packed:
 
 
 def _packed_group(group: Group, heights: dict[int, float]) -> PackedGroup:
-    placement = group.placement
+    placement, settled = group.placement, group.placement.settled
     return PackedGroup(
         placement.stone_id,
         placement.posed.angle_deg,
-        placement.settled or (placement.row, placement.col),
+        (placement.row, placement.col) if settled is None else (settled.x_px, settled.y_px),
         placement.side,
         placement.rotation_moves,
-        tuple((wedge.mask, wedge.row, wedge.col, wedge.corners) for wedge in group.wedges),
+        tuple(PackedWedge.of(wedge) for wedge in group.wedges),
         heights.get(placement.stone_id),
     )
 
@@ -113,22 +152,30 @@ def found_again(
     start = Planner(workshop.stones, workshop.site, settings=settings, workshop=workshop).build
     groups = one.groups
     heights = {g.stone_id: g.course_height_px for g in groups if g.course_height_px is not None}
-    again = [_group(group, workshop) for group in groups]
+    again = [_group(group, start.wall.outlines is not None, workshop) for group in groups]
     build, left_out, _ = replayed(start, again, heights, workshop, settings, until=until)
     if left_out:
         raise ValueError(f"stones {left_out} do not stand where they stood")
     return Found(build, one.figures, one.merit, one.solves, one.courses)
 
 
-def _group(one: PackedGroup, workshop: Workshop) -> Group:
+def _group(one: PackedGroup, exact: bool, workshop: Workshop) -> Group:
     stone = workshop.stones.by_id(one.stone_id)
-    wedges = tuple(
-        Wedge(0, one.stone_id, mask, row, col, corners) for mask, row, col, corners in one.wedges
-    )
-    if isinstance(one.place, Settled):
+    wedges = tuple(wedge.under(one.stone_id) for wedge in one.wedges)
+    if exact:
         posed = PosedStone(stone, one.angle_deg, workshop.site.scale, UNSEEN.copy(), (0.0, 0.0))
-        placement = Placement(posed, 0, 0, one.side, one.rotation_moves, one.place)
+        settled = settled_again(stone, one.angle_deg, one.place, workshop)
+        placement = Placement(posed, 0, 0, one.side, one.rotation_moves, settled)
     else:
+        row, col = one.place
         posed = workshop.book.pose(stone, one.angle_deg)
-        placement = Placement(posed, *one.place, one.side, one.rotation_moves)
+        placement = Placement(posed, int(row), int(col), one.side, one.rotation_moves)
     return Group(placement, wedges)
+
+
+def settled_again(
+    stone: Stone, angle_deg: float, place: tuple[float, float], workshop: Workshop
+) -> Settled:
+    """Return where a stone lies whose centroid is at a place, source px."""
+    outline = workshop.outlines.outline(stone)
+    return Settled(*place, placed_outline(outline, angle_deg, *place))

@@ -4,10 +4,9 @@ import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from concurrent.futures.process import BrokenProcessPool
-from dataclasses import replace
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from importlib.metadata import version
-from typing import NamedTuple
 
 import numpy as np
 
@@ -16,24 +15,21 @@ from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame
-from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
-from drystone.planner.events import INTERRUPTED, OUT_OF_TIME, Callbacks, Incumbent, Stopped
+from drystone.planner.deadline import Deadline, TimeIsUp
+from drystone.planner.events import INTERRUPTED, Callbacks
 from drystone.planner.planner import Planner
-from drystone.planner.replay import stands
 from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.planner.solves import Solves
-from drystone.search.anytime import Progress, searching
-from drystone.search.archive import archived
-from drystone.search.ending import as_found, surest, with_the_rest
-from drystone.search.found import Found
-from drystone.search.interrupts import insisted
+from drystone.search.ending import as_found
+from drystone.search.interrupts import held
 from drystone.search.notices import planning_notices
 from drystone.search.packed import Packed
 from drystone.search.plan_result import PlanResult, finish
 from drystone.search.processes import processes, threads
+from drystone.search.standing import Progress, Standing
 from drystone.search.warm_start import begin_with
-from drystone.search.work import forget
+from drystone.search.whole_search import Ended, cut_off, run_to_end
 
 TYPICAL_STONE_PX = 40
 """Longer side of the median stone at the resolution that is chosen when none is given."""
@@ -42,6 +38,25 @@ TYPICAL_STONE_PX = 40
 GRACE = 0.5
 """What follows a search may take this share of its time, and at least a second: judging its best
 walls, the rest of the stones.  So may the last figures of merit, and the walls to choose from."""
+
+SOON_S = 2.0
+"""After an interrupt the last figures of merit may take so long: who interrupts waits."""
+
+
+@dataclass(frozen=True, eq=False)
+class SoFar:
+    """What a plan has come to while it is made.
+
+    Parameters
+    ----------
+    progress : Progress or None
+        Of the search; None while the first wall is built.
+    plan : callable
+        Returns the result that an interrupt would give now, without F_LR_coulomb.
+    """
+
+    progress: Progress | None
+    plan: Callable[[], PlanResult]
 
 
 def working_scale(stones: StoneSet) -> float:
@@ -73,6 +88,8 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     course_heights_px: Mapping[int, float] | None = None,
     begin: Wall | None = None,
     choice: bool = False,
+    keep: Callable[[SoFar], None] = lambda _: None,
+    standing: Standing | None = None,
 ) -> PlanResult:
     """Plan a wall.
 
@@ -120,11 +137,18 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     choice : bool
         Keep the walls of the search that none beats in every figure of merit.
 
+    keep : callable, optional
+        Told of what there is so far, whenever a stone of the first wall is placed or walls of the
+        search are built: to be kept, so that a program that is killed loses little.
+    standing : Standing, optional
+        Where a search of the same stones, wall, seed and settings was cut off
+        (:class:`SoFar`): it goes on from there to the plan that it would have come to itself.
+
     Returns
     -------
     result : PlanResult
-        An interrupt (Ctrl-C) ends the search, and the result is the best wall so far; while the
-        first wall is built, the result holds what is built.
+        An interrupt (Ctrl-C) ends the search at once: the result is the best wall so far as it was
+        found, "interrupted"; while the first wall is built, it is what is built.
 
     Raises
     ------
@@ -166,56 +190,127 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             cure="Give a share of the source resolution such as .5, or none to have it chosen.",
         )
     frame = Frame(width, height, Site.from_source(width, height, scale, px_per_m))
-    started = time.perf_counter()
+    asked = _Asked(frame, settings, method, seed, time.perf_counter())
+    grace_s = max(1.0, GRACE * seconds)
     single = settings.search.budget == 1
     own = threads(n_jobs if executor is None and single else 1)
-    with own as pool, processes(1 if single else n_jobs) as workers:
-        first = Planner(
-            stones,
-            frame.site,
-            seed=seed,
-            settings=settings,
-            executor=executor or pool,
-            callbacks=callbacks,
-        )
-        if built is not None:
-            first.restore(built, course_heights_px or {})
-        left_out = () if begin is None else begin_with(first, begin, course_heights_px or {})
-        until, grace_s = Deadline.after(seconds), max(1.0, GRACE * seconds)
-        ended = run_to_end(
-            first, until=until, grace_s=grace_s, first_whole=first_whole, executor=workers
-        )
-    took = time.perf_counter() - started
-    grace = Deadline.after(grace_s)
-    used = replace(settings, search=replace(settings.search, budget=ended.walls))
-    provenance = {
-        "version": version("drystone"),
-        "method": method,
-        "seed": seed,
-        "settings": used.as_dict(),
-    }
+    ended: Ended | None = None
+    try:
+        with own as pool, processes(1 if single else n_jobs) as workers:
+            first = Planner(
+                stones,
+                frame.site,
+                seed=seed,
+                settings=settings,
+                executor=executor or pool,
+                callbacks=callbacks,
+            )
+            if built is not None:
+                first.restore(built, course_heights_px or {})
+            left_out = () if begin is None else begin_with(first, begin, course_heights_px or {})
+            ended = run_to_end(
+                first,
+                start=standing,
+                until=Deadline.after(seconds),
+                grace_s=grace_s,
+                first_whole=first_whole,
+                executor=workers,
+                told=lambda progress: keep(SoFar(progress, lambda: asked.cut_off(first, progress))),
+            )
+        asked = asked.after(time.perf_counter())
+        if ended.stopped is not INTERRUPTED:
+            grace = Deadline.after(grace_s)
+            return asked.result(first, ended, left_out, grace, choice=choice)
+    except KeyboardInterrupt:
+        if ended is None:
+            raise
+        ended = ended._replace(stopped=INTERRUPTED)
+    with suppress(KeyboardInterrupt), held():
+        result = asked.result(first, ended, left_out, Deadline.after(SOON_S), choice=False)
+    return result
 
-    def finished(planner: Planner, stopped: Stopped) -> PlanResult:
-        return finish(planner, frame, stopped, provenance, took, grace)
 
-    best = insisted(lambda: finished(ended.planner, ended.stopped))
-    to_choose = ended.kept if choice else ()
-    others = tuple(_others(first, to_choose[1:], finished, grace))
-    interrupted = ended.interrupted or len(others) < len(to_choose[1:])
-    return replace(
-        best,
-        notices=planning_notices(
-            first,
-            ended.planner,
-            left_out,
-            lost=ended.lost,
-            fallen=ended.fallen,
-            interrupted_after=ended.walls if interrupted else None,
-            cut_short=ended.stopped.reason == "time",
-        ),
-        solves=Solves(first.failed_solves, first.cold_solves),
-        choice=(best, *others) if to_choose else (),
-    )
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """What a plan says of how it was made.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of the wall.
+    settings : PlannerSettings
+        All of them.
+    method : str
+        Their name.
+    seed : int
+        Of the random choices.
+    started, took : float
+        By the clock of performance; seconds to the last step.
+    """
+
+    frame: Frame
+    settings: PlannerSettings
+    method: str
+    seed: int
+    started: float
+    took: float = 0.0
+
+    def after(self, now: float) -> "_Asked":
+        """Return the same with the time to the last step, which is now."""
+        return replace(self, took=now - self.started)
+
+    def cut_off(self, first: Planner, progress: Progress | None) -> PlanResult:
+        """Return the plan of the best wall so far, without what takes long."""
+        return self.plan(cut_off(first, progress), Deadline(-math.inf))
+
+    def plan(self, ended: Ended, until: Deadline) -> PlanResult:
+        """Judge the wall that a search ended with, and write its plan."""
+        search = replace(self.settings.search, budget=ended.walls)
+        provenance = {
+            "version": version("drystone"),
+            "method": self.method,
+            "seed": self.seed,
+            "settings": replace(self.settings, search=search).as_dict(),
+        }
+        return finish(ended.planner, self.frame, ended.stopped, provenance, self.took, until)
+
+    def result(
+        self,
+        first: Planner,
+        ended: Ended,
+        left_out: tuple[int, ...],
+        until: Deadline,
+        *,
+        choice: bool,
+    ) -> PlanResult:
+        """Return the plan, with others to choose from, and all that there is to say of it."""
+        best = self.plan(ended, until)
+        to_choose = ended.kept if choice else ()
+        others = tuple(self._others(first, ended, to_choose[1:], until))
+        cut = ended.cut or len(others) < len(to_choose[1:])
+        return replace(
+            best,
+            notices=planning_notices(
+                first,
+                ended.planner,
+                left_out,
+                lost=ended.lost,
+                fallen=ended.fallen,
+                cut_after=ended.walls if cut else None,
+                stopped=ended.stopped,
+            ),
+            solves=Solves(first.failed_solves, first.cold_solves),
+            choice=(best, *others) if to_choose else (),
+        )
+
+    def _others(
+        self, first: Planner, ended: Ended, kept: Sequence[Packed], until: Deadline
+    ) -> Iterator[PlanResult]:
+        """Finish other walls to choose from; those of least merit that there is no time for not."""
+        with suppress(TimeIsUp):
+            for wall in kept:
+                planner, stopped = as_found(first, wall, until)
+                yield self.plan(ended._replace(planner=planner, stopped=stopped), until)
 
 
 def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> PlannerSettings:
@@ -223,148 +318,3 @@ def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> 
     if budget is None and (settings.by_policy or not math.isfinite(seconds)):
         return settings
     return settings.updated({"search": {"budget": UNLIMITED if budget is None else budget}})
-
-
-def _others(
-    first: Planner,
-    kept: Sequence[Packed],
-    finished: Callable[[Planner, Stopped], PlanResult],
-    until: Deadline,
-) -> Iterator[PlanResult]:
-    """Finish other walls to choose from; an interrupt leaves out those of least merit."""
-    try:
-        for wall in kept:
-            yield finished(*as_found(first, wall, until))
-    except (KeyboardInterrupt, TimeIsUp):
-        pass
-
-
-class Ended(NamedTuple):
-    """How a search ended.
-
-    Parameters
-    ----------
-    planner : Planner
-        The one that built the best wall.
-    stopped : Stopped
-        Why its construction ended.
-    walls : int
-        How many walls were built: the budget that repeats it.
-    kept : tuple of Packed
-        Walls that none beats in every figure of merit, the best first; none of a single pass.
-    lost, interrupted : bool
-        A process of the search died, or somebody had enough, and it ended there; or what follows
-        the search took too long.
-    fallen : tuple of int
-        Stones after which the wall to begin with does not stand, so that nothing was looked for.
-    """
-
-    planner: Planner
-    stopped: Stopped
-    walls: int
-    kept: tuple[Packed, ...]
-    lost: bool = False
-    interrupted: bool = False
-    fallen: tuple[int, ...] = ()
-
-
-def run_to_end(
-    planner: Planner,
-    *,
-    until: Deadline = NEVER,
-    grace_s: float = math.inf,
-    first_whole: bool = False,
-    executor: Executor | None = None,
-) -> Ended:
-    """Build a first wall, and look for better ones; an interrupt keeps the best so far.
-
-    So does the time limit; a first wall that either cuts short is what is built of it.
-
-    Parameters
-    ----------
-    planner : Planner
-        Of the first wall.
-    until : Deadline
-        Ends the search, or the first wall.
-    grace_s : float
-        So long may take what follows the search.
-    first_whole : bool
-        Whether the first wall is built to its end whatever the clock says.
-    executor : concurrent.futures.Executor, optional
-        Processes for the search.
-
-    Returns
-    -------
-    ended : Ended
-        With the best wall.
-    """
-    stopped = _built(planner, NEVER if first_whole else until)
-    workshop, settings = planner.workshop, planner.settings
-    if settings.search.budget == 1 or stopped in (INTERRUPTED, OUT_OF_TIME):
-        return Ended(planner, stopped, 1, ())
-    fallen = tuple(one.stone_id for one in planner.build.actions if not stands(one))
-    if fallen:
-        return Ended(planner, stopped, 1, (), fallen=fallen)
-    best: Packed | None = None
-    walls, lost, interrupted = 1, False, False
-    kept: tuple[Packed, ...] = ()
-    try:
-        first = Found.of(planner)
-        with planner.profile.part("search"):
-            for progress in searching(
-                first, workshop, settings, planner.seed, until=until, executor=executor
-            ):
-                best, walls, kept = progress.best, progress.walls, progress.kept
-                planner.failed_solves = progress.solves.failed
-                planner.cold_solves = progress.solves.cold
-                planner.callbacks.on_walls(_incumbent(progress))
-    except KeyboardInterrupt:
-        interrupted = True  # every wall of a search is complete
-    except BrokenProcessPool:
-        lost = True
-    finally:
-        forget()
-    if best is None or walls == 1:
-        return Ended(planner, stopped, 1, kept, lost, interrupted)
-    grace = Deadline.after(grace_s, until.clock)
-    surer, unsure = insisted(lambda: surest(planner, kept, grace))
-    best = surer or best
-    last, stopped, cut = with_the_rest(planner, best, grace)
-    planner.failed_solves += last.failed_solves
-    planner.cold_solves += last.cold_solves
-    if len(last.build.actions) > len(best.groups):
-        kept = insisted(lambda: archived(kept, [Packed.of(Found.of(last))]))
-    return Ended(last, stopped, walls, kept, lost, interrupted or unsure or cut)
-
-
-def _built(planner: Planner, until: Deadline) -> Stopped:
-    """Build a first wall, and say why its construction ended.
-
-    At least a stone is placed, however late it is: a step may take longer than the time limit, and
-    going on again and again (`--resume`) must lead to a whole wall.
-    """
-    try:
-        if next(planner.steps(), None) is not None:
-            for _ in planner.steps(until):
-                pass
-    except KeyboardInterrupt:
-        return INTERRUPTED
-    except TimeIsUp:
-        return OUT_OF_TIME
-    assert planner.stopped is not None  # noqa: S101 - steps() ended by itself
-    return planner.stopped
-
-
-def _incumbent(progress: Progress) -> Incumbent:
-    figures = progress.best.figures
-    if figures is None:
-        return Incumbent(progress.walls, 0, progress.best.merit, 0.0, 0.0, 0.0, 0.0)
-    return Incumbent(
-        progress.walls,
-        figures.stones,
-        progress.best.merit,
-        figures.F_SF,
-        figures.F_LR,
-        figures.F_AV,
-        figures.F_AH,
-    )

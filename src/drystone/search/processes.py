@@ -1,11 +1,17 @@
 """Processes that work for a search, and threads that work for a single wall."""
 
+import os
 import signal
-from collections.abc import Iterator
+import threading
+import weakref
+from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from typing import Any
 
-from drystone.search.interrupts import insisted
+from drystone.search.interrupts import held
 
 MUCH_MEMORY = {"LOKY_MAX_MEMORY_LEAK_SIZE": "4e9"}
 """Variables that let a process keep what it has prepared, B.
@@ -28,13 +34,12 @@ def processes(count: int) -> Iterator[Executor | None]:
     if count == 1:
         yield None
         return
-    from loky import ProcessPoolExecutor  # noqa: PLC0415 - most plans do without
-
-    executor = ProcessPoolExecutor(count, initializer=_left_alone, env=MUCH_MEMORY)
+    executor = process_pool(count, MUCH_MEMORY)
     try:
         yield executor
     finally:
-        insisted(lambda: executor.shutdown(wait=True, kill_workers=True))
+        with held():
+            executor.shutdown(wait=True, kill_workers=True)
 
 
 @contextmanager
@@ -47,9 +52,38 @@ def threads(count: int) -> Iterator[Executor | None]:
     try:
         yield executor
     finally:
-        insisted(executor.shutdown)
+        with held():
+            executor.shutdown()
 
 
-def _left_alone() -> None:
-    """Leave interrupts to the process that asks for work."""
+def process_pool(count: int, env: Mapping[str, str]) -> Any:
+    """Return an executor of loky, whose processes end with this one, whatever kills it.
+
+    Parameters
+    ----------
+    count : int
+        How many processes; they start when there is something to do.
+    env : mapping of str to str
+        Variables of their environment.
+    """
+    from loky import ProcessPoolExecutor  # noqa: PLC0415 - most plans do without
+
+    far, near = Pipe(duplex=False)
+    executor = ProcessPoolExecutor(count, initializer=_begin, initargs=(far,), env=env)
+    # Nobody else has the near end, and nothing is ever sent: it is at an end when this process is.
+    weakref.finalize(executor, near.close)
+    return executor
+
+
+def _begin(asking: Connection) -> None:
+    """Leave signals to the process that asks for work, and end with it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    threading.Thread(target=_end_with, args=(asking,), daemon=True).start()
+
+
+def _end_with(asking: Connection) -> None:
+    """Wait for the end of the process that asks, and end without a word."""
+    with suppress(EOFError, OSError):
+        asking.recv_bytes()
+    os._exit(1)

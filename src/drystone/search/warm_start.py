@@ -1,12 +1,15 @@
 """A search that begins with a wall that was planned before."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from drystone.model.wall import Group, Wall, outlined
 from drystone.model.wedge_shape import WedgeShape
 from drystone.planner.dropping import wedge_limits
 from drystone.planner.planner import Planner
 from drystone.planner.replay import replayed
+from drystone.planner.workshop import Workshop
+from drystone.search.packed import settled_again
 from drystone.settle.wedge import WedgeLimits, squeezed_out
 
 EDGE_PX = 1e-6
@@ -43,7 +46,7 @@ def begin_with(
         stone_id = group.placement.stone_id
         in_turn = settings.order == "free" or stone_id > last
         if stone_id in allowed and in_turn and _within(wall, group, settings.settle.beyond_px):
-            groups.append(_well_wedged(wall, group, limits))
+            groups.append(_outlined_as_here(_well_wedged(wall, group, limits), workshop))
             last = stone_id
     planner.build, _, solves = replayed(
         planner.build, groups, course_heights_px, workshop, settings, strict=False
@@ -80,3 +83,13 @@ def _well_wedged(wall: Wall, group: Group, limits: WedgeLimits) -> Group:
         and not squeezed_out(wedge.corners, settled.corners, around, width, limits)
     )
     return Group(group.placement, tuple(kept))
+
+
+def _outlined_as_here(group: Group, workshop: Workshop) -> Group:
+    """Return a step with the stone's outline of this search: that of a plan may be coarser."""
+    placement, settled = group.placement, group.placement.settled
+    if settled is None:
+        return group
+    place, angle_deg = (settled.x_px, settled.y_px), placement.posed.angle_deg
+    again = settled_again(placement.posed.stone, angle_deg, place, workshop)
+    return Group(replace(placement, settled=again), group.wedges)

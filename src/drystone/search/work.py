@@ -1,7 +1,7 @@
 """What the processes of a search do: whole walls, from what fits into a message."""
 
 import pickle
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -9,13 +9,12 @@ import numpy as np
 from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.by_courses import newly_planned
 from drystone.search.chain import Link, lengthened, wedged
 from drystone.search.found import Found
-from drystone.search.operators import Credits
 from drystone.search.packed import Packed, found_again
+from drystone.search.standing import PackedLink
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,20 +34,6 @@ class Job:
     tools: bytes
     seed: int
     until: Deadline
-
-
-@dataclass(frozen=True, eq=False)
-class PackedLink:
-    """Where a chain is (:class:`drystone.search.chain.Link`)."""
-
-    number: int
-    done: int
-    now: Packed
-    best: Packed
-    solves: Solves
-    kept: tuple[Packed, ...] = ()
-    known: Credits = field(default_factory=Credits)
-    learnt: Credits = field(default_factory=Credits)
 
 
 def one_pass(job: Job, number: int, planned_share: float) -> Packed | None:

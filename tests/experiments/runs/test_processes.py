@@ -1,7 +1,7 @@
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import Any
@@ -34,14 +34,6 @@ class AtOnce(Executor):
 
 def interrupt_soon(_: str) -> None:
     threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
-
-
-@pytest.fixture
-def interruptible() -> Iterator[None]:
-    """Have interrupts raise KeyboardInterrupt, also where a shell ignores them."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
 
 
 def test_one_process_is_this_one() -> None:

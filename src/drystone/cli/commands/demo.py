@@ -8,7 +8,7 @@ import numpy as np
 from drystone.cli.announce import WRITTEN
 from drystone.cli.choice import files_of_choice
 from drystone.cli.inputs import refuse_inputs
-from drystone.cli.output import prepare_folder
+from drystone.cli.output import working_in
 from drystone.cli.planning import plan_and_write
 from drystone.cli.settings import settings_from
 from drystone.errors import ExitCode
@@ -29,12 +29,12 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     refuse_inputs(own, [*(folder / name for name in names), *files_of_choice(folder)])
     settings = RubbleSettings(count=24, width_px=1120, height_px=320)
     made = rubble_stones(settings, np.random.default_rng(arguments.seed))
-    prepare_folder(folder, names, overwrite=arguments.overwrite)
-    # The stones lie beside the plan, so that `drystone check` finds them.
-    write_labels(lay_out(made), folder / STONES)
-    arguments.overwrite = True
     if arguments.scale is None:
         # Outlines four times finer than the planner's pixels, as photographs give them.
         arguments.scale = 0.25
-    stones = read_stones(folder / STONES)
-    return plan_and_write(stones, (settings.width_px, settings.height_px), arguments)
+    with working_in(folder, names, overwrite=arguments.overwrite):
+        # The stones lie beside the plan, so that `drystone check` finds them.
+        write_labels(lay_out(made), folder / STONES)
+        stones = read_stones(folder / STONES)
+        wall = settings.width_px, settings.height_px
+        return plan_and_write(stones, wall, arguments, prepared=True)

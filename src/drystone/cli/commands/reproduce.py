@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from drystone.cli.output import make_folder, print_json, say
 from drystone.errors import ExitCode, UsageError
 from drystone.experiments.reproduce.items import ALL, ITEMS, OWN_STONES, item_names
+from drystone.io.folder_lock import locked
 
 if TYPE_CHECKING:  # loaded when something is made: --list does not wait for matplotlib
     from drystone.experiments.reproduce.driver import Made, Options
@@ -41,7 +42,7 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, Item] | None" = None
     from drystone.report.experiments_page import PAGE  # noqa: PLC0415
 
     done = []
-    with work_of(arguments.jobs, arguments.dask) as work:
+    with locked(folder), work_of(arguments.jobs, arguments.dask) as work:
         for made in reproduce(names, folder, _options(arguments, work), items):
             done.append(made)
             if made.error is not None:

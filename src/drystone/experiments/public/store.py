@@ -11,7 +11,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from drystone.errors import InputError
+from drystone.errors import DrystoneError, InputError, UsageError, not_written
 from drystone.experiments.public.results import SHAKE, Result
 from drystone.experiments.public.suites import SUITE_VERSION
 from drystone.experiments.runs.outcome import Outcome
@@ -198,12 +198,27 @@ class BenchStore:
                 connection.execute(_TABLE)
                 yield connection
         except sqlite3.DatabaseError as error:
-            raise InputError(
-                "E401",
-                f"this is no database of runs that can be used: {error}.",
+            raise self._told(error) from error
+
+    def _told(self, error: sqlite3.DatabaseError) -> DrystoneError:
+        """Say what is wrong with the database, its disk, or who has it."""
+        code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_ERROR) & 0xFF
+        if code in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
+            return UsageError(
+                "E149",
+                "another run of drystone writes there.",
                 where=str(self.database),
-                cure="Move it away; runs whose plans are kept beside it are not done again.",
-            ) from error
+                cure="Give the same command again when it has ended: plans that are kept beside "
+                "it are not done again.",
+            )
+        if code in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_READONLY):
+            return not_written(OSError(0, str(error), str(self.database)))
+        return InputError(
+            "E401",
+            f"this is no database of runs that can be used: {error}.",
+            where=str(self.database),
+            cure="Move it away; runs whose plans are kept beside it are not done again.",
+        )
 
 
 def _column(name: str, kind: object) -> str:

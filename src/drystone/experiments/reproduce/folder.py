@@ -11,6 +11,7 @@ from drystone.experiments.reproduce.item import Item, Output
 from drystone.experiments.reproduce.request import Request
 from drystone.experiments.runs.store import RunStore
 from drystone.io.atomic import write_atomically
+from drystone.io.folder_lock import has_files
 from drystone.report.experiments_page import PAGE, Miss, write_item_page, write_page
 
 MARK = "reproduce.json"
@@ -35,7 +36,7 @@ class ReportFolder:
     def __init__(self, path: Path) -> None:
         self.path = path
         path.mkdir(parents=True, exist_ok=True)
-        if _read(path / MARK, MARK_SCHEMA) is None and any(path.iterdir()):
+        if _read(path / MARK, MARK_SCHEMA) is None and has_files(path):
             raise UsageError(
                 "E129",
                 "the folder is not empty, and it is none that `drystone reproduce` wrote.",

@@ -10,6 +10,7 @@ from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.plan import Plan, StoneStep, WedgeStep
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
+from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.verify.replay import replay_plan
 
@@ -102,19 +103,18 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
         return packed(spec, data)
     stones = spec.source.stones(data) if stones is None else stones
     settings = spec.settings()
-    result = plan_wall(
-        stones,
-        spec.width or float(stones.source.width_px),
-        spec.height or float(stones.source.height_px),
-        seed=spec.seed,
-        method=spec.method,
-        settings=settings,
-        scale=spec.scale,
+    result = uninterrupted(
+        plan_wall(
+            stones,
+            spec.width or float(stones.source.width_px),
+            spec.height or float(stones.source.height_px),
+            seed=spec.seed,
+            method=spec.method,
+            settings=settings,
+            scale=spec.scale,
+        )
     )
     plan, metrics = result.plan, result.metrics
-    # Planning takes an interrupt for the end of its time, and says what it has.
-    if result.status == "interrupted" or plan.settings["search"]["budget"] < settings.search.budget:
-        raise KeyboardInterrupt
     figures: dict[str, float | int | None] = {
         "placed": sum(isinstance(step, StoneStep) for step in plan.steps),
         "stones": len(stones),
@@ -128,3 +128,16 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
         for name in ("placement", "stabilisation", "contacts", "limit analysis", "indices")
     }
     return Outcome(spec.key, figures, plan_to_json(plan), times)
+
+
+def uninterrupted(result: PlanResult) -> PlanResult:
+    """Return a result; raise the interrupt again that it was the end of, as no run is half a wall.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Planning takes an interrupt for the end of its time, and says what it has.
+    """
+    if result.status == "interrupted":
+        raise KeyboardInterrupt
+    return result

@@ -1,6 +1,5 @@
 """Tasks done by several processes of this machine."""
 
-import signal
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -14,7 +13,7 @@ from drystone.experiments.runs.failures import died
 from drystone.experiments.runs.outcome import Outcome, execute
 from drystone.experiments.runs.runner import Work, one_by_one
 from drystone.experiments.runs.spec import RunSpec
-from drystone.search.processes import MUCH_MEMORY
+from drystone.search.processes import MUCH_MEMORY, process_pool
 
 ONE_THREAD = (
     "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS",
@@ -137,15 +136,7 @@ class Crew:
 
 def _process() -> Process:
     """Return an executor of one process, which starts when it has something to do."""
-    from loky import ProcessPoolExecutor  # noqa: PLC0415 - not needed to work in this process
-
-    env = {**dict.fromkeys(ONE_THREAD, "1"), **MUCH_MEMORY}
-    return ProcessPoolExecutor(1, initializer=_left_alone, env=env)
-
-
-def _left_alone() -> None:
-    """Leave interrupts to the process that asks."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    return process_pool(1, {**dict.fromkeys(ONE_THREAD, "1"), **MUCH_MEMORY})
 
 
 def _begun(process: Process, do: Callable[[Task], Done], task: Task) -> Future[Done]:

@@ -1,0 +1,103 @@
+"""Frozen dataclasses as JSON, and back again by their types."""
+
+import dataclasses
+import json
+import math
+import operator
+from collections.abc import Sequence
+from functools import cache
+from types import UnionType
+from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+
+Value = TypeVar("Value")
+
+
+def as_json(value: Any) -> str:
+    """Return a value as JSON: dataclasses as objects, tuples as lists, floats with all digits.
+
+    Infinite floats are written as Python reads them.
+    """
+    return json.dumps(value, default=_shallow, separators=(",", ":"))
+
+
+def _shallow(value: Any) -> Any:
+    if dataclasses.is_dataclass(value):
+        return {name: getattr(value, name) for name in _types(value.__class__)}
+    return operator.index(value)
+
+
+def from_plain(kind: type[Value], data: Any) -> Value:
+    """Return what :func:`as_json` was given, once its JSON is read.
+
+    Parameters
+    ----------
+    kind : type
+        Of the value: a dataclass, or what its fields may be.
+    data : anything
+        From JSON, of any origin.
+
+    Raises
+    ------
+    ValueError
+        It is no value of this type.
+    """
+    found: Value = _read(kind, data)
+    return found
+
+
+def _read(kind: Any, data: Any) -> Any:
+    origin = get_origin(kind)
+    if dataclasses.is_dataclass(kind):
+        return _dataclass(kind, data)
+    if origin is UnionType:
+        return _one_of(get_args(kind), data)
+    if origin is tuple:
+        return _tuple(get_args(kind), data)
+    if origin is Literal and isinstance(data, str) and data in get_args(kind):
+        return data
+    if kind is float and isinstance(data, int | float) and not isinstance(data, bool):
+        return _float(data)
+    if origin is None and type(data) is kind:
+        return data
+    raise ValueError(f"{str(data)[:40]!r} is not of type {kind}")
+
+
+def _dataclass(kind: Any, data: Any) -> Any:
+    types = _types(kind)
+    if not isinstance(data, dict) or data.keys() != types.keys():
+        raise ValueError(f"this is no {kind.__name__}")
+    return kind(**{name: _read(one, data[name]) for name, one in types.items()})
+
+
+def _one_of(kinds: Sequence[Any], data: Any) -> Any:
+    for kind in kinds[:-1]:
+        try:
+            return _read(kind, data)
+        except ValueError:
+            pass
+    return _read(kinds[-1], data)
+
+
+def _tuple(kinds: Sequence[Any], data: Any) -> Any:
+    if not isinstance(data, list):
+        raise ValueError("this is no list")
+    if kinds[-1] is Ellipsis:
+        return tuple(_read(kinds[0], item) for item in data)
+    return tuple(_read(kind, item) for kind, item in zip(kinds, data, strict=True))
+
+
+def _float(data: float) -> float:
+    try:
+        value = float(data)
+    except OverflowError as error:
+        raise ValueError("this is no number of 64 bits") from error
+    if math.isnan(value):
+        raise ValueError("this is no number")
+    return value
+
+
+@cache
+def _types(kind: type) -> dict[str, Any]:
+    """Return the types of the fields of a dataclass, by name."""
+    hints = get_type_hints(kind)
+    return {field.name: hints[field.name] for field in dataclasses.fields(kind)}

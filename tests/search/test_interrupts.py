@@ -1,0 +1,69 @@
+"""Signals come when they may."""
+
+import signal
+from threading import Thread
+
+import pytest
+
+from drystone.search.interrupts import SIGNALS, Terminated, held, terminable
+
+pytestmark = pytest.mark.usefixtures("interruptible")
+
+
+def handlers() -> list[object]:
+    return [signal.getsignal(one) for one in SIGNALS]
+
+
+def test_termination_is_an_interrupt_and_leaves_no_handler_behind() -> None:
+    before = handlers()
+    with terminable() as terminated:
+        assert not terminated()
+        with pytest.raises(KeyboardInterrupt) as caught:
+            signal.raise_signal(signal.SIGTERM)
+        assert isinstance(caught.value, Terminated)
+        assert terminated()
+        with pytest.raises(KeyboardInterrupt) as caught:
+            signal.raise_signal(signal.SIGINT)
+        assert not isinstance(caught.value, Terminated)
+    assert handlers() == before
+
+
+@pytest.mark.parametrize("first", SIGNALS)
+def test_what_comes_while_they_are_held_comes_after_it_once(first: signal.Signals) -> None:
+    done: list[int] = []
+
+    def raise_all() -> None:
+        for one in (first, *SIGNALS):
+            signal.raise_signal(one)
+            done.append(one)
+
+    with terminable() as terminated:
+        before = handlers()
+        with pytest.raises(KeyboardInterrupt) as caught, held():
+            raise_all()
+        assert len(done) == 3
+        assert isinstance(caught.value, Terminated) == (first == signal.SIGTERM)
+        assert terminated() == (first == signal.SIGTERM)
+        assert handlers() == before
+
+
+def test_nothing_comes_where_nothing_came_and_errors_pass() -> None:
+    before = handlers()
+    with held():
+        pass
+    with pytest.raises(ZeroDivisionError), held():
+        raise ZeroDivisionError
+    assert handlers() == before
+
+
+def test_other_threads_set_no_handlers() -> None:
+    seen: list[list[object]] = []
+
+    def look() -> None:
+        with terminable() as terminated, held():
+            seen.append([*handlers(), terminated()])
+
+    thread = Thread(target=look)
+    thread.start()
+    thread.join()
+    assert seen == [[*handlers(), False]]
