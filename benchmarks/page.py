@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from benchmarks.scenes import data_folder
-from drystone.experiments import growth
-from drystone.experiments.table import BenchSettings, Table
+from drystone_lab import growth
+from drystone_lab.table import BenchSettings, Table
 
 TABLE = re.compile(r"<!-- table (\w+) -->\n(.*?)<!-- end -->", re.DOTALL)
 
