@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.labels import coursed_labels, irregular_labels
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.io.published import published_file
 from drystone.io.read_stones import read_stones
@@ -25,7 +26,6 @@ from drystone.statics.appending import units_of
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.growing import GrowingAnalysis, growing
 from drystone.statics.model import GROUND, RigidBlockModel
-from drystone_lab.benchmark_walls import coursed_labels, irregular_labels
 
 WALL_PX = (560, 160)
 """Of the wall of the paper, px of the source image; 280 x 80 at the scale .5."""

@@ -9,15 +9,9 @@ SUITES = {
     "statics": ("published and closed-form cases of the limit analysis", "published"),
     "pixels": ("the same cases from pixels, and tilted joints at 40 to 320 px", "pixels"),
     "walls": ("planned walls: agreement of solvers and certificates at every step", "agreement"),
-    "solvers": ("ms a candidate (both tilts) of every solver beside a fresh linprog", "solvers"),
-    "candidates": ("every answer about a next stone beside a fresh linprog", "candidates"),
-    "growth": ("time of a step, by part, against pixels and stones (Fig. 28, Fig. 29)", "growth"),
     "shear": ("shear tests of dry-joint walls, predicted over measured", "shear"),
     "tilt": ("walls tilted in a rigid-body engine beside the limit analysis", "tilt"),
-    "exact": ("walls planned on outlines beside walls planned on pixels", "exact"),
     "engine": ("walls planned on outlines, built up and tilted in a rigid-body engine", "engine"),
-    "settling": ("milliseconds of a settling, and what becomes of proposals", "settlings"),
-    "passes": ("single passes of best on outlines, medians over twenty seeds", "passes"),
     "search": ("methods that look for good walls, compared at equal CPU time", "search"),
     "photos": ("stones found in ten rendered photographs, beside the truth", "photos"),
     "packing": ("strips packed without gravity beside planned walls (extra `bench`)", "packing"),
@@ -31,7 +25,7 @@ SEARCHES = {
 """Those that search, and what can be asked of them."""
 
 
-PICTURED = ("growth", "shear")
+PICTURED = ("shear",)
 """Those that draw pictures."""
 
 

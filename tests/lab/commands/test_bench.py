@@ -34,7 +34,7 @@ def test_a_suite_without_pictures_makes_no_folder_for_them(tmp_path: Path, run: 
     ran = run("bench", "photos", "--quick", "-o", tmp_path / "new")
     assert ran.code == 2
     assert "E138 -o: the suite 'photos' draws no pictures." in ran.err
-    assert "growth and shear" in ran.err
+    assert "it is for shear" in ran.err
     assert not (tmp_path / "new").exists()
 
 
@@ -90,7 +90,7 @@ def test_searches_are_kept_and_not_done_again(run: Run, tmp_path: Path) -> None:
     "options",
     [
         ("shear", "--seconds", "1"),
-        ("exact", "--seeds", "2"),
+        ("engine", "--seeds", "2"),
         ("statics", "--only", "R"),
         ("packing", "--seeds", "2"),
         ("packing", "--runs", "runs.csv"),

@@ -79,7 +79,7 @@ def test_a_store_has_a_history(run: Run, tmp_path: Path) -> None:
     [
         (("statics", "--policy", "random"), "--policy"),
         (("statics", "--store", "x"), "--store"),
-        (("exact", "--jobs", "2"), "--jobs"),
+        (("engine", "--jobs", "2"), "--jobs"),
         (("walls", "--shake"), "--shake"),
         (("bricks", "--seconds", "2"), "--seconds"),
         (("bricks", "--again"), "--again"),

@@ -1,4 +1,4 @@
-"""Suite "growth": how the time of a step grows with pixels and with stones (§6)."""
+"""How the time of a step grows with pixels and with stones (§6)."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
+from benchmarks.labels import coursed_labels, irregular_labels
 
 from drystone.statics.contacts.blocks import model_from_labels
-from drystone_lab.benchmark_walls import coursed_labels, irregular_labels
 
 MAKERS = [coursed_labels, irregular_labels]
 

@@ -1,15 +1,16 @@
-"""The suite of how time grows; no time is asserted, only what is computed from times."""
+"""How time grows; no time is asserted, only what is computed from times."""
 
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from benchmarks import growth
 from drystone.model.site import Site
 from drystone.planner.profile import StepTime
 from drystone.planner.settings import method_settings
 from drystone.plotting.growth import PowerLaw
-from drystone_lab import growth, timed_walls
+from drystone_lab import timed_walls
 from drystone_lab.table import BenchSettings
 from drystone_lab.time_tables import pixels_table, steps_table
 from drystone_lab.timed_walls import Planned, fitted, planned, rubble_task
