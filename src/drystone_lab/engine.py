@@ -6,10 +6,18 @@ from statistics import median
 
 from scipy.stats import spearmanr
 
+from drystone.model.stone import StoneSet
 from drystone.physics.building import BuildUp, build_up, tilt_of
-from drystone_lab.exact_walls import BuiltWall, built_walls
+from drystone.search.plan_result import PlanResult
+from drystone.search.plan_wall import plan_wall
+from drystone.verify.outlines import plan_polygons
 from drystone_lab.planned_walls import missing_data
+from drystone_lab.search_ways import tries
 from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.walls import BRICKS, JUDGED, Target
+
+SEEDS = 5
+"""Walls of each set."""
 
 COLUMNS = (
     "wall", "stones", "fallen", "moved most px", "share", "turn deg", "overlap px",
@@ -23,7 +31,9 @@ class Judged:
 
     Parameters
     ----------
-    wall : BuiltWall
+    name : str
+        Of the wall.
+    result : PlanResult
         As planned.
     built : BuildUp
         As the engine has it.
@@ -32,20 +42,26 @@ class Judged:
         fell before, or never.
     """
 
-    wall: BuiltWall
+    name: str
+    result: PlanResult
     built: BuildUp
     tilts: tuple[float | None, float | None]
 
     @property
     def alphas(self) -> tuple[float | None, float | None]:
         """Load multipliers of the plan, to the left and to the right."""
-        metrics = self.wall.result.metrics
+        metrics = self.result.metrics
         return metrics.alpha_left, metrics.alpha_right
 
 
 def run(settings: BenchSettings) -> tuple[Table, ...]:
     """Build every wall in the engine, then tilt it."""
-    judged = [_judged(wall) for wall in built_walls(settings, ("exact",))]
+    judged = [
+        _judged(target, stones, seed)
+        for target in ((BRICKS,) if settings.quick else JUDGED)
+        if (stones := target.stones(settings.data)) is not None
+        for seed in range(settings.seed, settings.seed + (1 if settings.quick else SEEDS))
+    ]
     rows = tuple(_row(one) for one in judged)
     return (
         Table(
@@ -58,20 +74,21 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     )
 
 
-def _judged(wall: BuiltWall) -> Judged:
-    built = build_up(wall.groups, float(wall.result.plan.settings["mu"]))
+def _judged(target: Target, stones: StoneSet, seed: int) -> Judged:
+    size = target.size(stones)
+    result = plan_wall(stones, *size, seed=seed, settings=tries(1), scale=target.scale)
+    built = build_up(plan_polygons(result.plan, stones), float(result.plan.settings["mu"]))
     tilts = tilt_of(built)
-    if tilts is None:
-        return Judged(wall, built, (None, None))
-    return Judged(wall, built, (tilts[0].alpha, tilts[1].alpha))
+    alphas = (None, None) if tilts is None else (tilts[0].alpha, tilts[1].alpha)
+    return Judged(f"{target.name}, seed {seed}", result, built, alphas)
 
 
 def _row(judged: Judged) -> tuple[Cell, ...]:
     moves = judged.built.moves
     alphas, tilts = judged.alphas, judged.tilts
     return (
-        judged.wall.name,
-        len(judged.wall.result.plan.stone_steps),
+        judged.name,
+        len(judged.result.plan.stone_steps),
         ", ".join(map(str, judged.built.fallen)) or "none",
         max(move.move_px for move in moves),
         max(move.share for move in moves),

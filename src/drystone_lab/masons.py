@@ -18,12 +18,10 @@ COLUMNS = (
 def masons_walls(settings: BenchSettings) -> Table:
     """Measure the walls of Almeida et al. (2021) as they were traced, at the working scales."""
     rows = []
-    for name, scale, *_ in SETS:
-        path = (
-            None if settings.data is None else published_file(settings.data, f"almeida/{name}.png")
-        )
-        if path is not None and path.exists():
-            rows.append(masons_row(name, read_wall_image(path), scale))
+    for wall in SETS:
+        if settings.data is not None and wall.source.is_there(settings.data):
+            labels = read_wall_image(published_file(settings.data, wall.source.name))
+            rows.append(masons_row(wall.name, labels, wall.scale))
     return Table(
         "The masons' own walls, as they were traced",
         COLUMNS,

@@ -12,11 +12,10 @@ from drystone.errors import UsageError
 from drystone.kernels.raster import turn
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
-from drystone_lab.exact_walls import QUICK, Target
 from drystone_lab.planned_walls import missing_data
-from drystone_lab.search_targets import MASONS, SearchTarget, chosen
 from drystone_lab.search_ways import SEARCH, WAYS, looked_for
 from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.walls import BRICKS, SEARCHED, Target, chosen
 
 SECONDS = 30
 TURNS: dict[str, tuple[float, ...] | None] = {"quarter": (0.0, 90.0, 180.0, 270.0), "any": None}
@@ -34,8 +33,8 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     usual = 1 if settings.quick else SECONDS
     seconds = max(1, round(settings.seconds[-1] if settings.seconds else usual))
     rows = []
-    for target in chosen(QUICK if settings.quick else MASONS, settings):
-        stones = target.stones(settings)
+    for target in chosen((BRICKS,) if settings.quick else SEARCHED, settings.only):
+        stones = target.stones(settings.data)
         if stones is not None:
             rows.append(_row(packer, target, stones, seconds, settings.seed))
             settings.say(", ".join(map(str, rows[-1])))
@@ -124,7 +123,7 @@ def _row(
         packed_width_px(packer, stones, height, turns, seconds, seed) for turns in TURNS.values()
     ]
     (way,) = (way for way in WAYS if way.name == SEARCH)
-    looked = looked_for(way, stones, SearchTarget(target, "exact"), seconds, seed)
+    looked = looked_for(way, stones, target, seconds, seed)
     figures = looked.found.figures
     return (
         target.name,

@@ -4,8 +4,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from drystone.io.published import published_file
-from drystone.io.read_stones import read_stones
 from drystone.model.plan import Plan
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels
@@ -15,9 +13,9 @@ from drystone.verify.lengths import plan_settings
 from drystone.verify.replay import Stage, replay_plan
 from drystone.verify.stability import wall_model
 from drystone_lab.table import BenchSettings
+from drystone_lab.walls import IR, PR, R
 
-SETS = (("PR", 0.5, 560.0, 160.0), ("R", 0.2, 1445.0, 395.0), ("IR", 0.3, 1443.0, 383.0))
-"""Stone set of Almeida et al. (2021), working scale, width and height of the wall in px."""
+SETS = (PR, R, IR)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,13 +75,13 @@ def planned_walls(
     """
     if missing_data(settings):
         return
-    assert settings.data is not None  # noqa: S101 - nothing is missing
-    for name, scale, width, height in SETS[:1] if settings.quick else SETS:
-        stones = read_stones(published_file(settings.data, f"almeida/{name}.png"))
+    for target in SETS[:1] if settings.quick else SETS:
+        stones = target.source.stones(settings.data)
         for method in methods[:1] if settings.quick else methods:
             for seed in range(settings.seed, settings.seed + (1 if settings.quick else seeds)):
-                result = plan_wall(stones, width, height, seed=seed, method=method, scale=scale)
-                yield PlannedWall(f"{name}, {method}, seed {seed}", result.plan, stones)
+                size = target.size(stones)
+                result = plan_wall(stones, *size, seed=seed, method=method, scale=target.scale)
+                yield PlannedWall(f"{target.name}, {method}, seed {seed}", result.plan, stones)
 
 
 def missing_data(settings: BenchSettings) -> tuple[str, ...]:

@@ -12,10 +12,10 @@ from drystone_lab.paired import median_difference
 from drystone_lab.planned_walls import missing_data
 from drystone_lab.runs.changes import Changes, nested, told
 from drystone_lab.search_results import FIGURES, Result, Run
-from drystone_lab.search_runs import method_name, searched
-from drystone_lab.search_targets import SearchTarget, search_targets
-from drystone_lab.search_ways import NO_COURSES, RESTARTS, SEARCH, WEDGED, ways_of
+from drystone_lab.search_runs import method_name, searched, searched_walls
+from drystone_lab.search_ways import NO_COURSES, RESTARTS, SEARCH, WAYS, WEDGED
 from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.walls import Target
 
 SECONDS, SEEDS = 20.0, 6
 QUICK_SECONDS, QUICK_SEEDS = 0.1, 2
@@ -30,7 +30,7 @@ class Compared:
 
     Parameters
     ----------
-    target : SearchTarget
+    target : Target
         The wall.
     stones : int
         How many there are to build with.
@@ -38,7 +38,7 @@ class Compared:
         Of each method, seed after seed.
     """
 
-    target: SearchTarget
+    target: Target
     stones: int
     results: dict[str, list[Result]]
 
@@ -53,8 +53,8 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     times, seeds = _effort(settings)
     walls = [
         (target, stones)
-        for target in search_targets(settings)
-        if (stones := target.target.stones(settings)) is not None
+        for target in searched_walls(settings)
+        if (stones := target.stones(settings.data)) is not None
     ]
     results = searched(walls, seeds, times, settings)
     tables = []
@@ -70,7 +70,7 @@ def _check(changes: Changes) -> None:
     if own:
         raise UsageError(
             "E138",
-            f"{own[0]} cannot be replaced: walls are searched on both geometries, for a time.",
+            f"{own[0]} cannot be replaced: walls are searched on outlines, for a time.",
             where="--settings",
             cure="Leave it out; see --only and --seconds.",
         )
@@ -121,7 +121,7 @@ def _effort(settings: BenchSettings) -> tuple[tuple[float, ...], range]:
 
 
 def _compared(
-    target: SearchTarget,
+    target: Target,
     stones: StoneSet,
     seeds: Sequence[int],
     seconds: float,
@@ -130,7 +130,7 @@ def _compared(
 ) -> Compared:
     """Sort the results of a wall after a time by methods."""
     found: dict[str, list[Result]] = {}
-    for way in ways_of(target):
+    for way in WAYS:
         method = method_name(way.name, settings.changes)
         runs = [Run(target.name, method, seed, seconds) for seed in seeds]
         if runs[0] in results:

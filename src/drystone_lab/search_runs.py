@@ -9,9 +9,9 @@ from drystone.model.stone import StoneSet
 from drystone_lab.runs.changes import Changes, told
 from drystone_lab.runs.processes import crew
 from drystone_lab.search_results import Result, Run, append_results, read_results
-from drystone_lab.search_targets import SearchTarget, search_targets
-from drystone_lab.search_ways import WAYS, Way, looked_at_times, ways_of
+from drystone_lab.search_ways import WAYS, Way, looked_at_times
 from drystone_lab.table import BenchSettings
+from drystone_lab.walls import BRICKS, SEARCHED, UNSEEN, Target, chosen
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ def method_name(way: str, changes: Changes) -> str:
 
 
 def searched(
-    walls: Sequence[tuple[SearchTarget, StoneSet]],
+    walls: Sequence[tuple[Target, StoneSet]],
     seeds: Sequence[int],
     times: tuple[float, ...],
     settings: BenchSettings,
@@ -77,7 +77,7 @@ def searched(
 
     Parameters
     ----------
-    walls : sequence of (SearchTarget, StoneSet)
+    walls : sequence of (Target, StoneSet)
         What is searched.
     seeds : sequence of int
         One after the other; with each all methods take turns, so that all have the same day.
@@ -98,7 +98,7 @@ def searched(
         Task(target.name, way.name, seed, times, settings.data, settings.quick, settings.changes)
         for seed in seeds
         for target, _ in walls
-        for way in chosen_ways(target, settings.policies)
+        for way in chosen_ways(settings.policies)
     ]
     wanted = [run for task in tasks for run in task.runs]
     counts = {target.name: len(stones) for target, stones in walls}
@@ -117,8 +117,13 @@ def searched(
     return {run: known[run] for run in wanted}
 
 
-def chosen_ways(target: SearchTarget, names: Sequence[str]) -> tuple[Way, ...]:
-    """Return the ways that differ on a wall, or those of them that are named.
+def searched_walls(settings: BenchSettings) -> tuple[Target, ...]:
+    """Return the walls of the suite: of published stones, and sets that are made for it alone."""
+    return chosen((BRICKS,) if settings.quick else (*SEARCHED, *UNSEEN), settings.only)
+
+
+def chosen_ways(names: Sequence[str]) -> tuple[Way, ...]:
+    """Return all ways, or those that are named.
 
     Raises
     ------
@@ -133,7 +138,7 @@ def chosen_ways(target: SearchTarget, names: Sequence[str]) -> tuple[Way, ...]:
             where="--policy",
             cure=f"There are {', '.join(repr(way.name) for way in WAYS)}.",
         )
-    return tuple(way for way in ways_of(target) if not names or way.name in names)
+    return tuple(way for way in WAYS if not names or way.name in names)
 
 
 def _done(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, list[Result]]]:
@@ -153,9 +158,9 @@ def _with_results(task: Task) -> tuple[Task, list[Result]]:
 def do(task: Task) -> list[Result]:
     """Do a task."""
     settings = BenchSettings(data=task.data, quick=task.quick)
-    (target,) = (one for one in search_targets(settings) if one.name == task.wall)
+    (target,) = (one for one in searched_walls(settings) if one.name == task.wall)
     (way,) = (one for one in WAYS if one.name == task.way)
-    stones = target.target.stones(settings)
+    stones = target.stones(task.data)
     assert stones is not None  # noqa: S101 - who asks has seen them
     looked = looked_at_times(way, stones, target, task.times, task.seed, changes=task.changes)
     return [Result.of(one) for one in looked]

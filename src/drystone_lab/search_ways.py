@@ -8,15 +8,14 @@ from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.deadline import Deadline
 from drystone.planner.planner import Planner
-from drystone.planner.settings import PlannerSettings
+from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.search.anytime import searching
 from drystone.search.chain import wedged
 from drystone.search.found import Found
 from drystone.search.goal import possible_filling
 from drystone.search.packed import found_again
-from drystone_lab.exact_walls import one_pass
 from drystone_lab.runs.changes import Changes, nested
-from drystone_lab.search_targets import SearchTarget
+from drystone_lab.walls import Target
 
 Clock = Callable[[], float]
 
@@ -57,13 +56,10 @@ class Way:
     states : callable
         Goes on from the planner of the first wall, which is built, for as long as it is asked, or
         until a time of a clock.
-    on_raster : bool
-        Whether it differs from the others where stones are pixels.
     """
 
     name: str
     states: States
-    on_raster: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,21 +148,22 @@ SEARCH, NO_COURSES = "search", "without courses"
 
 WAYS = (
     Way(RESTARTS, _restarts),
-    Way(WEDGED, _restarts_with_wedges, on_raster=False),
+    Way(WEDGED, _restarts_with_wedges),
     Way(SEARCH, _search),
-    Way(NO_COURSES, _without_courses, on_raster=False),
+    Way(NO_COURSES, _without_courses),
 )
 
 
-def ways_of(target: SearchTarget) -> tuple[Way, ...]:
-    """Return the ways that differ on the geometry of a wall."""
-    return tuple(way for way in WAYS if way.on_raster or target.geometry == "exact")
+def tries(budget: int) -> PlannerSettings:
+    """Return the settings of `best` with so many walls tried; 1 is a single pass."""
+    best = method_settings("best")
+    return replace(best, search=replace(best.search, budget=budget))
 
 
 def looked_for(
     way: Way,
     stones: StoneSet,
-    target: SearchTarget,
+    target: Target,
     seconds: float,
     seed: int,
     clock: Clock = time.process_time,
@@ -178,7 +175,7 @@ def looked_for(
 def looked_at_times(
     way: Way,
     stones: StoneSet,
-    target: SearchTarget,
+    target: Target,
     times: Sequence[float],
     seed: int,
     clock: Clock = time.process_time,
@@ -196,7 +193,7 @@ def looked_at_times(
         How.
     stones : StoneSet
         To build with.
-    target : SearchTarget
+    target : Target
         What is to be built.
     times : sequence of float
         CPU times of this process from the stones on, rising, s; the last ends it.
@@ -210,9 +207,9 @@ def looked_at_times(
     started = clock()
     end = started + times[-1]
     # Another budget for every seed, so that nothing is left over from a search of another seed.
-    settings = one_pass(target.geometry, ENDLESS + seed).updated(nested(changes))
-    width, height = target.target.size(stones)
-    site = Site.from_source(width, height, target.target.scale)
+    settings = tries(ENDLESS + seed).updated(nested(changes))
+    width, height = target.size(stones)
+    site = Site.from_source(width, height, target.scale)
     first = Planner(stones, site, seed=seed, settings=settings)
     for _ in first.steps():
         pass

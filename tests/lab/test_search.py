@@ -12,7 +12,7 @@ from drystone.metrics.measure import measure_labels
 from drystone.metrics.second import finer_labels, second_arrangement
 from drystone.model.site import Site
 from drystone.model.wall import Wall
-from drystone_lab import exact_walls, search
+from drystone_lab import search
 from drystone_lab.masons import masons_row, masons_walls
 from drystone_lab.search import Compared
 from drystone_lab.search_results import (
@@ -22,12 +22,13 @@ from drystone_lab.search_results import (
     append_results,
     second_of,
 )
-from drystone_lab.search_targets import UNSEEN, SearchTarget, chosen, search_targets
+from drystone_lab.search_runs import searched_walls
 from drystone_lab.table import BenchSettings
+from drystone_lab.walls import BRICKS, UNSEEN, chosen
 from tests.metrics.walls import bricks
 from tests.verify.exact_examples import exact_example
 
-TARGET = SearchTarget(exact_walls.QUICK[0], "exact")
+TARGET = BRICKS
 
 
 def result(walls=1, **figures):
@@ -44,12 +45,10 @@ def quick():
 def test_bricks_fill_their_wall_by_every_method(quick):
     (walls, _, _), said = quick
     assert [(row["wall"], row["method"]) for row in walls.records()] == [
-        ("bricks, exact", "restarts"),
-        ("bricks, exact", "restarts with wedges"),
-        ("bricks, exact", "search"),
-        ("bricks, exact", "without courses"),
-        ("bricks, raster", "restarts"),
-        ("bricks, raster", "search"),
+        ("bricks", "restarts"),
+        ("bricks", "restarts with wedges"),
+        ("bricks", "search"),
+        ("bricks", "without courses"),
     ]
     for row in walls.records():
         assert (row["range"], row["placed"]) == ("9-9 of 9", 9)
@@ -57,18 +56,17 @@ def test_bricks_fill_their_wall_by_every_method(quick):
             assert row[name] == pytest.approx(1.0, abs=1e-3)
         assert row["2nd F_AV"] > row["F_AV"] > 0
         assert row["walls"] >= 1
-    assert len(said) == 6
-    assert said[2].startswith("bricks, exact, search, seed 0, 0.02 s: 9 of 9 stones, F_SF 1, F_AV ")
+    assert len(said) == 4
+    assert said[2].startswith("bricks, search, seed 0, 0.02 s: 9 of 9 stones, F_SF 1, F_AV ")
 
 
 def test_methods_are_compared_with_the_search(quick):
     (_, differences, masons), _ = quick
     rows = [(row["wall"], row["more than"]) for row in differences.records()]
     assert rows == [
-        ("bricks, exact", "restarts"),
-        ("bricks, exact", "restarts with wedges"),
-        ("bricks, exact", "without courses"),
-        ("bricks, raster", "restarts"),
+        ("bricks", "restarts"),
+        ("bricks", "restarts with wedges"),
+        ("bricks", "without courses"),
     ]
     assert differences.records()[0]["placed"] == "+0 (+0 to +0)"
     assert masons.rows == ()
@@ -83,7 +81,7 @@ def test_rows_are_medians_of_the_seeds():
     (row,) = search._rows(compared)
     columns = ("wall", "method", "range", *FIGURES[:2], "possible F_SF", *FIGURES[2:], "walls", "s")
     found = dict(zip(columns, row, strict=True))
-    assert (found["wall"], found["range"], found["placed"]) == ("bricks, exact", "1.0-9 of 9", 7)
+    assert (found["wall"], found["range"], found["placed"]) == ("bricks", "1.0-9 of 9", 7)
     assert (found["F_AV"], found["possible F_SF"], found["walls"], found["s"]) == (
         2.0,
         0.75,
@@ -145,13 +143,13 @@ def test_the_effort_is_what_is_asked_for():
 def test_each_time_has_its_tables_of_the_methods_that_were_asked_for(tmp_path):
     times, kept = (1.0, 2.0), tmp_path / "runs.csv"
     runs = {
-        Run("bricks, raster", "search", seed, seconds): result(merit=10 * seconds + seed)
+        Run("bricks", "search", seed, seconds): result(merit=10 * seconds + seed)
         for seed in (3, 4, 5)
         for seconds in times
     }
     append_results(kept, runs.items())
     asked = BenchSettings(
-        quick=True, seconds=times, seed=3, seeds=3, only=("bricks, r",), policies=("search",),
+        quick=True, seconds=times, seed=3, seeds=3, only=("bricks",), policies=("search",),
         runs=kept,
     )  # fmt: skip
     *tables, masons = search.run(asked)
@@ -163,19 +161,19 @@ def test_each_time_has_its_tables_of_the_methods_that_were_asked_for(tmp_path):
     ]
     for table, merit in ((tables[0], 14.0), (tables[2], 24.0)):
         (row,) = table.records()
-        assert (row["wall"], row["method"], row["merit"]) == ("bricks, raster", "search", merit)
+        assert (row["wall"], row["method"], row["merit"]) == ("bricks", "search", merit)
     assert tables[1].rows == tables[3].rows == masons.rows == ()
 
 
 def test_results_with_settings_are_in_the_tables_that_say_so(tmp_path):
     kept, aim = tmp_path / "runs.csv", (("goal.F_AV", 24.0),)
     found = {
-        Run("bricks, raster", "search", 3, 1.0): result(merit=1.0),
-        Run("bricks, raster", "search, goal.F_AV = 24.0", 3, 1.0): result(merit=2.0),
+        Run("bricks", "search", 3, 1.0): result(merit=1.0),
+        Run("bricks", "search, goal.F_AV = 24.0", 3, 1.0): result(merit=2.0),
     }
     append_results(kept, found.items())
     asked = BenchSettings(
-        quick=True, seconds=(1.0,), seed=3, seeds=1, only=("bricks, r",), policies=("search",),
+        quick=True, seconds=(1.0,), seed=3, seeds=1, only=("bricks",), policies=("search",),
         runs=kept, changes=aim,
     )  # fmt: skip
     table, *_ = search.run(asked)
@@ -193,34 +191,24 @@ def test_settings_that_no_search_can_go_by_are_refused(name, code):
         search.run(BenchSettings(quick=True, changes=((name, 1),)))
 
 
-def test_targets_are_published_stones_on_both_geometries_and_unseen_sets():
-    names = [target.name for target in search_targets(BenchSettings())]
-    assert names[:8] == [
-        f"{name}, {geometry}"
-        for geometry in ("exact", "raster")
-        for name in ("R", "PR 600x160", "PR 560x160", "IR")
-    ]
-    assert len(names) == 14
-    assert all(name.endswith("exact") for name in names[8:])
-    assert len(set(names)) == 14
+def test_walls_are_of_published_stones_and_of_unseen_sets():
+    names = [target.name for target in searched_walls(BenchSettings())]
+    assert names[:4] == ["R", "PR 600x160", "PR 560x160", "IR"]
+    assert len(set(names)) == len(names) == 10
 
 
 @pytest.mark.parametrize("target", UNSEEN, ids=lambda target: target.name)
 def test_unseen_sets_stay_the_same_and_suit_their_walls(target):
-    stones = target.stones(BenchSettings(seed=0))
-    again = target.stones(BenchSettings(seed=5))
-    assert [s.area_px for s in stones] == [s.area_px for s in again]
+    stones = target.stones(None)
     assert target.name.endswith(f" {len(stones)}")
     assert stones.total_area_px / (target.width * target.height) == pytest.approx(0.8, rel=0.01)
 
 
 def test_walls_are_chosen_by_the_beginnings_of_their_names():
-    only = BenchSettings(only=("R", "PR 6"))
-    assert [target.name for target in search_targets(only)] == [
-        "R, exact", "PR 600x160, exact", "R, raster", "PR 600x160, raster"
-    ]  # fmt: skip
+    found = searched_walls(BenchSettings(only=("R", "PR 6")))
+    assert [target.name for target in found] == ["R", "PR 600x160"]
     with pytest.raises(UsageError, match="E138"):
-        chosen(UNSEEN, BenchSettings(only=("rubble", "Q")))
+        chosen(UNSEEN, ("rubble", "Q"))
 
 
 def test_a_masons_wall_by_both_definitions():

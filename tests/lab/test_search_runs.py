@@ -10,15 +10,14 @@ import pytest
 from drystone.errors import DrystoneError, UsageError
 from drystone.planner.settings import method_settings
 from drystone_lab import search_runs
-from drystone_lab.exact_walls import QUICK
 from drystone_lab.search_results import FIGURES, Result, Run, read_results
 from drystone_lab.search_runs import Task, chosen_ways, searched
-from drystone_lab.search_targets import SearchTarget
 from drystone_lab.search_ways import WAYS, Way
 from drystone_lab.table import BenchSettings
+from drystone_lab.walls import BRICKS
 
-TARGET = SearchTarget(QUICK[0], "raster")
-STONES = QUICK[0].stones(BenchSettings())
+TARGET = BRICKS
+STONES = BRICKS.stones(None)
 ONE_WAY = BenchSettings(quick=True, policies=("restarts",))
 
 
@@ -52,11 +51,11 @@ def test_what_the_table_holds_is_not_done_again(done: list[Task], tmp_path: Path
     searched(walls, [1], (2.0, 3.0), kept)
     assert done[2:] == [Task(TARGET.name, "restarts", 1, (2.0, 3.0), None, True)]
     assert len(read_results(tmp_path / "runs.csv")) == len(said) == 5
-    assert said[-1].startswith("bricks, raster, restarts, seed 1, 2 s: 1 of 9 stones, ")
+    assert said[-1].startswith("bricks, restarts, seed 1, 2 s: 1 of 9 stones, ")
 
 
 def test_seeds_are_outermost_and_ways_take_turns(done: list[Task]) -> None:
-    both = replace(ONE_WAY, policies=())
+    both = replace(ONE_WAY, policies=("restarts", "search"))
     searched([(TARGET, STONES)], [5, 6], (1.0,), both)
     assert [(task.seed, task.way) for task in done] == [
         (5, "restarts"), (5, "search"), (6, "restarts"), (6, "search")
@@ -114,23 +113,19 @@ def test_what_ended_is_kept_when_a_task_fails(
 ) -> None:
     # In another process the unknown way is nobody's.
     last = Way(Deadly("unknown") if death else "unknown", WAYS[0].states)
-    monkeypatch.setattr(search_runs, "chosen_ways", lambda *_: (WAYS[0], last))
+    monkeypatch.setattr(search_runs, "chosen_ways", lambda _: (WAYS[0], last))
     settings = replace(ONE_WAY, runs=tmp_path / "runs.csv", jobs=2)
     error, words = (DrystoneError, "E402") if death else (ValueError, "unpack")
     with pytest.raises(error, match=words) as caught:
         searched([(TARGET, STONES)], [1], (1e-6,), settings)
     if death:
-        assert caught.value.where == "bricks, raster, unknown, seed 1"
+        assert caught.value.where == "bricks, unknown, seed 1"
     assert {run.way for run in read_results(tmp_path / "runs.csv")} == {"restarts"}
 
 
 def test_ways_are_chosen_by_name() -> None:
-    exact = replace(TARGET, geometry="exact")
-    assert [way.name for way in chosen_ways(exact, ())] == [
-        "restarts", "restarts with wedges", "search", "without courses"
-    ]  # fmt: skip
-    chosen = ("search", "restarts with wedges")
-    assert [way.name for way in chosen_ways(exact, chosen)] == ["restarts with wedges", "search"]
-    assert [way.name for way in chosen_ways(TARGET, chosen)] == ["search"]
+    assert chosen_ways(()) == WAYS
+    chosen = chosen_ways(("search", "restarts with wedges"))
+    assert [way.name for way in chosen] == ["restarts with wedges", "search"]
     with pytest.raises(UsageError, match="E138"):
-        chosen_ways(exact, ("search", "annealing"))
+        chosen_ways(("search", "annealing"))

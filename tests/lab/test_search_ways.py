@@ -10,22 +10,19 @@ import pytest
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.search.plan_wall import plan_wall
 from drystone_lab import search_ways
-from drystone_lab.exact_walls import Target, one_pass
-from drystone_lab.search_targets import SearchTarget
+from drystone_lab.runs.source import generated
 from drystone_lab.search_ways import (
     BETWEEN_SEEDS,
     State,
     Way,
     looked_at_times,
     looked_for,
-    ways_of,
+    tries,
 )
+from drystone_lab.walls import Target
 
 STONES = brick_stones(BrickSettings(count=4), np.random.default_rng(1))
-WALLS = {
-    geometry: SearchTarget(Target("bricks", lambda _: STONES, 72, 24, 1.0), geometry)
-    for geometry in ("exact", "raster")
-}
+WALL = Target("bricks", generated("brick", 1, count=4), 72, 24, 1.0)
 WAYS = {way.name: way for way in search_ways.WAYS}
 
 
@@ -41,44 +38,36 @@ def clock_of(*times: float) -> search_ways.Clock:
 
 
 @pytest.mark.parametrize(
-    ("name", "geometry", "seconds", "walls"),
+    ("name", "seconds", "walls"),
     [
-        ("restarts", "exact", 3, (4, 4)),
-        ("restarts", "raster", 3, (4, 4)),
-        ("restarts with wedges", "exact", 3, (4, 4)),
+        ("restarts", 3, (4, 4)),
+        ("restarts with wedges", 3, (4, 4)),
         # A search looks at the clock inside every wall.
-        ("search", "exact", 150, (3, 10)),
-        ("search", "raster", 150, (3, 10)),
-        ("without courses", "exact", 150, (3, 10)),
+        ("search", 150, (3, 10)),
+        ("without courses", 150, (3, 10)),
     ],
 )
-def test_what_is_begun_in_time_counts(name, geometry, seconds, walls):
-    looked = looked_for(WAYS[name], STONES, WALLS[geometry], seconds, 1, ticking())
+def test_what_is_begun_in_time_counts(name, seconds, walls):
+    looked = looked_for(WAYS[name], STONES, WALL, seconds, 1, ticking())
     assert walls[0] <= looked.walls <= walls[1]
     assert looked.possible == 1.0
     assert looked.found.figures.stones == 4
     assert looked.found.build.wall.filling == pytest.approx(1.0)
-    assert (looked.found.build.wall.outlines is None) == (geometry == "raster")
 
 
-@pytest.mark.parametrize(("geometry", "seconds"), [("exact", 50), ("raster", 150)])
-def test_the_search_is_that_of_a_plan_with_the_same_budget(geometry, seconds):
-    looked = looked_for(WAYS["search"], STONES, WALLS[geometry], seconds, 1, ticking())
-    settings = one_pass(geometry, looked.walls)
-    plan = plan_wall(STONES, 72, 24, seed=1, settings=settings, scale=1.0)
+def test_the_search_is_that_of_a_plan_with_the_same_budget():
+    looked = looked_for(WAYS["search"], STONES, WALL, 50, 1, ticking())
+    plan = plan_wall(STONES, 72, 24, seed=1, settings=tries(looked.walls), scale=1.0)
     np.testing.assert_array_equal(looked.found.build.wall.labels, plan.wall.labels)
     assert looked.found.figures.F_LR == pytest.approx(plan.metrics.F_LR, abs=1e-12)
 
 
 def test_without_courses_there_are_none():
-    assert (
-        looked_for(WAYS["without courses"], STONES, WALLS["exact"], 1, 1, ticking()).found.courses
-        is None
-    )
+    assert looked_for(WAYS["without courses"], STONES, WALL, 1, 1, ticking()).found.courses is None
 
 
 def test_the_first_wall_counts_however_long_it_takes():
-    looked = looked_for(WAYS["search"], STONES, WALLS["exact"], 1, 1, clock_of(0, 100))
+    looked = looked_for(WAYS["search"], STONES, WALL, 1, 1, clock_of(0, 100))
     assert looked.walls == 1
 
 
@@ -91,7 +80,7 @@ def test_the_time_is_counted_from_the_start():
             yield State(number, lambda number=number: number)  # type: ignore[misc, return-value]
 
     way = Way("by hand", states)
-    looked = looked_for(way, STONES, WALLS["exact"], 5, 1, clock_of(10, 14.9, 15, 15.1))
+    looked = looked_for(way, STONES, WALL, 5, 1, clock_of(10, 14.9, 15, 15.1))
     assert (looked.found, looked.walls) == (3, 3)
     assert asked == [1, 2, 3]  # the third was begun in time, and finished after it
     assert looked.seconds == pytest.approx(5.1)
@@ -151,17 +140,12 @@ def test_wedges_go_into_walls_that_are_nearly_the_best(worth, monkeypatch):
     assert tried == [1.0, 0.96, 1.1]
 
 
-def test_ways_that_do_the_same_on_pixels_are_left_out():
-    assert [way.name for way in ways_of(WALLS["exact"])] == list(WAYS)
-    assert [way.name for way in ways_of(WALLS["raster"])] == ["restarts", "search"]
-
-
 def test_of_earlier_times_what_was_finished_by_then_counts():
     walls = [State(n, lambda n=n: n) for n in range(1, 6)]
     way = Way("five walls", lambda *_: iter(walls))
     # Started at 10; the walls are finished at 14, 15, 17, 17.5 and 21.
     clock = clock_of(10, 14, 15, 17, 17.5, 21)
-    found = looked_at_times(way, STONES, WALLS["exact"], (2, 6, 7, 10), 1, clock)
+    found = looked_at_times(way, STONES, WALL, (2, 6, 7, 10), 1, clock)
     # Nothing was there after 2 s, so it is the first wall, when it is finished.
     assert [(one.found, one.walls, one.seconds) for one in found] == [
         (1, 1, 4), (2, 2, 5), (3, 3, 7), (5, 5, 11)
@@ -170,8 +154,8 @@ def test_of_earlier_times_what_was_finished_by_then_counts():
 
 @pytest.mark.parametrize(("name", "times"), [("restarts", (2, 4, 9)), ("search", (40, 80, 150))])
 def test_what_is_asked_on_the_way_changes_nothing(name, times):
-    asked = looked_at_times(WAYS[name], STONES, WALLS["exact"], times, 1, ticking())
-    alone = looked_for(WAYS[name], STONES, WALLS["exact"], times[-1], 1, ticking())
+    asked = looked_at_times(WAYS[name], STONES, WALL, times, 1, ticking())
+    alone = looked_for(WAYS[name], STONES, WALL, times[-1], 1, ticking())
     assert [one.walls for one in asked] == sorted(one.walls for one in asked)
     assert (asked[-1].walls, asked[-1].seconds) == (alone.walls, alone.seconds)
     assert asked[-1].found.merit == alone.found.merit

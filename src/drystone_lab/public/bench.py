@@ -14,13 +14,14 @@ from drystone_lab.public.pairs import pair_tables
 from drystone_lab.public.results import SHAKE, Result, Results
 from drystone_lab.public.shaken import pga_of
 from drystone_lab.public.store import NOT_SHAKEN, BenchStore, KeptRun, Stamp, kept_run
-from drystone_lab.public.suites import PublicWall, walls_of
+from drystone_lab.public.suites import walls_of
 from drystone_lab.runs.failures import absent_data
 from drystone_lab.runs.outcome import Outcome
 from drystone_lab.runs.runner import Runner, Work, one_by_one
 from drystone_lab.runs.spec import STRIPS, RunSpec
 from drystone_lab.runs.store import RunStore
 from drystone_lab.table import Table
+from drystone_lab.walls import Target
 
 SEEDS, QUICK_SEEDS = 5, 2
 """How many unless it is said."""
@@ -28,7 +29,7 @@ SEEDS, QUICK_SEEDS = 5, 2
 RUNS = "runs"
 """Folder of the plans in a store."""
 
-Task = tuple[PublicWall, BenchMethod, RunSpec]
+Task = tuple[Target, BenchMethod, RunSpec]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -227,7 +228,7 @@ def _workers(settings: PublicSettings) -> AbstractContextManager[Work]:
     return work_of(settings.jobs, settings.dask)
 
 
-def _left_out(asked: Sequence[PublicWall], there: Sequence[PublicWall]) -> tuple[str, ...]:
+def _left_out(asked: Sequence[Target], there: Sequence[Target]) -> tuple[str, ...]:
     names = [wall.name for wall in asked if wall not in there]
     if not names:
         return ()

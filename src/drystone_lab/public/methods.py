@@ -7,10 +7,10 @@ from typing import Any
 
 from drystone.errors import UsageError
 from drystone.selection.policies.registry import BUILT_IN, GROUP, PAPER, RULES, rule_of
-from drystone_lab.public.suites import PublicWall
 from drystone_lab.runs.changes import Changes, flat
 from drystone_lab.runs.source import generated
 from drystone_lab.runs.spec import STRIPS, RunSpec
+from drystone_lab.walls import Target
 
 BEST = "best"
 
@@ -20,7 +20,7 @@ STRIP_SECONDS = 3
 ABOUT = {
     PAPER: "the paper's method as it is (Algorithm 2)",
     **dict.fromkeys(BUILT_IN, "the paper's method, with this policy choosing the stones"),
-    BEST: "one pass of the default method, on pixels: no search",
+    BEST: "one pass of the default method, on outlines: no search",
     STRIPS: "no policy but a yardstick, F_SF alone: strips packed without gravity (extra `bench`)",
 }
 """What each does; docs/policies.md explains the policies."""
@@ -44,12 +44,9 @@ class BenchMethod:
     method: str
     changes: Changes = ()
 
-    def run(self, wall: PublicWall, seed: int) -> RunSpec:
+    def run(self, wall: Target, seed: int) -> RunSpec:
         """Return the run that builds a wall."""
-        return RunSpec(
-            source=wall.source, width=wall.width, height=wall.height, scale=wall.scale,
-            method=self.method, changes=self.changes, seed=seed,
-        )  # fmt: skip
+        return wall.run(seed, *self.changes, method=self.method)
 
 
 def known_methods() -> dict[str, str]:
@@ -82,7 +79,7 @@ def method_named(name: str, changes: Changes = ()) -> BenchMethod:
         # No setting of a planner means anything to it.
         return BenchMethod(STRIPS, STRIPS, (("seconds", STRIP_SECONDS),))
     if name == BEST:
-        own: Changes = (("geometry", "raster"), ("search.budget", 1))
+        own: Changes = (("search.budget", 1),)
         found = BenchMethod(name, "best", _merged(own, changes))
     else:
         if name not in (known := known_methods()):

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from itertools import groupby
 from types import MappingProxyType
 
-from drystone_lab.public.suites import PublicWall
 from drystone_lab.runs.outcome import Outcome
+from drystone_lab.walls import Target
 
 PLACED = "placed"
 SHAKE = "PGA"
@@ -30,7 +30,7 @@ class Result:
 
     Parameters
     ----------
-    wall : PublicWall
+    wall : Target
         What was to be built.
     method : str
         Name of the method.
@@ -43,14 +43,14 @@ class Result:
         From the stones to the last step.
     """
 
-    wall: PublicWall
+    wall: Target
     method: str
     seed: int
     figures: Mapping[str, float | None]
     seconds: float
 
     @classmethod
-    def of(cls, wall: PublicWall, method: str, seed: int, outcome: Outcome) -> "Result":
+    def of(cls, wall: Target, method: str, seed: int, outcome: Outcome) -> "Result":
         """Take the figures of an outcome."""
         found = outcome.figures
         figures: dict[str, float | None] = {name: found[name] for name in FIGURES[1:]}
@@ -72,7 +72,7 @@ class Results:
     all: tuple[Result, ...]
 
     @property
-    def walls(self) -> tuple[PublicWall, ...]:
+    def walls(self) -> tuple[Target, ...]:
         """Walls, in order."""
         return tuple(dict.fromkeys(result.wall for result in self.all))
 
@@ -87,14 +87,14 @@ class Results:
         shaken = any(SHAKE in result.figures for result in self.all)
         return (*FIGURES, SHAKE) if shaken else FIGURES
 
-    def of(self, method: str, wall: PublicWall | None = None) -> tuple[Result, ...]:
+    def of(self, method: str, wall: Target | None = None) -> tuple[Result, ...]:
         """Return the results of a method, on a wall or on all, in the same order for all methods.
 
         Parameters
         ----------
         method : str
             Its name.
-        wall : PublicWall, optional
+        wall : Target, optional
             One of :attr:`walls`.
         """
         found = [r for r in self.all if r.method == method and wall in (None, r.wall)]
@@ -102,7 +102,7 @@ class Results:
         return tuple(sorted(found, key=lambda result: (order[result.wall], result.seed)))
 
     def values(
-        self, method: str, figure: str, wall: PublicWall | None = None
+        self, method: str, figure: str, wall: Target | None = None
     ) -> tuple[float | None, ...]:
         """Return a figure of the results of a method, as :meth:`of` orders them."""
         return tuple(result.figures[figure] for result in self.of(method, wall))

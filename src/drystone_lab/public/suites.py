@@ -5,56 +5,23 @@ They are fixed: sources, seeds, sizes and scales may not change without a new
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from types import MappingProxyType
 
-from drystone.errors import UsageError
-from drystone_lab.runs.source import StoneSource, generated, published
+from drystone_lab.runs.source import generated
+from drystone_lab.walls import IR, PR_560, PR_600, R, Target, chosen
 
 SUITE_VERSION = 1
 """Of all suites together."""
 
 
-@dataclass(frozen=True)
-class PublicWall:
-    """A wall of the benchmark.
-
-    Parameters
-    ----------
-    suite : str
-        That it belongs to.
-    name : str
-        Of the wall; no other has it.
-    source : StoneSource
-        The stones.
-    width, height : float
-        Of the wall, source px.
-    scale : float
-        Working resolution over source resolution.
-    """
-
-    suite: str
-    name: str
-    source: StoneSource
-    width: float
-    height: float
-    scale: float
+_MASONS = tuple(replace(wall, suite="masons") for wall in (PR_560, PR_600, R, IR))
 
 
-_R, _PR, _IR = (published(f"almeida/{name}.png") for name in ("R", "PR", "IR"))
-
-_MASONS = (
-    PublicWall("masons", "PR 560x160", _PR, 560, 160, 0.5),
-    PublicWall("masons", "PR 600x160", _PR, 600, 160, 0.5),
-    PublicWall("masons", "R", _R, 1445, 395, 0.2),
-    PublicWall("masons", "IR", _IR, 1443, 383, 0.3),
-)
-
-
-def _rounded(count: int, shape: str, width: float, height: float) -> PublicWall:
+def _rounded(count: int, shape: str, width: float, height: float) -> Target:
     elongation = {"round": 0.0, "long": 0.2}[shape]
     source = generated("fourier", 1, count=count, D2=elongation)
-    return PublicWall("fourier", f"fourier {count} {shape}", source, width, height, 0.5)
+    return Target(f"fourier {count} {shape}", source, width, height, 0.5, suite="fourier")
 
 
 _FOURIER = (
@@ -67,28 +34,28 @@ _FOURIER = (
 )
 
 _POLYGONS = tuple(
-    PublicWall(
-        "polygons", f"polygons {percent} %",
-        generated("polygon", 2, count=40, noise=percent / 100), 1172, 468, 0.25,
+    Target(
+        f"polygons {percent} %", generated("polygon", 2, count=40, noise=percent / 100),
+        1172, 468, 0.25, suite="polygons",
     )
     for percent in (20, 50, 80)
 )  # fmt: skip
 
 
-def _rubble(count: int, courses: int, width: float, height: float) -> PublicWall:
+def _rubble(count: int, courses: int, width: float, height: float) -> Target:
     source = generated(
         "rubble", 4, count=count, courses=courses, width_px=width, height_px=height, area_ratio=0.85
     )
-    return PublicWall("rubble", f"rubble {count}", source, width, height, 0.5)
+    return Target(f"rubble {count}", source, width, height, 0.5, suite="rubble")
 
 
 _RUBBLE = (_rubble(30, 4, 560, 160), _rubble(60, 6, 784, 228), _rubble(120, 8, 1120, 320))
 
 
-def _bricks(name: str, count: int, aspect: float, halves: int, width: float) -> PublicWall:
+def _bricks(name: str, count: int, aspect: float, halves: int, width: float) -> Target:
     source = generated("brick", 5, count=count, aspect=aspect, halves=halves, height_px=12)
     # Seven courses high, for bricks that fill six: 6 / 7 of the wall.
-    return PublicWall("bricks", name, source, width, 84, 1.0)
+    return Target(name, source, width, 84, 1.0, suite="bricks")
 
 
 _BRICKS = (
@@ -98,9 +65,9 @@ _BRICKS = (
 )
 
 
-def _sized(count: int, width: float, height: float) -> PublicWall:
+def _sized(count: int, width: float, height: float) -> Target:
     source = generated("polygon", 3, count=count, noise=0.3, width_px=65, height_px=45)
-    return PublicWall("sizes", f"sizes {count}", source, width, height, 0.5)
+    return Target(f"sizes {count}", source, width, height, 0.5, suite="sizes")
 
 
 _SIZES = (
@@ -115,7 +82,7 @@ _SIZES = (
 
 ALL = "all"
 
-_WALLS: Mapping[str, tuple[PublicWall, ...]] = MappingProxyType(
+_WALLS: Mapping[str, tuple[Target, ...]] = MappingProxyType(
     {
         "masons": _MASONS,
         "fourier": _FOURIER,
@@ -140,9 +107,7 @@ PUBLIC_SUITES: Mapping[str, str] = MappingProxyType(
 """What each is about.  Of generated stones there are .85 of the wall, within .01."""
 
 
-def walls_of(
-    suite: str, only: Sequence[str] = (), *, quick: bool = False
-) -> tuple[PublicWall, ...]:
+def walls_of(suite: str, only: Sequence[str] = (), *, quick: bool = False) -> tuple[Target, ...]:
     """Return the walls of a suite, in order.
 
     Parameters
@@ -165,13 +130,5 @@ def walls_of(
     ['PR 560x160', 'PR 600x160']
     """
     walls = sum(_WALLS.values(), ()) if suite == ALL else _WALLS[suite]
-    for start in only:
-        if not any(wall.name.startswith(start) for wall in walls):
-            raise UsageError(
-                "E138",
-                f"no wall of the suite {suite!r} begins with {start!r}.",
-                where="--only",
-                cure=f"Its walls: {', '.join(wall.name for wall in walls)}.",
-            )
-    chosen = [wall for wall in walls if not only or wall.name.startswith(tuple(only))]
-    return tuple(chosen[:1] if quick else chosen)
+    found = chosen(walls, only, suite)
+    return found[:1] if quick else found

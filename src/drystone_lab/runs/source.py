@@ -1,35 +1,19 @@
 """Where the stones of a run come from, in words that can be written down and read back."""
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
-from numpy.random import Generator
 
 from drystone.errors import InputError
-from drystone.generate.brick import BrickSettings, brick_stones
-from drystone.generate.fourier import FourierSettings, fourier_stones
-from drystone.generate.polygon import PolygonSettings, polygon_stones
-from drystone.generate.rubble import RubbleSettings, rubble_stones
+from drystone.generate import GENERATORS
 from drystone.io.published import published_file
 from drystone.io.read_stones import read_stones
 from drystone.model.stone import StoneSet
 
 Kind = Literal["published", "file", "fourier", "polygon", "brick", "rubble"]
 Scalar = bool | int | float | str
-
-GENERATORS: Mapping[str, tuple[type, Callable[[Any, Generator], StoneSet]]] = MappingProxyType(
-    {
-        "fourier": (FourierSettings, fourier_stones),
-        "polygon": (PolygonSettings, polygon_stones),
-        "brick": (BrickSettings, brick_stones),
-        "rubble": (RubbleSettings, rubble_stones),
-    }
-)
-"""Settings of each generator, and what makes stones from them."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,9 +17,9 @@ def test_only_the_choice_differs():
         assert own.updated({"selection_rule": "algorithm2"}) == paper
 
 
-def test_best_is_one_pass_on_pixels():
+def test_best_is_one_pass_on_outlines():
     best = method_named("best").run(WALL, 3).settings()
-    assert (best.geometry, best.search.budget, best.selection_rule) == ("raster", 1, "score")
+    assert (best.geometry, best.search.budget, best.selection_rule) == ("exact", 1, "score")
 
 
 def test_runs_are_of_the_wall():

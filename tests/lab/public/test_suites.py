@@ -5,7 +5,8 @@ import hashlib
 import pytest
 
 from drystone.errors import UsageError
-from drystone_lab.public.suites import PUBLIC_SUITES, SUITE_VERSION, PublicWall, walls_of
+from drystone_lab.public.suites import PUBLIC_SUITES, SUITE_VERSION, walls_of
+from drystone_lab.walls import Target
 
 GENERATED = [wall for wall in walls_of("all") if wall.source.kind != "published"]
 
@@ -52,7 +53,7 @@ AREAS_PX = {
 
 
 @pytest.mark.parametrize("wall", GENERATED, ids=lambda wall: wall.name)
-def test_stones_fill_85_percent(wall: PublicWall):
+def test_stones_fill_85_percent(wall: Target):
     stones = wall.source.stones(None)
     assert stones.total_area_px == AREAS_PX[wall.name]
     assert stones.total_area_px / (wall.width * wall.height) == pytest.approx(0.85, abs=0.01)
