@@ -4,9 +4,9 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
+from benchmarks import growth
 from benchmarks.scenes import data_folder
-from drystone.experiments import growth
-from drystone.experiments.table import BenchSettings, Table
+from drystone_lab.table import BenchSettings, Table
 
 TABLE = re.compile(r"<!-- table (\w+) -->\n(.*?)<!-- end -->", re.DOTALL)
 
@@ -32,7 +32,7 @@ def rewritten(text: str, tables: Mapping[str, Table]) -> str:
 
 
 def growth_tables(images: Path) -> dict[str, Table]:
-    """Run the suite "growth", with pictures; return its tables by their names in the page."""
+    """Plan walls by the clock, with pictures; return the tables by their names in the page."""
     found = growth.run(BenchSettings(data=data_folder(), output=images, seed=1))
     return dict(zip(("pixels", "steps", "larger"), found, strict=True))
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.experiments.benchmark_walls import coursed_labels, irregular_labels
+from benchmarks.labels import coursed_labels, irregular_labels
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.io.published import published_file
 from drystone.io.read_stones import read_stones

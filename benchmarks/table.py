@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from drystone.experiments.table import Cell, Table
 from drystone.planner.profile import PARTS
+from drystone_lab.table import Cell, Table
 
 FLOOR = "floor"
 """Size of what shows the speed of the machine."""

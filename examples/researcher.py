@@ -49,7 +49,7 @@ def one_episode() -> None:
     """Play one wall of the environment, choosing any legal action."""
     import gymnasium  # noqa: PLC0415 - an extra
 
-    env = gymnasium.make("drystone.rl:drystone/Wall-v0")
+    env = gymnasium.make("drystone_lab.rl:drystone/Wall-v0")
     _, info = env.reset(seed=1)
     rng, total, steps, ended = np.random.default_rng(0), 0.0, 0, False
     while not ended:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import drystone
+import drystone_lab
 
 ROOT = Path(__file__).resolve().parents[1]
 CODE = re.compile(r'(?<!`)"([EW]\d{3})"')
@@ -19,7 +20,8 @@ CODE = re.compile(r'(?<!`)"([EW]\d{3})"')
 ROW = re.compile(r"^\| ([EW]\d{3}) \| (.+) \| (.+) \|$", re.MULTILINE)
 MODULES = sorted(
     module.name
-    for module in pkgutil.walk_packages(drystone.__path__, "drystone.")
+    for package in (drystone, drystone_lab)
+    for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
     if module.name != "drystone.__main__"
 )
 
@@ -47,7 +49,7 @@ def test_every_error_code_is_explained() -> None:
     rows = ROW.findall(text)
     codes = [code for code, _, _ in rows]
     assert len(set(codes)) == len(codes), "a code has two rows"
-    sources = (ROOT / "src" / "drystone").rglob("*.py")
+    sources = (ROOT / "src").rglob("*.py")
     used = {code for path in sources for code in CODE.findall(path.read_text(encoding="utf-8"))}
     assert sorted(used - set(codes)) == [], "without a row in docs/errors.md"
     assert sorted(set(codes) - used) == [], "in docs/errors.md, but nowhere raised"

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks import page
-from drystone.experiments.table import Table
+from drystone_lab.table import Table
 
 SPEED = Path(__file__).parents[2] / "docs" / "speed.md"
 ONE = Table("One", ("a",), ((1,),))

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from drystone.cli.commands import analyse
-from drystone.experiments.walls_of_ferris import WALLS
 from drystone.io.wall_image import write_labels
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.saved_program import load_program
+from drystone_lab.walls_of_ferris import WALLS
 from tests.cli.conftest import EXACT, Run
 from tests.statics.walls import coursed
 

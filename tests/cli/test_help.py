@@ -12,7 +12,7 @@ from tests.cli.conftest import Run
 
 COMMANDS = (
     "plan", "demo", "stones", "analyse", "measure", "check", "export", "craft", "markers",
-    "segment", "bench", "generate", "reproduce", "fetch",
+    "segment", "generate", "bench", "reproduce", "fetch",
 )  # fmt: skip
 
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from drystone.experiments.photographs.level import Level
-from drystone.experiments.photographs.scene import photograph
-from drystone.experiments.photos import overlaps
+from drystone_lab.photographs.level import Level
+from drystone_lab.photographs.scene import photograph
+from drystone_lab.photos import overlaps
 
 SHEET = Level(
     name="sheet", count=7, width_px=900, height_px=675, px_per_m=800.0, gap_px=10, tilt_deg=12.0,

@@ -5,7 +5,6 @@ from dataclasses import replace
 import pytest
 from hypothesis import assume, given
 
-from drystone.experiments.arches import arch
 from drystone.statics import upright
 from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
@@ -13,6 +12,7 @@ from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.upright import held_by_upright_faces
+from drystone_lab.arches import arch
 from tests.statics.walls import JAMS, between_piers, brick_model, slot, under_a_roof
 from tests.strategies import repeatable
 

@@ -8,7 +8,7 @@ must fall, one more stand.
 
 import pytest
 
-from drystone.experiments.arches import stands
+from drystone_lab.arches import stands
 
 
 @pytest.mark.parametrize(

@@ -11,9 +11,9 @@ import json
 
 import pytest
 
-from drystone.experiments.walls_of_ferris import WALLS
 from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
+from drystone_lab.walls_of_ferris import WALLS
 
 PUBLISHED = {
     1: (33, 83, 0.64286),

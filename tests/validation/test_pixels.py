@@ -6,9 +6,9 @@ pixels wide where 45.71 would be right; edges that lie above each other stay so.
 
 import pytest
 
-from drystone.experiments.pixels import BRICK_PX, from_outlines, from_pixels, rasterised
-from drystone.experiments.walls_of_ferris import WALLS
 from drystone.statics.limit import lateral_resistance
+from drystone_lab.pixels import BRICK_PX, from_outlines, from_pixels, rasterised
+from drystone_lab.walls_of_ferris import WALLS
 
 
 def alphas(model):

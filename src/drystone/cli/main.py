@@ -3,7 +3,6 @@
 import os
 import sys
 from collections.abc import Sequence
-from importlib import import_module
 from io import TextIOWrapper
 
 from drystone.cli.parser import build_parser
@@ -45,11 +44,10 @@ def _called(argv: Sequence[str] | None) -> int:
         )
         print(f"drystone: {error}", file=sys.stderr)
         return int(error.exit_code)
-    arguments = build_parser().parse_args(argv)
+    words = sys.argv[1:] if argv is None else argv
+    arguments = build_parser(words).parse_args(words)
     try:
-        # Commands are imported when they are called: --help must not wait for NumPy.
-        command = import_module(f"drystone.cli.commands.{arguments.command}")
-        code = int(command.run(arguments))
+        code = int(arguments.run(arguments))
         # A reader that went away is noticed here and not when the interpreter ends.
         sys.stdout.flush()
     except BrokenPipeError:

@@ -1,11 +1,11 @@
 """Commands and options."""
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NoReturn
 
 from drystone.cli.analyse_options import add_loads, add_model, add_scatter
-from drystone.cli.bench_options import add_bench
+from drystone.cli.command import Command, found_commands, run_of
 from drystone.cli.craft_options import add_craft
 from drystone.cli.export_options import add_export
 from drystone.cli.markers_options import add_markers
@@ -18,8 +18,15 @@ from drystone.cli.wall_options import add_wall
 from drystone.errors import UsageError
 
 
-def build_parser() -> argparse.ArgumentParser:
-    """Return the parser of all commands."""
+def build_parser(words: Sequence[str] = ()) -> argparse.ArgumentParser:
+    """Return the parser of the command line.
+
+    Parameters
+    ----------
+    words : sequence of str
+        That are to be parsed.  When they begin with a command of this package, those of others
+        are not looked for.
+    """
     parser = _Parser(
         prog="drystone",
         description="Plans dry-stone walls from images of found stones.",
@@ -27,11 +34,18 @@ def build_parser() -> argparse.ArgumentParser:
         formatter_class=_Listed,
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
-    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for name, (text, add) in _COMMANDS.items():
-        command = commands.add_parser(name, help=text, description=text)
-        command.add_argument("--debug", action="store_true", help="show the traceback of an error")
-        add(command)
+    commands = {
+        name: Command(text, add, run_of(f"drystone.cli.commands.{name}"))
+        for name, (text, add) in _COMMANDS.items()
+    }
+    if not words or words[0] not in commands:
+        commands = {**commands, **found_commands(), **commands}
+    listed = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for name, command in commands.items():
+        sub = listed.add_parser(name, help=command.text, description=command.text)
+        sub.add_argument("--debug", action="store_true", help="show the traceback of an error")
+        command.add(sub)
+        sub.set_defaults(run=command.run)
     return parser
 
 
@@ -130,38 +144,6 @@ def _generate(command: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
-def _fetch(command: argparse.ArgumentParser) -> None:
-    command.add_argument("sets", metavar="NAME", nargs="*", help="see --list")
-    command.add_argument("--list", action="store_true", help="name the sets, one a line")
-    command.add_argument(
-        "--to", metavar="DIR",
-        help="folder to write to (default: $DRYSTONE_DATA, else a cache of your account)",
-    )  # fmt: skip
-    command.add_argument("--json", action="store_true", help="print as JSON")
-
-
-def _reproduce(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "names", metavar="NAME", nargs="*", help="table or figure, see --list; or all"
-    )
-    command.add_argument("--list", action="store_true", help="name them, one a line")
-    command.add_argument(
-        "-o", "--output", metavar="DIR", help="folder to write to; what is in it is kept and added"
-    )
-    command.add_argument("--quick", action="store_true", help="a smaller version, in a minute each")
-    command.add_argument("--data", metavar="DIR", help="published data (default: $DRYSTONE_DATA)")
-    command.add_argument("--image", metavar="PATH", help="your own stones, where they can be taken")
-    command.add_argument("--seed", type=_seed, default=1, help="the first one (default 1)")
-    command.add_argument("--jobs", type=_count, metavar="N", help="processes; never the result")
-    command.add_argument("--dask", metavar="ADDRESS", help="plan the walls on a Dask cluster")
-    command.add_argument(
-        "--again", action="store_true",
-        help="make again what is finished; finished walls are taken from DIR/runs",
-    )  # fmt: skip
-    command.add_argument("--json", action="store_true", help="print as JSON")
-    command.add_argument("--quiet", action="store_true", help="no progress")
-
-
 _COMMANDS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "plan": ("Plan a wall from an image of stones.", add_plan),
     "demo": ("Plan a generated stone set; no arguments needed, works offline.", add_demo),
@@ -173,8 +155,5 @@ _COMMANDS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "craft": ("Look at a wall as a mason does: rules by name, stones and steps.", add_craft),
     "markers": ("Print a sheet of markers that give photographs a scale.", add_markers),
     "segment": ("Find stones in a photograph.", add_segment),
-    "bench": ("Show how good the numbers are, and compare methods of choosing stones.", add_bench),
     "generate": ("Make a synthetic stone set.", _generate),
-    "reproduce": ("Make tables and figures of the paper again, with a report.", _reproduce),
-    "fetch": ("Download published stone sets, with licence and what to cite.", _fetch),
 }

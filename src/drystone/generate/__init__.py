@@ -13,13 +13,31 @@ Examples
 (46, 52)
 """
 
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any
+
+from numpy.random import Generator
+
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.generate.fourier import FourierSettings, fourier_stones
 from drystone.generate.layout import lay_out
 from drystone.generate.polygon import PolygonSettings, polygon_stones
 from drystone.generate.rubble import RubbleSettings, rubble_stones
+from drystone.model.stone import StoneSet
+
+GENERATORS: Mapping[str, tuple[type[Any], Callable[[Any, Generator], StoneSet]]] = MappingProxyType(
+    {
+        "fourier": (FourierSettings, fourier_stones),
+        "polygon": (PolygonSettings, polygon_stones),
+        "brick": (BrickSettings, brick_stones),
+        "rubble": (RubbleSettings, rubble_stones),
+    }
+)
+"""By name: settings, and what makes stones from them."""
 
 __all__ = [
+    "GENERATORS",
     "BrickSettings",
     "FourierSettings",
     "PolygonSettings",

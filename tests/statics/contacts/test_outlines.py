@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from skimage import measure
 
-from drystone.experiments.tilted_walls import tilted_wall
 from drystone.io.read_stones import read_stones
 from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
+from drystone_lab.tilted_walls import tilted_wall
 from tests.statics.walls import irregular
 from tests.strategies import repeatable
 

@@ -8,7 +8,6 @@ import shapely
 from shapely.geometry.polygon import orient
 
 from drystone.errors import InputError
-from drystone.experiments.tilted_walls import tilted_wall
 from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.raster import turn
 from drystone.statics.appending import units_of
@@ -23,6 +22,7 @@ from drystone.statics.growing import growing
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus
+from drystone_lab.tilted_walls import tilted_wall
 from tests.naive import meetings as naive
 from tests.statics.growth import SOLVERS, assert_same
 

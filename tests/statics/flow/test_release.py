@@ -8,7 +8,6 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from drystone.experiments.arches import arch
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.given import model_from_json
 from drystone.statics.flow import release
@@ -20,6 +19,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.program import assemble
 from drystone.statics.result import LimitStatus, Mechanism
+from drystone_lab.arches import arch
 from tests.naive.release import greatest_power_of_a_fall
 from tests.statics.walls import (
     JAMS,

@@ -15,19 +15,12 @@ from drystone.errors import ExitCode, UsageError
 from drystone.io.wall_image import write_labels
 from drystone.model.settings import updated
 
-_KINDS: dict[str, tuple[type[Any], Any]] = {
-    "fourier": (generate.FourierSettings, generate.fourier_stones),
-    "polygon": (generate.PolygonSettings, generate.polygon_stones),
-    "brick": (generate.BrickSettings, generate.brick_stones),
-    "rubble": (generate.RubbleSettings, generate.rubble_stones),
-}
-
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Make stones and write them as one label image."""
     path = Path(arguments.output)
     prepare_files([path], overwrite=arguments.overwrite)
-    settings_type, make = _KINDS[arguments.kind]
+    settings_type, make = generate.GENERATORS[arguments.kind]
     changes = _changes(arguments.changes, settings_type)
     if arguments.count is not None:
         changes["count"] = arguments.count

@@ -87,7 +87,7 @@ class Learned:
     The paper says of Liu et al. (2018) and Menezes et al. (2021) that they formulate a reward and
     train a model by it.  Reward, model and training are ours; theirs choose the order of the
     stones too, while this one was trained on walls of stones that arrive one after the other
-    (:mod:`drystone.rl.train`).  Among several stones it compares their places, and knows nothing
+    (``drystone_lab.rl.train``).  Among several stones it compares their places, and knows nothing
     of which stone is better kept for later.
 
     Parameters
@@ -220,5 +220,5 @@ def _broken(what: str, where: str) -> UsageError:
         "E152",
         f"the file of weights {what}.",
         where=where,
-        cure="Install the package again, or train again with `python -m drystone.rl.train`.",
+        cure="Install the package again, or train again with `python -m drystone_lab.rl.train`.",
     )

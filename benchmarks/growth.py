@@ -1,0 +1,147 @@
+"""How the time of a step grows with pixels and with stones (§6)."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import fmean
+
+from drystone.io.published import published_file
+from drystone.io.read_stones import read_stones
+from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.plotting.files import save
+from drystone.selection.sampling import Sampling
+from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.time_tables import (
+    PUBLISHED,
+    SAMPLINGS,
+    pixels_table,
+    plot_pixels,
+    steps_figure,
+    steps_table,
+)
+from drystone_lab.timed_walls import (
+    COLUMNS,
+    LEAST_STONES,
+    Planned,
+    Task,
+    exponent,
+    numbers_of,
+    parts_ms,
+    planned,
+    rubble_task,
+    size_of,
+    three_digits,
+)
+
+SOURCE_PX = (560, 160)
+"""Wall of the paper at the resolution of the image PR."""
+
+WORKING = 0.5
+"""Scale at which that wall has the paper's 280 x 80 px."""
+
+SCALES = (0.25, 0.5, 1.0, 1.5, 2.0)
+"""Of the paper's size."""
+
+COUNTS = (32, 128, 512)
+"""Stones for walls of as many times the area."""
+
+STEPS_PICTURE = "step_times.png"
+PIXELS_PICTURE = "resolution.png"
+DPI = 150
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """How much is planned.
+
+    Parameters
+    ----------
+    stones : int or None
+        Generated ones; None for the published set.
+    scales : tuple of float
+        Of the paper's size.
+    counts : tuple of int
+        Stones of larger walls.
+    repeats : int
+        Of each wall, but for the larger ones; the quickest counts.
+    """
+
+    stones: int | None
+    scales: tuple[float, ...] = SCALES
+    counts: tuple[int, ...] = COUNTS
+    repeats: int = 12
+
+
+def run(settings: BenchSettings) -> tuple[Table, ...]:
+    """Plan walls of several resolutions and sizes, and draw Fig. 28 and Fig. 29 of them.
+
+    Parameters
+    ----------
+    settings : BenchSettings
+        `data` for the published stones, generated ones without it; `quick` for eight stones.
+    """
+    sizes = Sizes(None)
+    if settings.quick:
+        sizes = Sizes(8, (0.5, 1.0), (8, 16), repeats=1)
+    task = _task(settings, sizes.stones)
+    often = sizes.repeats
+
+    def timed(task: Task, scale: float, repeats: int, sampling: Sampling = "variant") -> Planned:
+        return planned(task, scale, _paper(sampling), seed=settings.seed, repeats=repeats)
+
+    by_scale = {s: timed(task, s * WORKING, often) for s in sizes.scales}
+    by_sampling = {s: timed(task, WORKING, often, s) for s in SAMPLINGS}
+    by_count = {n: timed(rubble_task(n, settings.seed), 1.0, 1) for n in sizes.counts}
+    if settings.output is not None:
+        _draw(settings.output, task.name, by_scale, by_sampling)
+    return (
+        pixels_table(task.name, by_scale),
+        steps_table(task.name, by_sampling),
+        _walls_table(by_count),
+    )
+
+
+def _task(settings: BenchSettings, stones: int | None) -> Task:
+    if stones is None and settings.data is not None and (settings.data / "almeida").is_dir():
+        published = read_stones(published_file(settings.data, "almeida/PR.png"))
+        return Task(PUBLISHED, published, SOURCE_PX)
+    return rubble_task(stones or LEAST_STONES, settings.seed, SOURCE_PX)
+
+
+def _paper(sampling: Sampling) -> PlannerSettings:
+    return method_settings("paper").updated({"sampling": sampling})
+
+
+def _walls_table(by_count: dict[int, Planned]) -> Table:
+    rows: list[tuple[Cell, ...]] = [
+        (
+            str(count),
+            size_of(wall.site),
+            len(wall.steps),
+            fmean(step.candidates for step in wall.steps),
+            *parts_ms(wall.steps),
+            1e3 * wall.preparation / count,
+            wall.seconds,
+        )
+        for count, wall in by_count.items()
+    ]
+    counts = [float(count) for count in by_count]
+    columns = zip(*(numbers_of(row[3:]) for row in rows), strict=True)
+    exponents = [exponent(list(zip(counts, column, strict=True))) for column in columns]
+    rows.append(("exponent", "", None, *exponents))
+    return Table(
+        "Larger walls of stones of one size: generated rubble, variant sampling, from the left",
+        ("stones", "wall, px", "placed", "candidates a step", *COLUMNS,
+         "preparation, ms a stone", "wall, s"),
+        three_digits(rows),
+        ("Exponents over the number of stones; the wall has as many more pixels.",),
+    )  # fmt: skip
+
+
+def _draw(
+    folder: Path,
+    name: str,
+    by_scale: dict[float, Planned],
+    by_sampling: dict[Sampling, Planned],
+) -> None:
+    save(steps_figure(by_sampling), folder / STEPS_PICTURE, dpi=DPI)
+    save(plot_pixels(name, by_scale).figure, folder / PIXELS_PICTURE, dpi=DPI)

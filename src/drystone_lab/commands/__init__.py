@@ -1,0 +1,20 @@
+"""Commands of the lab for the command line of drystone; each is imported when it is run."""
+
+from drystone.cli.command import Command, run_of
+from drystone_lab.commands.options import add_bench, add_fetch, add_reproduce
+
+BENCH = Command(
+    "Show how good the numbers are, and compare methods of choosing stones.",
+    add_bench,
+    run_of("drystone_lab.commands.bench"),
+)
+REPRODUCE = Command(
+    "Make tables and figures of the paper again, with a report.",
+    add_reproduce,
+    run_of("drystone_lab.commands.reproduce"),
+)
+FETCH = Command(
+    "Download published stone sets, with licence and what to cite.",
+    add_fetch,
+    run_of("drystone_lab.commands.fetch"),
+)

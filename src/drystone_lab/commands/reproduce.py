@@ -1,0 +1,143 @@
+"""`drystone reproduce`: the paper's tables and figures, made again."""
+
+import argparse
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from drystone.cli.output import make_folder, print_json, say
+from drystone.errors import ExitCode, UsageError
+from drystone.io.folder_lock import locked
+from drystone_lab.reproduce.items import ALL, ITEMS, OWN_STONES, item_names
+
+if TYPE_CHECKING:  # loaded when something is made: --list does not wait for matplotlib
+    from drystone_lab.reproduce.driver import Made, Options
+    from drystone_lab.reproduce.item import Item
+    from drystone_lab.runs.runner import Work
+
+LISTED = 12
+"""Columns for the names of the list."""
+
+
+def run(arguments: argparse.Namespace, items: "Mapping[str, Item] | None" = None) -> ExitCode:
+    """Make items, print their tables, and say where the report is.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        Of the command.
+    items : mapping of str to Item, optional
+        Some of those of the paper, by its names; None for the paper's.
+    """
+    if arguments.list:
+        for name, (text, _) in ITEMS.items():
+            print(f"{name:<{LISTED}}{text}")
+        return ExitCode.DONE
+    names = _names(arguments)
+    folder = Path(arguments.output)
+    make_folder(folder)
+    from drystone.report.experiments_page import PAGE  # noqa: PLC0415
+    from drystone_lab.reproduce.driver import reproduce  # noqa: PLC0415 - see above
+    from drystone_lab.runs.workers import work_of  # noqa: PLC0415
+
+    done = []
+    with locked(folder), work_of(arguments.jobs, arguments.dask) as work:
+        for made in reproduce(names, folder, _options(arguments, work), items):
+            done.append(made)
+            if made.error is not None:
+                print(f"drystone: {made.name}: {made.error}", file=sys.stderr)
+            elif not arguments.json:
+                _print(made)
+    if arguments.json:
+        print_json({"report": str(folder / PAGE), "items": [_as_json(made) for made in done]})
+    else:
+        print(f"report: {folder / PAGE}")
+    return exit_code(done, every=ALL in arguments.names)
+
+
+def exit_code(done: "Sequence[Made]", *, every: bool) -> ExitCode:
+    """Return what the shell is told.
+
+    Parameters
+    ----------
+    done : sequence of Made
+        What became of the items.
+    every : bool
+        All were asked for: those without published data count only when there is no other.
+    """
+    failed = [made for made in done if made.status == "failed"]
+    missing = [made for made in done if made.status == "missing data"]
+    if failed and failed[0].error is not None:
+        return failed[0].error.exit_code
+    if missing and (not every or len(missing) == len(done)):
+        return ExitCode.BAD_INPUT
+    return ExitCode.DONE
+
+
+def _names(arguments: argparse.Namespace) -> tuple[str, ...]:
+    """Return what is to be made, in the order of the paper; E138 without a name or a folder."""
+    if not arguments.names or arguments.output is None:
+        absent = "no folder to write to" if arguments.names else "nothing to make"
+        raise UsageError(
+            "E138",
+            f"{absent} is named.",
+            where="reproduce",
+            cure="Write `drystone reproduce fig5 -o DIR`; `drystone reproduce --list` names all.",
+        )
+    asked = {name for each in arguments.names for name in item_names(each)}
+    if arguments.image is not None and not asked <= {*OWN_STONES}:
+        raise UsageError(
+            "E138",
+            "your own stones would change nothing in what is named.",
+            where="--image",
+            cure=f"It is for {', '.join(OWN_STONES)}.",
+        )
+    return tuple(name for name in ITEMS if name in asked)
+
+
+def _options(arguments: argparse.Namespace, work: "Work") -> "Options":
+    from drystone.io.published import published_folder  # noqa: PLC0415
+    from drystone_lab.reproduce.driver import Options  # noqa: PLC0415
+
+    data = published_folder(arguments.data)
+    if data is not None and not data.is_dir():
+        print(f"drystone: there is no folder {data} of published data", file=sys.stderr)
+        data = None
+    return Options(
+        data=data,
+        quick=arguments.quick,
+        seed=arguments.seed,
+        image=None if arguments.image is None else Path(arguments.image),
+        again=arguments.again,
+        work=work,
+        say=(lambda _: None) if arguments.quiet else say,
+    )
+
+
+def _print(made: "Made") -> None:
+    """Print the tables of an item, and where its page is."""
+    from drystone_lab.table import Table  # noqa: PLC0415
+
+    if made.record is None:
+        return
+    print(f"{made.name}: {made.record['title']} ({made.record['section']})\n")
+    for table in (*made.record["tables"], *made.record["times"]):
+        rows = tuple(tuple(row) for row in table["rows"])
+        text = Table(table["title"], tuple(table["columns"]), rows, tuple(table["notes"])).text()
+        print(text, end="\n\n")
+    print(f"page: {made.page}\n", flush=True)
+
+
+def _as_json(made: "Made") -> dict[str, Any]:
+    """Return what `--json` says of an item: the record, without what was run for it."""
+    about: dict[str, Any] = {"name": made.name, "status": made.status}
+    if made.error is not None:
+        error = {"code": made.error.code, "message": str(made.error)}
+        return about | {"error": error}
+    record = made.record or {}
+    names = (
+        "title", "section", "request", "made", "taken", "paper", "ours", "tables", "times",
+        "pictures",
+    )  # fmt: skip
+    return about | {"page": str(made.page)} | {name: record[name] for name in names}

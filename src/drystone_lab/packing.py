@@ -1,0 +1,136 @@
+"""Suite "packing": how tightly stones fit without gravity, beside walls that stand.
+
+The packer is sparrow (Gardeyn et al., https://doi.org/10.48550/arXiv.2509.13329) by its Python
+package spyrrow: it makes a strip of given height as short as it can.  It knows no weight, order or
+support, so what it reaches is a yardstick for filling alone.
+"""
+
+from importlib import import_module
+from typing import Any
+
+from drystone.errors import UsageError
+from drystone.kernels.raster import turn
+from drystone.model.stone import StoneSet
+from drystone.poses import PoseBook
+from drystone_lab.planned_walls import missing_data
+from drystone_lab.search_ways import SEARCH, WAYS, looked_for
+from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.walls import BRICKS, SEARCHED, Target, chosen
+
+SECONDS = 30
+TURNS: dict[str, tuple[float, ...] | None] = {"quarter": (0.0, 90.0, 180.0, 270.0), "any": None}
+"""Orientations that the packer may use, from the initial pose of a stone on."""
+
+COLUMNS = (
+    "wall", "height px", "strip px, quarter turns", "density", "strip px, any angle", "density",
+    "wall px", "possible F_SF", "our F_SF", "placed",
+)  # fmt: skip
+
+
+def run(settings: BenchSettings) -> tuple[Table, ...]:
+    """Pack the stones of every wall, and plan it in the same time."""
+    packer = load_packer()
+    usual = 1 if settings.quick else SECONDS
+    seconds = max(1, round(settings.seconds[-1] if settings.seconds else usual))
+    rows = []
+    for target in chosen((BRICKS,) if settings.quick else SEARCHED, settings.only):
+        stones = target.stones(settings.data)
+        if stones is not None:
+            rows.append(_row(packer, target, stones, seconds, settings.seed))
+            settings.say(", ".join(map(str, rows[-1])))
+    return (
+        Table(
+            f"Strips that hold all stones, and walls of this planner, {seconds} s each",
+            COLUMNS,
+            tuple(rows),
+            (
+                "The strip is as high as the wall; the packer (spyrrow, one thread) makes it as "
+                "short as it can, with no gravity and no order. Density: area of the stones over "
+                "that of the strip.",
+                "Ours: the search on outlines, in CPU time of one process.",
+                *missing_data(settings),
+            ),
+        ),
+    )
+
+
+def load_packer() -> Any:
+    """Return spyrrow; it is an extra, so it is loaded only when it is needed.
+
+    Raises
+    ------
+    UsageError
+        E305 when it is not installed.
+    """
+    try:
+        return import_module("spyrrow")
+    except ImportError as error:
+        raise UsageError(
+            "E305",
+            "spyrrow is not installed, and it packs the strips.",
+            where="packing",
+            cure="Install it with `pip install drystone[bench]`.",
+        ) from error
+
+
+def packed_width_px(
+    packer: Any,
+    stones: StoneSet,
+    height_px: float,
+    turns: tuple[float, ...] | None,
+    seconds: int,
+    seed: int,
+) -> float:
+    """Return the width of a strip into which the packer gets all stones, source px.
+
+    Parameters
+    ----------
+    packer : module
+        Of :func:`load_packer`.
+    stones : StoneSet
+        Packed as their outlines.
+    height_px : float
+        Of the strip, source px; every stone must fit in.
+    turns : tuple of float or None
+        Angles from the initial pose of a stone; None for any.
+    seconds : int
+        Time for the packer.
+    seed : int
+        Of the packer.
+    """
+    book = PoseBook(1.0)
+    items = [
+        packer.Item(
+            str(stone.id),
+            [tuple(corner) for corner in turn(stone.outline, book.initial_angle(stone)).tolist()],
+            demand=1,
+            allowed_orientations=turns,
+        )
+        for stone in stones
+    ]
+    config = packer.StripPackingConfig(
+        early_termination=False, total_computation_time=seconds, num_workers=1, seed=seed
+    )
+    strip = packer.StripPackingInstance("stones", strip_height=height_px, items=items)
+    return float(strip.solve(config).width)
+
+
+def _row(
+    packer: Any, target: Target, stones: StoneSet, seconds: int, seed: int
+) -> tuple[Cell, ...]:
+    width, height = target.size(stones)
+    strips = [
+        packed_width_px(packer, stones, height, turns, seconds, seed) for turns in TURNS.values()
+    ]
+    (way,) = (way for way in WAYS if way.name == SEARCH)
+    looked = looked_for(way, stones, target, seconds, seed)
+    figures = looked.found.figures
+    return (
+        target.name,
+        height,
+        *(cell for strip in strips for cell in (strip, stones.total_area_px / (strip * height))),
+        width,
+        looked.possible,
+        None if figures is None else figures.F_SF,
+        f"{0 if figures is None else figures.stones} of {len(stones)}",
+    )

@@ -1,0 +1,153 @@
+"""Where the stones of a test photograph lie."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from drystone.generate import FourierSettings, RubbleSettings, fourier_stones, rubble_stones
+from drystone.kernels.raster import Mask
+from drystone_lab.photographs.level import Level
+
+Labels = NDArray[np.uint16]
+TRIES = 400
+COVERED = 0.24
+"""Share of the photograph that stones cover, about."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Stones on the ground.
+
+    Parameters
+    ----------
+    labels : (h, w) uint16 array
+        Stones 1 ... n, 0 elsewhere.
+    touching : tuple of (int, int)
+        Stones that were pushed against each other.
+    """
+
+    labels: Labels
+    touching: tuple[tuple[int, int], ...]
+
+
+def lay_stones(level: Level, forbidden: Mask, seen: Mask, rng: Generator) -> Layout:
+    """Lay stones down where there is room.
+
+    Parameters
+    ----------
+    level : Level
+        How many, how close, and how many touch or are cut by the edge.
+    forbidden : (h, w) bool array
+        Where no stone may lie: the markers.
+    seen : (h, w) bool array
+        What the camera sees of the ground.
+    rng : Generator
+        Equal states give equal stones.
+    """
+    masks = [np.rot90(mask, int(rng.integers(4))) for mask in _shapes(level, rng)]
+    masks.sort(key=lambda mask: -int(mask.sum()))
+    inside = ndimage.distance_transform_edt(np.pad(seen, 1))[1:-1, 1:-1] > level.gap_px
+    edge = inside & ~ndimage.binary_erosion(inside)
+    table = _Table(
+        np.zeros(forbidden.shape, np.uint16), forbidden.copy(), ~inside | forbidden, level.gap_px
+    )
+    touching = []
+    for turn, mask in enumerate(masks):
+        if turn >= len(masks) - level.touching and table.count:
+            beside = table.push(mask, rng)
+            touching += [(beside, table.count)] if beside else []
+        elif turn < level.cut:
+            table.drop(mask, np.argwhere(edge), rng, table.taken)
+        else:
+            table.drop(mask, np.argwhere(inside), rng, table.taken | table.outside)
+    return Layout(table.labels, tuple(touching))
+
+
+def _shapes(level: Level, rng: Generator) -> list[Mask]:
+    """Return masks of about the area that leaves room for all."""
+    angular = round(level.angular * level.count)
+    area = COVERED * level.width_px * level.height_px / level.count
+    radius = float(np.sqrt(area / np.pi))
+    masks: list[Mask] = []
+    if level.count > angular:
+        rounded = FourierSettings(
+            count=level.count - angular, smallest_radius_px=0.6 * radius,
+            largest_radius_px=1.35 * radius, D2=0.12,
+        )  # fmt: skip
+        masks += [stone.mask for stone in fourier_stones(rounded, rng)]
+    if angular:
+        side = float(np.sqrt(area * angular))
+        rubble = RubbleSettings(
+            count=angular, width_px=1.5 * side, height_px=side / 1.5,
+            courses=max(1, round(np.sqrt(0.7 * angular))),
+        )  # fmt: skip
+        masks += [stone.mask for stone in rubble_stones(rubble, rng)]
+    return masks
+
+
+@dataclass
+class _Table:
+    """The ground while stones are laid on it."""
+
+    labels: Labels
+    taken: Mask
+    outside: Mask
+    gap_px: int
+    count: int = 0
+
+    def drop(self, mask: Mask, middles: NDArray[np.intp], rng: Generator, blocked: Mask) -> None:
+        """Lay a stone at one of the places where it covers nothing that is blocked."""
+        for middle in rng.integers(len(middles), size=TRIES):
+            row, col = (int(k) for k in middles[middle] - np.array(mask.shape) // 2)
+            if self._holds(row, col, mask) and not (blocked[_box(row, col, mask)] & mask).any():
+                self._lay(row, col, mask)
+                return
+
+    def push(self, mask: Mask, rng: Generator) -> int:
+        """Move a stone towards another until they touch; return the other one, 0 for none."""
+        for _ in range(TRIES // 10):
+            beside = int(rng.integers(1, self.count + 1))
+            angle = rng.uniform(0, 2 * np.pi)
+            place = self._contact(beside, mask, np.array([np.sin(angle), np.cos(angle)]))
+            if place is not None:
+                self._lay(*place, mask)
+                return beside
+        return 0
+
+    def _contact(self, beside: int, mask: Mask, way: NDArray[np.float64]) -> tuple[int, int] | None:
+        """Return where a stone that comes along a ray meets the other; None when it cannot lie."""
+        old = self.labels == beside
+        middle = np.argwhere(old).mean(axis=0) - np.array(mask.shape) / 2
+        reach = int(max(mask.shape) + 2 * np.sqrt(old.sum()))
+        for near in range(reach):
+            row, col = (int(k) for k in middle + way * near)
+            if not self._holds(row, col, mask):
+                return None
+            box = _box(row, col, mask)
+            if not (old[box] & mask).any():
+                bad = self.outside[box] | (self.labels[box] != 0)
+                return None if (bad & mask).any() else (row, col)
+        return None
+
+    def _holds(self, row: int, col: int, mask: Mask) -> bool:
+        height, width = self.labels.shape
+        return (
+            row >= 0 and col >= 0 and row + mask.shape[0] <= height and col + mask.shape[1] <= width
+        )
+
+    def _lay(self, row: int, col: int, mask: Mask) -> None:
+        self.count += 1
+        self.labels[_box(row, col, mask)][mask] = self.count
+        gap = self.gap_px
+        around = ndimage.distance_transform_edt(~np.pad(mask, gap)) < gap
+        top, left = max(row - gap, 0), max(col - gap, 0)
+        part = self.taken[top : row - gap + around.shape[0], left : col - gap + around.shape[1]]
+        start = (top - row + gap, left - col + gap)
+        part |= around[start[0] : start[0] + part.shape[0], start[1] : start[1] + part.shape[1]]
+
+
+def _box(row: int, col: int, mask: Mask) -> tuple[slice, slice]:
+    return slice(row, row + mask.shape[0]), slice(col, col + mask.shape[1])

@@ -1,0 +1,214 @@
+"""Suite "photos": stones found in rendered photographs beside the truth."""
+
+import io
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import ImageOps, JpegImagePlugin
+
+from drystone.errors import DrystoneError
+from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
+from drystone_lab.photographs.camera import inverse, moved
+from drystone_lab.photographs.level import LEVELS, Level
+from drystone_lab.photographs.scene import Photograph, photograph
+from drystone_lab.photographs.sheets import layout_of
+from drystone_lab.table import BenchSettings, Cell, Table
+
+MATCHED = 0.5
+"""Intersection over union from which on a stone counts as found."""
+
+COLUMNS = (
+    "photograph", "stones", "found", "recall", "precision", "median IoU", "worst IoU",
+    "scale error %", "shadow", "seconds",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Score:
+    """What was found of what is there.
+
+    Parameters
+    ----------
+    stones, found : int
+        Whole stones in the photograph, and stones that were found.
+    recall, precision : float
+        Share of either that has a match.
+    ious : tuple of float
+        Intersection over union of every stone with what covers it best, in the order of the
+        stones.
+    scale_error_percent : float or None
+        Largest error of distances between places of the ground; None without a scale.
+    """
+
+    stones: int
+    found: int
+    recall: float
+    precision: float
+    ious: tuple[float, ...]
+    scale_error_percent: float | None
+
+
+def run(settings: BenchSettings) -> tuple[Table, ...]:
+    """Render the photographs, find the stones, compare."""
+    levels = tuple(_small(level) for level in LEVELS[::3]) if settings.quick else LEVELS
+    rows = []
+    for level in levels:
+        rows.append(_row(level))
+        settings.say(", ".join(map(str, rows[-1])))
+    cases = []
+    for name, level, change in _refused():
+        cases.append((name, "an error", _outcome(_small(level), change)))
+        settings.say(", ".join(cases[-1]))
+    return (
+        Table(
+            "Stones in rendered photographs", COLUMNS, tuple(rows),
+            (
+                "Stones that the edge cuts are left out of both. A stone is found when its "
+                f"intersection over union (IoU) is {MATCHED} or more.",
+                "Scale error: the largest, of distances between nine places on the ground. "
+                "Shadow: share of the light that the generator took, and that was found.",
+                "Stones of the generator are flat: that higher parts of a stone are nearer to the "
+                "camera is not in these numbers.",
+            ),
+        ),
+        Table("Photographs that give an error, not a number", ("case", "expected", "result"),
+              tuple(cases)),
+    )  # fmt: skip
+
+
+def score(made: Photograph, result: SegmentedPhoto) -> Score:
+    """Compare what was found with what is there.
+
+    Parameters
+    ----------
+    made : Photograph
+        With the truth.
+    result : SegmentedPhoto
+        What was found in it.
+    """
+    labels = result.found.labels
+    truth = made.truth_in(inverse(result.from_photo), labels.shape)
+    frame = made.truth_in(np.eye(3), (made.level.height_px, made.level.width_px))
+    rim = np.unique(np.concatenate([frame[0], frame[-1], frame[:, 0], frame[:, -1]]))
+    whole = np.setdiff1d(np.unique(frame), np.append(rim, 0)).astype(int)
+    iou = overlaps(truth, labels)
+    best = iou[whole - 1].max(axis=1)
+    # What is found of a stone that is cut is no mistake of telling stones from ground.
+    matched = (iou[whole - 1].max(axis=0) >= MATCHED).sum()
+    return Score(
+        len(whole), result.found.count, float((best >= MATCHED).mean()),
+        float(matched / result.found.count), tuple(float(value) for value in best),
+        _scale_error(made, result),
+    )  # fmt: skip
+
+
+def overlaps(truth: NDArray[np.uint16], labels: NDArray[np.uint16]) -> NDArray[np.float64]:
+    """Return intersection over union of every true stone with every found one, (n, m).
+
+    Examples
+    --------
+    >>> overlaps(np.array([[1, 1, 0]], np.uint16), np.array([[0, 1, 1]], np.uint16)).round(3)
+    array([[0.333]])
+    """
+    n, m = int(truth.max()), int(labels.max())
+    both = np.bincount(
+        truth.ravel().astype(int) * (m + 1) + labels.ravel(), minlength=(n + 1) * (m + 1)
+    )
+    table = both.reshape(n + 1, m + 1)
+    inside = table[1:, 1:]
+    union = table[1:].sum(axis=1)[:, None] + table[:, 1:].sum(axis=0)[None] - inside
+    return np.asarray(inside / np.maximum(union, 1))
+
+
+def _scale_error(made: Photograph, result: SegmentedPhoto) -> float | None:
+    """Return the largest error of distances between nine places of the ground, percent."""
+    if result.px_per_m is None:
+        return None
+    level = made.level
+    x, y = np.meshgrid(
+        *(np.array([0.15, 0.5, 0.85]) * side for side in (level.width_px, level.height_px))
+    )
+    seen = np.column_stack([x.ravel(), y.ravel()])
+    true = moved(inverse(made.homography), seen) / made.px_per_m
+    found = moved(result.from_photo, seen) / result.px_per_m
+    far = [
+        np.hypot(*(points[:, None] - points[None]).transpose(2, 0, 1)) for points in (true, found)
+    ]
+    some = far[0] > 0
+    return float(100 * np.abs(far[1][some] / far[0][some] - 1).max())
+
+
+def pixels(made: Photograph) -> NDArray[np.uint8]:
+    """Return the photograph as a viewer shows it."""
+    return np.asarray(ImageOps.exif_transpose(JpegImagePlugin.JpegImageFile(io.BytesIO(made.jpeg))))
+
+
+def _row(level: Level) -> tuple[Cell, ...]:
+    made = photograph(level)
+    image = pixels(made)
+    start = time.perf_counter()
+    try:
+        result = segment_photo(image, layout_of(level))
+    except DrystoneError as error:
+        return (level.name, int(made.truth.max()), error.code, *[None] * (len(COLUMNS) - 3))
+    seconds = time.perf_counter() - start
+    got = score(made, result)
+    return (
+        level.name, got.stones, got.found, round(got.recall, 3), round(got.precision, 3),
+        round(float(np.median(got.ious)), 3), round(min(got.ious), 3),
+        None if got.scale_error_percent is None else round(got.scale_error_percent, 3),
+        f"{level.shadow:g} / {1 - result.found.shadow_level:.2f}", round(seconds, 1),
+    )  # fmt: skip
+
+
+def _small(level: Level) -> Level:
+    """Return a level at less than half the size."""
+    return replace(
+        level, width_px=900, height_px=675, px_per_m=800.0, count=min(level.count, 10),
+        gap_px=12, touching=min(level.touching, 2), cut=min(level.cut, 1),
+    )  # fmt: skip
+
+
+Change = Callable[[NDArray[np.uint8]], NDArray[np.uint8]]
+
+
+def _refused() -> tuple[tuple[str, Level, Change], ...]:
+    easy, single = LEVELS[0], replace(LEVELS[0], markers="single")
+    bare = replace(easy, markers="none")
+    return (
+        ("no marker", bare, lambda image: image),
+        ("a sheet that is covered but for one marker", easy, _one_marker),
+        ("one of four single markers printed 6 % too large",
+         replace(single, wrong_print=1.06), lambda image: image),
+        ("the photograph is mirrored", easy, lambda image: image[:, ::-1]),
+        ("no stones", replace(easy, count=1, cut=1, angular=0.0), lambda image: image),
+        ("noise", bare, _noise),
+    )  # fmt: skip
+
+
+def _noise(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return np.random.default_rng(1).integers(0, 256, image.shape, np.uint8)
+
+
+def _one_marker(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Cover what is below and right of the first marker of the sheet."""
+    from drystone.photo.markers import find_markers  # noqa: PLC0415
+
+    changed = image.copy()
+    for marker in find_markers(image)[1:]:
+        (left, top), (right, bottom) = marker.corners_px.min(axis=0), marker.corners_px.max(axis=0)
+        changed[int(top) : int(bottom) + 1, int(left) : int(right) + 1] = image[-1, -1]
+    return changed
+
+
+def _outcome(level: Level, change: Change) -> str:
+    made = photograph(level)
+    layout = layout_of(level) or layout_of(replace(level, markers="sheet"))
+    try:
+        result = segment_photo(np.ascontiguousarray(change(pixels(made))), layout)
+    except DrystoneError as error:
+        return error.code
+    return f"{result.found.count} stones: miss"

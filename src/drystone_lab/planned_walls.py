@@ -1,0 +1,93 @@
+"""Walls that this project plans from the published stone sets, shared by suites."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from drystone.model.plan import Plan
+from drystone.model.stone import StoneSet
+from drystone.model.wall import Labels
+from drystone.search.plan_wall import plan_wall
+from drystone.statics.model import RigidBlockModel
+from drystone.verify.lengths import plan_settings
+from drystone.verify.replay import Stage, replay_plan
+from drystone.verify.stability import wall_model
+from drystone_lab.runs.outcome import uninterrupted
+from drystone_lab.table import BenchSettings
+from drystone_lab.walls import IR, PR, R
+
+SETS = (PR, R, IR)
+
+
+@dataclass(frozen=True, eq=False)
+class PlannedWall:
+    """A plan, and the wall after every step.
+
+    Parameters
+    ----------
+    name : str
+        Set, method and seed.
+    plan : Plan
+        The plan.
+    stones : StoneSet
+        What it was made from.
+    """
+
+    name: str
+    plan: Plan
+    stones: StoneSet
+
+    @cached_property
+    def stages(self) -> tuple[Labels, ...]:
+        """Label image at the working scale after each stone and its wedges."""
+        return tuple(stage.after.labels for stage in self._replayed)
+
+    @cached_property
+    def models(self) -> tuple[RigidBlockModel, ...]:
+        """Models of the same walls on the geometry of the plan: of its pixels or its outlines."""
+        settings, _ = plan_settings(self.plan)
+        found = (wall_model(stage.after, settings) for stage in self._replayed)
+        return tuple(model for model in found if model is not None)
+
+    @cached_property
+    def _replayed(self) -> tuple[Stage, ...]:
+        return replay_plan(self.plan, self.stones).stages
+
+    @property
+    def mu(self) -> float:
+        """Coefficient of friction of the plan."""
+        return float(self.plan.settings["mu"])
+
+
+def planned_walls(
+    settings: BenchSettings, methods: tuple[str, ...] = ("paper", "best"), seeds: int = 1
+) -> Iterator[PlannedWall]:
+    """Plan walls from the published sets, one after another.
+
+    Parameters
+    ----------
+    settings : BenchSettings
+        `data` is the folder of the published sets; without it there are no walls.  `quick` plans
+        only the smallest wall, by the first method.
+    methods : tuple of str
+        Of the planner.
+    seeds : int
+        Walls of each set and method, from the seed of the settings on.
+    """
+    if missing_data(settings):
+        return
+    for target in SETS[:1] if settings.quick else SETS:
+        stones = target.source.stones(settings.data)
+        for method in methods[:1] if settings.quick else methods:
+            for seed in range(settings.seed, settings.seed + (1 if settings.quick else seeds)):
+                size = target.size(stones)
+                result = plan_wall(stones, *size, seed=seed, method=method, scale=target.scale)
+                plan = uninterrupted(result).plan
+                yield PlannedWall(f"{target.name}, {method}, seed {seed}", plan, stones)
+
+
+def missing_data(settings: BenchSettings) -> tuple[str, ...]:
+    """Say in a note that rows are missing for want of data."""
+    if settings.data is not None and (settings.data / "almeida").is_dir():
+        return ()
+    return ("Rows need the published stone sets: name their folder with --data.",)

@@ -1,0 +1,238 @@
+"""Runs of the public benchmark: every method on every wall with every seed."""
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from drystone.physics.table import load_engine
+from drystone_lab.packing import load_packer
+from drystone_lab.public.compare import comparison
+from drystone_lab.public.methods import STRIP_SECONDS, BenchMethod, method_named
+from drystone_lab.public.pairs import pair_tables
+from drystone_lab.public.results import SHAKE, Result, Results
+from drystone_lab.public.shaken import pga_of
+from drystone_lab.public.store import NOT_SHAKEN, BenchStore, KeptRun, Stamp, kept_run
+from drystone_lab.public.suites import walls_of
+from drystone_lab.runs.failures import absent_data
+from drystone_lab.runs.outcome import Outcome
+from drystone_lab.runs.runner import Runner, Work, one_by_one
+from drystone_lab.runs.spec import STRIPS, RunSpec
+from drystone_lab.runs.store import RunStore
+from drystone_lab.table import Table
+from drystone_lab.walls import Target
+
+SEEDS, QUICK_SEEDS = 5, 2
+"""How many unless it is said."""
+
+RUNS = "runs"
+"""Folder of the plans in a store."""
+
+Task = tuple[Target, BenchMethod, RunSpec]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PublicSettings:
+    """What is run, and by whom.
+
+    Parameters
+    ----------
+    suite : str
+        One of :data:`drystone_lab.public.suites.PUBLIC_SUITES`.
+    methods : tuple of str
+        Names of methods.
+    stamp : Stamp
+        Version, time, machine, and the settings that all methods share.
+    first_seed : int
+        The first of the seeds.
+    seeds : int or None
+        How many; None for the usual number.
+    data : Path or None
+        Folder of the published data; walls that need it are left out without it.
+    store : Path or None
+        Folder of the runs that are kept; None keeps nothing.
+    again : bool
+        Do runs again that are kept.
+    only : tuple of str
+        How the names of walls begin that are wanted; empty for all.
+    quick : bool
+        The first wall, two seeds.
+    jobs : int or None
+        Processes, None for this one.
+    dask : str or None
+        Address of a scheduler.
+    shake : bool
+        Shake the walls too.
+    say : callable
+        Told of progress.
+    """
+
+    suite: str
+    methods: tuple[str, ...]
+    stamp: Stamp
+    first_seed: int = 0
+    seeds: int | None = None
+    data: Path | None = None
+    store: Path | None = None
+    again: bool = False
+    only: tuple[str, ...] = ()
+    quick: bool = False
+    jobs: int | None = None
+    dask: str | None = None
+    shake: bool = False
+    say: Callable[[str], None] = lambda _: None
+
+    @property
+    def seed_range(self) -> range:
+        """All seeds."""
+        count = self.seeds or (QUICK_SEEDS if self.quick else SEEDS)
+        return range(self.first_seed, self.first_seed + count)
+
+
+class _NothingKept(RunStore):
+    """Keeps what it is given, and finds nothing of before."""
+
+    def get(self, key: str) -> Outcome | None:
+        del key
+        return None
+
+
+def run_public(settings: PublicSettings) -> tuple[Table, ...]:
+    """Run a suite and compare its methods.
+
+    Parameters
+    ----------
+    settings : PublicSettings
+        What, and by whom.
+
+    Returns
+    -------
+    tuple of Table
+        Walls, all walls, seconds; then with two methods or more their differences and a ranking.
+
+    Raises
+    ------
+    UsageError
+        E138: no wall has the name that is asked for; E146, E123: there is no such method or
+        setting; E305: the yardstick needs spyrrow, which is not installed.
+    InputError
+        E100: all walls need published stones, which are not there; E160: there are others in
+        their place; E401: the store is damaged.
+    """
+    methods = [method_named(name, settings.stamp.settings) for name in settings.methods]
+    asked = walls_of(settings.suite, settings.only, quick=settings.quick)
+    walls = [wall for wall in asked if wall.source.is_there(settings.data)]
+    if not walls:
+        absent = dict.fromkeys(wall.source.name for wall in asked)
+        raise absent_data(tuple(absent), known=settings.data is not None)
+    for wall in walls:
+        wall.source.check(settings.data)  # before an hour of planning, and before a run is kept
+    # Methods take turns, so that all have the same day.
+    tasks = [
+        (wall, method, method.run(wall, seed))
+        for wall in walls
+        for seed in settings.seed_range
+        for method in methods
+    ]
+    results = _done(tasks, settings)
+    first, *others = (*comparison(results), *pair_tables(_planned(results)))
+    notes = (*first.notes, *_yardstick(results), *_left_out(asked, walls))
+    return (replace(first, notes=notes), *others)
+
+
+def _planned(results: Results) -> Results:
+    """Leave out the yardstick, which builds no walls to be compared."""
+    return Results(tuple(result for result in results.all if result.method != STRIPS))
+
+
+def _yardstick(results: Results) -> tuple[str, ...]:
+    """Say what the yardstick is, where there is one."""
+    if STRIPS not in results.methods:
+        return ()
+    return (
+        f"{STRIPS} is a yardstick, in no pairs and no ranking: all stones packed into a strip as "
+        f"high as the wall, by quarter turns, {STRIP_SECONDS} s each, without gravity, order or "
+        "support. Its F_SF is their area over that of the strip, or over that of the wall where "
+        "the strip is shorter; it has no other figures. What it finds depends on the machine.",
+    )
+
+
+def _done(tasks: Sequence[Task], settings: PublicSettings) -> Results:
+    """Do the runs, keep them, and shake the walls if that is asked for."""
+    if settings.shake:
+        load_engine()  # what is missing is said before an hour of planning
+    if any(method.name == STRIPS for _, method, _ in tasks):
+        load_packer()
+    store = None if settings.store is None else BenchStore(settings.store)
+    kept = {} if store is None else {run.run_key: run for run in store.runs()}
+    specs = [spec for _, _, spec in tasks]
+    with _folder(settings) as folder, _workers(settings) as work:
+        kind = _NothingKept if settings.again else RunStore
+        runner = Runner(kind(Path(folder) / RUNS), settings.data, work, settings.say)
+        outcomes = runner.run(specs)
+    runs = [
+        (spec, outcome, Result.of(wall, method.name, spec.seed, outcome))
+        for (wall, method, spec), outcome in zip(tasks, outcomes, strict=True)
+    ]
+    if store is not None:
+        new = [run for run in runs if settings.again or run[1].key not in kept]
+        store.put([kept_run(result, outcome, settings.stamp) for _, outcome, result in new])
+    results = [result for _, _, result in runs]
+    if settings.shake:
+        results = _shaken(runs, {} if settings.again else kept, store, settings)
+    if store is not None:
+        for path in store.export():
+            settings.say(f"wrote {path}")
+    return Results(tuple(results))
+
+
+def _shaken(
+    runs: Sequence[tuple[RunSpec, Outcome, Result]],
+    kept: Mapping[str, KeptRun],
+    store: BenchStore | None,
+    settings: PublicSettings,
+) -> list[Result]:
+    """Return the results with their amplitudes; each is kept at once, as it takes long."""
+    results = []
+    for number, (spec, outcome, result) in enumerate(runs, 1):
+        if spec.method == STRIPS:
+            results.append(_with_score(result, None))
+            continue
+        before = kept.get(outcome.key)
+        if before is not None and before.shaken != NOT_SHAKEN:
+            results.append(_with_score(result, before.pga_g))
+            continue
+        results.append(_with_score(result, pga_of(spec, outcome, settings.data)))
+        if store is not None:
+            store.put([kept_run(results[-1], outcome, settings.stamp)])
+        settings.say(f"{number} of {len(runs)} walls shaken")
+    return results
+
+
+def _with_score(result: Result, pga_g: float | None) -> Result:
+    return replace(result, figures={**result.figures, SHAKE: pga_g})
+
+
+def _folder(settings: PublicSettings) -> AbstractContextManager[str]:
+    if settings.store is None:
+        return TemporaryDirectory(prefix="drystone-bench-")
+    return nullcontext(str(settings.store))
+
+
+def _workers(settings: PublicSettings) -> AbstractContextManager[Work]:
+    if settings.dask is None and settings.jobs in (None, 1):
+        return nullcontext(one_by_one)
+    from drystone_lab.runs.workers import work_of  # noqa: PLC0415 - Dask is an extra
+
+    return work_of(settings.jobs, settings.dask)
+
+
+def _left_out(asked: Sequence[Target], there: Sequence[Target]) -> tuple[str, ...]:
+    names = [wall.name for wall in asked if wall not in there]
+    if not names:
+        return ()
+    return (
+        f"Left out, as they need the published stone sets (`drystone fetch`, or --data DIR): "
+        f"{', '.join(names)}.",
+    )

@@ -1,0 +1,159 @@
+"""Quality by version: medians of what a store of the benchmark holds."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import median
+
+from matplotlib.figure import Figure
+
+from drystone.plotting.bench_history import history_panels
+from drystone_lab.public.store import KeptRun
+from drystone_lab.runs.spec import STRIPS
+from drystone_lab.table import Cell, Table
+
+Value = float | None
+
+
+@dataclass(frozen=True)
+class Medians:
+    """What a method came to in a version.
+
+    Parameters
+    ----------
+    suite : str
+        Suite and its version, such as ``"masons/1"``.
+    method : str
+        Its name, with settings that were replaced.
+    version : str
+        Of drystone.
+    runs : tuple of (str, int)
+        Walls and seeds.
+    values : dict of str to float or None
+        Median of each figure over its runs; None where no run has it.
+    """
+
+    suite: str
+    method: str
+    version: str
+    runs: tuple[tuple[str, int], ...]
+    values: dict[str, Value]
+
+
+def medians_of(runs: Sequence[KeptRun]) -> tuple[Medians, ...]:
+    """Return medians by suite, method and version, oldest version first.
+
+    Parameters
+    ----------
+    runs : sequence of KeptRun
+        All that are kept.
+    """
+    groups: dict[tuple[str, str, str], list[KeptRun]] = {}
+    for run in runs:
+        suite = f"{run.suite}/{run.suite_version}"
+        method = run.method if run.settings == "{}" else f"{run.method} {run.settings}"
+        groups.setdefault((suite, method, run.version), []).append(run)
+    found = [
+        Medians(
+            *key,
+            tuple(sorted((run.wall, run.seed) for run in group)),
+            {name: _median([_value(run, name) for run in group]) for name in FIGURES},
+        )
+        for key, group in groups.items()
+    ]
+    return tuple(sorted(found, key=lambda m: (m.suite, m.method, version_order(m.version))))
+
+
+FIGURES = ("placed share", "F_SF", "F_AV", "F_AH", "F_LR", "PGA, g", "wall, s")
+"""Of a history."""
+
+
+def history_table(medians: Sequence[Medians]) -> Table:
+    """Return the medians as a table."""
+    rows: list[tuple[Cell, ...]] = [
+        (one.suite, one.method, one.version, len(one.runs),
+         *(None if value is None else float(f"{value:.4g}") for value in one.values.values()))
+        for one in medians
+    ]  # fmt: skip
+    notes = [
+        "Medians over walls and seeds. Seconds are of the machines that the runs were done on."
+    ]
+    differing = sorted(
+        {
+            f"{one.suite} {one.method}"
+            for one in medians
+            for other in medians
+            if (one.suite, one.method) == (other.suite, other.method) and one.runs != other.runs
+        }
+    )
+    if differing:
+        notes.append(
+            "Versions have runs of different walls or seeds, so their medians cannot be compared: "
+            + ", ".join(differing)
+            + "."
+        )
+    return Table(
+        "Quality by version", ("suite", "method", "version", "runs", *FIGURES), tuple(rows),
+        tuple(notes),
+    )  # fmt: skip
+
+
+def drawn_history(medians: Sequence[Medians]) -> Figure:
+    """Draw the medians of one suite over versions, a panel a figure that any method has.
+
+    Parameters
+    ----------
+    medians : sequence of Medians
+        At least one.
+    """
+    versions = sorted({one.version for one in medians}, key=version_order)
+    methods = dict.fromkeys(one.method for one in medians)
+    values = {(one.method, one.version): one.values for one in medians}
+    lines = {
+        figure: {
+            method: [values.get((method, version), {}).get(figure) for version in versions]
+            for method in methods
+        }
+        for figure in FIGURES
+    }
+    known = {
+        figure: of_methods
+        for figure, of_methods in lines.items()
+        if any(value is not None for line in of_methods.values() for value in line)
+    }
+    title = f"suite {medians[0].suite}: medians over walls and seeds (F_AH: lower is better)"
+    return history_panels(versions, known, title)
+
+
+def version_order(version: str) -> tuple[tuple[int, int, str], ...]:
+    """Return what sorts versions, pre-releases before their release.
+
+    Examples
+    --------
+    >>> sorted(["0.10.0", "0.9.1", "0.10.0rc1", "0.9"], key=version_order)
+    ['0.9', '0.9.1', '0.10.0rc1', '0.10.0']
+    """
+    parts = re.findall(r"\d+|[a-z]+", version.lower())
+    # Letters come before the end, and the end before numbers.
+    marked = [(2, int(part), "") if part.isdigit() else (_LETTERS.get(part, 0), 0, part)
+              for part in parts]  # fmt: skip
+    return (*marked, (1, 0, ""))
+
+
+_LETTERS = {"post": 2}
+"""A post-release comes after its release; every other word before it."""
+
+
+def _value(run: KeptRun, name: str) -> Value:
+    if name == "placed share":
+        # The yardstick builds no wall: what is kept as 0 is no share.
+        return run.placed / run.stones if run.stones and run.method != STRIPS else None
+    return {
+        "F_SF": run.F_SF, "F_AV": run.F_AV, "F_AH": run.F_AH, "F_LR": run.F_LR,
+        "PGA, g": run.pga_g, "wall, s": run.seconds,
+    }[name]  # fmt: skip
+
+
+def _median(values: Sequence[Value]) -> Value:
+    found = [value for value in values if value is not None]
+    return median(found) if found else None

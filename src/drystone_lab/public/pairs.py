@@ -1,0 +1,286 @@
+"""Methods beside each other: differences of pairs of walls of the same seed, and a ranking."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations, compress
+from statistics import fmean
+
+import numpy as np
+from scipy.stats import rankdata, wilcoxon
+
+from drystone_lab.paired import COVERED, RESAMPLES
+from drystone_lab.public.results import DECIMALS, HIGHER_IS_BETTER, Results
+from drystone_lab.table import Cell, Table
+
+LEVEL = 1 - COVERED
+"""Of significance."""
+
+EXACT = 50
+"""Differences up to which the distribution of signed ranks is counted out."""
+
+
+@dataclass(frozen=True)
+class Compared:
+    """What one method has more than another, of one figure.
+
+    Parameters
+    ----------
+    pairs : int
+        Walls, each with a seed that counts, for which both have a value.
+    left_out : int
+        Those for which one or both have none.
+    mean : float
+        Of the differences, first minus second.
+    low, high : float
+        Ends of the percentile bootstrap interval of the mean.
+    won : float
+        Share of the pairs in which the first is better; of equal ones half.
+    p : float
+        Of Wilcoxon's signed-rank test, two-sided, not corrected.
+    """
+
+    pairs: int
+    left_out: int
+    mean: float
+    low: float
+    high: float
+    won: float
+    p: float
+
+    @property
+    def holds_zero(self) -> bool:
+        """Nothing is shown: 0 is in the interval."""
+        return self.low <= 0 <= self.high
+
+
+def compared(
+    first: Sequence[float | None], second: Sequence[float | None], *, higher: bool = True
+) -> Compared | None:
+    """Compare two methods by one figure.
+
+    Parameters
+    ----------
+    first, second : sequence of float or None
+        Their values for the same walls and seeds.
+    higher : bool
+        A higher value is the better one.
+
+    Returns
+    -------
+    Compared or None
+        None when there is no pair.  Pairs are drawn with the same random numbers every time.
+
+    Examples
+    --------
+    >>> found = compared([3.0, 4.0, 9.0, None], [1.0, 2.0, 7.0, 1.0])
+    >>> found.mean, found.low, found.high, found.won, found.p, found.left_out
+    (2.0, 2.0, 2.0, 1.0, 0.25, 1)
+    """
+    pairs = list(zip(first, second, strict=True))
+    found = np.array([round(a - b, DECIMALS) for a, b in pairs if a is not None and b is not None])
+    if not found.size:
+        return None
+    rng = np.random.default_rng(0)
+    means = rng.choice(found, (RESAMPLES, found.size)).mean(axis=1)
+    low, high = np.quantile(means, [LEVEL / 2, 1 - LEVEL / 2]).tolist()
+    better = found if higher else -found
+    won = float(np.mean((better > 0) + 0.5 * (better == 0)))
+    return Compared(
+        found.size,
+        len(pairs) - found.size,
+        float(found.mean()),
+        low,
+        high,
+        won,
+        _signed_rank(found),
+    )
+
+
+def holm(p_values: Sequence[float]) -> list[float]:
+    """Correct p values for how many they are (Holm 1979).
+
+    Parameters
+    ----------
+    p_values : sequence of float
+        Of all tests of a family.
+
+    Returns
+    -------
+    list of float
+        In the same order, at most 1.
+
+    Examples
+    --------
+    >>> holm([0.01, 0.04, 0.03])
+    [0.03, 0.06, 0.06]
+    """
+    corrected = [0.0] * len(p_values)
+    largest = 0.0
+    for place, index in enumerate(sorted(range(len(p_values)), key=lambda k: p_values[k])):
+        largest = max(largest, min(1.0, (len(p_values) - place) * p_values[index]))
+        corrected[index] = largest
+    return corrected
+
+
+def pair_tables(results: Results) -> tuple[Table, ...]:
+    """Return the differences of all pairs of methods, a table a figure, and the ranking.
+
+    Parameters
+    ----------
+    results : Results
+        Of at least two methods; of fewer there is no table.
+    """
+    if len(results.methods) < 2:
+        return ()
+    counting = {pair: results.counting(*pair) for pair in combinations(results.methods, 2)}
+    found = {
+        (figure, *pair): _compared(results, figure, pair, counts)
+        for figure in results.figures
+        for pair, counts in counting.items()
+    }
+    known = {key: pair for key, pair in found.items() if pair is not None}
+    p = dict(zip(known, holm([pair.p for pair in known.values()]), strict=True))
+    copies = not all(map(all, counting.values()))
+    tables = tuple(_pairs_table(figure, known, p, copies=copies) for figure in results.figures)
+    return (*tables, _ranking(results, known, p))
+
+
+Key = tuple[str, str, str]
+"""Figure, first method, second method."""
+
+
+def _compared(
+    results: Results, figure: str, pair: tuple[str, str], counting: Sequence[bool]
+) -> Compared | None:
+    first, second = (list(compress(results.values(name, figure), counting)) for name in pair)
+    return compared(first, second, higher=HIGHER_IS_BETTER[figure])
+
+
+def _pairs_table(
+    figure: str, known: dict[Key, Compared], p: dict[Key, float], *, copies: bool
+) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for key, pair in known.items():
+        if key[0] != figure:
+            continue
+        cells = [float(f"{value:.3g}") for value in (pair.mean, pair.low, pair.high, pair.won)]
+        shown = _shown(key, pair, p[key])
+        rows.append((key[1], key[2], pair.pairs, *cells, float(f"{p[key]:.2g}"), shown))
+    less = sum(pair.left_out for key, pair in known.items() if key[0] == figure)
+    most = max((row[2] for row in rows if isinstance(row[2], int)), default=0)
+    return Table(
+        f"{figure}: what the first method has more, pairs of the same wall and seed",
+        ("first", "second", "pairs", "mean", "95 % low", "95 % high", "won", "p", "shows"),
+        tuple(rows),
+        (
+            "won: share of the pairs in which the first is better, of equal ones half. Intervals: "
+            "bootstrap of the mean. p: Wilcoxon's signed-rank test, by Holm for all "
+            f"{len(known)} tests of these tables.",
+            "shows: who is better, where the interval does not hold 0 and p is below "
+            f"{LEVEL:.2g}; a name with a question mark has the interval alone, which is no proof "
+            "where so many are looked at.",
+            *(() if not less else (f"{less} pairs lack a value of one or both and are left out.",)),
+            *(() if not copies else (_COPIES,)),
+            *_too_few(most, len(known), copies=copies),
+        ),
+    )  # fmt: skip
+
+
+_COPIES = "Walls on which two methods do not depend on the seed count once for these two."
+
+
+def _too_few(pairs: int, tests: int, *, copies: bool) -> tuple[str, ...]:
+    """Say when no p of so few pairs can reach the level of significance."""
+    least = min(1.0, tests * 2.0 ** (1 - pairs)) if pairs else 1.0
+    if least < LEVEL:
+        return ()
+    more = "walls, or --seeds where they change something" if copies else "--seeds"
+    return (
+        f"With {pairs} pairs and {tests} tests no p can be below {least:.2g}: use more {more}.",
+    )
+
+
+def _ranking(results: Results, known: dict[Key, Compared], p: dict[Key, float]) -> Table:
+    """Rank the methods by their mean rank over figures, walls and seeds."""
+    per_figure = {figure: _mean_ranks(results, figure) for figure in results.figures}
+    overall = {m: fmean(ranks[m] for ranks in per_figure.values()) for m in results.methods}
+    order = sorted(results.methods, key=lambda method: overall[method])
+    shown = {key for key, pair in known.items() if not pair.holds_zero and p[key] < LEVEL}
+    rows = tuple(
+        (place, method, round(overall[method], 3),
+         *(round(per_figure[figure][method], 3) for figure in results.figures),
+         _not_told_apart(method, order, results.figures, shown))
+        for place, method in enumerate(order, 1)
+    )  # fmt: skip
+    return Table(
+        "Ranking: mean rank among the methods, 1 is best",
+        ("place", "method", "mean rank", *results.figures, "not told apart from the next in"),
+        rows,
+        (
+            "Methods are ranked for every wall and seed, equal ones share a rank, undefined values "
+            "come last; the mean weighs all figures alike, which is a convention: read the "
+            "figures one by one.",
+            "Last column: figures in which nothing is shown between it and the next method, or "
+            "only with a question mark. Where all are named the order of the two is not shown by "
+            "these walls.",
+        ),
+    )
+
+
+def _mean_ranks(results: Results, figure: str) -> dict[str, float]:
+    sign = -1.0 if HIGHER_IS_BETTER[figure] else 1.0
+    columns = [results.values(method, figure) for method in results.methods]
+    ranks = [
+        rankdata([np.inf if value is None else sign * round(value, DECIMALS) for value in row])
+        for row in zip(*columns, strict=True)
+    ]
+    means = np.mean(ranks, axis=0).tolist() if ranks else [1.0] * len(columns)
+    return dict(zip(results.methods, means, strict=True))
+
+
+def _not_told_apart(
+    method: str, order: Sequence[str], figures: Sequence[str], shown: set[Key]
+) -> str | None:
+    place = order.index(method)
+    if place + 1 == len(order):
+        return None
+    other = order[place + 1]
+    same = [
+        figure
+        for figure in figures
+        if not {(figure, method, other), (figure, other, method)} & shown
+    ]
+    return ", ".join(same) or "none"
+
+
+def _shown(key: Key, pair: Compared, p: float) -> str:
+    if pair.holds_zero:
+        return "nothing"
+    return _better(key, pair) if p < LEVEL else f"{_better(key, pair)}?"
+
+
+def _better(key: Key, pair: Compared) -> str:
+    first_is_higher = pair.mean > 0
+    return key[1] if first_is_higher == HIGHER_IS_BETTER[key[0]] else key[2]
+
+
+def _signed_rank(differences: np.ndarray) -> float:
+    """Return p of Wilcoxon's signed-rank test; 1 where all pairs are equal.
+
+    Equal pairs are left out.  Figures such as the placed share are often equal and often tied:
+    the normal distribution then gives too small a p for the few pairs that are left.
+    """
+    moved = differences[differences != 0]
+    if not moved.size:
+        return 1.0
+    if moved.size > EXACT:
+        return float(wilcoxon(moved).pvalue)
+    # Shared ranks are halves: doubled they are whole.
+    doubled = np.rint(2 * rankdata(np.abs(moved))).astype(int)
+    chances = np.zeros(int(doubled.sum()) + 1)
+    chances[0] = 1.0
+    for rank in doubled.tolist():
+        chances /= 2
+        chances[rank:] = chances[rank:] + chances[:-rank]
+    above, below = doubled[moved > 0].sum(), doubled[moved < 0].sum()
+    return min(1.0, 2 * float(chances[: min(above, below) + 1].sum()))

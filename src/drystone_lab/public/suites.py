@@ -1,0 +1,134 @@
+"""The walls of the public benchmark.
+
+They are fixed: sources, seeds, sizes and scales may not change without a new
+:data:`SUITE_VERSION`, or figures of different releases and people could not be compared.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
+
+from drystone_lab.runs.source import generated
+from drystone_lab.walls import IR, PR_560, PR_600, R, Target, chosen
+
+SUITE_VERSION = 1
+"""Of all suites together."""
+
+
+_MASONS = tuple(replace(wall, suite="masons") for wall in (PR_560, PR_600, R, IR))
+
+
+def _rounded(count: int, shape: str, width: float, height: float) -> Target:
+    elongation = {"round": 0.0, "long": 0.2}[shape]
+    source = generated("fourier", 1, count=count, D2=elongation)
+    return Target(f"fourier {count} {shape}", source, width, height, 0.5, suite="fourier")
+
+
+_FOURIER = (
+    _rounded(20, "round", 408, 164),
+    _rounded(20, "long", 412, 164),
+    _rounded(60, "round", 708, 282),
+    _rounded(60, "long", 714, 286),
+    _rounded(120, "round", 1000, 400),
+    _rounded(120, "long", 1010, 404),
+)
+
+_POLYGONS = tuple(
+    Target(
+        f"polygons {percent} %", generated("polygon", 2, count=40, noise=percent / 100),
+        1172, 468, 0.25, suite="polygons",
+    )
+    for percent in (20, 50, 80)
+)  # fmt: skip
+
+
+def _rubble(count: int, courses: int, width: float, height: float) -> Target:
+    source = generated(
+        "rubble", 4, count=count, courses=courses, width_px=width, height_px=height, area_ratio=0.85
+    )
+    return Target(f"rubble {count}", source, width, height, 0.5, suite="rubble")
+
+
+_RUBBLE = (_rubble(30, 4, 560, 160), _rubble(60, 6, 784, 228), _rubble(120, 8, 1120, 320))
+
+
+def _bricks(name: str, count: int, aspect: float, halves: int, width: float) -> Target:
+    source = generated("brick", 5, count=count, aspect=aspect, halves=halves, height_px=12)
+    # Seven courses high, for bricks that fill six: 6 / 7 of the wall.
+    return Target(name, source, width, 84, 1.0, suite="bricks")
+
+
+_BRICKS = (
+    _bricks("bricks 2:1", 30, 2.0, 0, 120),
+    _bricks("bricks 3:1", 48, 3.0, 0, 288),
+    _bricks("bricks 3:1 and halves", 32, 3.0, 8, 216),
+)
+
+
+def _sized(count: int, width: float, height: float) -> Target:
+    source = generated("polygon", 3, count=count, noise=0.3, width_px=65, height_px=45)
+    return Target(f"sizes {count}", source, width, height, 0.5, suite="sizes")
+
+
+_SIZES = (
+    _sized(20, 414, 166),
+    _sized(50, 656, 262),
+    _sized(100, 928, 370),
+    _sized(200, 1312, 524),
+    # As high as that of 100 and five times as long: in a wall of the others' shape a stone after
+    # the 300th takes about twice as long to choose.
+    _sized(500, 4640, 370),
+)
+
+ALL = "all"
+
+_WALLS: Mapping[str, tuple[Target, ...]] = MappingProxyType(
+    {
+        "masons": _MASONS,
+        "fourier": _FOURIER,
+        "polygons": _POLYGONS,
+        "rubble": _RUBBLE,
+        "bricks": _BRICKS,
+        "sizes": _SIZES,
+    }
+)
+
+PUBLIC_SUITES: Mapping[str, str] = MappingProxyType(
+    {
+        "masons": "the published stones of Almeida et al. (2021), from which masons built",
+        "fourier": "generated rounded stones, 20, 60 and 120, round and long",
+        "polygons": "generated polygons, 40, noise 20, 50 and 80 %",
+        "rubble": "generated rubble for courses, 30, 60 and 120",
+        "bricks": "equal bricks, 2:1 and 3:1, and with halves",
+        "sizes": "generated polygons of one kind, 20 to 500",
+        ALL: "all walls of these six",
+    }
+)
+"""What each is about.  Of generated stones there are .85 of the wall, within .01."""
+
+
+def walls_of(suite: str, only: Sequence[str] = (), *, quick: bool = False) -> tuple[Target, ...]:
+    """Return the walls of a suite, in order.
+
+    Parameters
+    ----------
+    suite : str
+        One of :data:`PUBLIC_SUITES`.
+    only : sequence of str
+        How the names of walls begin that are wanted; empty for all.
+    quick : bool
+        Its first wall alone.
+
+    Raises
+    ------
+    UsageError
+        E138: no wall begins with one of `only`.
+
+    Examples
+    --------
+    >>> [wall.name for wall in walls_of("masons", ["PR"])]
+    ['PR 560x160', 'PR 600x160']
+    """
+    walls = sum(_WALLS.values(), ()) if suite == ALL else _WALLS[suite]
+    found = chosen(walls, only, suite)
+    return found[:1] if quick else found

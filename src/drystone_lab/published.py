@@ -1,0 +1,267 @@
+"""Suite "statics": published and closed-form cases of the limit analysis, both flow rules."""
+
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass, replace
+
+from drystone.statics.flow.nonassociative import NonassociativeResult, nonassociative_resistance
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LimitResult
+from drystone_lab.arches import (
+    NO_SLIDING,
+    THICKEST,
+    WITH_FRICTION,
+    WITHOUT_SLIDING,
+    ArchCase,
+    arch,
+    least_thickness,
+)
+from drystone_lab.cases import closed_forms
+from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.walls_of_ferris import WALLS
+
+CLOSED_FORM_TOLERANCE = 1e-6
+
+FERRIS_TOLERANCE = 5e-6
+"""Half a unit of the fifth digit, to which they are published."""
+
+ARCH_TOLERANCE = 1e-5
+BISECTION = 1e-6
+"""Of t/R; a tenth of the tolerance."""
+
+ROUNDING = 1e-7
+"""By how much the factor without dilatancy may exceed the associative one."""
+
+ALIKE = 1e-6
+"""Factors of both directions that differ by less share a row."""
+
+QUICK_STEP = 3
+"""The quick version asks for the factors without dilatancy of every third closed form only."""
+
+QUICK_WALLS = (3,)
+"""And of these walls of Ferris."""
+
+QUICK_ARCHES = (*WITHOUT_SLIDING[:2], *WITH_FRICTION[2::2])
+
+COLUMNS = (
+    "case",
+    "mu",
+    "towards",
+    "expected",
+    "alpha",
+    "difference",
+    "certificate gap",
+    "without dilatancy, accepted",
+    "without dilatancy",
+    "verdict",
+)
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What the answers for one direction must be.
+
+    Parameters
+    ----------
+    alpha, tolerance : float
+        Associative load factor.
+    low, high : float
+        Range of the factor without dilatancy.
+    words : str
+        That range for people.
+    may_not_converge : bool
+        No factor without dilatancy is accepted too.
+    """
+
+    alpha: float
+    tolerance: float
+    low: float
+    high: float
+    words: str
+    may_not_converge: bool = False
+
+    def fits(self, found: LimitResult) -> bool:
+        """Tell whether a load factor is certified and as expected."""
+        certified = found.certificate is not None and found.certificate.holds
+        near = found.alpha is not None and abs(found.alpha - self.alpha) <= self.tolerance
+        return certified and near
+
+    def fits_without_dilatancy(self, found: NonassociativeResult, upper: float | None) -> bool:
+        """Tell whether a factor is checked, in its range, and not above the associative one."""
+        if found.alpha is None:
+            return self.may_not_converge
+        checked = found.check is not None and found.check.holds
+        below = upper is not None and found.alpha <= upper + ROUNDING
+        return checked and below and self.low <= found.alpha <= self.high
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of `COLUMNS`."""
+
+    case: str
+    mu: float
+    towards: str
+    expected: float
+    alpha: float | None
+    difference: float | None
+    gap: float | None
+    accepted: str
+    without_dilatancy: float | None
+    verdict: str
+
+
+def run(settings: BenchSettings) -> tuple[Table, ...]:
+    """Compare the limit analysis with all published cases.
+
+    Parameters
+    ----------
+    settings : BenchSettings
+        With `quick` most arches and most of the factors without dilatancy are left out.
+
+    Returns
+    -------
+    tuple of Table
+        Closed forms, walls of Ferris and Tin-Loi, arches; a verdict a row.
+    """
+    arches = (*WITHOUT_SLIDING, *WITH_FRICTION)
+    chosen = [case for case in arches if not settings.quick or case in QUICK_ARCHES]
+    return _closed_forms(quick=settings.quick), _ferris(quick=settings.quick), _arches(chosen)
+
+
+def _closed_forms(*, quick: bool) -> Table:
+    rows: list[Row] = []
+    for number, case in enumerate(closed_forms()):
+        expected = [
+            Expected(
+                alpha,
+                CLOSED_FORM_TOLERANCE,
+                alpha - CLOSED_FORM_TOLERANCE,
+                alpha + CLOSED_FORM_TOLERANCE,
+                "the same",
+            )
+            for alpha in (case.left, case.right)
+        ]
+        both_rules = not quick or number % QUICK_STEP == 0
+        rows += _rows(case.name, case.model, expected, both_rules=both_rules)
+    return Table(
+        "Closed forms: load factors alpha on the tilting table",
+        COLUMNS,
+        tuple(astuple(row) for row in rows),
+        (
+            f"Tolerance {CLOSED_FORM_TOLERANCE:g}. The running bond has no formula: its factor is "
+            "the answer of another program.",
+        ),
+    )
+
+
+def _ferris(*, quick: bool) -> Table:
+    rows: list[Row] = []
+    for wall in WALLS:
+        low, high = wall.nonassociative
+        words = f"{low:g} to {high:g}" if low else f"at most {high:g}, or none"
+        expected = Expected(
+            wall.associative, FERRIS_TOLERANCE, low, high, words, wall.may_not_converge
+        )
+        both_rules = not quick or wall.number in QUICK_WALLS
+        name = f"example {wall.number}, {wall.blocks} blocks"
+        rows += _rows(name, wall.model, [expected, expected], both_rules=both_rules)
+    return Table(
+        "Walls of Ferris and Tin-Loi (2001): load factors alpha on the tilting table",
+        COLUMNS,
+        tuple(astuple(row) for row in rows),
+        (
+            f"Tolerance {FERRIS_TOLERANCE:g}, half a unit of the fifth digit.",
+            "Without dilatancy there are several solutions, and methods find different ones. The "
+            "ranges hold what others found; no factor may be above the associative one.",
+        ),
+    )
+
+
+def _rows(
+    case: str, model: RigidBlockModel, expected: list[Expected], *, both_rules: bool = True
+) -> list[Row]:
+    """Return a row for each direction, or one when both say the same."""
+    both = lateral_resistance(model)
+    found: list[LimitResult] = [both.left, both.right]
+    others: list[NonassociativeResult | None] = [None, None]
+    if both_rules:
+        without = nonassociative_resistance(model)
+        others = [without.left, without.right]
+    left, right = (
+        _row(case, model.mu, *things) for things in zip(expected, found, others, strict=True)
+    )
+    return _together(left, right)
+
+
+def _row(
+    case: str,
+    mu: float,
+    expected: Expected,
+    found: LimitResult,
+    other: NonassociativeResult | None,
+) -> Row:
+    fits = expected.fits(found)
+    if other is not None:
+        fits = fits and expected.fits_without_dilatancy(other, found.alpha)
+    return Row(
+        case=case,
+        mu=mu,
+        towards="-x" if found.direction == "left" else "+x",
+        expected=expected.alpha,
+        alpha=found.alpha,
+        difference=None if found.alpha is None else abs(found.alpha - expected.alpha),
+        gap=None if found.certificate is None else found.certificate.gap,
+        accepted=expected.words,
+        without_dilatancy=None if other is None else other.alpha,
+        verdict=_verdict(fits=fits),
+    )
+
+
+def _together(left: Row, right: Row) -> list[Row]:
+    """Make one row of two that agree: the larger difference, and the larger gap."""
+    alike = _agree(left.alpha, right.alpha) and _agree(
+        left.without_dilatancy, right.without_dilatancy
+    )
+    if not alike or (left.expected, left.verdict) != (right.expected, right.verdict):
+        return [left, right]
+    worse = max((left, right), key=lambda row: row.difference or 0.0)
+    gap = max((row.gap for row in (left, right) if row.gap is not None), default=None)
+    return [replace(worse, towards="both", gap=gap)]
+
+
+def _agree(first: float | None, second: float | None) -> bool:
+    if first is None or second is None:
+        return first is second
+    return abs(first - second) <= ALIKE
+
+
+def _arches(cases: Sequence[ArchCase]) -> Table:
+    return Table(
+        "Semicircular arches under their own weight: least thickness over mean radius",
+        ("voussoirs", "mu", "expected t/R", "t/R", "difference", "certificate gap", "verdict"),
+        tuple(_arch_row(case) for case in cases),
+        (
+            f"By bisection to {BISECTION:g}: the arch stands at t/R and falls so much below; "
+            f"sought up to {THICKEST:g}. Tolerance {ARCH_TOLERANCE:g}.",
+            "Whether there are forces that hold an arch up does not depend on the flow rule.",
+        ),
+    )
+
+
+def _arch_row(case: ArchCase) -> tuple[Cell, ...]:
+    mu: Cell = "no sliding" if case.mu == NO_SLIDING else case.mu
+    least = least_thickness(case.count, case.mu, BISECTION)
+    if least is None or case.least is None:
+        fits = least is case.least
+        words = [f"none up to {THICKEST:g}" if t is None else t for t in (case.least, least)]
+        return case.count, mu, *words, None, None, _verdict(fits=fits)
+    certificate = lateral_resistance(arch(case.count, least, case.mu)).right.certificate
+    gap = None if certificate is None else certificate.gap
+    difference = abs(least - case.least)
+    verdict = _verdict(fits=difference <= ARCH_TOLERANCE)
+    return case.count, mu, case.least, least, difference, gap, verdict
+
+
+def _verdict(*, fits: bool) -> str:
+    return "pass" if fits else "miss"

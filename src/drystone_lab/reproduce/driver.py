@@ -1,0 +1,236 @@
+"""`drystone reproduce`: items of the paper made one after the other, kept, and reported."""
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import timedelta
+from pathlib import Path
+from typing import Any, Literal
+
+from drystone.errors import DrystoneError, InputError
+from drystone_lab.reproduce.folder import ReportFolder
+from drystone_lab.reproduce.item import Context, Item, Output
+from drystone_lab.reproduce.items import ITEMS, item_named
+from drystone_lab.reproduce.request import Clock, Request, made_with, request_of, utc_now
+from drystone_lab.runs.failures import absent_data
+from drystone_lab.runs.runner import Runner, Work, one_by_one
+from drystone_lab.runs.source import published
+from drystone_lab.runs.store import RunStore
+
+Status = Literal["made", "kept", "missing data", "failed"]
+
+EVERY_S = 2.0
+"""Walls are told of no oftener than that."""
+
+
+class PaperItems(Mapping[str, Item]):
+    """The items of the paper by name, in its order; each is loaded when it is asked for."""
+
+    def __getitem__(self, name: str) -> Item:
+        """Return an item."""
+        return item_named(name)
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names."""
+        return iter(ITEMS)
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(ITEMS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """How items are made.
+
+    Parameters
+    ----------
+    data : Path or None
+        Folder of the published data.
+    quick, seed, image
+        See :class:`drystone_lab.reproduce.item.Context`.
+    again : bool
+        Make items again that are finished; their walls are taken from the folder all the same.
+    work : callable
+        Who plans the walls.
+    say : callable
+        Told of progress, a line each.
+    now : callable
+        Gives the time of day that is written into the report.
+    """
+
+    data: Path | None = None
+    quick: bool = False
+    seed: int = 1
+    image: Path | None = None
+    again: bool = False
+    work: Work = one_by_one
+    say: Callable[[str], None] = lambda _: None
+    now: Clock = utc_now
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """What became of an item.
+
+    Parameters
+    ----------
+    name : str
+        Of the item.
+    status : {"made", "kept", "missing data", "failed"}
+        "kept" when it was finished before.
+    record : dict or None
+        Contents of its JSON, None when there is none.
+    error : DrystoneError or None
+        Why there is none.
+    page : Path
+        Its page, if it was made.
+    """
+
+    name: str
+    status: Status
+    record: Mapping[str, Any] | None
+    error: DrystoneError | None
+    page: Path
+
+
+def reproduce(
+    names: Sequence[str],
+    folder: Path,
+    options: Options,
+    items: Mapping[str, Item] | None = None,
+) -> Iterator[Made]:
+    """Make items and yield what became of each; the report is written anew after every one.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of `items`.
+    folder : Path
+        To write to; items of earlier calls stay in it and in its report.
+    options : Options
+        How.
+    items : mapping of str to Item, optional
+        In the order of the report; None for the paper's.
+
+    Raises
+    ------
+    UsageError
+        E129: the folder has other files.
+    InputError
+        E100: there is no such image.
+    """
+    items = PaperItems() if items is None else items
+    request = request_of(
+        quick=options.quick, seed=options.seed, image=options.image, data=options.data
+    )
+    report = ReportFolder(folder)
+    progress = Progress(options.say, len(names))
+    runner = Runner(report.runs, options.data, options.work, progress.walls)
+    maker = _Maker(report, options, request, runner)
+    for name in names:
+        progress.begin(name)
+        made = maker.made(name, items)
+        report.write_report(items)
+        progress.end(made.status)
+        yield made
+
+
+class Progress:
+    """Says which item is made, and how many of its walls are there.
+
+    Parameters
+    ----------
+    say : callable
+        Told a line each.
+    total : int
+        How many items.
+    clock : callable
+        Seconds from any beginning.
+    """
+
+    def __init__(
+        self, say: Callable[[str], None], total: int, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._say = say
+        self._clock = clock
+        self._total = total
+        self._begun = clock()
+        self._number = 0
+        self._name = ""
+        self._said = float("-inf")
+
+    def begin(self, name: str) -> None:
+        """Say that an item is begun."""
+        self._number += 1
+        self._name = name
+        self._said = float("-inf")
+        self._line("")
+
+    def walls(self, text: str) -> None:
+        """Say how many of its walls are there, unless that was just done."""
+        if self._clock() - self._said >= EVERY_S:
+            self._said = self._clock()
+            self._line(text)
+
+    def end(self, text: str) -> None:
+        """Say what became of it."""
+        self._line(text)
+
+    def _line(self, text: str) -> None:
+        elapsed = timedelta(seconds=int(self._clock() - self._begun))
+        what = f"{self._number} of {self._total}, {self._name}"
+        self._say(f"[{elapsed}] {what}{': ' if text else ''}{text}")
+
+
+@dataclass(frozen=True)
+class _Maker:
+    """Makes one item after the other for a request."""
+
+    report: ReportFolder
+    options: Options
+    request: Request
+    runner: Runner
+
+    def made(self, name: str, items: Mapping[str, Item]) -> Made:
+        """Return what becomes of an item: it is kept, made, or there is an error."""
+        page = self.report.page(name)
+        kept = None if self.options.again else self.report.finished(name, self.request)
+        if kept is not None:
+            self.report.forget_miss(name)
+            return Made(name, "kept", kept, None, page)
+        item = items[name]
+        if (absent := self._absent(item)) is not None:
+            self.report.miss(name, item, absent)
+            return Made(name, "missing data", None, absent, page)
+        try:
+            return Made(name, "made", self._make(name, item), None, page)
+        except DrystoneError as error:
+            self.report.miss(name, item, error)
+            return Made(name, "failed", None, error, page)
+
+    def _make(self, name: str, item: Item) -> dict[str, Any]:
+        begun = time.perf_counter()
+        context = Context(self.runner, self.options.quick, self.options.seed, self.options.image)
+        output = item.make(context)
+        about = {
+            "request": self.request.as_dict(),
+            "made": made_with(self.options.now),
+            "taken": taken(output, self.runner.store, time.perf_counter() - begun),
+        }
+        return self.report.keep(name, item, output, about)
+
+    def _absent(self, item: Item) -> InputError | None:
+        """Return the error about published stones that an item needs and that are not there."""
+        data = self.options.data
+        absent = [name for name in item.needs if not published(name).is_there(data)]
+        if not absent:
+            return None
+        return absent_data(absent, known=data is not None)
+
+
+def taken(output: Output, store: RunStore, seconds: float) -> dict[str, float | int]:
+    """Return how long an item took, and its walls, whenever they were planned; seconds."""
+    outcomes = [store.get(key) for key in {spec.key for spec in output.runs}]
+    walls = [outcome.times["wall"] for outcome in outcomes if outcome is not None]
+    return {"seconds": seconds, "walls": len(walls), "wall_seconds": sum(walls)}

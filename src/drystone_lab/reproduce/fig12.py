@@ -1,0 +1,204 @@
+"""Fig. 12: Pic-to-Ri, from the pixels of three stones to rigid blocks (§4.2)."""
+
+from collections import defaultdict
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from drystone.kernels.boundary import EMPTY, touching_edges
+from drystone.model.wall import Labels, Wall
+from drystone.plotting.interfaces import plot_blocks, plot_boundary_edges
+from drystone.plotting.stones import plot_labels
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.model import GROUND, Interface, RigidBlockModel
+from drystone_lab.reproduce.base import PR, PaperWall
+from drystone_lab.reproduce.item import Context, Item, Output, Picture
+from drystone_lab.table import Cell, Table
+
+WAYS = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
+"""(x, y) of the headings of :func:`drystone.kernels.boundary.touching_edges`."""
+
+MARGIN_PX = 2
+TILTED_DEG = 1.0
+PANEL_IN = (6.4, 2.5)
+
+PAPER = (
+    "Fig. 12 takes three stones on an initial landscape: (a) each stone's pixels have one value; "
+    "(b) edge detection gives the contacts and the normal at each of their pixels; (c) the areas "
+    "are the weights, the centres of the pixels the centres of mass (triangles), 'only the end "
+    "points of the interface are used', and its normal is 'the average of all normal vectors in a "
+    "given interface' (§4.2). There are no numbers.",
+)
+
+
+def make(context: Context, wall: PaperWall = PR) -> Output:
+    """Take three stones of a wall to rigid blocks.
+
+    Parameters
+    ----------
+    context : Context
+        Does the run.
+    wall : PaperWall
+        What is built.
+    """
+    spec = wall.run(context.seed)
+    built = context.wall(spec)
+    labels = three_stones(built)
+    model = model_from_labels(labels).model
+    starts, ends = boundary_edges(labels)
+    return Output(
+        paper=PAPER,
+        ours=_found(model, len(starts), model_from_labels(built.labels).model),
+        tables=(("blocks", _blocks(model)), ("interfaces", _interfaces(model))),
+        pictures=(_picture(labels, model, starts, ends, wall.name),),
+        runs=(spec,),
+    )
+
+
+def three_stones(wall: Wall) -> Labels:
+    """Return the picture of three stones of a wall: two on the ground, and one on both.
+
+    Parameters
+    ----------
+    wall : Wall
+        At least three stones.  Without such a group the first three are taken.
+
+    Returns
+    -------
+    labels : (h, w) uint32 array
+        Cut out, with the ground below the last row.
+    """
+    touches: dict[int, set[int]] = defaultdict(set)
+    for interface in model_from_labels(wall.labels).model.interfaces:
+        touches[interface.block].add(interface.other)
+        touches[interface.other].add(interface.block)
+    order = [placement.stone_id for placement in wall.placements]
+    on_ground = [stone for stone in order if GROUND in touches[stone]]
+    group = set(order[:3])
+    for top in order:
+        below = sorted(touches[top].intersection(on_ground), key=order.index)
+        if top not in on_ground and len(below) >= 2:
+            group = {top, *below[:2]}
+            break
+    kept = np.where(np.isin(wall.labels, sorted(group)), wall.labels, 0).astype(np.uint32)
+    rows, cols = (np.flatnonzero((kept > 0).any(axis=axis)) for axis in (1, 0))
+    inside = np.pad(kept, ((MARGIN_PX, 0), (MARGIN_PX, MARGIN_PX)))
+    # The margin is above, left and right of the stones only: they stand on the last row.
+    return inside[rows[0] : rows[-1] + 1 + MARGIN_PX, cols[0] : cols[-1] + 1 + 2 * MARGIN_PX]
+
+
+def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the pixel edges between two stones or a stone and the ground.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        0 where nothing is; the ground is below the last row.
+
+    Returns
+    -------
+    starts, ends : (n, 2) float arrays
+        (x, y), y up from the ground; the stone of the larger id is on the left of the way.
+
+    Examples
+    --------
+    >>> starts, ends = boundary_edges(np.array([[5], [3]]))
+    >>> starts.tolist(), ends.tolist()
+    ([[0.0, 1.0], [0.0, 0.0]], [[1.0, 1.0], [1.0, 0.0]])
+    """
+    height, width = labels.shape
+    cells = np.full((height + 1, width), GROUND, np.int64)
+    cells[:-1] = np.where(labels > 0, labels.astype(np.int64), EMPTY)
+    edges = touching_edges(cells)
+    starts = np.column_stack([edges[:, 3], height - edges[:, 2]]).astype(float)
+    return starts, starts + WAYS[edges[:, 4]]
+
+
+def _found(model: RigidBlockModel, edges: int, whole: RigidBlockModel) -> tuple[str, ...]:
+    long = [interface for interface in model.interfaces if len(interface.points) == 2]
+    points = len(model.interfaces) - len(long)
+    angles = sorted(_apart_deg(i) for i in whole.interfaces if len(i.points) == 2)
+    tilted = sum(angle > TILTED_DEG for angle in angles)
+    return (
+        f"Stones {', '.join(str(block.id) for block in model.blocks)} touch each other and the "
+        f"ground on {edges} pixel edges, which make {len(long)} straight interfaces and {points} "
+        f"contacts at a point, {model.contact_count} contact points in all, at the corners of "
+        "pixels.",
+        "The planner takes the normal of the line fitted to a run. The paper takes the mean of the "
+        "normals of its pixels, which depends on the two ends of the run alone. In the finished "
+        f"wall the two differ by more than {TILTED_DEG:g} degree in {tilted} of {len(angles)} "
+        f"interfaces, by {angles[-1]:.1f} degrees at most.",
+    )
+
+
+def _mean_normal(interface: Interface) -> NDArray[np.float64]:
+    """Return the mean of the normals of the pixel edges of a run.
+
+    Each is its edge turned by a quarter; so their sum is the way from end to end, turned.
+    """
+    way = interface.points[-1] - interface.points[0]
+    normal = np.array([-way[1], way[0]]) / np.hypot(*way)
+    return np.asarray(normal if normal @ np.array(interface.normal) >= 0 else -normal)
+
+
+def _apart_deg(interface: Interface) -> float:
+    cosine = float(_mean_normal(interface) @ np.array(interface.normal))
+    return float(np.degrees(np.arccos(min(1.0, cosine))))
+
+
+def _blocks(model: RigidBlockModel) -> Table:
+    return Table(
+        "Rigid blocks",
+        ("stone", "area px", "x", "y"),
+        tuple(
+            (block.id, block.area, *(round(value, 4) for value in block.centroid))
+            for block in model.blocks
+        ),
+        ("Working px, y up from the ground.",),
+    )
+
+
+def _interfaces(model: RigidBlockModel) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for interface in model.interfaces:
+        long = len(interface.points) == 2
+        ends = [*interface.points[0].tolist(), *interface.points[-1].tolist()]
+        rows.append(
+            (
+                interface.block, interface.other or "ground", *ends, round(interface.length, 4),
+                *(round(value, 4) for value in interface.normal),
+                round(_apart_deg(interface), 3) if long else None,
+            )
+        )  # fmt: skip
+    return Table(
+        "Interfaces; the normal points from the second into the first",
+        ("stone", "other", "x0", "y0", "x1", "y1", "length px", "normal x", "normal y",
+         "from the mean of the edges' normals deg"),
+        tuple(rows),
+    )  # fmt: skip
+
+
+def _picture(
+    labels: Labels,
+    model: RigidBlockModel,
+    starts: NDArray[np.float64],
+    ends: NDArray[np.float64],
+    name: str,
+) -> Picture:
+    figure = Figure(figsize=(PANEL_IN[0], 3 * PANEL_IN[1]), layout="constrained")
+    first, second, third = figure.subplots(3, 1)
+    plot_labels(labels, first, title="(a) labels")
+    plot_boundary_edges(labels, starts, ends, second)
+    second.set_title("(b) edges between blocks, and their normals", fontsize=9, loc="left")
+    plot_blocks(labels, model, third)
+    third.set_title("(c) rigid blocks", fontsize=9, loc="left")
+    return Picture(
+        "fig12", figure,
+        f"Pic-to-Ri on three stones of {name}: (a) label image, (b) pixel edges between two "
+        "stones or a stone and the ground with their normals, (c) interfaces with their end "
+        "points and normals; triangles are centres of mass.",
+    )  # fmt: skip
+
+
+ITEM = Item("Pic-to-Ri: from pixels to rigid blocks", "§4.2", make, needs=(PR.source.name,))

@@ -1,0 +1,173 @@
+"""Fig. 17: the shortest paths along the joints, ours and the masons' (§5.2)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from drystone.io.published import published_file
+from drystone.io.wall_image import read_wall_image
+from drystone.metrics.arrangement import SHORTEST, mean_excess
+from drystone.metrics.frame import frame_wall
+from drystone.metrics.joints import PAD_LEFT, PAD_TOP, joint_mask
+from drystone.metrics.paths import JointPath, horizontal_paths, vertical_paths
+from drystone.metrics.reduce import reduce_labels
+from drystone.model.wall import Labels
+from drystone.plotting.joints import plot_joint_paths
+from drystone_lab.reproduce.base import PR, PaperWall
+from drystone_lab.reproduce.item import Context, Item, Output, Picture
+from drystone_lab.table import Cell, Table
+
+ACROSS, UPRIGHT = 3, 7
+"""How many paths Fig. 17 draws."""
+
+PANEL_IN = (6.4, 2.2)
+
+PAPER = (
+    "Fig. 17 draws (a) the three shortest horizontal paths along the joints of a dry-stone wall "
+    "and (b) seven shortest vertical ones. From such paths come F_AH (Eq. 26), by how much they "
+    "are longer than the wall is wide, the lower the straighter the courses, and F_AV (Eq. 27), by "
+    "how much they are longer than it is high, the higher the better head joints are interrupted. "
+    "The lengths of the paths are not given.",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Paths:
+    """The shortest paths along the joints of a wall.
+
+    Parameters
+    ----------
+    name : str
+        Of the wall.
+    labels : (h, w) integer array
+        Of the wall, cut out.
+    across, upright : tuple of JointPath
+        From left to right and from top to bottom, the shortest first.
+    width, height : int
+        Lengths of straight paths, px.
+    """
+
+    name: str
+    labels: Labels
+    across: tuple[JointPath, ...]
+    upright: tuple[JointPath, ...]
+    width: int
+    height: int
+
+    @classmethod
+    def of(cls, name: str, labels: Labels, wall_width_px: float | None = None) -> "Paths":
+        """Find the paths of a label image."""
+        framed = frame_wall(labels, wall_width_px).labels
+        joint = joint_mask(framed)
+        rows, cols = joint.shape
+        return cls(name, framed, horizontal_paths(joint), vertical_paths(joint), cols - 1, rows - 1)
+
+    @property
+    def figures(self) -> tuple[float | None, float | None]:
+        """F_AH and F_AV, in percent; None where there is no path."""
+        across = [path.length_px for path in self.across]
+        upright = [path.length_px for path in self.upright]
+        return mean_excess(across, self.width), mean_excess(upright, self.height)
+
+
+def make(context: Context, wall: PaperWall = PR) -> Output:
+    """Find and draw the shortest paths of a planned wall, and of the masons' beside it.
+
+    Parameters
+    ----------
+    context : Context
+        Does the run.
+    wall : PaperWall
+        What is built; of published stones the image is the masons' wall.
+    """
+    spec = wall.run(context.seed)
+    built = context.wall(spec)
+    walls = [Paths.of(f"planned {wall.name}", built.labels, built.site.width_px)]
+    if context.data is not None and wall.source.kind == "published":
+        traced = read_wall_image(published_file(context.data, wall.source.name))
+        walls.append(Paths.of(f"the masons' {wall.name}", reduce_labels(traced, wall.scale)))
+    return Output(
+        paper=PAPER,
+        ours=_found(walls),
+        tables=(("figures", _figures(walls)), ("paths", _paths(walls))),
+        pictures=tuple(_picture(paths, number) for number, paths in enumerate(walls)),
+        runs=(spec,),
+    )
+
+
+def _found(walls: list[Paths]) -> tuple[str, ...]:
+    told = []
+    for paths in walls:
+        across, upright = paths.figures
+        told.append(
+            f"{paths.name}: F_AH {_percent(across)}, F_AV {_percent(upright)} over the {SHORTEST} "
+            f"shortest paths each ({len(paths.across)} horizontal and {len(paths.upright)} "
+            "vertical starts have a path)"
+        )
+    return (
+        "; ".join(told) + ".",
+        "Both walls are measured by one definition on pixels of one size: starts every tenth of "
+        "the side, each stone eroded once, so that stones that touch have a joint of two px. The "
+        "paper's Eq. 26 and Eq. 27 leave n and the starts open.",
+    )
+
+
+def _percent(value: float | None) -> str:
+    return "not defined" if value is None else f"{value:.2f} %"
+
+
+def _figures(walls: list[Paths]) -> Table:
+    rows = []
+    for paths in walls:
+        figures = (None if value is None else round(value, 4) for value in paths.figures)
+        rows.append((paths.name, paths.width, paths.height, *figures))
+    return Table(
+        "Alignment factors",
+        ("wall", "straight across px", "straight upright px", "F_AH %", "F_AV %"),
+        tuple(rows),
+        (f"Mean over the {SHORTEST} shortest paths.",),
+    )
+
+
+def _paths(walls: list[Paths]) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for paths in walls:
+        for way, found, straight in (
+            ("horizontal", paths.across, paths.width),
+            ("vertical", paths.upright, paths.height),
+        ):
+            for rank, path in enumerate(found, 1):
+                start = path.pixels[0] - (PAD_TOP, PAD_LEFT)
+                at = int(start[0] if way == "horizontal" else start[1])
+                excess = mean_excess([path.length_px], straight)
+                cell = None if excess is None else round(excess, 4)
+                rows.append((paths.name, way, rank, at, round(path.length_px, 4), cell))
+    return Table(
+        "Paths along the joints, the shortest first",
+        ("wall", "way", "rank", "start row or col", "length px", "longer than straight %"),
+        tuple(rows),
+        ("Rows from the top of the stones, columns from the left end of the wall.",),
+    )
+
+
+def _picture(paths: Paths, number: int) -> Picture:
+    figure = Figure(figsize=(PANEL_IN[0], 2 * PANEL_IN[1]), layout="constrained")
+    pad = np.array([PAD_TOP, PAD_LEFT])
+    for ax, found, count, way in zip(
+        figure.subplots(2, 1), (paths.across, paths.upright), (ACROSS, UPRIGHT),
+        ("horizontal", "vertical"), strict=True,
+    ):  # fmt: skip
+        shown = found[:count]
+        plot_joint_paths(paths.labels, [path.pixels - pad for path in shown], ax)
+        lengths = ", ".join(f"{path.length_px:.0f}" for path in shown)
+        ax.set_title(f"{paths.name}: {way} paths of {lengths} px", fontsize=8, loc="left")
+    return Picture(
+        "fig17" if number == 0 else "fig17-masons", figure,
+        f"The shortest paths along the joints, {paths.name}: {len(paths.across[:ACROSS])} "
+        f"horizontal and {len(paths.upright[:UPRIGHT])} vertical ones. F_AH and F_AV come from the "
+        f"{SHORTEST} shortest of each.",
+    )  # fmt: skip
+
+
+ITEM = Item("shortest paths along the joints", "§5.2", make, needs=(PR.source.name,))

@@ -1,0 +1,182 @@
+"""Fig. 6 and Fig. 7: what the indices measure, on real stones (§3.5)."""
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from matplotlib.figure import Figure
+
+from drystone.plotting.action import Mark, plot_action
+from drystone_lab.reproduce.base import PR, PaperWall
+from drystone_lab.reproduce.construction import Moment, construction
+from drystone_lab.reproduce.item import Context, Item, Output, Picture
+from drystone_lab.reproduce.places import (
+    Place,
+    action_at,
+    amid_course,
+    extreme,
+    resting_places,
+)
+from drystone_lab.reproduce.recounted import recounted
+from drystone_lab.table import Cell, Table
+
+MARKS: Mapping[str, Mark] = MappingProxyType(
+    {
+        "SF": "box", "LFR": "rays", "GDS": "begun", "NHR": "neighbour", "IWR": "joints",
+        "IS": "slope",
+    }
+)  # fmt: skip
+"""What shows each index."""
+
+PANEL_IN = (3.6, 1.28)
+WIDE_IN = (8.4, 3.1)
+
+PAPER = (
+    "Fig. 6 draws a favourable and an unfavourable case of each geometric index SF, LFR, GDS, NHR, "
+    "IWR and IS. §3.5 gives their ranges: SF, LFR, GDS and IWR from 0 to 1, the highest best; a "
+    "straight course is NHR = 0; a large IS is a top that slopes inwards. Fig. 6 has no values.",
+    "Fig. 7 shows on one landscape what they are computed from: the rays of LFR to the left and "
+    "downwards, the bounding box of the landscape, the left neighbour and the two stones below.",
+)
+
+
+def make(context: Context, wall: PaperWall = PR) -> Output:
+    """Find and draw the best and the worst place by each index, and one place with everything.
+
+    Parameters
+    ----------
+    context : Context
+        Does the run.
+    wall : PaperWall
+        What is built.
+    """
+    spec = wall.run(context.seed)
+    built = construction(context, spec)
+    moment, place = amid_course(built)
+    places = resting_places(moment)
+    cases = [
+        (name, best, found)
+        for name in MARKS
+        for best in (True, False)
+        if (found := extreme(places, name, best=best)) is not None
+    ]
+    return Output(
+        paper=PAPER,
+        ours=(_found(moment, places, cases), _found_one(moment, place)),
+        tables=(
+            ("extremes", _extremes(moment, cases)),
+            ("ranges", _ranges(places)),
+            ("fig7", _one(moment, place)),
+        ),
+        pictures=(_picture6(moment, cases, wall.name), _picture7(moment, place)),
+        runs=(spec,),
+    )
+
+
+Cases = Sequence[tuple[str, bool, Place]]
+"""Index, whether it is best there, and the place."""
+
+
+def _found(moment: Moment, places: Sequence[Place], cases: Cases) -> str:
+    spans = "; ".join(
+        f"{name} {worst.values[name]:.3f} to {best.values[name]:.3f}"
+        for (name, _, best), (_, _, worst) in zip(cases[::2], cases[1::2], strict=True)
+    )
+    return (
+        f"With {len(moment.wall.placements)} stones placed, {len(moment.remaining)} are left, and "
+        f"there are {len(places)} feasible positions at which one of them rests by itself. From "
+        f"the worst to the best of them: {spans}. NHR is taken where there is a left neighbour, "
+        "IWR of inner stones over two joints, IS of boundary stones. The column of values counted "
+        "again is worked out from the pixels of the picture alone; SF differs there because the "
+        "planner takes the area and the box from the source image."
+    )
+
+
+def _found_one(moment: Moment, place: Place) -> str:
+    values = ", ".join(f"{name} = {value:.3f}" for name, value in place.values.items())
+    return (
+        f"Fig. 7 shows stone {place.posed.stone.id}, number {moment.number} of the run, where it "
+        f"ended: {values}."
+    )
+
+
+def _row(moment: Moment, place: Place, name: str) -> tuple[Cell, ...]:
+    action = action_at(moment, place.posed, place.row, place.col)
+    again, box = recounted(action, name), action.box
+    value = round(place.values[name], 4)
+    return (
+        place.posed.stone.id, box.left, box.bottom, value,
+        None if again is None else round(again, 4),
+    )  # fmt: skip
+
+
+def _extremes(moment: Moment, cases: Cases) -> Table:
+    return Table(
+        "The best and the worst place by each index",
+        ("index", "case", "stone", "left px", "bottom px", "value", "counted again"),
+        tuple(
+            (name, "favourable" if best else "unfavourable", *_row(moment, place, name))
+            for name, best, place in cases
+        ),
+        ("Places in working px of the wall; of equal ones the lowest, then the leftmost.",),
+    )
+
+
+def _ranges(places: Sequence[Place]) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for name in MARKS:
+        values = sorted(place.values[name] for place in places if name in place.values)
+        if values:
+            cells = (values[0], values[len(values) // 2], values[-1])
+            rows.append((name, len(values), *(round(value, 4) for value in cells)))
+    return Table(
+        "Indices over all places where a stone that is left would rest",
+        ("index", "places", "least", "upper median", "largest"),
+        tuple(rows),
+    )
+
+
+def _one(moment: Moment, place: Place) -> Table:
+    return Table(
+        "Indices of the stone of Fig. 7",
+        ("index", "stone", "left px", "bottom px", "value", "counted again"),
+        tuple((name, *_row(moment, place, name)) for name in place.values),
+    )
+
+
+def _picture6(moment: Moment, cases: Cases, name: str) -> Picture:
+    rows = -(-len(cases) // 2)
+    size = (2 * PANEL_IN[0], rows * PANEL_IN[1])
+    figure = Figure(figsize=size, layout="constrained")
+    panels = figure.subplots(rows, 2, squeeze=False).ravel().tolist()
+    for ax, (index, best, place) in zip(panels, cases, strict=True):
+        action = action_at(moment, place.posed, place.row, place.col)
+        verdict = "favourable" if best else "unfavourable"
+        title = f"{index} = {place.values[index]:.3f}, {verdict}: stone {place.posed.stone.id}"
+        plot_action(action, {MARKS[index]}, ax, title=title)
+        ax.set_axis_off()
+    return Picture(
+        "fig6", figure,
+        f"The best and the worst place by each index among all at which a stone that is left of "
+        f"{name} would rest. Orange: the stone. SF: its bounding box. LFR: what the rays sweep, "
+        "darker where it is filled. GDS: the box B of what is built. NHR: the left neighbour "
+        "(green), both tops. IWR: the stones below (blue), distances to the joints. IS: highest "
+        "points of the halves.",
+    )  # fmt: skip
+
+
+def _picture7(moment: Moment, place: Place) -> Picture:
+    action = action_at(moment, place.posed, place.row, place.col)
+    values = ", ".join(f"{name} {value:.2f}" for name, value in place.values.items())
+    figure = Figure(figsize=WIDE_IN, layout="constrained")
+    title = f"stone {place.posed.stone.id}: {values}"
+    ax = plot_action(action, set(MARKS.values()), figure.add_subplot(), title=title)
+    ax.set_xlabel("working px", fontsize=7, labelpad=1)
+    return Picture(
+        "fig7", figure,
+        "What the indices of one stone (orange) are computed from: swept by its rays (yellow, "
+        "darker where filled), box B (dark blue), left neighbour (green) and the tops, the two "
+        "stones below (light blue) and the distances to their joints, its bounding box (dashed).",
+    )  # fmt: skip
+
+
+ITEM = Item("the indices, good and bad, on real stones", "§3.5", make, needs=(PR.source.name,))

@@ -1,0 +1,173 @@
+"""Fig. 9: stones that fall where they are tried, turned and wedged (§3.7)."""
+
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from drystone.plotting.support import Standing, plot_standing, window_around
+from drystone_lab.reproduce.base import PR, PaperWall
+from drystone_lab.reproduce.construction import construction
+from drystone_lab.reproduce.item import Context, Item, Output, Picture
+from drystone_lab.reproduce.unstable import Unstable, unstable_trials
+from drystone_lab.table import Cell, Table
+
+PANEL_IN = (3.1, 2.3)
+
+WIDE = 0.1
+"""Cases that are drawn have a support at least this wide, in widths of the stone, so that AB is
+seen, unless there is none."""
+
+PAPER = (
+    "Fig. 9 draws one stone: (a) not stable, since its centre of mass C is not above the support "
+    "AB; (b) turned about A, the nearer end, until C' lies on the new AB, counter-clockwise when "
+    "AB x AC is positive; (c) on a wedge under the unsupported part, of height h_wedge and width "
+    "w_wedge. 'The rotation-based stabilization has the priority, whereas wedging is employed only "
+    "when the rotation-based method fails' (§3.7). There are no numbers.",
+)
+
+
+def make(context: Context, wall: PaperWall = PR) -> Output:
+    """Try all stones that are left before each step of a run, and treat those that fall.
+
+    Parameters
+    ----------
+    context : Context
+        Does the run.
+    wall : PaperWall
+        What is built.
+    """
+    spec = wall.run(context.seed)
+    trials, unstable = unstable_trials(construction(context, spec))
+    shown = _shown(unstable)
+    pictures = (_picture(shown, wall.name),) if shown else ()
+    return Output(
+        paper=PAPER,
+        ours=_found(trials, unstable),
+        tables=(("counts", _counts(trials, unstable)), ("cases", _cases(shown))),
+        pictures=pictures,
+        runs=(spec,),
+    )
+
+
+def _shown(unstable: Sequence[Unstable]) -> tuple[Unstable, ...]:
+    """Return the case that is turned most, and that of the largest wedge where turning fails."""
+    turned = [one for one in unstable if one.turned is not None and one.wedged is not None]
+    stuck = [one for one in unstable if one.turned is None and one.wedged is not None]
+    most = max(_wide(turned), key=lambda one: abs(one.turn_deg or 0.0), default=None)
+    largest = max(_wide(stuck), key=_wedge_area, default=None)
+    return tuple(one for one in (most, largest) if one is not None)
+
+
+def _wide(cases: Sequence[Unstable]) -> Sequence[Unstable]:
+    wide = [
+        one for one in cases
+        if one.trial.support.right_x - one.trial.support.left_x
+        >= WIDE * one.trial.pose[0].width_px
+    ]  # fmt: skip
+    return wide or cases
+
+
+def _wedge_area(case: Unstable) -> int:
+    return sum(wedge.area_px for wedge in case.wedged.wedges) if case.wedged is not None else 0
+
+
+def _found(trials: int, unstable: Sequence[Unstable]) -> tuple[str, ...]:
+    turned = sum(one.turned is not None for one in unstable)
+    wedged = sum(one.turned is None and one.wedged is not None for one in unstable)
+    wrong = [one for one in unstable if not one.sign_agrees]
+    hanging = sum(one.hangs for one in wrong)
+    lost = len(unstable) - turned - wedged
+    first = (
+        f"Before each step every stone that is left was tried where Eq. 12 puts it: {trials} "
+        f"trials, of which {len(unstable)} are not stable. Turning makes {turned} of these stable, "
+        f"wedging {wedged} of the others, and {lost} are given up."
+    )
+    second = (
+        f"AB x AC has the sign that the paper's rule needs in {len(unstable) - len(wrong)} of "
+        f"{len(unstable)} cases. In the other {len(wrong)} it would turn the stone away from the "
+        f"side to which it falls; in {hanging} of them C is below A, where the stone hangs on a "
+        "shoulder. So the planner turns towards the side on which C is beyond A."
+    )
+    return (first, second)
+
+
+def _counts(trials: int, unstable: Sequence[Unstable]) -> Table:
+    turned = [one for one in unstable if one.turned is not None]
+    stuck = [one for one in unstable if one.turned is None]
+    rows: tuple[tuple[Cell, ...], ...] = (
+        ("tried", trials),
+        ("not stable", len(unstable)),
+        ("stable after turning", len(turned)),
+        ("of these, a wedge would do as well", sum(one.wedged is not None for one in turned)),
+        ("turning fails, a wedge does", sum(one.wedged is not None for one in stuck)),
+        ("neither", sum(one.wedged is None for one in stuck)),
+        ("sign of AB x AC is wrong", sum(not one.sign_agrees for one in unstable)),
+        ("of these, C is below A", sum(not one.sign_agrees and one.hangs for one in unstable)),
+    )
+    return Table("Trial placements of a run, every stone that is left before each step",
+                 ("what", "count"), rows)  # fmt: skip
+
+
+def _cases(shown: Sequence[Unstable]) -> Table:
+    columns = (
+        "stone", "before step", "pose", "A", "B", "C", "AB x AC", "turned deg", "pivots",
+        "wedge height px", "wedge width px",
+    )  # fmt: skip
+    rows = []
+    for case in shown:
+        rows.append(_row(case, "tried", case.trial))
+        if case.turned is not None:
+            rows.append(_row(case, "turned", case.turned))
+        if case.wedged is not None:
+            rows.append(_row(case, "wedged", case.wedged))
+    return Table(
+        "The stones that are drawn", columns, tuple(rows),
+        ("Points in working px of the wall, y up from the ground; angles counter-clockwise.",),
+    )  # fmt: skip
+
+
+def _row(case: Unstable, pose: str, standing: Standing) -> tuple[Cell, ...]:
+    a, b = standing.ends
+    points = [f"{x:.4g}, {y:.4g}" for x, y in (a, b, standing.mass)]
+    turn: Cell = case.turn_deg if pose == "turned" else None
+    pivots: Cell = case.pivots if pose == "turned" else None
+    size: tuple[Cell, Cell] = (None, None)
+    if standing.wedges:
+        size = (standing.wedges[0].mask.shape[0], standing.wedges[0].mask.shape[1])
+    cross = round(standing.cross, 2)
+    return (case.stone_id, case.moment.number, pose, *points, cross, turn, pivots, *size)
+
+
+def _picture(shown: Sequence[Unstable], name: str) -> Picture:
+    size = (3 * PANEL_IN[0], len(shown) * PANEL_IN[1])
+    figure = Figure(figsize=size, layout="constrained")
+    panels = figure.subplots(len(shown), 3, squeeze=False)
+    for axes, case in zip(panels.tolist(), shown, strict=True):
+        _draw_case(axes, case)
+    return Picture(
+        "fig9", figure,
+        f"Stones that fall where they are tried, in a run of {name}: A and B are the ends of the "
+        "support, A the one nearer to the centre of mass C, C' its projection; the arrow is the "
+        "sense of turning. Turned: dashed where it was. Wedged: the wedge (dark red) with its "
+        "height and width in working px; grey is the supported side, which wedging leaves alone.",
+    )  # fmt: skip
+
+
+def _draw_case(axes: Sequence[Axes], case: Unstable) -> None:
+    stands = [one for one in (case.trial, case.turned, case.wedged) if one is not None]
+    window, labels = window_around(stands), case.moment.wall.labels
+    title = f"stone {case.stone_id} before step {case.moment.number}: falls"
+    plot_standing(labels, case.trial, window, axes[0], title=title)
+    turned = "" if case.turn_deg is None else f"turned by {case.turn_deg:g}°"
+    for ax, standing, text in ((axes[1], case.turned, turned), (axes[2], case.wedged, "wedged")):
+        if standing is not None:
+            plot_standing(labels, standing, window, ax, before=case.trial, title=text)
+        else:
+            ax.set_axis_off()
+            ax.text(0.5, 0.5, "fails: it meets what is there,\nor a limit, before it rests",
+                    ha="center", va="center",
+                    size=8, transform=ax.transAxes)  # fmt: skip
+
+
+ITEM = Item("an unstable stone, turned and wedged", "§3.7", make, needs=(PR.source.name,))

@@ -1,0 +1,121 @@
+"""A table or figure of the paper that can be made again."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from drystone.model.wall import Wall
+from drystone_lab.runs.outcome import Outcome
+from drystone_lab.runs.runner import Runner
+from drystone_lab.runs.spec import RunSpec
+from drystone_lab.table import Table
+
+
+@dataclass(frozen=True, eq=False)
+class Context:
+    """What an item is made with.
+
+    Parameters
+    ----------
+    runner : Runner
+        Does and keeps runs; `runner.data` is the folder of the published data or None.
+    quick : bool
+        A smaller version: the same kind of walls, fewer or smaller ones, a minute of one core at
+        most.
+    seed : int
+        Of all random choices, or the first of several.
+    image : Path or None
+        A user's own stones, for items that take them.
+    """
+
+    runner: Runner
+    quick: bool = False
+    seed: int = 1
+    image: Path | None = None
+
+    @property
+    def data(self) -> Path | None:
+        """Folder of the published data."""
+        return self.runner.data
+
+    def run(self, specs: Sequence[RunSpec]) -> tuple[Outcome, ...]:
+        """Return the outcomes of runs, in their order."""
+        return self.runner.run(specs)
+
+    def wall(self, spec: RunSpec) -> Wall:
+        """Return the finished wall of a run."""
+        (outcome,) = self.run((spec,))
+        return outcome.wall(spec, self.data)
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A figure of an item; written as NAME.png and NAME.svg.
+
+    Parameters
+    ----------
+    name : str
+        Of the files.
+    figure : matplotlib.figure.Figure
+        What is drawn.
+    caption : str
+        What is seen, in a sentence or two.
+    """
+
+    name: str
+    figure: Figure
+    caption: str
+
+
+@dataclass(frozen=True, eq=False)
+class Output:
+    """What an item came to.
+
+    Parameters
+    ----------
+    paper : tuple of str
+        What the paper shows and reports there, its numbers among it; a paragraph each.
+    ours : tuple of str
+        What we found, in sentences whose numbers are computed, and why it differs; a paragraph
+        each.
+    tables : tuple of (str, Table)
+        Name of the CSV file without ending, and the table.  Equal seeds give equal tables on every
+        machine: no times are in them.
+    times : tuple of (str, Table)
+        Tables of measured times, which differ from machine to machine and run to run.
+    pictures : tuple of Picture
+        What is drawn.
+    runs : tuple of RunSpec
+        That the item is made of, for its JSON.
+    """
+
+    paper: tuple[str, ...]
+    ours: tuple[str, ...]
+    tables: tuple[tuple[str, Table], ...] = ()
+    times: tuple[tuple[str, Table], ...] = ()
+    pictures: tuple[Picture, ...] = ()
+    runs: tuple[RunSpec, ...] = ()
+
+
+@dataclass(frozen=True)
+class Item:
+    """A table or figure of the paper.
+
+    Parameters
+    ----------
+    title : str
+        What it shows.
+    section : str
+        Of the paper.
+    make : callable
+        Makes it.
+    needs : tuple of str
+        Published stones without which it cannot be made, as paths in their folder.
+    """
+
+    title: str
+    section: str
+    make: Callable[[Context], Output]
+    needs: tuple[str, ...] = field(default=())

@@ -1,0 +1,87 @@
+"""The paper's tables and figures by name."""
+
+from collections.abc import Mapping
+from importlib import import_module
+from types import MappingProxyType
+from typing import TYPE_CHECKING, cast
+
+from drystone.errors import UsageError
+
+if TYPE_CHECKING:  # names are listed without waiting for matplotlib
+    from drystone_lab.reproduce.item import Item
+
+ITEMS: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "fig5": ("clusters of the stones PR (§3.4)", "fig5"),
+        "fig6-7": ("the indices, good and bad, on real stones (§3.5)", "fig6_7"),
+        "fig8": ("feasible positions of a stone (§3.6)", "fig8"),
+        "beta": ("the threshold of GDS in Eq. 12: 0, .5, .7, .9 (§3.6)", "beta"),
+        "fig9": ("an unstable stone, turned and wedged (§3.7)", "fig9"),
+        "fig12": ("Pic-to-Ri: from pixels to rigid blocks (§4.2)", "fig12"),
+        "fig13": ("the masons' walls, and with their gaps closed (§5.1)", "fig13"),
+        "fig14-15": ("the base case PR and its mechanisms (§5.1)", "fig14_15"),
+        "fig16": ("sampling: uniform, two-fold, full batch (§5.1)", "fig16"),
+        "fig17": ("shortest paths along the joints (§5.2)", "fig17"),
+        "table2": ("walls 1-5: fixed seed, best of 20, masons; with fig18 (§5.2)", "table2"),
+        "fig19": ("wedges of walls 3 and 5 (§5.2)", "fig19"),
+        "fig20": ("stabilisation: filling against area of wedges (§5.2)", "fig20"),
+        "fig21": ("walls built from both ends (§5.2)", "fig21"),
+        "fig22-24": ("polygons of eight noise levels, ten walls each (§5.3)", "fig22_24"),
+        "fig25": ("orientations in steps of 10 degrees (§5.3)", "fig25"),
+        "fig26-27": ("Fourier stones of four kinds, twenty walls each (§5.3)", "fig26_27"),
+        "fig28": ("time of a step by part, variant and full batch (§6.1)", "fig28"),
+        "growth": ("time against the numbers of stones Q and of clusters K (§6.2)", "growth"),
+        "fig29": ("resolutions .5 to 2: walls and times (§6.3)", "fig29"),
+        "figB30-32": ("walls of the stones of Fig. 18 by other methods (B.1)", "fig_b30_32"),
+        "figB33": ("91 irregular stones (B.2)", "fig_b33"),
+        "figB34": ("bricks of aspect 2 and 3 (B.2)", "fig_b34"),
+    }
+)
+"""What each shows, and the module of this package whose ITEM it is; in the order of the paper."""
+
+ALSO: Mapping[str, str] = MappingProxyType(
+    {
+        "fig6": "fig6-7", "fig7": "fig6-7", "fig14": "fig14-15", "fig15": "fig14-15",
+        "fig18": "table2", "fig22": "fig22-24", "fig23": "fig22-24", "fig24": "fig22-24",
+        "fig26": "fig26-27", "fig27": "fig26-27", "figB30": "figB30-32", "figB31": "figB30-32",
+        "figB32": "figB30-32",
+    }
+)  # fmt: skip
+"""Other names, of those that are made together."""
+
+OWN_STONES = ("figB33",)
+"""Items that can be made of a user's own stones."""
+
+ALL = "all"
+
+
+def item_names(asked: str) -> tuple[str, ...]:
+    """Return the names of the items that are meant.
+
+    Raises
+    ------
+    UsageError
+        E138: there is none of this name.
+
+    Examples
+    --------
+    >>> item_names("fig18"), len(item_names("all"))
+    (('table2',), 23)
+    """
+    if asked == ALL:
+        return tuple(ITEMS)
+    name = ALSO.get(asked, asked)
+    if name not in ITEMS:
+        raise UsageError(
+            "E138",
+            f"the paper has no {asked!r} that can be made again.",
+            where="reproduce",
+            cure=f"Name one of {', '.join(ITEMS)}, or all; `drystone reproduce --list` explains.",
+        )
+    return (name,)
+
+
+def item_named(name: str) -> "Item":
+    """Return one of :data:`ITEMS`."""
+    module = import_module(f"drystone_lab.reproduce.{ITEMS[name][1]}")
+    return cast("Item", module.ITEM)

@@ -1,0 +1,163 @@
+"""The stones of Thangavelu et al. (2018), and our own of the noise levels between (§5.3)."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from drystone.io.published import published_file
+from drystone.io.wall_image import read_wall_image
+from drystone.metrics.measure import measure_labels
+from drystone.metrics.reduce import reduce_labels
+from drystone.model.wall import Labels
+from drystone.statics.contacts.gaps import model_with_closed_gaps
+from drystone.statics.limit import lateral_resistance
+from drystone_lab.reproduce.base import PaperWall
+from drystone_lab.runs.source import generated, published
+
+NOISES = tuple(range(10, 90, 10))
+"""Levels of the paper, %."""
+
+PUBLISHED = (10, 20, 40, 50, 70)
+"""Levels whose stones are public; the others are generated."""
+
+SCALE = 0.3
+
+COUNT = 26
+"""Stones of a generated set: the published ones have 28, 23, 26, 27 and 25."""
+
+AREA_SHARE = 0.696
+"""Area of all stones over that of the wall: .790, .659, .702, .649 and .680 in the published."""
+
+ASPECT = 1.80
+"""Width over height of the wall: 1.71, 1.98, 1.76, 1.73 and 1.82 there."""
+
+GAP_SOURCE_PX = 20 / 3
+"""Widest gap of a published wall that counts as a contact: 2 px at the working scale."""
+
+GAP_RANGE = (0.5, 1.0, 1.5)
+"""The resistance is also told for gaps of as many times this width."""
+
+Sets = Mapping[int, PaperWall]
+"""Stones and walls by noise, %."""
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A published wall, measured as a label image.
+
+    Parameters
+    ----------
+    stones : int
+        In it.
+    F_SF : float
+        Of the whole image, which is also the wall that our method is to fill.
+    F_AV, F_AH : float or None
+        As :class:`drystone.metrics.measure.WallMetrics`.
+    F_LR : tuple of (float or None)
+        With no gap closed, then with those of :data:`GAP_RANGE`; None where it does not stand.
+    """
+
+    stones: int
+    F_SF: float
+    F_AV: float | None
+    F_AH: float | None
+    F_LR: tuple[float | None, ...]
+
+    @property
+    def resistance(self) -> float | None:
+        """F_LR with gaps of :data:`GAP_SOURCE_PX` closed."""
+        return self.F_LR[1 + GAP_RANGE.index(1.0)]
+
+    def metric(self, name: str) -> float | None:
+        """Return F_SF, F_AV, F_AH or F_LR by its name."""
+        named = {"F_SF": self.F_SF, "F_AV": self.F_AV, "F_AH": self.F_AH, "F_LR": self.resistance}
+        return named[name]
+
+
+def noise_sets(noises: Sequence[int] = NOISES, scale: float = SCALE) -> dict[int, PaperWall]:
+    """Return the stones and walls of some noise levels, published ones where there are any.
+
+    Parameters
+    ----------
+    noises : sequence of int
+        Of :data:`NOISES`.
+    scale : float
+        Working resolution over that of the source.
+    """
+    return {noise: noise_set(noise, scale) for noise in noises}
+
+
+def noise_set(noise: int, scale: float = SCALE) -> PaperWall:
+    """Return the stones of a noise level, %; its number is the noise."""
+    if noise in PUBLISHED:
+        source = published(f"thangavelu/noise_{noise}.png")
+        return PaperWall(noise, f"noise {noise} %", source, 0.0, 0.0, scale)
+    return generated_set(noise, COUNT, scale)
+
+
+def generated_set(noise: int, count: int, scale: float) -> PaperWall:
+    """Return generated stones, with a wall of which they are the same share as published ones.
+
+    Parameters
+    ----------
+    noise : int
+        Deviation of the corners over the shorter side of the brick, %.
+    count : int
+        Stones.
+    scale : float
+        Working resolution over that of the source.
+
+    Examples
+    --------
+    >>> wall = generated_set(30, 26, 0.3)
+    >>> round(wall.source.stones(None).total_area_px / (wall.width * wall.height), 3)
+    0.696
+    >>> round(wall.width / wall.height, 2)
+    1.8
+    """
+    source = generated("polygon", 2018_00 + noise, count=count, noise=noise / 100)
+    wall_px = source.stones(None).total_area_px / AREA_SHARE
+    height = round(math.sqrt(wall_px / ASPECT))
+    width = round(wall_px / height)
+    name = f"noise {noise} % (generated)"
+    return PaperWall(noise, name, source, width, height, scale, stand_in=True)
+
+
+def reference_of(wall: PaperWall, data: Path | None) -> Reference | None:
+    """Measure the published wall of some stones; None of generated ones, which were never built.
+
+    Parameters
+    ----------
+    wall : PaperWall
+        The stones.
+    data : Path or None
+        Folder of the published data, where they are.
+    """
+    if wall.stand_in or data is None:
+        return None
+    return measured(read_wall_image(published_file(data, wall.source.name)), wall.scale)
+
+
+def measured(labels: Labels, scale: float) -> Reference:
+    """Measure a label image as a wall that fills all of it.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        At the resolution of the source.
+    scale : float
+        At which it is measured.
+    """
+    reduced = reduce_labels(labels, scale)
+    height, width = reduced.shape
+    # As in plans: stones have their area at the resolution of the source.
+    share = (labels > 0).mean()
+    metrics = measure_labels(
+        reduced, wall_px=(width, height), stone_area_px=float(share * width * height)
+    )
+    reaches = (0.0, *(factor * GAP_SOURCE_PX * scale for factor in GAP_RANGE))
+    resistances = tuple(
+        lateral_resistance(model_with_closed_gaps(reduced, reach).model).value for reach in reaches
+    )
+    return Reference(metrics.stones, metrics.F_SF, metrics.F_AV, metrics.F_AH, resistances)

@@ -1,0 +1,23 @@
+"""Walls for reinforcement learning: ``gymnasium.make("drystone/Wall-v0")`` (docs/learning.md).
+
+Importing this room registers the environment, and needs the extra ``rl``; nothing else of the
+package imports it.  The policy that was trained with it needs no extra
+(:mod:`drystone.selection.policies.learned`).
+"""
+
+from drystone.errors import UsageError
+
+try:
+    import gymnasium
+except ImportError as error:
+    raise UsageError(
+        "E150",
+        "gymnasium is not installed, and walls for reinforcement learning are its environments.",
+        where="drystone_lab.rl",
+        cure="Install it with `pip install 'drystone[rl]'`.",
+    ) from error
+
+ENVIRONMENT = "drystone/Wall-v0"
+"""Name of the environment."""
+
+gymnasium.register(ENVIRONMENT, entry_point="drystone_lab.rl.env:WallEnv")

@@ -1,0 +1,248 @@
+"""The environment ``drystone/Wall-v0``: stones arrive, each is built where it is offered."""
+
+from collections.abc import Mapping
+from copy import copy, deepcopy
+from dataclasses import asdict
+from operator import index
+from typing import Any, Literal, get_args
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from drystone.errors import UsageError
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.planner.settings import PlannerSettings
+from drystone_lab.rl.draw import DrawSettings, draw_wall
+from drystone_lab.rl.episode import ARRIVING, Episode, prepared
+from drystone_lab.rl.observation import Observation, observation, observation_space
+from drystone_lab.rl.picture import wall_picture
+
+Illegal = Literal["aside", "error"]
+
+OPTIONS = ("stones", "site", "order")
+"""What :meth:`WallEnv.reset` may be told."""
+
+
+class WallEnv(gymnasium.Env[Observation, np.int64]):
+    """Build a wall from stones that arrive in a random order.
+
+    An action says which of the places offered for the stone that has arrived it is built in.  A
+    stone for which no place is offered is put aside for good, and the next arrives within the
+    same step.  The wall is finished when it is full or no stone is left; it is never truncated.
+    Where no place is offered from the start, any action ends the episode for a reward of 0.
+
+    The reward is what the merit of the wall grows by (:mod:`drystone.search.goal`, weights in
+    ``settings.goal``): while it grows by filling and resistance alone, with the last stone by all
+    that makes up its merit.  So the rewards of an episode sum up to the merit of the finished
+    wall, 0 for an empty one.
+
+    A deep copy goes on by itself and shares the stones with the first.
+
+    Parameters
+    ----------
+    draw : DrawSettings, optional
+        What stones are drawn for an episode, unless :meth:`reset` is given some.
+    settings : PlannerSettings, optional
+        How places are found; :data:`drystone_lab.rl.episode.ARRIVING` when missing.
+    offers : int
+        How many places are offered at most, the lowest of them: the number of actions.
+    columns : int
+        Of the top profile that is seen.
+    illegal : {"aside", "error"}
+        What an action does that :meth:`action_masks` does not allow: the stone is put aside for a
+        reward of 0 (of the wall's joints and edges, when it was the last), or E151 is raised.
+    render_mode : {"rgb_array"} or None
+        ``"rgb_array"``: :meth:`render` draws the wall.
+
+    Examples
+    --------
+    >>> import gymnasium, drystone_lab.rl
+    >>> env = gymnasium.make("drystone/Wall-v0")
+    >>> seen, info = env.reset(seed=1)
+    >>> seen["offers"].shape, int(env.unwrapped.action_masks().sum())
+    ((8, 28), 8)
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012 - as its base class
+
+    def __init__(
+        self,
+        *,
+        draw: DrawSettings | None = None,
+        settings: PlannerSettings | None = None,
+        offers: int = 8,
+        columns: int = 32,
+        illegal: Illegal = "aside",
+        render_mode: str | None = None,
+    ) -> None:
+        if offers < 1 or columns < 1:
+            raise _refused("offers and columns must be positive")
+        if illegal not in get_args(Illegal):
+            raise _refused(f"illegal is {illegal!r}, which is none of {get_args(Illegal)}")
+        if render_mode not in (None, "rgb_array"):
+            raise _refused(f"render_mode is {render_mode!r}, which is neither 'rgb_array' nor None")
+        self.draw = draw or DrawSettings()
+        self.settings = settings or ARRIVING
+        self.render_mode = render_mode
+        self.observation_space = observation_space(offers, columns)
+        self.action_space = spaces.Discrete(offers)
+        self._offers, self._columns = offers, columns
+        self._illegal = illegal
+        self._episode: Episode | None = None
+        self._potential = 0.0
+        self._ended = False
+
+    def reset(
+        self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        """Begin a wall.
+
+        Parameters
+        ----------
+        seed : int, optional
+            Of the stones and their order, in this episode and those after it.
+        options : mapping, optional
+            ``"stones"``: a StoneSet, with ``"site"``: a Site, to build with instead of stones
+            that are drawn; and ``"order"``: ids in the order of arrival, random when missing.
+
+        Raises
+        ------
+        UsageError
+            E123: other options, or an order that is none; E126: there are no stones; E201: an id
+            of the order is no stone's.
+        """
+        super().reset(seed=seed)
+        stones, site, order = self._given(options or {})
+        self._episode = Episode(
+            prepared(stones, site, self.settings), order, self.settings, self._offers
+        )
+        self._potential = self._episode.potential
+        self._ended = False
+        return self._seen(), self._info(illegal=False)
+
+    def step(self, action: np.int64) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+        """Build the stone that has arrived; see :class:`gymnasium.Env`.
+
+        Raises
+        ------
+        UsageError
+            E151: there is no such action, the episode is over, or with ``illegal="error"`` the
+            place is not offered.
+        """
+        episode = self._running()
+        if self._ended:
+            raise _no_action("the wall is finished", "Call `reset`.")
+        if not self.action_space.contains(action):
+            raise _no_action(f"{action!r} is none of {self.action_space}", "Give one of these.")
+        if episode.over:  # `reset` cannot say that an episode is over before it began
+            self._ended = True
+            return self._seen(), 0.0, True, False, self._info(illegal=True)
+        legal = int(action) < len(episode.offers)
+        if not legal and self._illegal == "error":
+            raise _no_action(
+                f"{int(action)} is not among the {len(episode.offers)} places offered",
+                "Ask `action_masks` which are.",
+            )
+        episode.take(int(action) if legal else None)
+        before, self._potential = self._potential, episode.potential
+        reward = self._potential - before
+        self._ended = episode.over
+        return self._seen(), reward, self._ended, False, self._info(illegal=not legal)
+
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Return which actions are allowed, (offers,): none when the wall is finished.
+
+        The name is the one that MaskablePPO of sb3-contrib asks for.
+        """
+        return np.arange(self._offers) < len(self._running().offers)
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """Draw the wall, (height, width, 3); None without a render mode."""
+        if self.render_mode is None:
+            gymnasium.logger.warn(
+                "The wall is drawn with render_mode='rgb_array', which was not asked for."
+            )
+            return None
+        return wall_picture(self._running())
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "WallEnv":
+        """Return an environment in the same state."""
+        other = copy(self)
+        # The workshop of an episode has compiled parts that nothing can copy; it may be shared.
+        other._episode = None if self._episode is None else self._episode.copy()  # noqa: SLF001
+        for name in ("action_space", "observation_space", "_np_random"):  # all draw numbers
+            setattr(other, name, deepcopy(getattr(self, name), memo))
+        memo[id(self)] = other
+        return other
+
+    @property
+    def episode(self) -> Episode:
+        """The wall, and what is offered: for policies that see offers and not arrays."""
+        return self._running()
+
+    def _given(self, options: Mapping[str, Any]) -> tuple[StoneSet, Site, list[int] | None]:
+        """Return stones, site and order: those given, or drawn."""
+        unknown = sorted(set(options) - set(OPTIONS))
+        if unknown:
+            raise _refused(f"reset knows no option {', '.join(map(repr, unknown))}")
+        stones, site, order = (options.get(name) for name in OPTIONS)
+        if stones is None and site is None and order is None:
+            drawn, place = draw_wall(self.draw, self.np_random)
+            return drawn, place, None
+        if not isinstance(stones, StoneSet) or not isinstance(site, Site):
+            raise _refused("reset needs both a StoneSet and a Site, or draws both")
+        if order is None:
+            ids = [stone.id for stone in stones]
+            return stones, site, [ids[k] for k in self.np_random.permutation(len(ids)).tolist()]
+        return stones, site, _arriving(stones, order)
+
+    def _running(self) -> Episode:
+        if self._episode is None:
+            raise _no_action("no wall was begun", "Call `reset` first.")
+        return self._episode
+
+    def _seen(self) -> Observation:
+        return observation(self._running(), self._offers, self._columns)
+
+    def _info(self, *, illegal: bool) -> dict[str, Any]:
+        """Return what is said beside the reward; with all figures when the wall is finished."""
+        episode = self._running()
+        actions = episode.build.actions
+        info: dict[str, Any] = {
+            "stone": episode.stone_id or 0,
+            "placed": len(actions),
+            "aside": episode.aside,
+            "illegal": illegal,
+            "action_mask": self.action_masks().astype(np.int8),
+            "F_SF": episode.build.wall.filling,
+            "F_LR": (actions[-1].resistance.value or 0.0) if actions else 0.0,
+        }
+        if episode.over:
+            figures = episode.figures
+            info["merit"] = episode.merit
+            info["metrics"] = {} if figures is None else asdict(figures)
+        return info
+
+
+def _arriving(stones: StoneSet, order: Any) -> list[int]:
+    """Return ids in the order of arrival as it was given."""
+    try:
+        ids = [stones.by_id(index(stone_id)).id for stone_id in order]
+    except TypeError as error:
+        raise _refused(f"order is {order!r}, which is no sequence of ids") from error
+    if not ids or len(set(ids)) < len(ids):
+        raise _refused("no stone arrives" if not ids else "a stone arrives twice")
+    return ids
+
+
+def _refused(what: str) -> UsageError:
+    return UsageError(
+        "E123", f"{what}.", where="drystone/Wall-v0", cure="docs/learning.md lists what there is."
+    )
+
+
+def _no_action(what: str, cure: str) -> UsageError:
+    return UsageError("E151", f"{what}.", where="drystone/Wall-v0", cure=cure)

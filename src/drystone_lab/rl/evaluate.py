@@ -1,0 +1,195 @@
+"""Compare policies on stones that arrive: ``python -m drystone_lab.rl.evaluate``.
+
+All policies build with the same stones in the same order, from the same places offered, by the
+planner itself (``order = "given"``); none of the walls was trained on.  With ``--free`` they choose
+the order too.
+"""
+
+import argparse
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import t as student
+
+from drystone.errors import DrystoneError, ExitCode
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings
+from drystone.planner.workshop import Workshop
+from drystone.search.goal import figures_of, merit_of, possible_filling
+from drystone.selection.policies.registry import rule_of
+from drystone_lab.rl.draw import KINDS, DrawSettings, draw_wall
+from drystone_lab.rl.episode import ARRIVING, prepared
+from drystone_lab.rl.train import HELD_OUT
+
+FIGURES = ("merit", "F_SF", "F_AV", "F_AH", "F_LR")
+"""What is compared."""
+
+POLICIES = ("learned", "random", "lowest", "scalarised", "filter", "towers", "paper")
+"""Policies that are compared, by their names; the first with each other."""
+
+FREE = replace(ARRIVING, order="free", sampling="variant")
+"""The same places, offered for one stone of each cluster that is left."""
+
+COVERED = 0.95
+"""Of the intervals."""
+
+Walls = Mapping[str, Sequence[float]]
+"""The figures of some walls by their names."""
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A mean, and where that of all walls of their kind lies.
+
+    Parameters
+    ----------
+    mean : float
+        Of the differences.
+    half : float
+        Half the width of the interval by Student's t; infinite for a single difference.
+    """
+
+    mean: float
+    half: float
+
+    @classmethod
+    def of(cls, differences: Sequence[float]) -> "Interval":
+        """Return the interval of some differences.
+
+        Examples
+        --------
+        >>> Interval.of([1.0, 1.0, 1.0])
+        Interval(mean=1.0, half=0.0)
+        """
+        count = len(differences)
+        if count < 2:
+            return cls(float(np.mean(differences)), float("inf"))
+        error = float(np.std(differences, ddof=1)) / count**0.5
+        quantile = float(student.ppf(0.5 + COVERED / 2, count - 1))
+        return cls(float(np.mean(differences)), quantile * error)
+
+    @property
+    def text(self) -> str:
+        """The interval as a cell; starred when it does not contain 0."""
+        star = "*" if abs(self.mean) > self.half else ""
+        return f"{self.mean:+.3f} ± {self.half:.3f}{star}"
+
+
+def held_out_wall(kind: str, number: int, draw: DrawSettings) -> Workshop:
+    """Return a wall that no training with these seeds has had."""
+    rng = np.random.default_rng([HELD_OUT, list(KINDS).index(kind), number])
+    return prepared(*draw_wall(replace(draw, kinds=(kind,)), rng))
+
+
+def figures_by(
+    policy: str, workshops: Sequence[Workshop], settings: PlannerSettings = ARRIVING
+) -> dict[str, list[float]]:
+    """Return the figures of the walls that a policy builds.
+
+    Parameters
+    ----------
+    policy : str
+        Its name.
+    workshops : sequence of Workshop
+        Stones whose ids are in the order of arrival, and sites.
+    settings : PlannerSettings
+        How stones are placed.
+
+    Raises
+    ------
+    UsageError
+        E146: there is no such policy.
+    """
+    found: dict[str, list[float]] = {name: [] for name in FIGURES}
+    rule = replace(settings, selection_rule=rule_of(policy))
+    for number, workshop in enumerate(workshops):
+        planner = Planner(
+            workshop.stones, workshop.site, seed=number, settings=rule, workshop=workshop
+        )
+        for _ in planner.steps():
+            pass
+        figures = figures_of(planner.build)
+        if figures is None:
+            raise ValueError(f"{policy} built nothing with wall {number}")
+        found["merit"].append(merit_of(figures, possible_filling(workshop), settings.goal))
+        for name in FIGURES[1:]:
+            found[name].append(getattr(figures, name))
+    return found
+
+
+def differences(first: Walls, second: Walls) -> dict[str, Interval]:
+    """Return what the walls of one policy have more than those of another, wall by wall."""
+    return {name: Interval.of(np.subtract(first[name], second[name]).tolist()) for name in FIGURES}
+
+
+def table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a table in Markdown."""
+    lines = [columns, ["---"] * len(columns), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def report(found: Mapping[str, Walls], title: str) -> str:
+    """Return the means of each policy, and what the first has more than each of the others."""
+    first, *others = found
+    means = [
+        [name, *(f"{np.mean(walls[figure]):.3f}" for figure in FIGURES)]
+        for name, walls in found.items()
+    ]
+    paired = [
+        [other, *(one.text for one in differences(found[first], found[other]).values())]
+        for other in others
+    ]
+    return "\n\n".join(
+        [
+            f"{title}: means",
+            table(("policy", *FIGURES), means),
+            f"{title}: `{first}` less each other, with 95 % intervals (* without 0)",
+            table((f"{first} less", *FIGURES), paired),
+        ]
+    )
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m drystone_lab.rl.evaluate", description=__doc__)
+    parser.add_argument("--walls", type=int, default=12, help="of each kind of stones")
+    parser.add_argument("--first", type=int, default=0, help="number of the first of each kind")
+    parser.add_argument("--stones", type=int, default=DrawSettings.stones, help="of a wall")
+    parser.add_argument("--kinds", nargs="+", choices=list(KINDS), default=list(KINDS))
+    parser.add_argument("--policies", nargs="+", default=list(POLICIES))
+    parser.add_argument(
+        "--free", action="store_true", help="any stone may be next, of the paper's samples"
+    )
+    arguments = parser.parse_args(argv)
+    if min(arguments.walls, arguments.first + 1) < 1 or len(set(arguments.policies)) < 2:
+        parser.error("there must be a wall or more, from number 0 on, and two policies or more")
+    every: dict[str, dict[str, list[float]]] = {}
+    try:
+        draw = DrawSettings(stones=arguments.stones)
+        settings = FREE if arguments.free else ARRIVING
+        for kind in arguments.kinds:
+            numbers = range(arguments.first, arguments.first + arguments.walls)
+            walls = [held_out_wall(kind, number, draw) for number in numbers]
+            found = {name: figures_by(name, walls, settings) for name in arguments.policies}
+            _print(report(found, f"{len(walls)} walls of {kind} stones"))
+            for name, figures in found.items():
+                pooled = every.setdefault(name, {figure: [] for figure in FIGURES})
+                for figure in FIGURES:
+                    pooled[figure] += figures[figure]
+    except DrystoneError as error:
+        sys.stderr.write(f"drystone: {error}\n")
+        return int(error.exit_code)
+    if len(arguments.kinds) > 1:
+        _print(report(every, f"All {arguments.walls * len(arguments.kinds)} walls"))
+    return int(ExitCode.DONE)
+
+
+def _print(text: str) -> None:
+    sys.stdout.write(f"{text}\n\n")
+    sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

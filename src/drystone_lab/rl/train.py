@@ -1,0 +1,224 @@
+"""Train the value policy: ``python -m drystone_lab.rl.train -o weights.json``.
+
+Monte-Carlo policy iteration: walls are built up to a random stone and finished from each of its
+places by the policy so far, which at first takes the lowest; the value of a place is fitted to the
+merits of all these walls; the place of the largest value is what the next policy takes
+(:mod:`drystone_lab.rl.rollouts`).
+"""
+
+import argparse
+import math
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.random import Generator
+
+from drystone.errors import DrystoneError, ExitCode, UsageError
+from drystone.io.atomic import refuse_existing
+from drystone.planner.workshop import Workshop
+from drystone.selection.policies.learned import FEATURES, ValueModel
+from drystone.selection.policies.simple import Lowest
+from drystone.selection.policy import Offer
+from drystone_lab.rl.draw import DrawSettings, draw_wall
+from drystone_lab.rl.episode import Episode, prepared
+from drystone_lab.rl.rollouts import (
+    Branching,
+    Choose,
+    at_random,
+    branching,
+    finished,
+    fitted,
+    spread_of,
+)
+
+TRAINED_ON = ("brick", "fourier", "polygon")
+"""Kinds of stones; rubble is held out."""
+
+HELD_OUT = 10**7
+"""Seed of the walls that trained policies are compared on: nothing is trained with it."""
+
+VALIDATION = 10**6
+"""Added to the seed of walls that compare the result with its start; training has fewer walls."""
+
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrainSettings:
+    """A training run; equal settings give the same weights.
+
+    Parameters
+    ----------
+    seed : int
+        Of everything, not negative.
+    rounds : int
+        How many times the value is fitted, and the policy with it.
+    walls : int
+        Of a round, of the kinds in turn; each is finished from all places of one stone.
+    strength : float
+        Of the ridge of the fit (:func:`drystone_lab.rl.rollouts.fitted`).
+    validation : int
+        Walls on which start and result are compared.
+    draw : DrawSettings
+        What walls, of which kinds.
+    """
+
+    seed: int = 1
+    rounds: int = 2
+    walls: int = 100
+    strength: float = 50.0
+    validation: int = 24
+    draw: DrawSettings = field(default_factory=lambda: DrawSettings(kinds=TRAINED_ON))
+
+
+def train(
+    settings: TrainSettings, say: Say = lambda _: None, seconds: float = math.inf
+) -> ValueModel:
+    """Return the model that a training run finds.
+
+    Parameters
+    ----------
+    settings : TrainSettings
+        The run.
+    say : callable
+        Told of every round.
+    seconds : float
+        No round is begun after this time.  A run that it cut short is repeated by the number of
+        rounds that the model says.
+
+    Raises
+    ------
+    UsageError
+        E123: no stone of the walls of the first round has more than one place.
+    """
+    start = time.monotonic()
+    found: list[Branching] = []
+    model = ValueModel((0.0,) * len(FEATURES), {})
+    done = walls = 0
+    while done < settings.rounds and time.monotonic() - start <= seconds:
+        new = _branchings(settings, done, _best(model) if done else lowest)
+        found += new
+        if not found:
+            raise UsageError(
+                "E123",
+                "no stone of these walls has a choice of places.",
+                where="TrainSettings",
+                cure="Train on more walls, or of more stones.",
+            )
+        scale = spread_of(found)
+        weights = fitted(found, scale, settings.strength) / scale
+        model = ValueModel(tuple(weights.tolist()), {})
+        done += 1
+        walls += sum(len(one.merits) for one in new)
+        merit = np.mean([one.merits.mean() for one in new])
+        say(
+            f"round {done} of {settings.rounds}: {walls} walls finished, the last "
+            f"of merit {merit:.3f}; {time.monotonic() - start:.0f} s"
+        )
+    others = [_workshop(settings, VALIDATION + k) for k in range(settings.validation)]
+    by_random, by_lowest, by_value = (
+        mean_merit(choose, others) for choose in (at_random, lowest, _best(model))
+    )
+    say(
+        f"on {settings.validation} other walls: merit {by_random:.3f} at random, "
+        f"{by_lowest:.3f} by the lowest, {by_value:.3f} by value"
+    )
+    trained = {
+        "seed": settings.seed, "rounds": done, "walls": settings.walls,
+        "finished": walls, "strength": settings.strength,
+        "kinds": list(settings.draw.kinds), "stones": settings.draw.stones,
+        "merit_random": round(by_random, 6), "merit_lowest": round(by_lowest, 6),
+        "merit_learned": round(by_value, 6),
+    }  # fmt: skip
+    return replace(model, trained=trained)
+
+
+def mean_merit(choose: Choose, workshops: Sequence[Workshop]) -> float:
+    """Return the mean merit of the walls that a policy builds."""
+    merits = (
+        finished(Episode(one), choose, np.random.default_rng(number))
+        for number, one in enumerate(workshops)
+    )
+    return math.fsum(merits) / len(workshops)
+
+
+def lowest(offers: Sequence[Offer], rng: Generator) -> int:
+    """Choose the lowest of some offers (:class:`drystone.selection.policies.simple.Lowest`)."""
+    position = Lowest().choose(offers, rng)
+    assert position is not None  # noqa: S101 - there are offers
+    return position
+
+
+def _branchings(settings: TrainSettings, number: int, choose: Choose) -> list[Branching]:
+    """Return the branchings of a round."""
+    first = number * settings.walls
+    found = (
+        branching(_workshop(settings, k), choose, (settings.seed, 3, k))
+        for k in range(first, first + settings.walls)
+    )
+    return [one for one in found if one is not None]
+
+
+def _workshop(settings: TrainSettings, number: int) -> Workshop:
+    """Return the wall of a number."""
+    kinds = settings.draw.kinds
+    draw = replace(settings.draw, kinds=(kinds[number % len(kinds)],))
+    rng = np.random.default_rng([settings.seed, 2, number])
+    return prepared(*draw_wall(draw, rng))
+
+
+def _best(model: ValueModel) -> Choose:
+    return lambda offers, _: model.best(offers)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; return the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m drystone_lab.rl.train", description=__doc__)
+    parser.add_argument("-o", "--output", type=Path, required=True, help="file to write")
+    parser.add_argument("--overwrite", action="store_true", help="replace a file that is there")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--rounds", type=int, default=TrainSettings.rounds)
+    parser.add_argument("--walls", type=int, default=TrainSettings.walls, help="of a round")
+    parser.add_argument(
+        "--validation", type=int, default=TrainSettings.validation, help="walls that compare"
+    )
+    parser.add_argument("--stones", type=int, default=DrawSettings.stones, help="of a wall")
+    parser.add_argument("--minutes", type=float, default=math.inf, help="begin none after these")
+    arguments = parser.parse_args(argv)
+    if min(arguments.rounds, arguments.walls, arguments.validation) < 1:
+        parser.error("rounds and numbers of walls must be positive")
+    if not 0 <= arguments.seed < HELD_OUT:
+        parser.error(f"the seed must be 0 to {HELD_OUT - 1}: from there on they are held out")
+
+    def say(text: str) -> None:
+        sys.stderr.write(f"{text}\n")
+        sys.stderr.flush()
+
+    try:
+        # Before a minute of training.
+        refuse_existing(arguments.output, overwrite=arguments.overwrite)
+        settings = TrainSettings(
+            seed=arguments.seed,
+            rounds=arguments.rounds,
+            walls=arguments.walls,
+            validation=arguments.validation,
+            draw=DrawSettings(kinds=TRAINED_ON, stones=arguments.stones),
+        )
+        model = train(settings, say, 60.0 * arguments.minutes)
+        arguments.output.write_text(model.to_json(), encoding="utf-8")
+    except DrystoneError as error:
+        sys.stderr.write(f"drystone: {error}\n")
+        return int(error.exit_code)
+    except OSError as error:
+        sys.stderr.write(f"drystone: {error}\n")
+        return int(ExitCode.BAD_INPUT)
+    sys.stdout.write(f"{arguments.output}\n")
+    return int(ExitCode.DONE)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,203 @@
+"""Runs done by the workers of a Dask cluster."""
+
+import os
+from collections.abc import Iterator, Sequence
+from concurrent.futures import CancelledError
+from contextlib import contextmanager
+from functools import partial
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from drystone.errors import DrystoneError, UsageError
+from drystone.model.stone import StoneSet
+from drystone_lab.runs.failures import died
+from drystone_lab.runs.outcome import Outcome, execute
+from drystone_lab.runs.runner import Work
+from drystone_lab.runs.spec import RunSpec
+
+PATIENCE_S = 5.0
+"""Time that a cluster has to answer."""
+
+OPTION = "--dask"
+
+
+@contextmanager
+def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator[Work]:
+    """Have runs done by a Dask cluster, as long as the block lasts.
+
+    The runs of a worker that dies are done by others; one at which so many workers died that the
+    scheduler gives it up (``distributed.scheduler.allowed-failures``, 3 unless it is set there)
+    is E402.  Workers may come and go, and should have one thread each (``dask worker --nthreads
+    1``): threads of one process wait for each other.  Those that a nanny starts, which is Dask's
+    custom, have one thread in BLAS, as they should.
+
+    Published stones are read by the workers: from the folder that is given here if it is there on
+    the worker's machine, else from the folder that ``DRYSTONE_DATA`` names there.  A file of
+    one's own is read here, and its stones are sent.
+
+    Parameters
+    ----------
+    address : str
+        Of the scheduler, for example ``"tcp://10.0.0.1:8786"``.
+    patience_s : float
+        Seconds within which it must answer and have a worker.
+
+    Yields
+    ------
+    Work
+        An interrupt (Ctrl-C) goes to the caller after the outcomes of the runs that have ended,
+        and so does the error of a run; runs that have not begun are then called off.
+
+    Raises
+    ------
+    UsageError
+        E403: Dask is not installed; E404: nobody answers at the address, or there is no worker;
+        E405: the scheduler or a worker has another version of this package.  While it works, E404
+        is raised when the connection is lost, and E405 by a worker that joined later.
+    """
+    distributed = _distributed()
+    client = _client(distributed, address, patience_s)
+    try:
+        check_versions(client)
+        yield partial(_outcomes, distributed, client)
+    finally:
+        client.close()
+
+
+def check_versions(client: Any) -> None:
+    """Compare the versions of this package on a cluster.
+
+    Parameters
+    ----------
+    client : distributed.Client
+        Of the cluster.
+
+    Raises
+    ------
+    UsageError
+        E405: they are not all this one, which would plan other walls under the same names.
+    """
+    found = dict(client.run(version, "drystone", on_error="return"))
+    try:
+        found["scheduler"] = client.run_on_scheduler(version, "drystone")
+    except PackageNotFoundError as error:
+        found["scheduler"] = error
+    here = version("drystone")
+    others = {
+        name: "none" if isinstance(one, PackageNotFoundError) else one
+        for name, one in sorted(found.items())
+        if one != here
+    }
+    if others:
+        listed = ", ".join(f"{one} at {name}" for name, one in others.items())
+        raise _other_version(f"drystone is {here} here, and {listed}.")
+
+
+def execute_there(spec: RunSpec, data: Path | None, stones: StoneSet | None) -> Outcome:
+    """Plan the wall of a run, on a worker.
+
+    Parameters
+    ----------
+    spec : RunSpec
+        The run.
+    data : Path or None
+        Folder of the published data where the run is asked for; if it is not there on this
+        machine, that of ``DRYSTONE_DATA``.
+    stones : StoneSet or None
+        Those of a file.
+    """
+    if data is not None and not data.is_dir():
+        data = Path(os.environ.get("DRYSTONE_DATA", data))
+    return execute(spec, data, stones)
+
+
+def _distributed() -> Any:
+    try:
+        return import_module("distributed")
+    except ImportError as error:
+        raise UsageError(
+            "E403",
+            "Dask is not installed, and a cluster is asked for.",
+            where=OPTION,
+            cure="Install it with `pip install 'drystone[dask]'`, or use --jobs.",
+        ) from error
+
+
+def _client(distributed: Any, address: str, patience_s: float) -> Any:
+    """Return a client of a cluster that has a worker."""
+    cure = "Start `dask scheduler` and `dask worker`, and give the address that they name."
+    try:
+        client = distributed.Client(address, timeout=patience_s, set_as_default=False)
+    except (OSError, ValueError, AssertionError) as error:
+        # A timeout is an OSError; Dask asserts that its own loop began within ten seconds.
+        raise UsageError(
+            "E404", f"no Dask scheduler answers at {address}.", where=OPTION, cure=cure
+        ) from error
+    try:
+        client.wait_for_workers(1, timeout=patience_s)
+    except TimeoutError as error:
+        client.close()
+        raise UsageError(
+            "E404", f"the Dask cluster at {address} has no workers.", where=OPTION, cure=cure
+        ) from error
+    return client
+
+
+def _outcomes(
+    distributed: Any, client: Any, specs: Sequence[RunSpec], data: Path | None
+) -> Iterator[Outcome]:
+    """Do runs."""
+    if not specs:
+        return
+    own = [spec.source.stones(data) if spec.source.kind == "file" else None for spec in specs]
+    # pure: another client of the cluster may ask for the same run with another folder of data.
+    futures = client.map(execute_there, specs, [data] * len(specs), own, pure=False)
+    spec_of = {future.key: spec for future, spec in zip(futures, specs, strict=True)}
+    asked = {future.key: future for future in futures}
+    ended = distributed.as_completed(futures, loop=client.loop)
+    del futures
+    try:
+        for future in ended:
+            outcome = _outcome(distributed, future, spec_of[future.key])
+            # The cluster would do it again if it lost what somebody still holds.
+            asked.pop(future.key).release()
+            yield outcome
+    except (KeyboardInterrupt, Exception):
+        for key, future in asked.items():
+            if future.status == "finished" and future.result().key == spec_of[key].key:
+                yield future.result()
+        raise
+    finally:
+        client.cancel(list(asked.values()))
+
+
+def _outcome(distributed: Any, future: Any, spec: RunSpec) -> Outcome:
+    """Return the outcome of a run that has ended.
+
+    Raises
+    ------
+    DrystoneError
+        See :func:`cluster_at_work`; or what the run raised.
+    """
+    try:
+        outcome: Outcome = future.result()
+    except distributed.KilledWorker as error:
+        raise died(spec, "workers, one after the other,") from error
+    except CancelledError as error:
+        raise DrystoneError(
+            "E404",
+            "the connection to the Dask cluster was lost.",
+            where=OPTION,
+            cure="Give the same command again when it is back: the runs that ended are kept.",
+        ) from error
+    if outcome.key != spec.key:
+        raise _other_version("a worker that joined the Dask cluster has another drystone.")
+    return outcome
+
+
+def _other_version(what: str) -> UsageError:
+    return UsageError(
+        "E405", what, where=OPTION, cure="Install the same version everywhere; outcomes would mix."
+    )

@@ -1,0 +1,143 @@
+"""What came out of a run."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from drystone.io.plan_json import plan_from_json, plan_to_json
+from drystone.model.plan import Plan, StoneStep, WedgeStep
+from drystone.model.stone import StoneSet
+from drystone.model.wall import Wall
+from drystone.search.plan_result import PlanResult
+from drystone.search.plan_wall import plan_wall
+from drystone.verify.replay import replay_plan
+from drystone_lab.runs.spec import STRIPS, RunSpec
+
+FIGURES = (
+    "placed", "stones", "F_SF", "F_AV", "F_AH", "F_LR", "alpha_left", "alpha_right", "T_LEVEL",
+    "E_FLUSH", "wedges", "wedge_area", "candidates",
+)  # fmt: skip
+"""Of a finished wall; they depend on the run alone.  Candidates are those that were evaluated."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """A planned wall, as it is kept.
+
+    Parameters
+    ----------
+    key : str
+        Of the run (:attr:`RunSpec.key`).
+    figures : dict of str to float, int or None
+        By the names of :data:`FIGURES`; lengths and areas in source px; None where a figure is not
+        defined.
+    plan : dict
+        Contents of its plan.json.
+    times : dict of str to float
+        Seconds on the machine where it ran: ``"wall"`` from the stones to the last step, and the
+        parts of the work (:mod:`drystone.planner.profile`).  Nothing else differs between
+        machines.
+    """
+
+    key: str
+    figures: Mapping[str, float | int | None]
+    plan: Mapping[str, Any]
+    times: Mapping[str, float]
+
+    @property
+    def as_plan(self) -> Plan:
+        """The plan."""
+        return plan_from_json(self.plan)
+
+    @property
+    def clusters(self) -> dict[int, int]:
+        """Cluster of each placed stone, by id."""
+        steps = self.as_plan.steps
+        return {step.stone: step.cluster for step in steps if isinstance(step, StoneStep)}
+
+    def wall(self, spec: RunSpec, data: Path | None) -> Wall:
+        """Return the wall with its stones, built again from the poses of the plan.
+
+        Parameters
+        ----------
+        spec : RunSpec
+            The run.
+        data : Path or None
+            Folder of the published data.
+        """
+        replay = replay_plan(self.as_plan, spec.source.stones(data))
+        if replay.broken_at is not None or not replay.stages:
+            raise ValueError(f"run {self.key} cannot be built again")
+        return replay.stages[-1].after
+
+
+def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) -> Outcome:
+    """Plan the wall of a run, in this process.
+
+    Parameters
+    ----------
+    spec : RunSpec
+        The run.
+    data : Path or None
+        Folder of the published data.
+    stones : StoneSet, optional
+        Those of the source, where they have been read already.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Ctrl-C: the part of the wall that is built is no outcome.
+
+    Examples
+    --------
+    >>> from drystone_lab.runs.source import generated
+    >>> spec = RunSpec(source=generated("brick", 1, count=6, height_px=10, aspect=2),
+    ...                width=60, height=20)
+    >>> execute(spec, None).figures["placed"]
+    6
+    """
+    if spec.method == STRIPS:
+        from drystone_lab.runs.strips import packed  # noqa: PLC0415 - it needs this module
+
+        return packed(spec, data)
+    stones = spec.source.stones(data) if stones is None else stones
+    settings = spec.settings()
+    result = uninterrupted(
+        plan_wall(
+            stones,
+            spec.width or float(stones.source.width_px),
+            spec.height or float(stones.source.height_px),
+            seed=spec.seed,
+            method=spec.method,
+            settings=settings,
+            scale=spec.scale,
+        )
+    )
+    plan, metrics = result.plan, result.metrics
+    figures: dict[str, float | int | None] = {
+        "placed": sum(isinstance(step, StoneStep) for step in plan.steps),
+        "stones": len(stones),
+        **{name: getattr(metrics, name) for name in FIGURES[2:10]},
+        "wedges": sum(isinstance(step, WedgeStep) for step in plan.steps),
+        "wedge_area": metrics.wedge_area,
+        "candidates": result.profile.candidates,
+    }
+    times = {"wall": result.seconds} | {
+        name: sum(step.parts.get(name, 0.0) for step in result.profile.steps)
+        for name in ("placement", "stabilisation", "contacts", "limit analysis", "indices")
+    }
+    return Outcome(spec.key, figures, plan_to_json(plan), times)
+
+
+def uninterrupted(result: PlanResult) -> PlanResult:
+    """Return a result; raise the interrupt again that it was the end of, as no run is half a wall.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Planning takes an interrupt for the end of its time, and says what it has.
+    """
+    if result.status == "interrupted":
+        raise KeyboardInterrupt
+    return result

@@ -1,0 +1,59 @@
+"""Many runs: those that are kept are taken, the others done by whoever works."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from drystone_lab.runs.outcome import Outcome, execute
+from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.store import RunStore
+
+Work = Callable[[Sequence[RunSpec], Path | None], Iterator[Outcome]]
+"""Does runs, and gives their outcomes in whatever order they end."""
+
+
+def one_by_one(specs: Sequence[RunSpec], data: Path | None) -> Iterator[Outcome]:
+    """Do runs in this process, one after the other."""
+    for spec in specs:
+        yield execute(spec, data)
+
+
+@dataclass(frozen=True)
+class Runner:
+    """Does runs and keeps their outcomes.
+
+    Parameters
+    ----------
+    store : RunStore
+        Of the outcomes.
+    data : Path or None
+        Folder of the published data.
+    work : callable
+        Who does what is not there yet; never changes an outcome but for its times.
+    say : callable
+        Told of progress, a line each.
+    """
+
+    store: RunStore
+    data: Path | None = None
+    work: Work = one_by_one
+    say: Callable[[str], None] = lambda _: None
+
+    def run(self, specs: Sequence[RunSpec]) -> tuple[Outcome, ...]:
+        """Return the outcomes of runs, in their order; what ended is kept at once.
+
+        Parameters
+        ----------
+        specs : sequence of RunSpec
+            Equal ones are run once.
+        """
+        found = {spec.key: self.store.get(spec.key) for spec in specs}
+        missing = {spec.key: spec for spec in specs if found[spec.key] is None}
+        for count, outcome in enumerate(self.work(tuple(missing.values()), self.data), 1):
+            self.store.put(outcome)
+            found[outcome.key] = outcome
+            self.say(f"{count} of {len(missing)} walls, {outcome.times['wall']:.1f} s")
+        done = [found[spec.key] for spec in specs]
+        if any(outcome is None for outcome in done):
+            raise RuntimeError("runs were lost")
+        return tuple(outcome for outcome in done if outcome is not None)

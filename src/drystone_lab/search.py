@@ -1,0 +1,185 @@
+"""Suite "search": methods that look for good walls, compared at equal CPU time."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from statistics import median
+
+from drystone.errors import UsageError
+from drystone.model.stone import StoneSet
+from drystone.planner.settings import method_settings
+from drystone_lab.masons import masons_walls
+from drystone_lab.paired import median_difference
+from drystone_lab.planned_walls import missing_data
+from drystone_lab.runs.changes import Changes, nested, told
+from drystone_lab.search_results import FIGURES, Result, Run
+from drystone_lab.search_runs import method_name, searched, searched_walls
+from drystone_lab.search_ways import NO_COURSES, RESTARTS, SEARCH, WAYS, WEDGED
+from drystone_lab.table import BenchSettings, Cell, Table
+from drystone_lab.walls import Target
+
+SECONDS, SEEDS = 20.0, 6
+QUICK_SECONDS, QUICK_SEEDS = 0.1, 2
+
+PAIRS = ((SEARCH, RESTARTS), (SEARCH, WEDGED), (SEARCH, NO_COURSES))
+"""Methods that are compared: what the first has more than the second."""
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """What all methods came to on one wall.
+
+    Parameters
+    ----------
+    target : Target
+        The wall.
+    stones : int
+        How many there are to build with.
+    results : dict of str to list of Result
+        Of each method, seed after seed.
+    """
+
+    target: Target
+    stones: int
+    results: dict[str, list[Result]]
+
+    def values(self, way: str, figure: str) -> list[float | None]:
+        """Return a figure of a method, seed after seed."""
+        return [result.figures[figure] for result in self.results[way]]
+
+
+def run(settings: BenchSettings) -> tuple[Table, ...]:
+    """Let every method look for every wall with every seed."""
+    _check(settings.changes)
+    times, seeds = _effort(settings)
+    walls = [
+        (target, stones)
+        for target in searched_walls(settings)
+        if (stones := target.stones(settings.data)) is not None
+    ]
+    results = searched(walls, seeds, times, settings)
+    tables = []
+    for seconds in times:
+        compared = [_compared(*wall, seeds, seconds, settings, results) for wall in walls]
+        tables += [_medians(compared, seconds, len(seeds), settings), _paired(compared, seconds)]
+    return (*tables, masons_walls(settings))
+
+
+def _check(changes: Changes) -> None:
+    """Refuse settings that there are not (E123), and what walls and times say themselves (E138)."""
+    own = [name for name, _ in changes if name in ("geometry", "search.budget")]
+    if own:
+        raise UsageError(
+            "E138",
+            f"{own[0]} cannot be replaced: walls are searched on outlines, for a time.",
+            where="--settings",
+            cure="Leave it out; see --only and --seconds.",
+        )
+    method_settings("best").updated(nested(changes))
+
+
+def _medians(
+    compared: Sequence[Compared], seconds: float, seeds: int, settings: BenchSettings
+) -> Table:
+    return Table(
+        f"Best walls after {seconds:g} s of CPU time, medians of {seeds} seeds",
+        ("wall", "method", "range", *FIGURES[:2], "possible F_SF", *FIGURES[2:], "walls", "s"),
+        tuple(row for one in compared for row in _rows(one)),
+        (
+            "Restarts: single passes from seed to seed, the best by the merit that the search "
+            "goes by; with wedges: small ones are put into the gaps of the good ones, as in "
+            "the search. Without courses: ruin and recreate alone.",
+            "CPU time of one process, from the stones on; the last wall is begun in time and "
+            "finished, where a longer time follows what is finished counts. No F_SF can be above "
+            "the possible one: the area of all stones over that of the wall.",
+            "2nd: by a definition that no search goes by (drystone.metrics.second).",
+            *([f"With {told(settings.changes)}."] if settings.changes else []),
+            *missing_data(settings),
+        ),
+    )
+
+
+def _paired(compared: Sequence[Compared], seconds: float) -> Table:
+    return Table(
+        f"What the search has more after {seconds:g} s, medians of the pairs of one seed "
+        "(95 % intervals)",
+        ("wall", "more than", "merit higher", *FIGURES),
+        tuple(row for one in compared for row in _differences(one)),
+        (
+            "Percentile bootstrap over the seeds with fixed random numbers. It cannot be wider "
+            "than the differences that were seen, which hold the median of all with 1 - .5^(n - 1) "
+            "where there are n.",
+            "Fewer is better for F_AH, T_LEVEL and E_FLUSH.",
+        ),
+    )
+
+
+def _effort(settings: BenchSettings) -> tuple[tuple[float, ...], range]:
+    """Return after which times methods are asked, and the seeds."""
+    usual = (QUICK_SECONDS, QUICK_SEEDS) if settings.quick else (SECONDS, SEEDS)
+    times = tuple(sorted(set(settings.seconds))) or (usual[0],)
+    return times, range(settings.seed, settings.seed + (settings.seeds or usual[1]))
+
+
+def _compared(
+    target: Target,
+    stones: StoneSet,
+    seeds: Sequence[int],
+    seconds: float,
+    settings: BenchSettings,
+    results: Mapping[Run, Result],
+) -> Compared:
+    """Sort the results of a wall after a time by methods."""
+    found: dict[str, list[Result]] = {}
+    for way in WAYS:
+        method = method_name(way.name, settings.changes)
+        runs = [Run(target.name, method, seed, seconds) for seed in seeds]
+        if runs[0] in results:
+            found[way.name] = [results[run] for run in runs]
+    return Compared(target, len(stones), found)
+
+
+def _rows(one: Compared) -> list[tuple[Cell, ...]]:
+    rows: list[tuple[Cell, ...]] = []
+    for way, results in one.results.items():
+        placed = [value for value in one.values(way, "placed") if value is not None]
+        medians = [_median(one.values(way, figure)) for figure in FIGURES]
+        rows.append(
+            (
+                one.target.name,
+                way,
+                f"{min(placed)}-{max(placed)} of {one.stones}",
+                *medians[:2],
+                results[0].possible,
+                *medians[2:],
+                median(result.walls for result in results),
+                median(result.seconds for result in results),
+            )
+        )
+    return rows
+
+
+def _differences(one: Compared) -> list[tuple[Cell, ...]]:
+    rows: list[tuple[Cell, ...]] = []
+    for first, second in PAIRS:
+        if first not in one.results or second not in one.results:
+            continue
+        merits = zip(one.values(first, "merit"), one.values(second, "merit"), strict=True)
+        better = [a is not None and b is not None and a > b for a, b in merits]
+        cells = [
+            median_difference(one.values(first, figure), one.values(second, figure))
+            for figure in FIGURES
+        ]
+        rows.append(
+            (
+                one.target.name,
+                second,
+                f"{sum(better)} of {len(better)}",
+                *(None if cell is None else cell.text() for cell in cells),
+            )
+        )
+    return rows
+
+
+def _median(values: Sequence[float | None]) -> float | None:
+    found = [value for value in values if value is not None]
+    return median(found) if found else None

@@ -1,8 +1,0 @@
-"""Outcomes with figures that a test chooses."""
-
-from drystone.experiments.runs.outcome import FIGURES, Outcome
-
-
-def outcome(key: str = "", **figures: float | None) -> Outcome:
-    """An outcome of 10 stones with everything else 1, but for the figures that are named."""
-    return Outcome(key, {**dict.fromkeys(FIGURES, 1), "stones": 10, **figures}, {"steps": []}, {})

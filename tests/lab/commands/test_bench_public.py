@@ -1,0 +1,125 @@
+"""`drystone bench` for public suites."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Run
+from tests.lab.runs.bricks import picture
+
+BRICKS = ("bench", "--suite", "bricks", "--quick", "--seeds", "1", "--policy", "paper", "random")
+
+
+def test_suites_and_policies_are_named_one_a_line(run: Run) -> None:
+    names = [line.split(":")[0] for line in run("bench", "--list").out.splitlines()]
+    assert {"statics", "search", "masons", "fourier", "all"} <= set(names)
+    assert {"paper", "random", "lowest", "scalarised", "filter", "towers", "best"} <= set(names)
+    assert len(set(names)) == len(names)
+
+
+def test_methods_are_compared(run: Run) -> None:
+    ran = run(*BRICKS)
+    assert ran.code == 0
+    assert ran.out.startswith("Walls: mean over seeds")
+    assert "Ranking" in ran.out
+    assert "2 of 2 walls" in ran.err
+
+
+def test_both_spellings_are_the_same(run: Run) -> None:
+    named = run(*BRICKS, "--json").json()
+    positional = run("bench", "bricks", *BRICKS[3:], "--json").json()
+    seconds = next(title for title in named if title.startswith("Seconds"))
+    del named[seconds], positional[seconds]
+    assert named == positional
+    walls = named["Walls: mean over seeds, standard deviation (±), best"]
+    assert walls[0]["placed share"] == 1.0
+
+
+def test_processes_change_nothing(run: Run) -> None:
+    one, two = (run(*BRICKS, "--jobs", jobs, "--markdown").out for jobs in (1, 2))
+    assert _without_seconds(one) == _without_seconds(two)
+
+
+def _without_seconds(text: str) -> list[str]:
+    return [table for table in text.split("\n\n**") if not table.startswith("Seconds")]
+
+
+def test_settings_hold_for_all(run: Run, tmp_path: Path) -> None:
+    settings = tmp_path / "full.toml"
+    settings.write_text('sampling = "full"\n', encoding="utf-8")
+    ran = run(*BRICKS, "--settings", settings, "--store", tmp_path / "store")
+    assert ran.code == 0
+    plans = [json.loads(path.read_text()) for path in (tmp_path / "store" / "runs").iterdir()]
+    assert {plan["plan"]["settings"]["sampling"] for plan in plans} == {"full"}
+    settings.write_text("ban = [1]\n", encoding="utf-8")
+    assert "E138" in run(*BRICKS, "--settings", settings).err
+
+
+def test_a_store_has_a_history(run: Run, tmp_path: Path) -> None:
+    store = tmp_path / "store"
+    assert "E138" in run("bench", "--history").err
+    assert "no runs" in run("bench", "--history", "--store", store).err
+    assert run(*BRICKS, "--store", store).code == 0
+    assert {path.name for path in store.iterdir()} >= {"bench.sqlite", "runs.csv", "runs"}
+    ran = run("bench", "--history", "--store", store, "--json", "-o", tmp_path / "pictures")
+    (rows,) = ran.json().values()
+    assert [(row["suite"], row["method"], row["runs"]) for row in rows] == [
+        ("bricks/1", "paper", 1),
+        ("bricks/1", "random", 1),
+    ]
+    assert rows[0]["placed share"] == 1.0
+    picture = tmp_path / "pictures" / "history-bricks-1.png"
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert "no runs of 'masons'" in run("bench", "masons", "--history", "--store", store).err
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (("statics", "--policy", "random"), "--policy"),
+        (("statics", "--store", "x"), "--store"),
+        (("engine", "--jobs", "2"), "--jobs"),
+        (("walls", "--shake"), "--shake"),
+        (("bricks", "--seconds", "2"), "--seconds"),
+        (("bricks", "--again"), "--again"),
+        (("bricks", "-o", "x"), "-o"),
+        (("bricks", "--suite", "masons"), "two suites"),
+        (("bricks", "--only", "R"), "--only"),
+        (("statics", "--history", "--store", "x"), "no suite 'statics'"),
+        (("--history", "--store", "x", "--policy", "paper"), "--policy"),
+        (("--history", "--store", "x", "--only", "R"), "--only"),
+        (("bricks", "--jobs", "2", "--dask", "tcp://localhost:1"), "--dask"),
+    ],
+)
+def test_options_that_make_no_sense(options: tuple[str, ...], named: str, run: Run) -> None:
+    ran = run("bench", *options)
+    assert ran.code == 2
+    assert "E138" in ran.err
+    assert named in ran.err
+
+
+def test_a_policy_that_is_none(run: Run) -> None:
+    said = run("bench", "bricks", "--policy", "nobody").err
+    assert "E146" in said
+    assert "best" in said
+
+
+@pytest.mark.parametrize("suite", ["masons", "walls"])
+def test_other_stones_in_the_place_of_the_masons(suite: str, run: Run, tmp_path: Path) -> None:
+    data, store = tmp_path / "data", tmp_path / "store"
+    picture(data / "almeida" / "PR.png")
+    kept = ("--store", store) if suite == "masons" else ()
+    ran = run("bench", suite, "--quick", "--data", data, *kept)
+    assert ran.code == 3
+    assert f"E160 {data / 'almeida' / 'PR.png'}" in ran.err
+    assert "drystone fetch almeida" in ran.err
+    assert ran.out == ""
+    assert not [path for path in store.rglob("*") if path.is_file()]
+
+
+def test_masons_need_their_stones(run: Run, tmp_path: Path) -> None:
+    ran = run("bench", "masons", "--data", tmp_path)
+    assert ran.code == 3
+    assert "E100" in ran.err
+    assert "drystone fetch almeida" in ran.err

@@ -1,0 +1,85 @@
+"""`drystone fetch`: sets, licence, what to cite; every failure with a cure."""
+
+from pathlib import Path
+
+import pytest
+
+from drystone.io.published_sets import LICENCE, PAPER, SETS
+from drystone_lab.commands import fetch
+from tests.cli.conftest import Run
+from tests.io.served import COMMIT, CONTENTS, lay_open, nobody, serving, toy_set
+
+
+@pytest.fixture
+def _toys(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("DRYSTONE_DATA", raising=False)
+    monkeypatch.setattr(fetch, "SETS", {"toy": toy_set()})
+
+
+def test_the_sets_are_listed_one_a_line(run: Run) -> None:
+    ran = run("fetch", "--list")
+    assert (ran.code, ran.err) == (0, "")
+    assert (
+        [line.split(":")[0] for line in ran.out.splitlines()]
+        == list(SETS)
+        == [
+            "almeida",
+            "thangavelu",
+        ]
+    )
+
+
+@pytest.mark.usefixtures("_toys")
+def test_a_set_arrives_with_licence_and_source(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lay_open(tmp_path / "served")
+    with serving(tmp_path / "served") as address:
+        monkeypatch.setattr(fetch, "RAW", address)
+        ran = run("fetch", "toy", "--to", tmp_path / "here")
+    assert ran.code == 0
+    for name, contents in CONTENTS.items():
+        path = tmp_path / "here" / name
+        assert path.read_bytes() == contents
+        assert f"{path}  downloaded" in ran.out
+    assert f"DRYSTONE_DATA={tmp_path / 'here'}" in ran.out
+    assert f"- {PAPER}\n- Nobody (2000)\n" in ran.out
+    assert ran.out.endswith(LICENCE)
+
+
+@pytest.mark.usefixtures("_toys")
+def test_a_local_copy_wins(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "toy").mkdir()
+    for name, contents in CONTENTS.items():
+        (tmp_path / name).write_bytes(contents)
+    monkeypatch.setenv("DRYSTONE_DATA", str(tmp_path))
+    monkeypatch.setattr(fetch, "RAW", nobody())
+    ran = run("fetch", "toy", "toy", "--json")
+    assert (ran.code, ran.err) == (0, "")
+    record = ran.json()
+    assert record["folder"] == str(tmp_path)
+    assert [file["path"] for file in record["files"]] == [str(tmp_path / n) for n in CONTENTS]
+    assert not any(file["downloaded"] for file in record["files"])
+    assert all(f"/{COMMIT}/Tests/" in file["source"] for file in record["files"])
+    assert record["cite"] == [PAPER, "Nobody (2000)"]
+    assert record["licence"] == LICENCE
+
+
+@pytest.mark.usefixtures("_toys")
+def test_no_network_ends_with_a_cure(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fetch, "RAW", nobody())
+    ran = run("fetch", "toy", "--to", tmp_path)
+    assert (ran.code, ran.out) == (3, "")
+    assert "drystone: E161" in ran.err
+    assert "By hand: save http" in ran.err
+
+
+@pytest.mark.parametrize(("names", "said"), [([], "no set is named"), (["ferris"], "'ferris'")])
+def test_a_set_must_be_one_that_there_is(run: Run, names: list[str], said: str) -> None:
+    ran = run("fetch", *names)
+    assert ran.code == 2
+    assert "E138 fetch: " in ran.err
+    assert said in ran.err
+    assert "almeida or thangavelu" in ran.err

@@ -1,0 +1,163 @@
+"""`drystone reproduce`."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from drystone.cli.parser import build_parser
+from drystone.errors import ExitCode, InputError, UsageError
+from drystone_lab.commands import reproduce
+from drystone_lab.reproduce.driver import Made
+from drystone_lab.reproduce.item import Item
+from drystone_lab.reproduce.items import ITEMS
+from tests.cli.conftest import Ran, Run
+from tests.lab.reproduce import fakes
+from tests.lab.runs.bricks import picture
+
+RunItems = Callable[..., Ran]
+
+
+@pytest.fixture(autouse=True)
+def _no_data_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("DRYSTONE_DATA", str(tmp_path / "none"))
+
+
+@pytest.fixture
+def run_items(capsys: pytest.CaptureFixture[str]) -> RunItems:
+    """Call the command on small items."""
+
+    def call(*arguments: object, items: Mapping[str, Item] = fakes.ITEMS) -> Ran:
+        capsys.readouterr()
+        parsed = build_parser().parse_args(["reproduce", *map(str, arguments)])
+        return Ran(int(reproduce.run(parsed, items)), *capsys.readouterr())
+
+    return call
+
+
+def test_items_are_named_one_a_line(run: Run) -> None:
+    lines = run("reproduce", "--list").out.splitlines()
+    assert [line.split()[0] for line in lines] == list(ITEMS)
+    assert all(ITEMS[line.split()[0]][0] in line for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ((), "nothing to make is named"),
+        (("fig5",), "no folder to write to is named"),
+        (("fig99", "-o", "x"), "'fig99'"),
+        (("fig8", "-o", "x", "--image", "y"), "--image"),
+        (("fig5", "fig8", "-o", "x", "--image", "y"), "--image"),
+        (("all", "-o", "x", "--image", "y"), "--image"),
+    ],
+)
+def test_what_is_not_said_well(
+    options: tuple[str, ...],
+    said: str,
+    run: Run,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    ran = run("reproduce", *options)
+    assert ran.code == 2
+    assert "E138" in ran.err
+    assert said in ran.err
+    assert not any(tmp_path.iterdir())
+
+
+def test_tables_and_pages(run_items: RunItems, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    ran = run_items("beta", "fig5", "-o", out)
+    assert ran.code == 0
+    assert ran.out.index("fig5: filling of bricks (§3.4)") < ran.out.index("beta: words (5.1)")
+    assert "Filling\nseed  F_SF  F_AV\n" in ran.out
+    assert "Seconds\nseed " in ran.out
+    assert f"page: {out / 'fig5' / 'index.html'}" in ran.out
+    assert ran.out.endswith(f"report: {out / 'index.html'}\n")
+    assert "1 of 2, fig5: 1 of 2 walls" in ran.err
+    again = run_items("beta", "fig5", "-o", out, "--quiet")
+    assert again.out == ran.out
+    assert again.err == f"drystone: there is no folder {tmp_path / 'none'} of published data\n"
+
+
+def test_json(run_items: RunItems, tmp_path: Path) -> None:
+    ran = run_items("fig5", "fig13", "-o", tmp_path / "out", "--json", "--seed", "3", "--quick")
+    assert ran.code == 3
+    found = ran.json()
+    assert found["report"] == str(tmp_path / "out" / "index.html")
+    made, missed = found["items"]
+    assert (made["name"], made["status"], made["request"]["seed"]) == ("fig5", "made", 3)
+    assert made["tables"][0]["columns"] == ["seed", "F_SF", "F_AV"]
+    assert len(made["tables"][0]["rows"]) == 1
+    assert (missed["status"], missed["error"]["code"]) == ("missing data", "E100")
+
+
+def test_missing_stones(run_items: RunItems, tmp_path: Path) -> None:
+    ran = run_items("fig13", "-o", tmp_path / "out")
+    assert ran.code == 3
+    assert "E100 almeida/PR.png" in ran.err
+    assert "drystone fetch almeida" in ran.err
+
+
+def test_other_stones_in_the_place_of_published_ones(run: Run, tmp_path: Path) -> None:
+    path = picture(tmp_path / "data" / "almeida" / "PR.png")
+    ran = run("reproduce", "fig5", "--data", tmp_path / "data", "-o", tmp_path / "out")
+    assert ran.code == 3
+    assert f"fig5: E160 {path}" in ran.err
+
+
+def test_all_goes_on_without_some_stones(run_items: RunItems, tmp_path: Path) -> None:
+    items = dict.fromkeys(ITEMS, fakes.NEEDY) | {"beta": fakes.WORDS}
+    ran = run_items("all", "-o", tmp_path / "out", items=items)
+    assert ran.code == 0
+    assert ran.err.count("E100") == len(ITEMS) - 1
+
+
+def test_all_without_any(tmp_path: Path) -> None:
+    error = InputError("E100", "none")
+    missed = Made("fig5", "missing data", None, error, tmp_path)
+    assert reproduce.exit_code([missed, missed], every=True) == ExitCode.BAD_INPUT
+    assert reproduce.exit_code([missed, replace(missed, status="kept")], every=True) == 0
+
+
+def test_an_error_is_told_and_is_the_exit_code(run_items: RunItems, tmp_path: Path) -> None:
+    ran = run_items("figB33", "beta", "-o", tmp_path / "out")
+    assert ran.code == ExitCode.BAD_INPUT
+    assert "drystone: figB33: E104 broken: there are no stones." in ran.err
+    assert "beta: words" in ran.out
+
+
+def test_published_data_named_by_the_option(run_items: RunItems, tmp_path: Path) -> None:
+    for name in fakes.NEEDY.needs:
+        (tmp_path / "data" / name).parent.mkdir(parents=True)
+        (tmp_path / "data" / name).touch()
+    assert run_items("fig13", "-o", tmp_path / "out", "--data", tmp_path / "data").code == 0
+
+
+def test_who_works(run_items: RunItems, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="E138"):
+        run_items("fig5", "-o", tmp_path / "out", "--jobs", 2, "--dask", "tcp://127.0.0.1:1")
+
+
+def test_a_folder_of_others_and_a_file(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    for place in (tmp_path, tmp_path / "mine.txt"):
+        ran = run("reproduce", "fig5", "-o", place)
+        assert ran.code == 2
+        assert "E129" in ran.err
+
+
+def test_an_interrupt(tmp_path: Path, run_items: RunItems) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        run_items("fig17", "-o", tmp_path / "out")
+    assert len(list((tmp_path / "out" / "runs").iterdir())) == 2
+
+
+def test_an_item_of_the_paper(run: Run, tmp_path: Path) -> None:
+    ran = run("reproduce", "fig5", "--quick", "-o", tmp_path / "out")
+    assert ran.code == 3
+    assert "fig5: E100 almeida/PR.png" in ran.err
+    assert "clusters of the stones PR" in (tmp_path / "out" / "index.html").read_text("utf-8")

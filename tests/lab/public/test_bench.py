@@ -1,0 +1,137 @@
+"""Runs of the public benchmark, on bricks."""
+
+from dataclasses import replace
+
+import pytest
+
+from drystone.errors import InputError
+from drystone.physics.shake import ShakeTrial
+from drystone_lab.public import bench, shaken
+from drystone_lab.public.bench import PublicSettings, run_public
+from drystone_lab.public.store import BenchStore, Stamp
+from drystone_lab.runs.outcome import execute
+from drystone_lab.runs.runner import one_by_one
+from drystone_lab.runs.source import generated
+from drystone_lab.runs.spec import RunSpec
+
+STAMP = Stamp((), "1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
+SETTINGS = PublicSettings(suite="bricks", methods=("paper", "random"), stamp=STAMP, quick=True)
+
+
+@pytest.fixture
+def counted(monkeypatch):
+    """How many runs were done."""
+    done = []
+
+    def work(specs, data):
+        done.extend(specs)
+        return one_by_one(specs, data)
+
+    monkeypatch.setattr(bench, "one_by_one", work)
+    return done
+
+
+def figures(tables):
+    return [table.records() for table in tables if not table.title.startswith("Seconds")]
+
+
+def test_every_method_builds_every_wall_with_every_seed(counted):
+    walls, everything, seconds, *_ = run_public(replace(SETTINGS, first_seed=3))
+    assert [(row["wall"], row["method"], row["seeds"]) for row in walls.records()] == [
+        ("bricks 2:1", "paper", 2),
+        ("bricks 2:1", "random", 2),
+    ]
+    assert {(spec.seed, dict(spec.changes).get("selection_rule")) for spec in counted} == {
+        (3, None), (4, None), (3, "random"), (4, "random"),
+    }  # fmt: skip
+    # All bricks of the paper's method find their place.
+    assert walls.records()[0]["placed share"] == 1.0
+    assert all(row["s"] > 0 for row in seconds.records())
+    assert len(everything.rows) == 2
+
+
+def test_runs_of_a_store_are_not_done_again(tmp_path, counted):
+    settings = replace(SETTINGS, store=tmp_path, seeds=1)
+    before = figures(run_public(settings))
+    assert len(counted) == 2
+    assert figures(run_public(settings)) == before
+    assert len(counted) == 2
+    run_public(replace(settings, seeds=2))
+    assert len(counted) == 4
+    assert figures(run_public(replace(settings, again=True))) == before
+    assert len(counted) == 6
+    rows = BenchStore(tmp_path).runs()
+    assert [(row.method, row.seed) for row in rows] == [
+        ("paper", 0), ("paper", 1), ("random", 0), ("random", 1),
+    ]  # fmt: skip
+    assert {row.version for row in rows} == {"1.0"}
+    assert len(list((tmp_path / "runs").iterdir())) == 4
+
+
+def test_settings_are_in_the_store(tmp_path):
+    stamp = replace(STAMP, settings=(("sampling", "full"),))
+    run_public(replace(SETTINGS, methods=("paper",), seeds=1, store=tmp_path, stamp=stamp))
+    (row,) = BenchStore(tmp_path).runs()
+    assert row.settings == '{"sampling": "full"}'
+    assert (row.suite, row.suite_version, row.placed, row.shaken) == ("bricks", 1, 30, "no")
+
+
+def test_walls_without_data_are_named():
+    settings = replace(SETTINGS, suite="all", only=("R", "bricks 2:1"), quick=False, seeds=1)
+    tables = run_public(settings)
+    assert {row["wall"] for row in tables[0].records()} == {"bricks 2:1"}
+    assert any("DIR): R." in note for note in tables[0].notes)
+    with pytest.raises(InputError) as caught:
+        run_public(replace(settings, suite="masons", only=()))
+    assert caught.value.code == "E100"
+    assert caught.value.where == "almeida/PR.png, almeida/R.png, almeida/IR.png"
+
+
+def test_a_damaged_store_is_found_before_the_runs(tmp_path, counted):
+    (tmp_path / "bench.sqlite").write_text("this is no database, and never was one")
+    with pytest.raises(InputError) as caught:
+        run_public(replace(SETTINGS, store=tmp_path))
+    assert caught.value.code == "E401"
+    assert counted == []
+
+
+def test_shaken_walls_are_shaken_once(tmp_path, monkeypatch):
+    pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
+
+    keys = []
+
+    def pga_of(_spec, outcome, _data):
+        keys.append(outcome.key)
+        return None if len(keys) == 1 else 0.25
+
+    monkeypatch.setattr(bench, "pga_of", pga_of)
+    settings = replace(SETTINGS, methods=("paper",), store=tmp_path, shake=True)
+    first = run_public(settings)[0]
+    assert first.records()[0]["PGA, g"] == 0.25
+    assert run_public(settings)[0] == first
+    assert len(keys) == 2
+    run_public(replace(settings, shake=False))
+    assert [(run.shaken, run.pga_g) for run in BenchStore(tmp_path).runs()] == [
+        ("falls", None),
+        ("yes", 0.25),
+    ]
+
+
+def test_a_wall_of_bricks_on_the_table(monkeypatch):
+    """What is shaken is the finished wall, in the paper's friction."""
+    pytest.importorskip("pymunk", reason="pymunk is not installed (extra `physics`)")
+
+    seen = []
+
+    def shake(scene, _engine, *, watched):
+        seen.append((scene, watched))
+        return ShakeTrial(0.3, 0.0, (), 0.0)
+
+    monkeypatch.setattr(shaken, "shake_once", shake)
+    source = generated("brick", 1, count=6, height_px=10, aspect=2)
+    spec = RunSpec(source=source, width=60, height=20)
+    assert shaken.pga_of(spec, execute(spec, None), None) == 0.3
+    ((scene, watched),) = seen
+    assert scene.mu == 0.58
+    assert watched == frozenset(range(1, 7)) == frozenset(scene.shapes)
+    assert all(shape.area == pytest.approx(200) for shape in scene.shapes.values())

@@ -1,0 +1,181 @@
+"""Methods beside each other."""
+
+import math
+from itertools import product
+
+import numpy as np
+import pytest
+from scipy.stats import norm, rankdata, wilcoxon
+
+from drystone_lab.public.pairs import compared, holm, pair_tables
+from drystone_lab.public.results import FIGURES, Result, Results
+from drystone_lab.public.suites import walls_of
+
+WALLS = walls_of("bricks")[:2]
+
+
+def result(wall, method, seed, **figures):
+    values = dict.fromkeys(FIGURES, 0.5) | figures
+    return Result(wall, method, seed, values, 1.0)
+
+
+def results(values):
+    """Results of F_SF by method: seed after seed on the first wall, then on the second."""
+    return Results(
+        tuple(
+            result(wall, method, seed, F_SF=column[half * len(column) // 2 + seed])
+            for method, column in values.items()
+            for half, wall in enumerate(WALLS)
+            for seed in range(len(column) // 2)
+        )
+    )
+
+
+def test_the_interval_is_that_of_a_mean():
+    """For many pairs it is that of the normal distribution, within what 10 000 draws give."""
+    noise = np.random.default_rng(1).normal(0.3, 2.0, 400)
+    found = compared(noise.tolist(), [0.0] * 400)
+    half = norm.ppf(0.975) * noise.std() / math.sqrt(400)
+    assert found.mean == pytest.approx(noise.mean())
+    assert found.low == pytest.approx(noise.mean() - half, abs=0.03 * half)
+    assert found.high == pytest.approx(noise.mean() + half, abs=0.03 * half)
+    assert found == compared(noise.tolist(), [0.0] * 400)
+
+
+def test_signed_ranks_by_hand():
+    """All of n differences of one sign: p is 2 / 2^n."""
+    assert compared([1.0, 2.0, 3.5, 4.5, 5.25, 7.0], [0.0] * 6).p == pytest.approx(2 / 64)
+    assert compared([0.0, 0.0], [0.0, 0.0]).p == 1.0
+
+
+@pytest.mark.parametrize(
+    "moved", [[1.0, 1.0, 2.0, -1.0, 3.0, 3.0], [1, 1, 1, 1, 1], [-1.0, 2, 2, 2, 3, -4, 5, 5]]
+)
+@pytest.mark.parametrize("equal", [0, 15])
+def test_signed_ranks_are_exact_with_ties_and_equal_pairs(moved, equal):
+    """By all signs that the differences could have; equal pairs say nothing."""
+    ranks = rankdata(np.abs(moved))
+    sums = [
+        sum(rank for rank, up in zip(ranks, signs, strict=True) if up)
+        for signs in product((True, False), repeat=len(moved))
+    ]
+    half, found = ranks.sum() / 2, ranks[np.array(moved) > 0].sum()
+    expected = np.mean([abs(one - half) >= abs(found - half) for one in sums])
+    assert compared([*moved, *[0.0] * equal], [0.0] * (len(moved) + equal)).p == expected
+
+
+def test_many_signed_ranks_go_by_the_normal_distribution():
+    noise = np.random.default_rng(4).normal(0.3, 1.0, 50)
+    exact = compared(noise.tolist(), [0.0] * 50).p
+    assert exact == pytest.approx(wilcoxon(noise, method="exact").pvalue)
+    more = compared([*noise.tolist(), 0.1], [0.0] * 51).p
+    assert more == pytest.approx(wilcoxon([*noise.tolist(), 0.1], method="asymptotic").pvalue)
+
+
+def test_rounding_errors_are_no_differences():
+    tiny = compared([0.1 + 0.2, 0.5], [0.3, 0.5])
+    assert (tiny.won, tiny.p, tiny.mean) == (0.5, 1.0, 0.0)
+    ranking = pair_tables(results({"a": [0.1 + 0.2, 0.5], "b": [0.3, 0.5]}))[-1].records()
+    assert [row["F_SF"] for row in ranking] == [1.5, 1.5]
+
+
+def test_lower_may_be_better():
+    lower = compared([1.0, 2.0, 2.0, 5.0], [2.0, 3.0, 2.0, 4.0], higher=False)
+    higher = compared([1.0, 2.0, 2.0, 5.0], [2.0, 3.0, 2.0, 4.0])
+    assert (lower.won, higher.won) == (0.625, 0.375)
+    assert lower.mean == higher.mean == -0.25
+
+
+def test_pairs_without_a_value_are_counted_not_zero():
+    found = compared([0.9, None, 0.7, None], [0.5, 0.5, None, None])
+    assert (found.pairs, found.left_out) == (1, 3)
+    assert found.mean == pytest.approx(0.4)
+    assert compared([None], [1.0]) is None
+
+
+def test_holm_by_hand():
+    """Sorted .005 .01 .03 .04 times 4 3 2 1, never falling."""
+    assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert holm([0.9, 0.8]) == [1.0, 1.0]
+    assert holm([]) == []
+
+
+def test_a_clear_winner_is_shown_and_ranked_first():
+    rng = np.random.default_rng(3)
+    low = rng.uniform(0.5, 0.6, 24).tolist()
+    high = [value + gain for value, gain in zip(low, rng.uniform(0.1, 0.2, 24), strict=True)]
+    *tables, ranking = pair_tables(results({"weak": low, "strong": high}))
+    row = next(table for table in tables if table.title.startswith("F_SF")).records()[0]
+    assert row["shows"] == "strong"
+    assert row["won"] == 0.0
+    assert row["pairs"] == 24
+    first, second = ranking.records()
+    assert (first["method"], first["F_SF"], second["F_SF"]) == ("strong", 1.0, 2.0)
+    assert first["mean rank"] == pytest.approx((1.0 + 4 * 1.5) / 5)
+    assert first["not told apart from the next in"] == "placed, F_AV, F_AH, F_LR"
+    assert second["not told apart from the next in"] is None
+
+
+def test_few_pairs_show_nothing_and_it_is_said():
+    *tables, ranking = pair_tables(results({"weak": [0.1, 0.2, 0.1, 0.2], "strong": [0.5] * 4}))
+    table = next(table for table in tables if table.title.startswith("F_SF"))
+    assert table.records()[0]["shows"] == "strong?"
+    assert any("no p can be below 0.62" in note for note in table.notes)
+    apart = ranking.records()[0]["not told apart from the next in"]
+    assert apart == "placed, F_SF, F_AV, F_AH, F_LR"
+
+
+def f_sf_table(found):
+    return next(table for table in pair_tables(found) if table.title.startswith("F_SF"))
+
+
+def test_copies_are_no_evidence():
+    """Five seeds that change nothing on either of two walls are two pairs, not ten."""
+    found = results({"a": [0.70] * 5 + [0.80] * 5, "b": [0.71] * 5 + [0.82] * 5})
+    table = f_sf_table(found)
+    (row,) = table.records()
+    assert (row["pairs"], row["mean"], row["shows"]) == (2, -0.015, "b?")
+    assert row["p"] == 1.0
+    assert any("do not depend on the seed count once" in note for note in table.notes)
+    assert "With 2 pairs and 5 tests no p can be below 1: use more walls" in table.notes[-1]
+    assert not any("lack a value" in note for note in table.notes)
+
+
+def test_walls_count_for_those_two_methods_that_depend_on_the_seed():
+    still, moved = [0.7, 0.7, 0.7, 0.8, 0.8, 0.8], [0.7, 0.6, 0.7, 0.8, 0.8, 0.8]
+    rows = f_sf_table(results({"a": still, "b": still, "c": moved})).records()
+    # Of the third method one wall depends on it.
+    assert {(row["first"], row["second"]): row["pairs"] for row in rows} == {
+        ("a", "b"): 2, ("a", "c"): 4, ("b", "c"): 4,
+    }  # fmt: skip
+
+
+def test_ties_of_one_figure_are_pairs():
+    found = Results(
+        tuple(
+            result(WALLS[0], method, seed, F_SF=0.5, F_AV=value + seed)
+            for method, value in (("a", 7.0), ("b", 8.0))
+            for seed in range(3)
+        )
+    )
+    table = f_sf_table(found)
+    assert table.records()[0]["pairs"] == 3
+    assert not any("depend on the seed" in note for note in table.notes)
+
+
+def test_a_figure_that_none_has_tells_nobody_apart():
+    found = pair_tables(results({"a": [None, None], "b": [None, None]}))[-1].records()
+    assert "F_SF" in found[0]["not told apart from the next in"]
+
+
+def test_undefined_values_rank_last():
+    found = results({"a": [None, 0.2], "b": [0.1, 0.1]})
+    ranking = {row["method"]: row["F_SF"] for row in pair_tables(found)[-1].records()}
+    assert ranking == {"a": 1.5, "b": 1.5}
+    alone = results({"a": [None, None], "b": [0.1, 0.1], "c": [0.0, 0.0]})
+    ranking = {row["method"]: row["F_SF"] for row in pair_tables(alone)[-1].records()}
+    assert ranking == {"b": 1.0, "c": 2.0, "a": 3.0}
+
+
+def test_one_method_has_nothing_beside_it():
+    assert pair_tables(results({"a": [0.1, 0.2]})) == ()

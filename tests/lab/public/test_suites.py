@@ -1,0 +1,94 @@
+"""The walls of the public benchmark stay as they are."""
+
+import hashlib
+
+import pytest
+
+from drystone.errors import UsageError
+from drystone_lab.public.suites import PUBLIC_SUITES, SUITE_VERSION, walls_of
+from drystone_lab.walls import Target
+
+GENERATED = [wall for wall in walls_of("all") if wall.source.kind != "published"]
+
+FIXED = {
+    1: "5a630340fd2a3ede",
+}
+"""By version: of everything that makes the walls of all suites.  A new version is a new line."""
+
+
+def test_nothing_changes_without_a_new_version():
+    text = repr(
+        [
+            (wall.suite, wall.name, wall.source.kind, wall.source.name, wall.source.seed,
+             wall.source.settings, float(wall.width), float(wall.height), wall.scale)
+            for wall in walls_of("all")
+        ]
+    )  # fmt: skip
+    assert hashlib.sha256(text.encode()).hexdigest()[:16] == FIXED[SUITE_VERSION]
+
+
+AREAS_PX = {
+    "fourier 20 round": 56659,
+    "fourier 20 long": 57760,
+    "fourier 60 round": 169969,
+    "fourier 60 long": 173296,
+    "fourier 120 round": 339983,
+    "fourier 120 long": 346587,
+    "polygons 20 %": 467992,
+    "polygons 50 %": 467968,
+    "polygons 80 %": 468062,
+    "rubble 30": 76177,
+    "rubble 60": 151960,
+    "rubble 120": 304648,
+    "bricks 2:1": 8640,
+    "bricks 3:1": 20736,
+    "bricks 3:1 and halves": 15552,
+    "sizes 20": 58492,
+    "sizes 50": 146257,
+    "sizes 100": 292558,
+    "sizes 200": 585197,
+    "sizes 500": 1462495,
+}
+"""Of all stones, source px: the generators make the same ones as before."""
+
+
+@pytest.mark.parametrize("wall", GENERATED, ids=lambda wall: wall.name)
+def test_stones_fill_85_percent(wall: Target):
+    stones = wall.source.stones(None)
+    assert stones.total_area_px == AREAS_PX[wall.name]
+    assert stones.total_area_px / (wall.width * wall.height) == pytest.approx(0.85, abs=0.01)
+    assert wall.width * wall.scale == round(wall.width * wall.scale)
+    assert wall.height * wall.scale == round(wall.height * wall.scale)
+
+
+def test_names_are_unique_and_all_is_all():
+    names = [wall.name for wall in walls_of("all")]
+    assert len(set(names)) == len(names)
+    parts = [wall for suite in PUBLIC_SUITES if suite != "all" for wall in walls_of(suite)]
+    assert [wall.name for wall in parts] == names
+    assert all(wall.suite in PUBLIC_SUITES for wall in parts)
+
+
+def test_published_stones_are_there(data_dir):
+    for wall in walls_of("masons"):
+        assert wall.source.is_there(data_dir)
+        area = wall.source.stones(data_dir).total_area_px
+        assert 0.7 < area / (wall.width * wall.height) < 0.9
+
+
+def test_some_walls_alone():
+    assert [wall.name for wall in walls_of("fourier", ["fourier 60"])] == [
+        "fourier 60 round",
+        "fourier 60 long",
+    ]
+    assert [wall.name for wall in walls_of("sizes", quick=True)] == ["sizes 20"]
+    with pytest.raises(UsageError) as caught:
+        walls_of("sizes", ["sizes 20", "rubble"])
+    assert caught.value.code == "E138"
+    assert "rubble" in str(caught.value)
+
+
+def test_sizes_are_of_one_kind():
+    walls = walls_of("sizes")
+    means = [AREAS_PX[wall.name] / dict(wall.source.settings)["count"] for wall in walls]
+    assert max(means) - min(means) < 0.01 * means[0]

@@ -1,0 +1,103 @@
+"""The yardstick of the public benchmark: strips packed without gravity."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from drystone.errors import UsageError
+from drystone_lab import packing
+from drystone_lab.public import bench
+from drystone_lab.public.bench import PublicSettings, run_public
+from drystone_lab.public.history import history_table, medians_of
+from drystone_lab.public.methods import known_methods, method_named
+from drystone_lab.public.store import BenchStore, Stamp
+from drystone_lab.public.suites import walls_of
+from drystone_lab.runs import strips
+from drystone_lab.runs.outcome import FIGURES, execute
+
+STAMP = Stamp((), "0.1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
+WALL = walls_of("bricks")[0]
+
+
+def packing_into(monkeypatch: pytest.MonkeyPatch, width: float) -> list[tuple[object, ...]]:
+    """Pack everything into a strip of a width; return what is asked."""
+    asked: list[tuple[object, ...]] = []
+
+    def packed(_packer, stones, height, turns, seconds, seed):
+        asked.append((len(stones), height, turns, seconds, seed))
+        return width
+
+    monkeypatch.setattr(strips, "load_packer", lambda: None)
+    monkeypatch.setattr(bench, "load_packer", lambda: None)
+    monkeypatch.setattr(strips, "packed_width_px", packed)
+    return asked
+
+
+@pytest.mark.parametrize(("strip", "over"), [(300.0, 300.0), (60.0, 120.0)])
+def test_it_fills_a_strip_as_high_as_the_wall(
+    monkeypatch: pytest.MonkeyPatch, strip: float, over: float
+) -> None:
+    asked = packing_into(monkeypatch, strip)
+    outcome = execute(method_named("spyrrow").run(WALL, 3), None)
+    stones = WALL.source.stones(None)
+    assert asked == [(len(stones), 84, (0.0, 90.0, 180.0, 270.0), 3, 3)]
+    # A strip that is shorter than the wall leaves the rest of the wall empty.
+    area = sum(int(stone.mask.sum()) for stone in stones)
+    assert outcome.figures["F_SF"] == pytest.approx(area / (over * 84))
+    assert {k for k, v in outcome.figures.items() if v is None} == {*FIGURES} - {"F_SF", "stones"}
+
+
+def test_it_is_in_tables_but_in_no_pairs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    packing_into(monkeypatch, 150.0)
+    settings = PublicSettings(
+        suite="bricks", methods=("paper", "spyrrow", "lowest"), stamp=STAMP, quick=True, seeds=1,
+        store=tmp_path,
+    )  # fmt: skip
+    walls, everything, seconds, *others = run_public(settings)
+    for table, column in ((walls, 1), (everything, 0), (seconds, 1)):
+        assert "spyrrow" in [row[column] for row in table.rows]
+    (row,) = (row for row in walls.rows if row[1] == "spyrrow")
+    assert [cell for cell in row[3:] if cell is not None] == [row[6], row[8]]
+    assert any(note.startswith("spyrrow is a yardstick") for note in walls.notes)
+    assert not any("spyrrow" in row for table in others for row in table.rows)
+    kept = {run.method: run for run in BenchStore(tmp_path).runs()}
+    assert (kept["spyrrow"].F_SF, kept["spyrrow"].F_LR) == (row[6] and kept["spyrrow"].F_SF, None)
+    assert kept["spyrrow"].F_SF == pytest.approx(row[6], abs=1e-4)
+    # It builds no wall, so a history of it has no share of the stones, not 0.
+    shares = {row["method"]: row["placed share"] for row in history(tmp_path)}
+    assert shares["spyrrow"] is None
+    assert shares["paper"] > 0.5
+    # What is kept is not packed again.
+    monkeypatch.setattr(strips, "packed_width_px", None)
+    assert run_public(settings)[0].rows == walls.rows
+
+
+def history(folder: Path) -> list[dict[str, Any]]:
+    return history_table(medians_of(BenchStore(folder).runs())).records()
+
+
+def test_it_packs_real_strips() -> None:
+    pytest.importorskip("spyrrow", reason="the extra `bench`")
+    spec = method_named("spyrrow").run(WALL, 0)
+    quick = type(spec)(**{**vars(spec), "changes": (("seconds", 1),)})
+    filled = execute(quick, None).figures["F_SF"]
+    assert filled is not None
+    # 30 bricks of 20 x 10 px leave .15 of the wall; a packer finds the rows of them.
+    assert 0.8 < filled <= WALL.source.stones(None).total_area_px / (WALL.width * WALL.height)
+
+
+def test_what_is_missing_is_said_before_anything_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    def absent(name: str) -> None:
+        raise ImportError(name)
+
+    monkeypatch.setattr(packing, "import_module", absent)
+    monkeypatch.setattr(bench, "_workers", None)
+    with pytest.raises(UsageError) as caught:
+        run_public(PublicSettings(suite="bricks", methods=("paper", "spyrrow"), stamp=STAMP))
+    assert caught.value.code == "E305"
+
+
+def test_it_is_listed_with_its_extra() -> None:
+    assert "`bench`" in known_methods()["spyrrow"]
+    assert "no policy" in known_methods()["spyrrow"]

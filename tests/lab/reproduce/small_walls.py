@@ -1,0 +1,41 @@
+"""Small generated walls on which the items about the method are made without published data."""
+
+from pathlib import Path
+
+from drystone_lab.reproduce.base import PaperWall
+from drystone_lab.reproduce.construction import Construction, construction
+from drystone_lab.reproduce.item import Context, Output
+from drystone_lab.runs.runner import Runner
+from drystone_lab.runs.source import generated
+from drystone_lab.runs.store import RunStore
+
+RUBBLE = PaperWall(
+    0, "rubble", generated("rubble", 3, count=16, width_px=160, height_px=60, courses=4),
+    170, 64, 1.0,
+)  # fmt: skip
+
+SHARP = PaperWall(0, "sharp", generated("polygon", 3, count=14, noise=0.3), 700, 300, 0.2)
+"""Polygons of which most fall where they are tried."""
+
+
+def context(folder: Path, data: Path | None = None) -> Context:
+    """A context that keeps its runs in a folder."""
+    return Context(Runner(RunStore(folder), data))
+
+
+def built(folder: Path, wall: PaperWall) -> Construction:
+    """The run that the items look at."""
+    return construction(context(folder), wall.run(1))
+
+
+def gids(output: Output, picture: str) -> list[str]:
+    """Names of everything that is drawn in a picture."""
+    (figure,) = [one.figure for one in output.pictures if one.name == picture]
+    children = [artist for ax in figure.axes for artist in ax.get_children()]
+    return [str(artist.get_gid()) for artist in children if artist.get_gid() is not None]
+
+
+def rows(output: Output, table: str) -> list[dict[str, object]]:
+    """The rows of a table, a dict each."""
+    (found,) = [one for name, one in output.tables if name == table]
+    return list(found.records())

@@ -1,0 +1,276 @@
+"""Items are made, kept, reported; walls that were planned are not planned again."""
+
+import csv
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from drystone.errors import InputError, UsageError
+from drystone_lab.reproduce.driver import EVERY_S, Made, Options, Progress, reproduce
+from drystone_lab.reproduce.files import csv_text, write_tables
+from drystone_lab.reproduce.item import Item, Output
+from drystone_lab.runs.runner import one_by_one
+from drystone_lab.table import Table
+from tests.lab.reproduce import fakes
+
+OPTIONS = Options(now=lambda: datetime(2026, 1, 2, 3, 4, tzinfo=UTC))
+
+
+def make(
+    folder: Path,
+    *names: str,
+    options: Options = OPTIONS,
+    items: Mapping[str, Item] = fakes.ITEMS,
+) -> list[Made]:
+    return list(reproduce(names, folder, options, items))
+
+
+def record(folder: Path, name: str) -> dict[str, Any]:
+    value: dict[str, Any] = json.loads((folder / name / f"{name}.json").read_text("utf-8"))
+    return value
+
+
+def test_an_item_has_its_files(tmp_path: Path) -> None:
+    (made,) = make(tmp_path, "fig5")
+    assert (made.status, made.error) == ("made", None)
+    assert made.page == tmp_path / "fig5" / "index.html"
+    assert {path.name for path in (tmp_path / "fig5").iterdir()} == {
+        "fig5.json", "index.html", "walls.csv", "walls_times.csv", "filling.png", "filling.svg",
+    }  # fmt: skip
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "fig5", "index.html", "reproduce.json", "runs",
+    }  # fmt: skip
+    assert len(list((tmp_path / "runs").iterdir())) == 2
+
+
+def test_the_json_says_what_was_run_with_what(tmp_path: Path) -> None:
+    (made,) = make(tmp_path, "fig5", options=replace(OPTIONS, seed=7))
+    found = record(tmp_path, "fig5")
+    assert found == made.record
+    assert (found["title"], found["section"]) == ("filling of bricks", "§3.4")
+    assert found["request"]["seed"] == 7
+    assert found["request"]["quick"] is False
+    assert found["seeds"] == [7, 8]
+    assert [run["source"]["kind"] for run in found["runs"]] == ["brick", "brick"]
+    assert {run["key"] for run in found["runs"]} == {
+        path.stem for path in (tmp_path / "runs").iterdir()
+    }
+    assert found["made"]["date"] == "2026-01-02 03:04 UTC"
+    assert {"numpy", "scipy", "highspy"} <= found["made"]["packages"].keys()
+    assert found["taken"]["walls"] == 2
+    assert 0 < found["taken"]["wall_seconds"] < found["taken"]["seconds"]
+    (table,), (times,) = found["tables"], found["times"]
+    assert (table["file"], times["file"]) == ("walls.csv", "walls_times.csv")
+    assert table["rows"][0][0] == 7
+    assert table["rows"][0][2] is None
+
+
+def test_equal_seeds_give_equal_tables_and_pictures(tmp_path: Path) -> None:
+    for place in ("a", "b"):
+        make(tmp_path / place, "fig5")
+    for name in ("walls.csv", "filling.png", "filling.svg"):
+        assert (tmp_path / "a/fig5" / name).read_bytes() == (
+            tmp_path / "b/fig5" / name
+        ).read_bytes()
+
+
+def test_tables_read_back_to_the_last_digit(tmp_path: Path) -> None:
+    (made,) = make(tmp_path, "fig5")
+    assert made.record is not None
+    text = (tmp_path / "fig5" / "walls.csv").read_bytes().decode()
+    assert "\r" not in text
+    head, *rows = csv.reader(text.splitlines())
+    assert head == ["seed", "F_SF", "F_AV"]
+    kept = made.record["tables"][0]["rows"]
+    assert [(int(seed), float(filling), rest) for seed, filling, rest in rows] == [
+        (seed, filling, "") for seed, filling, _ in kept
+    ]
+
+
+def test_cells_of_all_kinds() -> None:
+    np_float = type("float64", (float,), {"__repr__": lambda _: "np.float64(1.5)"})
+    table = Table("x", ("a", "b"), ((True, np_float(1.5)), ('say "a, b"', 0.1 + 0.2), (None, 3)))
+    assert csv_text(table) == 'a,b\nyes,1.5\n"say ""a, b""",0.30000000000000004\n,3\n'
+
+
+def test_faulty_tables_are_refused(tmp_path: Path) -> None:
+    one, nan = Table("x", ("a",), ((1,),)), Table("x", ("a",), ((float("nan"),),))
+    with pytest.raises(ValueError, match="not finite"):
+        write_tables(tmp_path, Output((), (), (("t", nan),)))
+    with pytest.raises(ValueError, match="not unique"):
+        write_tables(tmp_path, Output((), (), (("t", one), ("t", one))))
+    with pytest.raises(ValueError, match="not unique"):
+        write_tables(tmp_path, Output((), (), (("t_times", one),)))
+
+
+def test_what_is_finished_is_not_made_again(tmp_path: Path) -> None:
+    item, contexts = fakes.counted(fakes.FILLING)
+    items = {"fig5": item}
+    make(tmp_path, "fig5", items=items)
+    (made,) = make(tmp_path, "fig5", items=items)
+    assert (made.status, len(contexts)) == ("kept", 1)
+    assert made.record == record(tmp_path, "fig5")
+    for changed in (
+        replace(OPTIONS, seed=2),
+        replace(OPTIONS, seed=2, quick=True),
+        replace(OPTIONS, seed=2, quick=True, again=True),
+    ):
+        count = len(contexts)
+        assert make(tmp_path, "fig5", items=items, options=changed)[0].status == "made"
+        assert len(contexts) == count + 1
+
+
+def test_a_file_that_is_gone_is_made_again(tmp_path: Path) -> None:
+    make(tmp_path, "fig5")
+    (tmp_path / "fig5" / "filling.svg").unlink()
+    assert make(tmp_path, "fig5")[0].status == "made"
+    (tmp_path / "fig5" / "fig5.json").write_text('{"schema": "drystone-item/1", "cut sh')
+    assert make(tmp_path, "fig5")[0].status == "made"
+    assert make(tmp_path, "fig5")[0].status == "kept"
+
+
+def test_planned_walls_are_taken_from_the_folder(tmp_path: Path) -> None:
+    planned: list[int] = []
+
+    def noted(specs, data):  # type: ignore[no-untyped-def]
+        planned.extend(spec.seed for spec in specs)
+        yield from one_by_one(specs, data)
+
+    noting = replace(OPTIONS, work=noted, again=True)
+    make(tmp_path, "fig5", options=noting)
+    before = (tmp_path / "fig5" / "walls.csv").read_bytes()
+    make(tmp_path, "fig5", options=noting)
+    assert planned == [1, 2]
+    assert (tmp_path / "fig5" / "walls.csv").read_bytes() == before
+    make(tmp_path, "fig5", options=replace(noting, seed=2))
+    assert planned == [1, 2, 3]
+
+
+def test_files_of_an_earlier_version_go(tmp_path: Path) -> None:
+    make(tmp_path, "fig5")
+    make(tmp_path, "fig5", items={"fig5": fakes.WORDS})
+    (tmp_path / "mine.txt").write_text("mine")
+    make(tmp_path, "fig5", items={"fig5": fakes.WORDS}, options=replace(OPTIONS, again=True))
+    assert {path.name for path in (tmp_path / "fig5").iterdir()} == {"fig5.json", "index.html"}
+    assert (tmp_path / "mine.txt").is_file()
+
+
+def test_items_add_up_in_the_order_of_the_paper(tmp_path: Path) -> None:
+    make(tmp_path, "beta")
+    make(tmp_path, "fig5", options=replace(OPTIONS, quick=True))
+    page = (tmp_path / "index.html").read_text("utf-8")
+    assert page.index('<h2 id="fig5">') < page.index('<h2 id="beta">')
+    assert 'src="fig5/filling.png"' in page
+    alone = (tmp_path / "fig5" / "index.html").read_text("utf-8")
+    assert 'src="filling.png"' in alone
+    assert "beta" not in alone
+
+
+def test_published_stones_that_are_not_there(tmp_path: Path) -> None:
+    (made,) = make(tmp_path / "out", "fig13")
+    assert made.status == "missing data"
+    assert isinstance(made.error, InputError)
+    assert made.error.code == "E100"
+    assert "almeida/PR.png, ferris/x.json" in str(made.error)
+    assert "drystone fetch almeida ferris" in str(made.error)
+    page = (tmp_path / "out" / "index.html").read_text("utf-8")
+    assert "almeida/PR.png" in page
+    assert "published stones" in page
+
+    data = tmp_path / "data"
+    for name in fakes.NEEDY.needs:
+        (data / name).parent.mkdir(parents=True)
+        (data / name).touch()
+    given = replace(OPTIONS, data=data)
+    assert make(tmp_path / "out", "fig13", options=given)[0].status == "made"
+    assert "Not made" not in (tmp_path / "out" / "index.html").read_text("utf-8")
+    # What was made with them stays when they are gone, unless something else is asked for.
+    assert make(tmp_path / "out", "fig13")[0].status == "kept"
+    assert make(tmp_path / "out", "fig13", options=replace(OPTIONS, seed=3))[0].error is not None
+    page = (tmp_path / "out" / "index.html").read_text("utf-8")
+    assert "Not made" in page
+    assert "Seed 1" in page
+    make(tmp_path / "out", "fig13")
+    assert "Not made" not in (tmp_path / "out" / "index.html").read_text("utf-8")
+
+
+def test_more_published_stones_are_a_reason_to_make_it_again(tmp_path: Path) -> None:
+    assert make(tmp_path / "out", "beta")[0].status == "made"
+    (tmp_path / "data" / "almeida").mkdir(parents=True)
+    (tmp_path / "data" / "almeida" / "R.png").touch()
+    given = replace(OPTIONS, data=tmp_path / "data")
+    assert make(tmp_path / "out", "beta", options=given)[0].status == "made"
+    assert make(tmp_path / "out", "beta", options=given)[0].status == "kept"
+
+
+def test_your_own_stones_are_known_by_their_contents(tmp_path: Path) -> None:
+    out, image = tmp_path / "out", tmp_path / "stones"
+    given = replace(OPTIONS, image=image)
+    with pytest.raises(InputError, match="E100"):
+        make(out, "beta", options=given)
+    image.write_bytes(b"one")
+    assert [make(out, "beta", options=given)[0].status for _ in range(2)] == ["made", "kept"]
+    image.write_bytes(b"two")
+    assert make(out, "beta", options=given)[0].status == "made"
+    image.unlink()
+    image.mkdir()
+    (image / "a.png").write_bytes(b"two")
+    assert [make(out, "beta", options=given)[0].status for _ in range(2)] == ["made", "kept"]
+    (image / "a.png").rename(image / "b.png")
+    assert make(out, "beta", options=given)[0].status == "made"
+    assert make(out, "beta")[0].status == "made"
+
+
+def test_an_error_stops_one_item(tmp_path: Path) -> None:
+    failed, after = make(tmp_path, "figB33", "beta")
+    assert (failed.status, after.status) == ("failed", "made")
+    assert failed.error is not None
+    assert failed.error.code == "E104"
+    page = (tmp_path / "index.html").read_text("utf-8")
+    assert "E104 broken: there are no stones. Look for some." in page
+    assert "Appendix B.1" in page
+    assert len(list((tmp_path / "runs").iterdir())) == 2
+
+
+def test_an_interrupt_keeps_what_is_finished(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        make(tmp_path, "beta", "fig17")
+    assert '<h2 id="beta">' in (tmp_path / "index.html").read_text("utf-8")
+    assert len(list((tmp_path / "runs").iterdir())) == 2
+
+
+@pytest.mark.parametrize("mark", [None, "{}", "no json", '{"schema": "drystone-plan/1"}'])
+def test_folders_of_others_are_refused(mark: str | None, tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    if mark is not None:
+        (tmp_path / "reproduce.json").write_text(mark)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    with pytest.raises(UsageError, match="E129"):
+        make(tmp_path, "beta")
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_progress_says_which_item_and_how_many_walls(tmp_path: Path) -> None:
+    said: list[str] = []
+    make(tmp_path, "fig5", "beta", options=replace(OPTIONS, say=said.append))
+    assert said[0] == "[0:00:00] 1 of 2, fig5"
+    assert "1 of 2, fig5: 1 of 2 walls" in said[1]
+    assert said[-2].endswith("2 of 2, beta")
+    assert said[-1].endswith("2 of 2, beta: made")
+
+
+def test_walls_are_told_of_now_and_then() -> None:
+    said: list[str] = []
+    now = [0.0]
+    progress = Progress(said.append, 1, lambda: now[0])
+    progress.begin("fig5")
+    for text, step in (("1", 0.0), ("2", EVERY_S / 2), ("3", EVERY_S), ("4", 3661.0)):
+        now[0] += step
+        progress.walls(text)
+    assert [line.split(": ")[-1] for line in said[1:]] == ["1", "3", "4"]
+    assert said[-1].startswith("[1:01:04] ")

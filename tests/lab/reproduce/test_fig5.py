@@ -1,0 +1,102 @@
+import math
+
+import numpy as np
+import pytest
+
+from drystone.clusters import stone_features
+from drystone.poses import INITIAL_DEG, PoseBook
+from drystone_lab.reproduce import fig5
+from tests.lab.reproduce.small_walls import RUBBLE, context, gids, rows
+
+
+@pytest.fixture(scope="module")
+def output(tmp_path_factory):
+    return fig5.make(context(tmp_path_factory.mktemp("runs")), RUBBLE, (RUBBLE,))
+
+
+@pytest.fixture(scope="module")
+def stones():
+    return RUBBLE.source.stones(None)
+
+
+@pytest.fixture(scope="module")
+def features(stones):
+    return naive_features(stones)
+
+
+def naive_features(stone_set):
+    """Eccentricity from the moments of subpixels, size from boxes of turned pixel corners."""
+    found = []
+    for stone in stone_set:
+        rows, cols = np.nonzero(np.kron(stone.mask, np.ones((4, 4), bool)))
+        low, high = np.linalg.eigvalsh(np.cov(np.array([cols, rows]), bias=True))
+        corners = np.concatenate([np.argwhere(stone.mask) + d for d in np.ndindex(2, 2)])
+        areas = []
+        for angle in np.radians(INITIAL_DEG):
+            x = corners @ [np.cos(angle), np.sin(angle)]
+            y = corners @ [-np.sin(angle), np.cos(angle)]
+            areas.append(np.ptp(x) * np.ptp(y))
+        found.append((math.sqrt(1 - low / high), min(areas)))
+    features = np.array(found)
+    return features / [1.0, features[:, 1].max()]
+
+
+def naive_ward(features, threshold):
+    """Join the two clusters at the least Ward distance until it is above the threshold."""
+    groups = [[k] for k in range(len(features))]
+
+    def distance(one, other):
+        a, b = features[one], features[other]
+        weight = 2 * len(a) * len(b) / (len(a) + len(b))
+        return math.sqrt(weight) * math.dist(a.mean(axis=0), b.mean(axis=0))
+
+    while len(groups) > 1:
+        pairs = [(distance(groups[i], groups[j]), i, j) for j in range(len(groups))
+                 for i in range(j)]  # fmt: skip
+        least, i, j = min(pairs)
+        if least > threshold:
+            break
+        groups[i] += groups.pop(j)
+    return {frozenset(group) for group in groups}
+
+
+def test_features_are_moments_and_boxes(stones, features):
+    np.testing.assert_allclose(stone_features(stones, PoseBook()), features, rtol=1e-3)
+
+
+def test_clusters_are_those_of_joining_step_by_step(output, stones, features):
+    ids = [stone.id for stone in stones]
+    expected = {frozenset(ids[k] for k in group) for group in naive_ward(features, 0.2)}
+    table = rows(output, "clusters")
+    assert {frozenset(map(int, row["ids"].split())) for row in table} == expected
+    for row in table:
+        among = [ids.index(int(i)) for i in row["ids"].split()]
+        assert row["stones"] == len(among)
+        mean = features[among].mean(axis=0)
+        assert (row["mean eccentricity"], row["mean size"]) == pytest.approx(mean, rel=2e-3)
+
+
+def test_counts_over_the_threshold(output, features):
+    (row,) = rows(output, "thresholds")
+    for distance in fig5.DISTANCES:
+        assert row[f"{distance:g}"] == len(naive_ward(features, distance)), distance
+
+
+def test_the_span_of_thresholds_has_the_paper_s_count(stones, features):
+    grouped = fig5.Grouped.of("rubble", stones)
+    low, high = grouped.between(7)
+    assert len(naive_ward(features, (low + high) / 2)) == 7
+    assert len(naive_ward(features, low - 2e-3)) > 7 > len(naive_ward(features, high + 2e-3))
+
+
+def test_pictures_show_every_stone_twice_and_the_paper_s_count(output, stones):
+    drawn = gids(output, "fig5")
+    assert all(drawn.count(f"stone-{stone.id}") == 2 for stone in stones)
+    assert {"counts-rubble", "claim"} <= set(gids(output, "fig5-thresholds"))
+
+
+def test_the_stones_pr_fall_into_the_paper_s_clusters(tmp_path, data_dir):
+    output = fig5.ITEM.make(context(tmp_path, data_dir))
+    assert len(rows(output, "clusters")) == fig5.PAPER_CLUSTERS
+    assert [row["stones"] for row in rows(output, "thresholds")] == ["PR", "R", "IR"]
+    assert [row["count"] for row in rows(output, "thresholds")] == [32, 34, 61]

@@ -1,0 +1,99 @@
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from drystone_lab.reproduce import fig8
+from drystone_lab.reproduce.places import amid_course
+from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, rows
+from tests.naive import indices as naive
+from tests.naive.rays import local_filling_ratio
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("runs")
+
+
+@pytest.fixture(scope="module")
+def output(folder):
+    return fig8.make(context(folder), RUBBLE)
+
+
+@pytest.fixture(scope="module")
+def trial(folder):
+    moment, place = amid_course(built(folder, RUBBLE))
+    return moment, moment.trial(place.posed.stone.id)
+
+
+def naive_maps(occupied, mask):
+    """Position by position: overlap with the landscape, and with what is beside it."""
+    height, width = occupied.shape
+    bounds = np.pad(occupied, 1, constant_values=True)
+    grown = bounds.copy()
+    for r, c in np.argwhere(bounds):
+        for i, j in ((r - 1, c), (r + 1, c), (r, c - 1), (r, c + 1)):
+            if 0 <= i < bounds.shape[0] and 0 <= j < bounds.shape[1]:
+                grown[i, j] = True
+    shape = (height - mask.shape[0] + 1, width - mask.shape[1] + 1)
+    free, floating = np.zeros(shape, bool), np.zeros(shape, bool)
+    for row, col in np.ndindex(shape):
+        window = np.s_[row : row + mask.shape[0], col : col + mask.shape[1]]
+        free[row, col] = not np.any(occupied[window] & mask)
+        floating[row, col] = not np.any(grown[1:-1, 1:-1][window] & mask)
+    return free, floating
+
+
+def test_maps_are_those_of_every_position(trial):
+    moment, (posed, *_) = trial
+    maps = fig8.PositionMaps.of(moment.wall.occupied, posed.mask)
+    free, floating = naive_maps(moment.wall.occupied, posed.mask)
+    np.testing.assert_array_equal(maps.free, free)
+    np.testing.assert_array_equal(maps.floating, floating)
+    assert not np.any(maps.touching & maps.floating)
+
+
+def test_counts(output, trial):
+    moment, (posed, *_) = trial
+    occupied = moment.wall.occupied
+    free, floating = naive_maps(occupied, posed.mask)
+    below = np.vstack([free[1:], np.zeros_like(free[:1])])
+    resting = np.count_nonzero(free & ~below)
+    counts = [row["count"] for row in rows(output, "positions")]
+    assert counts == [
+        free.size, free.sum(), floating.sum(), free.sum() - floating.sum(), resting, 1,
+    ]  # fmt: skip
+
+
+def test_the_chosen_position_is_worth_most(output, trial):
+    moment, (posed, row, col) = trial
+    occupied = moment.wall.occupied
+
+    def value(at):
+        stone = naive.painted(occupied.shape, posed.mask, *at)
+        dice = naive.dice_score(occupied, stone)
+        x_c = at[1] + posed.anchor[0]
+        filled = local_filling_ratio(occupied, posed.mask, *at)
+        return filled + (dice if dice > 0.7 else 0.0) - x_c / occupied.shape[1]
+
+    *_, touching, best, chosen = rows(output, "positions")
+    assert chosen["best: left px"] == col
+    assert chosen["best: Eq. 12"] == pytest.approx(value((row, col)), abs=1e-4)
+    assert best["best: Eq. 12"] == chosen["best: Eq. 12"] <= touching["best: Eq. 12"]
+    others = moment.positions(posed)[::9].tolist()
+    assert max(map(value, map(tuple, others))) <= value((row, col)) + 1e-12
+
+
+def test_the_landscape_is_dilated_by_one_pixel_across_edges():
+    occupied = np.zeros((5, 5), bool)
+    occupied[4, 0] = True
+    maps = fig8.PositionMaps.of(occupied, np.ones((1, 1), bool))
+    inner = ndimage.binary_dilation(occupied)
+    inner[[0, -1]] = inner[:, [0, -1]] = True
+    np.testing.assert_array_equal(maps.floating, ~inner)
+
+
+def test_the_picture_shows_all_sets(output):
+    drawn = gids(output, "fig8")
+    layers = {gid for gid in drawn if gid.startswith("layer-")}
+    assert len(layers) == 4
+    assert {"values", "chosen", "best"} <= set(drawn)

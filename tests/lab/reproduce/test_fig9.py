@@ -1,0 +1,129 @@
+import math
+
+import numpy as np
+import pytest
+
+from drystone_lab.reproduce import fig9
+from drystone_lab.reproduce.unstable import unstable_trials
+from tests.lab.reproduce.small_walls import SHARP, built, context, gids, rows
+from tests.naive.support import rests_stably, support_ends
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("runs")
+
+
+@pytest.fixture(scope="module")
+def output(folder):
+    return fig9.make(context(folder), SHARP)
+
+
+@pytest.fixture(scope="module")
+def run(folder):
+    return built(folder, SHARP)
+
+
+@pytest.fixture(scope="module")
+def found(run):
+    return unstable_trials(run)
+
+
+def stable(occupied, standing):
+    posed, row, col = standing.pose
+    assert not np.any(
+        occupied[row : row + posed.height_px, col : col + posed.width_px] & posed.mask
+    )
+    return rests_stably(occupied, posed.mask, row, col, col + posed.anchor[0], 0.0)
+
+
+def test_every_stone_that_is_left_is_tried_and_those_that_fall_are_found(run, found):
+    trials, unstable = found
+    falling, count = [], 0
+    for moment in run.moments:
+        for stone_id in moment.remaining:
+            trial = moment.trial(stone_id)
+            if trial is not None:
+                posed, row, col = trial
+                count += 1
+                x_c = col + posed.anchor[0]
+                if not rests_stably(moment.wall.occupied, posed.mask, row, col, x_c, 0.0):
+                    falling.append((moment.number, stone_id))
+    assert trials == count
+    assert [(one.moment.number, one.stone_id) for one in unstable] == falling
+
+
+def test_turned_and_wedged_stones_rest(found):
+    turned, wedged = 0, 0
+    for case in found[1]:
+        occupied = case.moment.wall.occupied
+        if case.turned is not None:
+            assert stable(occupied, case.turned)
+            first, last = (one.pose[0].angle_deg for one in (case.trial, case.turned))
+            assert math.remainder(case.turn_deg - (last - first), 360) == 0
+            # It turns to the side to which it falls.
+            assert (case.turn_deg < 0) == (case.trial.falls > 0)
+            turned += 1
+        if case.wedged is not None:
+            scene = occupied.copy()
+            for wedge in case.wedged.wedges:
+                assert not np.any(scene[wedge.window] & wedge.mask)
+                scene[wedge.window] |= wedge.mask
+            assert stable(scene, case.wedged)
+            assert case.wedged.pose == case.trial.pose
+            wedged += 1
+    assert turned > 5
+    assert wedged > 5
+
+
+def test_points_are_those_of_the_support(found):
+    for case in found[1]:
+        posed, row, col = case.trial.pose
+        occupied = case.moment.wall.occupied
+        (x_l, row_l), (x_r, row_r) = support_ends(occupied, posed.mask, row, col)
+        x_c, y_c = case.trial.mass
+        a, b = case.trial.ends
+        height = occupied.shape[0]
+        assert {a, b} == {(x_l, height - row_l), (x_r, height - row_r)}
+        assert abs(x_c - a[0]) <= abs(x_c - b[0])
+        cross = np.cross([b[0] - a[0], b[1] - a[1], 0], [x_c - a[0], y_c - a[1], 0])[2]
+        assert case.trial.cross == pytest.approx(cross)
+        # Counter-clockwise is a fall to the left.
+        assert case.sign_agrees == ((cross < 0) == (x_c > a[0]))
+        assert case.hangs == (y_c < a[1])
+
+
+def test_counts_add_up(output, found):
+    count = {row["what"]: row["count"] for row in rows(output, "counts")}
+    trials, unstable = found
+    assert count["tried"] == trials
+    assert (
+        count["not stable"]
+        == len(unstable)
+        == (count["stable after turning"] + count["turning fails, a wedge does"] + count["neither"])
+    )
+    wrong = [one for one in unstable if not one.sign_agrees]
+    assert count["sign of AB x AC is wrong"] == len(wrong)
+
+
+def test_the_cases_drawn_are_the_most_turned_and_the_largest_wedge(output, found):
+    table = rows(output, "cases")
+    poses = [row["pose"] for row in table]
+    assert poses == ["tried", "turned", "wedged", "tried", "wedged"]
+    (turned,) = [row for row in table if row["pose"] == "turned"]
+    wide = [
+        case for case in found[1]
+        if case.turned is not None and case.wedged is not None
+        and case.trial.support.right_x - case.trial.support.left_x
+        >= fig9.WIDE * case.trial.pose[0].width_px
+    ]  # fmt: skip
+    assert abs(turned["turned deg"]) == max(abs(case.turn_deg) for case in wide)
+    for row in table:
+        assert (row["wedge height px"] is None) == (row["pose"] != "wedged")
+
+
+def test_the_picture_shows_both_cases(output):
+    drawn = gids(output, "fig9")
+    assert [drawn.count(gid) for gid in ("stone", "AB", "C", "C'")] == [5, 5, 5, 5]
+    assert (drawn.count("turn"), drawn.count("before"), drawn.count("supported")) == (2, 1, 2)
+    assert sum(gid.startswith("wedge-") for gid in drawn) >= 2

@@ -1,0 +1,58 @@
+"""Bricks in courses: laid by hand, and planned."""
+
+from drystone_lab.reproduce.courses import Brick, bricks_of, courses_of, head_joints
+from drystone_lab.reproduce.fig_b34 import Size, make
+from tests.lab.reproduce.small_walls import context, rows
+
+
+def course(foot, *lefts, width=20, height=10):
+    return [Brick(left, left + width, foot, foot + height, True) for left in lefts]
+
+
+def test_a_running_bond_is_crossed_and_a_stack_is_not():
+    low, running, stack = course(0, 0, 20, 40), course(10, 10, 30, 50), course(10, 0, 20, 40)
+    assert courses_of(low + running, 10, 20).crossed == 4
+    assert courses_of(low + stack, 10, 20).crossed == 0
+    assert courses_of(low + stack, 10, 20).joints == 4
+    # Joints of four px apart are not crossed, of five they are.
+    assert courses_of(low + course(10, 4, 24), 10, 20).crossed == 1
+    assert courses_of(low + course(10, 5, 25), 10, 20).crossed == 3
+
+
+def test_upright_raised_and_turned_bricks_are_in_no_course():
+    upright = Brick(0, 10, 0, 20, True)
+    turned = Brick(30, 50, 0, 10, False)
+    raised = course(3, 60)
+    found = courses_of([upright, turned, *raised, *course(10, 80)], 10, 20)
+    assert (found.bricks, found.lying, found.in_course, found.courses) == (4, 2, 1, 1)
+    assert found.joints == 0
+
+
+def test_a_hole_is_no_joint_and_the_last_course_needs_one_beside_it():
+    assert head_joints(course(0, 0, 24, 64)) == [22.0]
+    assert courses_of(course(0, 0, 20), 10, 20).joints == 0
+
+
+def test_planned_bricks_are_read_off_their_wall(tmp_path):
+    output = make(context(tmp_path), Size(2, 2))
+    found = rows(output, "walls")
+    assert [(row["aspect"], row["built from"]) for row in found] == [
+        (2.0, "one side"), (3.0, "one side"), (2.0, "two sides"), (3.0, "two sides")
+    ]  # fmt: skip
+    assert [run.width for run in output.runs] == [60, 90, 60, 90]
+    for run, row in zip(output.runs, found, strict=True):
+        wall = context(tmp_path).wall(run)
+        boxes = bricks_of(wall)
+        assert row["placed"] == row["lying"] == len(boxes) == 4
+        for box, placement in zip(boxes, wall.placements, strict=True):
+            pixels = wall.labels[::-1] == placement.stone_id
+            assert pixels[box.bottom : box.top, box.left : box.right].all()
+            assert pixels.sum() == (box.top - box.bottom) * (box.right - box.left)
+    crossed, joints = (sum(row[name] for row in found) for name in ("crossed", "head joints"))
+    assert f"{crossed} of {joints} head joints are crossed" in output.ours[-1]
+    assert ("inferior interlocking" in output.ours[-1]) is (2 * crossed < joints)
+    colours = [
+        {patch.get_facecolor() for patch in ax.patches if str(patch.get_gid()).startswith("stone")}
+        for ax in output.pictures[0].figure.axes
+    ]
+    assert [len(each) for each in colours] == [4, 4, 4, 4]

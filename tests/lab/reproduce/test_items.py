@@ -1,0 +1,57 @@
+"""Every item of the paper that is there is an item; nothing is run."""
+
+import subprocess
+import sys
+from importlib.util import find_spec
+
+import pytest
+
+from drystone.errors import UsageError
+from drystone.io.published_sets import SETS
+from drystone_lab.reproduce.driver import PaperItems
+from drystone_lab.reproduce.item import Item
+from drystone_lab.reproduce.items import ALSO, ITEMS, item_named, item_names
+
+THERE = [
+    name
+    for name, (_, module) in ITEMS.items()
+    if find_spec(f"drystone_lab.reproduce.{module}") is not None
+]
+PUBLISHED = {file.name for published in SETS.values() for file in published.files}
+
+
+@pytest.mark.parametrize("name", THERE)
+def test_an_item_says_what_it_is(name: str) -> None:
+    item = item_named(name)
+    assert isinstance(item, Item)
+    assert item.title.strip() == item.title != ""
+    assert item.section.removeprefix("§")[0] in "3456B"
+    assert callable(item.make)
+    assert {*item.needs} <= PUBLISHED
+
+
+def test_names() -> None:
+    assert item_names("all") == tuple(ITEMS)
+    assert {*ALSO.values()} <= {*ITEMS}
+    assert not {*ALSO} & {*ITEMS}
+    assert item_names("fig23") == ("fig22-24",)
+    with pytest.raises(UsageError, match="E138"):
+        item_names("fig99")
+    assert list(PaperItems()) == list(ITEMS)
+    assert len(PaperItems()) == len(ITEMS)
+    assert PaperItems()[THERE[0]].title == item_named(THERE[0]).title
+
+
+def test_names_are_there_without_waiting() -> None:
+    code = (
+        "import sys\n"
+        "from drystone.cli import main\n"
+        "main(['reproduce', '--list'])\n"
+        "heavy = {'numpy', 'scipy', 'matplotlib', 'jinja2'} & set(sys.modules)\n"
+        "sys.exit(f'loaded: {heavy}' if heavy else 0)\n"
+    )
+    done = subprocess.run(  # noqa: S603 - our own code
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert [line.split()[0] for line in done.stdout.splitlines()] == list(ITEMS)

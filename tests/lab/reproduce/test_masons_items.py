@@ -1,0 +1,127 @@
+"""Items that set walls beside the masons' and beside the paper's figures."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from drystone.metrics.measure import measure_labels
+from drystone.statics.contacts.blocks import model_from_labels
+from drystone.statics.limit import lateral_resistance
+from drystone_lab.reproduce import fig13, fig14_15, table2
+from drystone_lab.reproduce.base import PaperWall
+from drystone_lab.reproduce.best_trial import best_trial
+from drystone_lab.reproduce.item import Context
+from drystone_lab.reproduce.masons_wall import MasonsWall, masons_wall, treatments
+from drystone_lab.runs.source import published
+from tests.lab.reproduce.small_walls import RUBBLE, context, rows
+
+BLOCKS = PaperWall(1, "blocks", published("blocks.png"), 66, 32, 1.0)
+SEEDS = (1, 2)
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a wall of masons: courses of blocks with gaps of a pixel above and beside."""
+    folder = tmp_path_factory.mktemp("data")
+    labels = np.zeros((33, 68), np.uint16)
+    block = 0
+    for course, top in enumerate((1, 12, 23)):
+        for left in range(1 - 10 * (course % 2), 66, 21):
+            block += 1
+            labels[top : top + 10, max(left, 0) : left + 20] = 20 * block
+    Image.fromarray(labels).save(folder / "blocks.png")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def here(tmp_path_factory: pytest.TempPathFactory, data: Path) -> Context:
+    return context(tmp_path_factory.mktemp("runs"), data)
+
+
+@pytest.fixture(scope="module")
+def masons(data: Path) -> MasonsWall:
+    return masons_wall(BLOCKS, data)
+
+
+def test_gaps_are_closed_in_every_way(masons: MasonsWall) -> None:
+    found = {way.name: way for way in treatments(masons)}
+    assert (found["as traced"].F_LR, found["as traced"].status) == (None, "unstable")
+    assert found["gaps up to 1 px closed"].status == "optimal"
+    papers = found["drawn together and dilated (the paper's way)"]
+    by_hand = lateral_resistance(model_from_labels(masons.papers_way).model).value
+    assert papers.F_LR == by_hand
+    assert (masons.papers_way > 0).sum() > (masons.labels > 0).sum()
+
+
+def test_fig13(masons: MasonsWall) -> None:
+    output = fig13.closed([masons])
+    traced, closed, papers = rows(output, "fig13")
+    measured = measure_labels(masons.labels)
+    assert traced["F_SF"] == pytest.approx(measured.F_SF, abs=1e-4)
+    assert traced["F_AV"] == pytest.approx(measured.F_AV, abs=1e-4)
+    assert traced["F_LR"] is None
+    assert float(str(closed["F_SF"])) > float(str(traced["F_SF"]))
+    assert (papers["F_SF"], papers["F_LR"]) == (0.837, 0.64)
+    ways = rows(output, "fig13_resistance")
+    known = [float(str(row["F_LR"])) for row in ways if row["F_LR"] is not None]
+    assert f"{len(ways) - len(known)} of {len(ways)} treatments" in output.ours[0]
+    assert f"F_LR is {min(known):.2f} to {max(known):.2f}." in output.ours[0]
+    assert f"{ways[-1]['gaps']}, the wall has" in output.ours[0]
+    assert len(output.pictures[0].figure.axes) == 2
+
+
+def test_base_case(here: Context) -> None:
+    output = fig14_15.base_case(here, RUBBLE, SEEDS)
+    outcomes = here.run([RUBBLE.run(seed) for seed in SEEDS])
+    table = rows(output, "fig14_seeds")
+    assert [row["seed"] for row in table] == list(SEEDS)
+    for row, outcome in zip(table, outcomes, strict=True):
+        alpha = outcome.figures["alpha_left"]
+        assert row["alpha left / mu"] == pytest.approx(float(alpha or 0) / 0.58, abs=1e-4)
+    rules = rows(output, "fig15")
+    by_rule = {(row["towards"], row["flow rule"]): row["alpha"] for row in rules}
+    for side in ("left", "right"):
+        alpha = outcomes[0].figures[f"alpha_{side}"]
+        assert by_rule[side, "associative"] == pytest.approx(alpha, abs=1e-4)
+        loose = by_rule[side, "without dilatancy"]
+        assert loose is None or float(str(loose)) <= float(alpha or 0) + 1e-4
+    reached = sum(float(o.figures["alpha_left"] or 0) / 0.58 >= 0.79 for o in outcomes)
+    assert f"{reached} of 2 walls reach the paper's 0.79" in output.ours[1]
+    names = {picture.name for picture in output.pictures}
+    assert {"fig14", "fig15_left", "fig15_right", "fig14_seeds"} <= names
+
+
+def test_table2(here: Context) -> None:
+    stand_in = replace(RUBBLE, name="other", number=4, stand_in=True)
+    output = table2.compare(here, (BLOCKS, stand_in), SEEDS)
+    outcomes = here.run([BLOCKS.run(seed) for seed in SEEDS])
+    mine = {str(row["what"]).split(",")[0]: row for row in rows(output, "table2")
+            if row["wall"] == 1}  # fmt: skip
+    best = outcomes[best_trial(outcomes)]
+    assert mine["best of 2"]["F_SF"] == pytest.approx(best.figures["F_SF"], abs=1e-4)
+    assert mine["best of 2"]["paper F_SF"] == 0.974
+    assert mine["fixed seed"]["F_SF"] == pytest.approx(outcomes[0].figures["F_SF"], abs=1e-4)
+    assert mine["masons"]["paper F_AV"] == 39.78
+    fullest = max(float(outcome.figures["F_SF"] or 0) for outcome in outcomes)
+    assert mine["fullest of 2"]["F_SF"] == pytest.approx(fullest, abs=1e-4)
+    image = np.asarray(Image.open(here.data / "blocks.png")) if here.data else np.zeros((1, 1))
+    most = (image > 0).sum() / (66 * 32)
+    assert mine["all stones"]["F_SF"] == pytest.approx(most, abs=1e-4)
+    assert fullest <= most + 1e-9
+    assert f"all stones together fill {most:.3f} of the 66 x 32 px" in output.ours[0]
+    others = [row for row in rows(output, "table2") if row["wall"] == 4]
+    # The paper's figures never stand beside those of other stones.
+    assert all(row["F_SF"] is None or row["paper F_SF"] is None for row in others)
+    assert {0.8, 0.839} <= {row["paper F_SF"] for row in others}
+    assert len(output.pictures[0].figure.axes) == 4 + 3
+
+
+def test_a_filling_that_cannot_be_is_said_so(here: Context) -> None:
+    wide = replace(BLOCKS, width=132.0)
+    said = table2.compare(here, (wide,), (1,)).ours[0]
+    assert "cannot be reached" in said
+    low = replace(BLOCKS, height=29.0)
+    assert "is possible" in table2.compare(here, (low,), (1,)).ours[0]

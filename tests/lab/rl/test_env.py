@@ -1,0 +1,274 @@
+"""The environment."""
+
+from copy import deepcopy
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import drystone_lab.rl
+from drystone.errors import UsageError
+from drystone.model.site import Site
+from drystone.search.goal import Figures, merit_of
+from drystone.selection.policies.learned import FEATURES, features
+from drystone_lab.rl.env import WallEnv
+from drystone_lab.rl.episode import ARRIVING
+from tests.lab.rl.walls import SMALL, bricks
+
+
+def made(**changes: Any) -> WallEnv:
+    env = gymnasium.make(drystone_lab.rl.ENVIRONMENT, **({"draw": SMALL} | changes)).unwrapped
+    assert isinstance(env, WallEnv)
+    return env
+
+
+def played(env: WallEnv, seed: int) -> tuple[list[float], dict[str, Any], bytes]:
+    """Play an episode at random; return its rewards, the last info, and the bytes of it all."""
+    rng = np.random.default_rng(0)
+    seen, info = env.reset(seed=seed)
+    rewards, over, bits = [], False, b""
+    while not over:
+        action = rng.choice(np.flatnonzero(env.action_masks()))
+        seen, reward, over, truncated, info = env.step(action)
+        assert not truncated
+        assert env.observation_space.contains(seen)
+        rewards.append(reward)
+        bits += b"".join(array.tobytes() for array in seen.values()) + repr((reward, info)).encode()
+    return rewards, info, bits
+
+
+@pytest.mark.parametrize("name", [drystone_lab.rl.ENVIRONMENT, "drystone_lab.rl:drystone/Wall-v0"])
+def test_passes_the_checks_of_gymnasium(name: str) -> None:
+    # Warnings are errors in these tests.
+    check_env(gymnasium.make(name, draw=SMALL, render_mode="rgb_array").unwrapped)
+
+
+def test_rewards_sum_up_to_the_merit_of_the_wall() -> None:
+    env = made()
+    all_rewards: list[float] = []
+    for seed in range(5):
+        rewards, info, _ = played(env, seed)
+        possible = min(1.0, SMALL.surplus)
+        worth = merit_of(Figures(**info["metrics"]), possible, env.settings.goal)
+        assert sum(rewards) == pytest.approx(worth, abs=1e-9)
+        assert info["merit"] == worth
+        assert info["metrics"]["stones"] == info["placed"] == len(rewards)
+        assert info["placed"] + info["aside"] == SMALL.stones
+        all_rewards += rewards
+    assert min(all_rewards) < 0 < max(all_rewards)
+
+
+def test_a_seed_repeats_the_episode() -> None:
+    env = made()
+    first = played(env, 5)[2]
+    assert played(env, 6)[2] != first
+    assert played(env, 5)[2] == first == played(made(), 5)[2]
+
+
+def test_masks_say_what_is_offered() -> None:
+    env = made(offers=3)
+    seen, info = env.reset(seed=1)
+    assert env.action_masks().dtype == bool
+    count = len(env.episode.offers)
+    assert env.action_masks().tolist() == [k < count for k in range(3)]
+    assert info["action_mask"].tolist() == env.action_masks().astype(int).tolist()
+    rows = seen["offers"]
+    assert np.array_equal(
+        rows[:count, : len(FEATURES)], features(env.episode.offers).astype(np.float32)
+    )
+    played(env, 1)
+    assert not env.action_masks().any()
+
+
+def test_more_actions_than_places_leave_rows_empty() -> None:
+    env = made(offers=20)
+    seen, _ = env.reset(seed=1)
+    count = len(env.episode.offers)
+    assert 0 < count < 20
+    assert not seen["offers"][count:].any()
+    assert seen["offers"][:count].any(axis=1).all()
+
+
+def test_illegal_action_puts_the_stone_aside() -> None:
+    env = made(offers=20)
+    _, before = env.reset(seed=1)
+    _, reward, over, _, info = env.step(np.int64(19))
+    assert (reward, over, info["illegal"], info["placed"]) == (0.0, False, True, 0)
+    assert info["aside"] == before["aside"] + 1
+    assert info["stone"] != before["stone"]
+
+
+def test_illegal_action_can_be_an_error() -> None:
+    env = made(offers=20, illegal="error")
+    env.reset(seed=1)
+    with pytest.raises(UsageError, match="places offered") as caught:
+        env.step(np.int64(19))
+    assert caught.value.code == "E151"
+    assert env.step(np.int64(0))[4]["placed"] == 1  # nothing was changed by it
+
+
+def test_no_action_before_the_start_or_after_the_end() -> None:
+    env = made()
+    with pytest.raises(UsageError, match="no wall was begun"):
+        env.step(np.int64(0))
+    played(env, 1)
+    with pytest.raises(UsageError, match="finished"):
+        env.step(np.int64(0))
+    env.reset(seed=1)
+    with pytest.raises(UsageError, match="none of"):
+        env.step(np.int64(8))
+
+
+def test_profile_is_the_top_of_the_wall() -> None:
+    stones, site = bricks()
+    env = made(columns=8)
+    seen, _ = env.reset(seed=1, options={"stones": stones, "site": site, "order": [1, 2]})
+    assert seen["left"].tolist() == [pytest.approx(1 / 6), 1.0]
+    assert not seen["profile"].any()
+    offers = env.episode.offers
+    lying = next(k for k, one in enumerate(offers) if one.width_px == 20 and one.left_px == 0)
+    seen, *_ = env.step(np.int64(lying))
+    assert seen["profile"].tolist() == [0.5] * 4 + [0.0] * 4
+    assert seen["left"].tolist() == [0.0, 0.75]
+
+
+def test_profile_of_parts_that_are_no_whole_columns() -> None:
+    stones, site = bricks()
+    env = made(columns=3)
+    env.reset(seed=1, options={"stones": stones, "site": site, "order": [1, 2]})
+    offers = env.episode.offers
+    lying = next(k for k, one in enumerate(offers) if one.width_px == 20 and one.left_px == 0)
+    seen, *_ = env.step(np.int64(lying))
+    assert seen["profile"] == pytest.approx([0.5, 0.25, 0.0])
+
+
+def test_given_stones_arrive_in_a_random_order_of_the_seed() -> None:
+    stones, site = bricks()
+    env = made()
+
+    def order(seed: int) -> list[int]:
+        _, info = env.reset(seed=seed, options={"stones": stones, "site": site})
+        arrived = []
+        while info["stone"]:
+            arrived.append(info["stone"])
+            info = env.step(np.int64(0))[4]
+        return arrived
+
+    assert order(1) == order(1)
+    assert len({tuple(order(seed)) for seed in range(6)}) > 1
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [
+        ({"stone": 1}, "E123"),
+        ({"stones": bricks()[0]}, "E123"),
+        ({"site": Site(10, 10)}, "E123"),
+        ({"order": [1]}, "E123"),
+        ({"stones": bricks()[0], "site": bricks()[1], "order": [1, 1]}, "E123"),
+        ({"stones": bricks()[0], "site": bricks()[1], "order": [77]}, "E201"),
+    ],
+)
+def test_reset_refuses(options: dict[str, Any], code: str) -> None:
+    with pytest.raises(Exception, match=r".") as caught:
+        made().reset(seed=1, options=options)
+    assert caught.value.code == code
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"offers": 0}, {"columns": 0}, {"illegal": "ignore"}, {"render_mode": "human"}]
+)
+def test_refuses_settings(wrong: dict[str, Any]) -> None:
+    with pytest.raises(UsageError) as caught:
+        WallEnv(**wrong)
+    assert caught.value.code == "E123"
+
+
+def test_draws_the_wall() -> None:
+    env = made(render_mode="rgb_array")
+    env.reset(seed=1)
+    empty = env.render()
+    env.step(np.int64(0))
+    built = env.render()
+    assert empty is not None
+    assert built is not None
+    assert empty.shape == built.shape == (400, 800, 3)
+    assert empty.dtype == np.uint8
+    assert not np.array_equal(empty, built)
+
+
+def test_example_of_the_documents_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    page = (Path(__file__).parents[3] / "docs" / "learning.md").read_text("utf-8")
+    code = page.split("```python\n")[1].split("```")[0]
+    names: dict[str, Any] = {}
+    exec(code.replace("gymnasium.make(", "gymnasium.make(draw=draw, id="), names | {"draw": SMALL})  # noqa: S102 - ours
+    assert "F_SF" in capsys.readouterr().out
+
+
+def test_stones_of_outlines_arrive_too() -> None:
+    settings = replace(ARRIVING, geometry="exact")
+    rewards, info, _ = played(made(settings=settings, draw=replace(SMALL, stones=4)), 1)
+    assert info["placed"] == len(rewards) >= 2
+    assert sum(rewards) == pytest.approx(info["merit"])
+
+
+def test_vector_of_environments() -> None:
+    envs = gymnasium.make_vec(
+        drystone_lab.rl.ENVIRONMENT, num_envs=2, vectorization_mode="sync", draw=SMALL
+    )
+    seen, info = envs.reset(seed=[1, 2])
+    assert seen["offers"].shape[0] == 2
+    _, rewards, *_ = envs.step(np.zeros(2, np.int64))
+    assert (rewards > 0).all()
+    assert info["action_mask"].shape == (2, 8)
+    envs.close()
+
+
+@pytest.mark.parametrize("illegal", ["aside", "error"])
+def test_a_wall_in_which_nothing_can_be_built_is_over_with_any_action(illegal: str) -> None:
+    env = made(illegal=illegal)
+    seen, info = env.reset(seed=1, options={"stones": bricks()[0], "site": Site(4, 4)})
+    assert (info["stone"], info["merit"], info["metrics"]) == (0, 0.0, {})
+    action = env.action_space.sample(mask=info["action_mask"])  # as the loop of the documents does
+    seen, reward, over, truncated, info = env.step(action)
+    assert env.observation_space.contains(seen)
+    assert (reward, over, truncated, info["placed"], info["illegal"]) == (0.0, True, False, 0, True)
+    with pytest.raises(UsageError, match="finished"):
+        env.step(action)
+
+
+@pytest.mark.parametrize("order", [[], ["1"], [1.5], 3])
+def test_reset_refuses_what_is_no_order(order: Any) -> None:
+    stones, site = bricks()
+    with pytest.raises(UsageError, match=r"no sequence of ids|no stone arrives") as caught:
+        made().reset(seed=1, options={"stones": stones, "site": site, "order": order})
+    assert caught.value.code == "E123"
+
+
+def test_order_may_be_an_array() -> None:
+    stones, site = bricks()
+    _, info = made().reset(options={"stones": stones, "site": site, "order": np.array([2, 1])})
+    assert info["stone"] == 2
+
+
+def test_a_deep_copy_goes_on_by_itself() -> None:
+    wrapped = gymnasium.make(drystone_lab.rl.ENVIRONMENT, draw=SMALL)
+    wrapped.reset(seed=1)
+    wrapped.action_space.seed(1)
+    wrapped.step(np.int64(0))
+    other, third = deepcopy(wrapped), deepcopy(wrapped)
+    seen, reward, *_ = other.step(np.int64(1))
+    again = third.step(np.int64(1))
+    assert reward == again[1]
+    assert all(np.array_equal(seen[key], again[0][key]) for key in seen)
+    env = wrapped.unwrapped
+    assert isinstance(env, WallEnv)
+    assert len(env.episode.build.actions) == 1
+    # Both draw the same walls, and neither draws for the other.
+    first, second = wrapped.reset()[0], other.reset()[0]
+    assert all(np.array_equal(first[key], second[key]) for key in first)
+    assert wrapped.action_space.sample() == other.action_space.sample()

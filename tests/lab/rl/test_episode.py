@@ -1,0 +1,78 @@
+"""Stones that arrive, without the environment around them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from drystone.planner.planner import Planner
+from drystone.search.goal import figures_of, merit_of, possible_filling
+from drystone.selection.policies.simple import Lowest
+from drystone_lab.rl.draw import draw_wall
+from drystone_lab.rl.episode import ARRIVING, Episode, prepared
+from tests.lab.rl.walls import SMALL, bricks
+
+
+def test_builds_the_wall_of_the_planner_with_the_same_policy() -> None:
+    rng = np.random.default_rng(0)
+    for seed in range(2):
+        stones, site = draw_wall(SMALL, np.random.default_rng(seed))
+        episode = Episode(prepared(stones, site))
+        while not episode.over:
+            episode.take(Lowest().choose(episode.offers, rng))
+        settings = replace(ARRIVING, selection_rule="lowest")
+        planner = Planner(stones, site, settings=settings)
+        list(planner.steps())
+        assert np.array_equal(episode.build.wall.labels, planner.build.wall.labels)
+        figures = figures_of(planner.build)
+        possible = possible_filling(planner.workshop)
+        assert episode.merit == merit_of(figures, possible, settings.goal)
+        assert episode.aside == len(stones) - len(planner.build.actions)
+
+
+def test_stones_arrive_in_the_order_given() -> None:
+    episode = Episode(prepared(*bricks()), [5, 2, 3])
+    arrived = []
+    while not episode.over:
+        arrived.append(episode.stone_id)
+        assert {offer.stone_id for offer in episode.offers} == {episode.stone_id}
+        episode.take(0)
+    assert arrived[:2] == [5, 2]
+    assert set(arrived) <= {5, 2, 3}
+
+
+def test_put_aside_for_good() -> None:
+    episode = Episode(prepared(*bricks(3)))
+    first = episode.stone_id
+    episode.take(None)
+    assert (episode.aside, episode.build.actions) == (1, ())
+    while not episode.over:
+        assert episode.stone_id != first
+        episode.take(None)
+    assert (episode.aside, episode.merit, episode.potential) == (3, 0.0, 0.0)
+
+
+def test_full_wall_is_over_with_stones_left() -> None:
+    episode = Episode(prepared(*bricks(6)))
+    while not episode.over:
+        lying = [k for k, offer in enumerate(episode.offers) if offer.width_px == 20]
+        episode.take(lying[0])
+    assert episode.build.wall.filling == 1.0
+    assert (len(episode.build.actions), episode.aside, episode.waiting) == (4, 0, 2)
+
+
+def test_keeps_the_lowest_of_the_offers() -> None:
+    workshop = prepared(*bricks())
+    every, few = Episode(workshop), Episode(workshop, most=3)
+    heights = [offer.centroid_px[1] for offer in every.offers]
+    assert len(heights) > 3
+    kept = [offer.centroid_px[1] for offer in few.offers]
+    assert sorted(kept) == sorted(heights)[:3]
+    assert set(few.offers) <= set(every.offers)
+    assert [o for o in every.offers if o in few.offers] == list(few.offers)
+
+
+@pytest.mark.parametrize("position", [-1, 8])
+def test_there_is_no_such_place(position: int) -> None:
+    with pytest.raises(IndexError):
+        Episode(prepared(*bricks())).take(position)

@@ -1,0 +1,85 @@
+"""Policies side by side."""
+
+import numpy as np
+import pytest
+from scipy.stats import ttest_rel
+
+from drystone.search.goal import GoalSettings
+from drystone_lab.rl.draw import DrawSettings
+from drystone_lab.rl.evaluate import FIGURES, Interval, figures_by, held_out_wall, main, report
+
+DRAW = DrawSettings(stones=6, size_px=10.0)
+
+
+def test_interval_is_that_of_the_paired_t_test() -> None:
+    rng = np.random.default_rng(1)
+    first, second = rng.normal(1.0, 1.0, 12), rng.normal(0.5, 1.0, 12)
+    ours = Interval.of((first - second).tolist())
+    theirs = ttest_rel(first, second).confidence_interval(0.95)
+    assert ours.mean - ours.half == pytest.approx(theirs.low)
+    assert ours.mean + ours.half == pytest.approx(theirs.high)
+
+
+def test_interval_is_starred_without_zero() -> None:
+    assert Interval(0.5, 0.4).text == "+0.500 ± 0.400*"
+    assert Interval(-0.5, 0.6).text == "-0.500 ± 0.600"
+    assert Interval.of([2.0]).half == np.inf
+
+
+def test_figures_of_a_policy_are_those_of_its_walls() -> None:
+    walls = [held_out_wall("brick", number, DRAW) for number in range(2)]
+    found = figures_by("lowest", walls)
+    assert list(found) == list(FIGURES)
+    assert found == figures_by("lowest", walls)
+    goal = GoalSettings()
+    for k in range(2):
+        parts = goal.filling * found["F_SF"][k] + goal.resistance * min(1.0, found["F_LR"][k])
+        parts += goal.vertical * found["F_AV"][k] - goal.horizontal * found["F_AH"][k]
+        # Top and ends are left, which count against a wall.
+        assert parts - 2.0 < found["merit"][k] <= parts
+
+
+def test_free_order_is_another(capsys: pytest.CaptureFixture[str]) -> None:
+    few = ["--walls", "1", "--stones", "6", "--kinds", "rubble", "--policies", "lowest", "paper"]
+    assert main(few) == main([*few, "--free"]) == 0
+    given, free = capsys.readouterr().out.split("1 walls of rubble stones: means")[1:]
+    assert given.strip() != free.strip()
+
+
+def test_report_has_means_and_differences() -> None:
+    walls = {
+        "one": {name: [1.0, 3.0] for name in FIGURES},
+        "two": {name: [0.5, 2.5] for name in FIGURES},
+    }
+    text = report(walls, "Two walls")
+    assert "| one | 2.000 |" in text
+    assert "| two | 1.500 |" in text
+    assert "| two | +0.500 ± 0.000* |" in text
+
+
+def test_command(capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["--walls", "1", "--stones", "5", "--kinds", "brick", "rubble"]
+    assert main([*arguments, "--policies", "learned", "paper"]) == 0
+    out = capsys.readouterr().out
+    assert "1 walls of rubble stones: means" in out
+    assert "All 2 walls: `learned` less each other" in out
+    assert main([*arguments, "--policies", "learned", "nobody"]) == 2
+    assert "E146" in capsys.readouterr().err
+
+
+def test_other_walls_give_another_comparison(capsys: pytest.CaptureFixture[str]) -> None:
+    few = ["--stones", "5", "--kinds", "brick", "--policies", "lowest", "random"]
+    said = []
+    for walls in (["--walls", "2"], ["--walls", "1"], ["--walls", "1", "--first", "1"]):
+        assert main([*few, *walls]) == 0
+        means = capsys.readouterr().out.split("| lowest | ")[1].split(" |")
+        said.append(float(means[0]))
+    assert said[1] != said[2]
+    assert said[0] == pytest.approx((said[1] + said[2]) / 2, abs=1e-3)
+    with pytest.raises(SystemExit):
+        main([*few, "--first", "-1"])
+
+
+def test_command_refuses_a_single_policy() -> None:
+    with pytest.raises(SystemExit):
+        main(["--policies", "learned"])

@@ -1,0 +1,102 @@
+"""A training run in seconds."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from drystone.errors import ExitCode, UsageError
+from drystone.selection.policies.learned import FEATURES, model_from_json, shipped_model
+from drystone_lab.rl.draw import DrawSettings, draw_wall
+from drystone_lab.rl.episode import prepared
+from drystone_lab.rl.rollouts import at_random
+from drystone_lab.rl.train import HELD_OUT, TRAINED_ON, TrainSettings, main, mean_merit, train
+
+TINY = TrainSettings(
+    seed=3, rounds=1, walls=12, validation=6, strength=10.0,
+    draw=DrawSettings(kinds=("rubble",), stones=8, size_px=10.0),
+)  # fmt: skip
+
+
+def test_better_than_random_on_other_walls() -> None:
+    said: list[str] = []
+    model = train(TINY, said.append)
+    assert model.trained["merit_learned"] > model.trained["merit_random"] + 0.6
+    assert model.trained["finished"] > 2 * TINY.rounds * TINY.walls
+    assert len(said) == TINY.rounds + 1
+
+
+def test_equal_seeds_equal_bytes() -> None:
+    short = replace(TINY, rounds=2, walls=2, validation=1)
+    text = train(short).to_json()
+    assert train(short).to_json() == text
+    assert train(replace(short, seed=4)).to_json() != text
+
+
+def test_time_cuts_it_short_and_says_so() -> None:
+    model = train(replace(TINY, validation=1), seconds=-1.0)
+    assert model.trained["rounds"] == model.trained["finished"] == 0
+    assert model.weights == (0.0,) * len(FEATURES)
+
+
+def test_shipped_weights_beat_random_on_walls_that_were_not_trained_on() -> None:
+    draw = DrawSettings(kinds=TRAINED_ON, stones=9, size_px=12.0)
+    walls = [prepared(*draw_wall(draw, np.random.default_rng([9, k]))) for k in range(6)]
+    model = shipped_model()
+    learned = mean_merit(lambda offers, _: model.best(offers), walls)
+    assert learned > mean_merit(at_random, walls) + 0.3
+
+
+def test_shipped_weights_are_of_the_settings_of_today() -> None:
+    trained, settings = shipped_model().trained, TrainSettings()
+    for name in ("seed", "rounds", "walls", "strength"):
+        assert trained[name] == getattr(settings, name)
+    assert trained["kinds"] == list(TRAINED_ON)
+    assert trained["stones"] == settings.draw.stones
+    assert trained["merit_learned"] > trained["merit_random"]
+
+
+def test_command_writes_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "weights.json"
+    few = ["--walls", "1", "--validation", "1", "--stones", "4", "--minutes", "-1"]
+    assert main(["-o", str(path), *few]) == 0
+    model = model_from_json(path.read_text("utf-8"), path.name)
+    assert model.trained["rounds"] == 0
+    out, err = capsys.readouterr()
+    assert out == f"{path}\n"
+    assert "at random" in err
+
+
+def test_a_file_that_is_there_is_not_replaced_unasked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "weights.json"
+    path.write_text("mine", encoding="utf-8")
+    few = ["-o", str(path), "--walls", "1", "--validation", "1", "--stones", "4", "--minutes", "-1"]
+    assert main(few) == ExitCode.USAGE
+    assert "E129" in capsys.readouterr().err
+    assert path.read_text("utf-8") == "mine"
+    assert main([*few, "--overwrite"]) == 0
+    assert model_from_json(path.read_text("utf-8"), path.name).trained["rounds"] == 0
+
+
+def test_walls_without_a_choice_teach_nothing(tmp_path: Path) -> None:
+    full = DrawSettings(kinds=("brick",), stones=3, size_px=12.0, surplus=60.0)
+    with pytest.raises(UsageError, match="no stone of these walls has a choice") as caught:
+        train(replace(TINY, walls=2, draw=full))
+    assert caught.value.code == "E123"
+    few = ["-o", str(tmp_path / "w.json"), "--stones", "2"]
+    assert main(few) == ExitCode.USAGE
+
+
+def test_held_out_walls_are_none_of_training() -> None:
+    with pytest.raises(SystemExit):
+        main(["-o", "w.json", "--seed", str(HELD_OUT)])
+
+
+@pytest.mark.parametrize("wrong", [["--walls", "0"], ["--seed", "-1"], ["--rounds", "0"]])
+def test_command_refuses(wrong: list[str], tmp_path: Path) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(["-o", str(tmp_path / "w.json"), *wrong])
+    assert caught.value.code == 2

@@ -1,0 +1,70 @@
+"""Small runs, and runs that end badly."""
+
+import os
+import signal
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from drystone.generate import BrickSettings, brick_stones, lay_out
+from drystone.io.wall_image import write_labels
+from drystone.planner.settings import PlannerSettings
+from drystone_lab.runs.source import StoneSource, generated
+from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.store import RunStore
+
+SOURCE = generated("brick", 1, count=6, height_px=10, aspect=2)
+NOT_SIX = generated("brick", 1, count=-6)
+"""Bricks that no generator makes: E130."""
+
+
+def run(seed: int, source: StoneSource = SOURCE) -> RunSpec:
+    """Return a run of a few hundredths of a second."""
+    return RunSpec(source=source, width=60, height=20, seed=seed)
+
+
+def endless() -> RunSpec:
+    """Return a run that does not end within a test."""
+    return RunSpec(
+        source=SOURCE, width=60, height=20, method="best", changes=(("search.budget", 10**6),)
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deadly(RunSpec):
+    """A run at which its process dies: every time, or once when a file can be made.
+
+    Parameters
+    ----------
+    once : str
+        The file; empty for every time.
+    """
+
+    once: str = ""
+
+    def settings(self) -> PlannerSettings:
+        if self.once and Path(self.once).exists():
+            return super().settings()
+        if self.once:
+            Path(self.once).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+        raise AssertionError("still alive")
+
+
+def deadly(seed: int, once: Path | None = None) -> Deadly:
+    """Return a run at which its process dies."""
+    return Deadly(source=SOURCE, width=60, height=20, seed=seed, once=str(once or ""))
+
+
+def picture(path: Path, count: int = 6) -> Path:
+    """Write bricks as a label image."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    bricks = BrickSettings(count=count, height_px=10, aspect=2)
+    write_labels(lay_out(brick_stones(bricks, np.random.default_rng(1))), path)
+    return path
+
+
+def kept(store: RunStore, spec: RunSpec) -> bool:
+    """Return True when a run has an outcome that is kept."""
+    return store.get(spec.key) is not None

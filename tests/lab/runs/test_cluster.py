@@ -1,0 +1,239 @@
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from drystone.errors import DrystoneError, UsageError
+from drystone_lab.runs.cluster import check_versions, cluster_at_work, execute_there
+from drystone_lab.runs.processes import processes_at_work
+from drystone_lab.runs.runner import Runner, Work, one_by_one
+from drystone_lab.runs.source import from_file, published
+from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.store import RunStore
+from tests.lab.runs.bricks import NOT_SIX, SOURCE, deadly, kept, picture, run
+
+distributed = pytest.importorskip("distributed", reason="the extra `dask` is not installed")
+
+
+QUIET = {
+    "threads_per_worker": 1,
+    "dashboard_address": None,
+    # None leaves a web server at a port that others may have.
+    "scheduler_kwargs": {"dashboard_address": ":0"},
+    "silence_logs": "CRITICAL",
+}
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """Two workers, processes of their own; those that die are started again."""
+    folder = str(tmp_path_factory.mktemp("dask"))
+    with distributed.LocalCluster(
+        n_workers=2, processes=True, local_directory=folder, **QUIET
+    ) as cluster:
+        yield cluster
+
+
+@pytest.fixture
+def work(cluster: Any) -> Iterator[Work]:
+    with cluster_at_work(cluster.scheduler_address, patience_s=60) as work:
+        yield work
+
+
+@pytest.fixture
+def thread() -> Iterator[Any]:
+    """A cluster with one worker, a thread of this process."""
+    with distributed.LocalCluster(n_workers=1, processes=False, **QUIET) as cluster:
+        yield cluster
+
+
+def test_outcomes_are_the_same_bytes_whoever_works(
+    work: Work, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    here = from_file(picture(Path("own.png")).relative_to("."))
+    picture(tmp_path / "data" / "set" / "bricks.png")
+    specs = [run(1), run(2, here), run(3, published("set/bricks.png")), run(4)]
+
+    def kept_by(name: str, work: Work) -> dict[str, bytes]:
+        Runner(RunStore(tmp_path / name), data=tmp_path / "data", work=work).run(specs)
+        return {path.name: without_times(path) for path in (tmp_path / name).iterdir()}
+
+    one = kept_by("one", one_by_one)
+    assert set(one) == {f"{spec.key}.json" for spec in specs}
+    with processes_at_work(2) as two:
+        assert kept_by("two", two) == one
+    assert kept_by("dask", work) == one
+
+
+def without_times(path: Path) -> bytes:
+    """Return the bytes of a kept outcome up to its times, which are last."""
+    before, times, _ = path.read_bytes().partition(b', "times": {')
+    assert times
+    return before
+
+
+def test_a_killed_worker_loses_nothing(work: Work, tmp_path: Path) -> None:
+    once = tmp_path / "died"
+    specs = [run(1), run(2), deadly(3, once), run(4), run(5), run(6)]
+    outcomes = Runner(RunStore(tmp_path / "store"), work=work).run(specs)
+    assert once.exists()
+    (alone,) = one_by_one([run(3)], None)
+    assert outcomes[2].plan == alone.plan
+    assert [outcome.key for outcome in outcomes] == [spec.key for spec in specs]
+
+
+def test_a_run_that_kills_workers_is_given_up(
+    work: Work, cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)
+    with pytest.raises(DrystoneError) as caught:
+        Runner(RunStore(tmp_path), work=work).run([deadly(1)])
+    assert (caught.value.code, caught.value.where) == ("E402", str(deadly(1)))
+
+
+def test_a_run_that_fails_is_told(thread: Any, tmp_path: Path) -> None:
+    store = RunStore(tmp_path)
+    with cluster_at_work(thread.scheduler_address) as work:
+        with pytest.raises(DrystoneError) as caught:
+            Runner(store, work=work).run([run(1), run(2, NOT_SIX)])
+        assert caught.value.code == "E130"
+        assert list(work([], None)) == []
+        assert Runner(store, work=work).run([run(3)])
+    assert kept(store, run(1))
+    assert not kept(store, run(2, NOT_SIX))
+
+
+def test_what_ended_is_given_before_an_interrupt(thread: Any) -> None:
+    specs = [run(1), run(2), run(3)]
+    with cluster_at_work(thread.scheduler_address) as work:
+        outcomes = work(specs, None)
+        keys = [next(outcomes).key]
+        others = outcomes.gi_frame.f_locals["asked"].values()
+        until = time.monotonic() + 60
+        while {future.status for future in others} != {"finished"}:
+            assert time.monotonic() < until
+            time.sleep(0.01)
+        keys += [outcomes.throw(KeyboardInterrupt).key, next(outcomes).key]
+        with pytest.raises(KeyboardInterrupt):
+            next(outcomes)
+    assert sorted(keys) == sorted(spec.key for spec in specs)
+
+
+def test_a_cluster_that_goes_away(thread: Any, tmp_path: Path) -> None:
+    specs, store = [run(seed) for seed in range(100)], RunStore(tmp_path)
+
+    def end(_: str) -> None:
+        thread.close()
+
+    with (
+        cluster_at_work(thread.scheduler_address, patience_s=2.0) as work,
+        pytest.raises(DrystoneError) as caught,
+    ):
+        Runner(store, work=work, say=end).run(specs)
+    assert caught.value.code == "E404"
+    assert "lost" in caught.value.what
+    assert 1 <= sum(kept(store, spec) for spec in specs) < len(specs)
+
+
+class Newer(RunSpec):
+    """A run that has another key on the worker, which is a thread."""
+
+    @property
+    def key(self) -> str:
+        return super().key if threading.current_thread() is threading.main_thread() else "newer"
+
+
+def test_a_worker_of_another_version_that_came_later(thread: Any) -> None:
+    spec = Newer(source=SOURCE, width=60, height=20)
+    at_work = cluster_at_work(thread.scheduler_address)
+    with at_work as work, pytest.raises(UsageError) as caught:
+        next(work([spec], None))
+    assert caught.value.code == "E405"
+
+
+def test_published_stones_where_the_worker_has_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spec = run(1, published("bricks.png"))
+    picture(tmp_path / "six" / "bricks.png", count=6)
+    picture(tmp_path / "five" / "bricks.png", count=5)
+    monkeypatch.setenv("DRYSTONE_DATA", str(tmp_path / "five"))
+    assert execute_there(spec, tmp_path / "six", None).figures["stones"] == 6
+    assert execute_there(spec, tmp_path / "elsewhere", None).figures["stones"] == 5
+    monkeypatch.delenv("DRYSTONE_DATA")
+    with pytest.raises(DrystoneError, match="elsewhere") as caught:
+        execute_there(spec, tmp_path / "elsewhere", None)
+    assert caught.value.code == "E100"
+
+
+class Workers:
+    """A client that knows versions."""
+
+    def __init__(self, scheduler: str | None, **workers: str | None) -> None:
+        self.scheduler, self.workers = scheduler, workers
+
+    def run(self, function: Any, name: str, *, on_error: str) -> dict[str, Any]:
+        assert (function, name, on_error) == (version, "drystone", "return")
+        return {at: one or PackageNotFoundError(name) for at, one in self.workers.items()}
+
+    def run_on_scheduler(self, function: Any, name: str) -> str:
+        assert (function, name) == (version, "drystone")
+        if self.scheduler is None:
+            raise PackageNotFoundError(name)
+        return self.scheduler
+
+
+HERE = version("drystone")
+
+
+def test_equal_versions() -> None:
+    check_versions(Workers(HERE, a=HERE, b=HERE))
+
+
+@pytest.mark.parametrize(
+    ("client", "said"),
+    [
+        (Workers(HERE, a=HERE, b="0.0.1"), "and 0.0.1 at b."),
+        (Workers(HERE, a=None, b="0.0.1"), "and none at a, 0.0.1 at b."),
+        (Workers("0.0.1", a=HERE), "and 0.0.1 at scheduler."),
+        (Workers(None, a=HERE), "and none at scheduler."),
+    ],
+)
+def test_other_versions(client: Workers, said: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        check_versions(client)
+    assert caught.value.code == "E405"
+    assert caught.value.what == f"drystone is {HERE} here, {said}"
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "127.0.0.1", "nonsense://here", "x y"])
+def test_nobody_answers(address: str) -> None:
+    with pytest.raises(UsageError) as caught, cluster_at_work(address, patience_s=0.3):
+        pass
+    assert caught.value.code == "E404"
+    assert address in caught.value.what
+
+
+def test_a_cluster_without_workers() -> None:
+    with (
+        distributed.LocalCluster(n_workers=0, processes=False, **QUIET) as cluster,
+        pytest.raises(UsageError) as caught,
+        cluster_at_work(cluster.scheduler_address, patience_s=2.0),
+    ):
+        pass
+    assert caught.value.code == "E404"
+    assert "has no workers" in caught.value.what
+
+
+def test_dask_is_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(UsageError) as caught, cluster_at_work("tcp://127.0.0.1:9"):
+        pass
+    assert caught.value.code == "E403"
+    assert "drystone[dask]" in caught.value.cure

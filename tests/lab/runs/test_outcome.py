@@ -1,0 +1,81 @@
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drystone.planner.planner import Planner
+from drystone.search import plan_wall as plan_wall_module
+from drystone.search.plan_wall import plan_wall
+from drystone_lab.runs.outcome import FIGURES, execute
+from drystone_lab.runs.source import generated
+from tests.lab.runs.bricks import SOURCE, endless, run
+
+
+def test_it_is_what_plan_wall_gives() -> None:
+    outcome = execute(run(3), None)
+    result = plan_wall(SOURCE.stones(None), 60, 20, seed=3, method="paper", scale=1.0)
+    assert outcome.as_plan == result.plan
+    assert tuple(outcome.figures) == FIGURES
+    assert outcome.figures["placed"] == outcome.figures["stones"] == 6
+    assert outcome.figures["F_LR"] == result.metrics.F_LR
+    assert outcome.figures["wedges"] == 0
+    assert outcome.key == run(3).key
+
+
+def test_stones_that_were_read_already_are_taken() -> None:
+    five = generated("brick", 1, count=5, height_px=10, aspect=2)
+
+    assert execute(run(1), None, five.stones(None)).figures["stones"] == 5
+
+
+def test_the_wall_is_built_again_from_its_plan() -> None:
+    outcome = execute(run(1), None)
+    wall = outcome.wall(run(1), None)
+    assert set(np.unique(wall.labels)) - {0} == set(outcome.clusters)
+    assert np.count_nonzero(wall.labels) / wall.labels.size == outcome.figures["F_SF"]
+
+
+def test_the_image_is_the_wall_when_no_size_is_given() -> None:
+    spec = replace(run(1), width=0.0, height=0.0)
+    source = spec.source.stones(None).source
+    assert execute(spec, None).plan["wall"] == {
+        "width": source.width_px,
+        "height": source.height_px,
+    }
+
+
+def test_times_are_those_of_the_run() -> None:
+    times = execute(run(1), None).times
+    assert set(times) == {
+        "wall", "placement", "stabilisation", "contacts", "limit analysis", "indices",
+    }  # fmt: skip
+    assert 0 < sum(times.values()) - times["wall"] <= times["wall"]
+
+
+def test_an_interrupted_wall_is_no_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(_: Planner) -> Iterator[None]:
+        raise KeyboardInterrupt
+        yield
+
+    monkeypatch.setattr(Planner, "steps", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        execute(run(1), None)
+
+
+def test_an_interrupted_search_is_no_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
+    searching = plan_wall_module.searching
+
+    def interrupted(*args: Any, **kwargs: Any) -> Iterator[Any]:
+        yield next(searching(*args, **kwargs))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(plan_wall_module, "searching", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        execute(endless(), None)
+
+
+def test_a_search_that_ends_is_an_outcome() -> None:
+    spec = replace(endless(), changes=(("search.budget", 2),))
+    assert execute(spec, None).plan["settings"]["search"]["budget"] == 2

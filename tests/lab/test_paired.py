@@ -1,0 +1,47 @@
+"""Differences between pairs, and how sure they are."""
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+
+from drystone_lab.paired import Difference, median_difference
+
+
+def test_pairs_are_kept_together():
+    found = median_difference([10.0, 200.0, 3000.0], [9.0, 198.0, 2997.0])
+    assert found is not None
+    assert (found.median, found.low, found.high, found.pairs) == (2.0, 1.0, 3.0, 3)
+    back = median_difference([9.0, 198.0, 2997.0], [10.0, 200.0, 3000.0])
+    assert back is not None
+    assert (back.median, back.low, back.high) == (-2.0, -3.0, -1.0)
+
+
+@pytest.mark.parametrize("count", [5, 9, 15])
+def test_the_interval_is_that_of_all_draws(count):
+    """The median of n draws is at most the k-th value when more than half of them are."""
+    at_most = binom.sf(count // 2, count, np.arange(1, count + 1) / count)
+    low, high = np.searchsorted(at_most, [0.025, 0.975])
+    found = median_difference(list(range(count)), [0.0] * count)
+    assert found == Difference(count // 2, low, high, count)
+
+
+def test_the_same_numbers_give_the_same_interval():
+    values = np.random.default_rng(3).normal(size=12).tolist()
+    zeros = [0.0] * 12
+    assert median_difference(values, zeros) == median_difference(values, zeros)
+
+
+def test_pairs_without_a_value_are_left_out():
+    found = median_difference([1.0, None, 4.0], [0.0, 1.0, None])
+    assert found == Difference(1.0, 1.0, 1.0, 1)
+    assert median_difference([None], [1.0]) is None
+    assert median_difference([], []) is None
+
+
+def test_pairs_must_be_pairs():
+    with pytest.raises(ValueError, match="longer"):
+        median_difference([1.0], [1.0, 2.0])
+
+
+def test_a_cell_of_a_table():
+    assert Difference(-0.0123456, -0.1, 12.3456, 6).text() == "-0.0123 (-0.1 to +12.3)"

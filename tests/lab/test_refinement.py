@@ -1,0 +1,41 @@
+import numpy as np
+import pytest
+import shapely
+
+from drystone_lab.refinement import refinement_study
+from drystone_lab.tilted_walls import SHORTEST, tilted_wall
+
+
+@pytest.mark.parametrize("courses", [3, 4, 5])
+def test_walls_have_no_gaps_and_no_joint_along_the_grid(courses):
+    wall = tilted_wall(np.random.default_rng(courses), courses)
+    shapes = [shapely.Polygon(polygon) for polygon in wall.polygons]
+    whole = shapely.union_all([shape.buffer(1e-9) for shape in shapes])
+    assert whole.geom_type == "Polygon"
+    assert not whole.interiors
+    assert whole.area == pytest.approx(sum(shape.area for shape in shapes), abs=1e-7)
+    joints = [i for i in wall.model().interfaces if i.other != 0]
+    assert min(min(np.abs(joint.normal)) for joint in joints) > 0.05
+    assert min(joint.length for joint in joints) > 0.9 * SHORTEST
+
+
+def test_a_picture_has_the_pixels_of_the_wall():
+    wall = tilted_wall(np.random.default_rng(1), 3)
+    labels = wall.picture(50, (0.25, 0.75))
+    assert labels.any(axis=1).all()
+    assert np.unique(labels).tolist() == list(range(len(wall.polygons) + 1))
+    for number, polygon in enumerate(wall.polygons, start=1):
+        row, col = np.nonzero(labels == number)
+        shape = shapely.Polygon(polygon * 50 + (0.25, 0.75))
+        lowest = labels.shape[0] - 1  # centres below .75 belong to nothing, and that row is cut off
+        assert shapely.contains_xy(shape, col + 0.5, lowest - row + 1.5).all()
+
+
+def test_load_multipliers_converge_as_the_resolution_grows():
+    study = refinement_study(walls=6, offsets=1)
+    assert [row.height_px for row in study.rows] == [40, 80, 160, 320]
+    assert all((row.cases, row.unanswered) == (12, 0) for row in study.rows)
+    assert study.pixel_order >= 0.9
+    assert study.outline_order >= 0.9
+    assert study.rows[-1].pixel_error < 0.01
+    assert study.rows[-1].outline_error < 0.01

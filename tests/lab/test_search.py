@@ -1,0 +1,228 @@
+"""The comparison of methods: bricks, of which all is known, and results made by hand."""
+
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from drystone.errors import UsageError
+from drystone.metrics.measure import measure_labels
+from drystone.metrics.second import finer_labels, second_arrangement
+from drystone.model.site import Site
+from drystone.model.wall import Wall
+from drystone_lab import search
+from drystone_lab.masons import masons_row, masons_walls
+from drystone_lab.search import Compared
+from drystone_lab.search_results import (
+    FIGURES,
+    Result,
+    Run,
+    append_results,
+    second_of,
+)
+from drystone_lab.search_runs import searched_walls
+from drystone_lab.table import BenchSettings
+from drystone_lab.walls import BRICKS, UNSEEN, chosen
+from tests.metrics.walls import bricks
+from tests.verify.exact_examples import exact_example
+
+TARGET = BRICKS
+
+
+def result(walls=1, **figures):
+    return Result(dict.fromkeys(FIGURES, 1.0) | figures, walls, 0.75, 2.5)
+
+
+@pytest.fixture(scope="module")
+def quick():
+    said: list[str] = []
+    settings = BenchSettings(quick=True, seconds=(0.02,), seeds=1, say=said.append)
+    return search.run(settings), said
+
+
+def test_bricks_fill_their_wall_by_every_method(quick):
+    (walls, _, _), said = quick
+    assert [(row["wall"], row["method"]) for row in walls.records()] == [
+        ("bricks", "restarts"),
+        ("bricks", "restarts with wedges"),
+        ("bricks", "search"),
+        ("bricks", "without courses"),
+    ]
+    for row in walls.records():
+        assert (row["range"], row["placed"]) == ("9-9 of 9", 9)
+        for name in ("F_SF", "possible F_SF", "F_LR"):
+            assert row[name] == pytest.approx(1.0, abs=1e-3)
+        assert row["2nd F_AV"] > row["F_AV"] > 0
+        assert row["walls"] >= 1
+    assert len(said) == 4
+    assert said[2].startswith("bricks, search, seed 0, 0.02 s: 9 of 9 stones, F_SF 1, F_AV ")
+
+
+def test_methods_are_compared_with_the_search(quick):
+    (_, differences, masons), _ = quick
+    rows = [(row["wall"], row["more than"]) for row in differences.records()]
+    assert rows == [
+        ("bricks", "restarts"),
+        ("bricks", "restarts with wedges"),
+        ("bricks", "without courses"),
+    ]
+    assert differences.records()[0]["placed"] == "+0 (+0 to +0)"
+    assert masons.rows == ()
+
+
+def test_rows_are_medians_of_the_seeds():
+    compared = Compared(
+        TARGET,
+        9,
+        {"search": [result(5, placed=7, F_AV=None), result(8, placed=9, F_AV=3.0), result(6)]},
+    )
+    (row,) = search._rows(compared)
+    columns = ("wall", "method", "range", *FIGURES[:2], "possible F_SF", *FIGURES[2:], "walls", "s")
+    found = dict(zip(columns, row, strict=True))
+    assert (found["wall"], found["range"], found["placed"]) == ("bricks", "1.0-9 of 9", 7)
+    assert (found["F_AV"], found["possible F_SF"], found["walls"], found["s"]) == (
+        2.0,
+        0.75,
+        6,
+        2.5,
+    )
+
+
+def test_differences_are_those_of_the_search_over_the_other():
+    compared = Compared(
+        TARGET,
+        9,
+        {
+            "restarts": [result(merit=1.0, F_AH=4.0), result(merit=3.0, F_AH=4.0)],
+            "search": [result(merit=2.0, F_AH=1.0), result(merit=3.0, F_AH=3.0)],
+        },
+    )
+    (row,) = search._differences(compared)
+    found = dict(zip(("wall", "more than", "merit higher", *FIGURES), row, strict=True))
+    assert (found["more than"], found["merit higher"]) == ("restarts", "1 of 2")
+    assert found["merit"] == "+0.5 (+0 to +1)"
+    assert found["F_AH"] == "-2 (-3 to -1)"
+
+
+def test_a_result_holds_the_figures_by_both_definitions():
+    wall = Wall(Site(40, 18), bricks(3, 2, 6, 20))
+    figures = SimpleNamespace(
+        stones=7, F_SF=0.8, F_AV=30.0, F_AH=2.0, F_LR=0.5, T_LEVEL=0.1, E_FLUSH=0.2
+    )
+    found = SimpleNamespace(figures=figures, merit=12.0, build=SimpleNamespace(wall=wall))
+    made = Result.of(SimpleNamespace(found=found, walls=4, possible=0.9, seconds=20.5))
+    second = second_arrangement(finer_labels(wall.labels))
+    assert made.figures == {
+        "placed": 7, "F_SF": 0.8, "F_AV": 30.0, "F_AH": 2.0, "F_LR": 0.5,
+        "2nd F_AV": second.F_AV, "2nd F_AH": second.F_AH, "T_LEVEL": 0.1, "E_FLUSH": 0.2,
+        "merit": 12.0,
+    }  # fmt: skip
+    assert (made.walls, made.possible, made.seconds) == (4, 0.9, 20.5)
+    found.figures = None
+    with pytest.raises(ValueError, match="no stone"):
+        Result.of(SimpleNamespace(found=found, walls=4, possible=0.9, seconds=20.5))
+
+
+def test_a_wall_of_outlines_is_looked_at_on_its_outlines():
+    wall = exact_example().wall
+    found = second_of(wall)
+    assert found == second_arrangement(finer_labels(wall.labels))  # all on whole pixels
+    assert found == second_of(Wall(wall.site, np.zeros((1, 1), np.uint32), (), wall.outlines))
+
+
+def test_the_effort_is_what_is_asked_for():
+    assert search._effort(BenchSettings()) == ((search.SECONDS,), range(search.SEEDS))
+    quick = BenchSettings(quick=True)
+    assert search._effort(quick) == ((search.QUICK_SECONDS,), range(search.QUICK_SEEDS))
+    asked = BenchSettings(quick=True, seconds=(7.5, 2.0, 7.5), seed=4, seeds=3)
+    assert search._effort(asked) == ((2.0, 7.5), range(4, 7))
+
+
+def test_each_time_has_its_tables_of_the_methods_that_were_asked_for(tmp_path):
+    times, kept = (1.0, 2.0), tmp_path / "runs.csv"
+    runs = {
+        Run("bricks", "search", seed, seconds): result(merit=10 * seconds + seed)
+        for seed in (3, 4, 5)
+        for seconds in times
+    }
+    append_results(kept, runs.items())
+    asked = BenchSettings(
+        quick=True, seconds=times, seed=3, seeds=3, only=("bricks",), policies=("search",),
+        runs=kept,
+    )  # fmt: skip
+    *tables, masons = search.run(asked)
+    assert [table.title.split(",")[0] for table in tables] == [
+        "Best walls after 1 s of CPU time",
+        "What the search has more after 1 s",
+        "Best walls after 2 s of CPU time",
+        "What the search has more after 2 s",
+    ]
+    for table, merit in ((tables[0], 14.0), (tables[2], 24.0)):
+        (row,) = table.records()
+        assert (row["wall"], row["method"], row["merit"]) == ("bricks", "search", merit)
+    assert tables[1].rows == tables[3].rows == masons.rows == ()
+
+
+def test_results_with_settings_are_in_the_tables_that_say_so(tmp_path):
+    kept, aim = tmp_path / "runs.csv", (("goal.F_AV", 24.0),)
+    found = {
+        Run("bricks", "search", 3, 1.0): result(merit=1.0),
+        Run("bricks", "search, goal.F_AV = 24.0", 3, 1.0): result(merit=2.0),
+    }
+    append_results(kept, found.items())
+    asked = BenchSettings(
+        quick=True, seconds=(1.0,), seed=3, seeds=1, only=("bricks",), policies=("search",),
+        runs=kept, changes=aim,
+    )  # fmt: skip
+    table, *_ = search.run(asked)
+    (row,) = table.records()
+    assert (row["method"], row["merit"]) == ("search", 2.0)
+    assert "With goal.F_AV = 24.0." in table.notes
+    assert not any("goal" in note for note in search.run(replace(asked, changes=()))[0].notes)
+
+
+@pytest.mark.parametrize(
+    ("name", "code"), [("geometry", "E138"), ("search.budget", "E138"), ("goal.wonder", "E123")]
+)
+def test_settings_that_no_search_can_go_by_are_refused(name, code):
+    with pytest.raises(UsageError, match=code):
+        search.run(BenchSettings(quick=True, changes=((name, 1),)))
+
+
+def test_walls_are_of_published_stones_and_of_unseen_sets():
+    names = [target.name for target in searched_walls(BenchSettings())]
+    assert names[:4] == ["R", "PR 600x160", "PR 560x160", "IR"]
+    assert len(set(names)) == len(names) == 10
+
+
+@pytest.mark.parametrize("target", UNSEEN, ids=lambda target: target.name)
+def test_unseen_sets_stay_the_same_and_suit_their_walls(target):
+    stones = target.stones(None)
+    assert target.name.endswith(f" {len(stones)}")
+    assert stones.total_area_px / (target.width * target.height) == pytest.approx(0.8, rel=0.01)
+
+
+def test_walls_are_chosen_by_the_beginnings_of_their_names():
+    found = searched_walls(BenchSettings(only=("R", "PR 6")))
+    assert [target.name for target in found] == ["R", "PR 600x160"]
+    with pytest.raises(UsageError, match="E138"):
+        chosen(UNSEEN, ("rubble", "Q"))
+
+
+def test_a_masons_wall_by_both_definitions():
+    labels = np.kron(bricks(4, 4, 10, 24), np.ones((2, 2), np.uint32))
+    name, size, stones, *figures = masons_row("bricks", labels, 0.5)
+    assert (name, size, stones) == ("bricks", "96x40", len(np.unique(labels)))
+    first = measure_labels(labels[::2, ::2])
+    second = second_arrangement(finer_labels(labels[::2, ::2]))
+    assert figures == [1.0, first.F_AV, first.F_AH, *[second.F_AV, second.F_AH] * 2]
+
+
+def test_the_masons_walls_are_those_of_the_published_data(data_dir: Path):
+    rows = {row["wall"]: row for row in masons_walls(BenchSettings(data=data_dir)).records()}
+    found = {name: (rows[name]["F_AV"], rows[name]["F_AH"]) for name in ("R", "PR", "IR")}
+    expected = {"R": (33.95, 0.59), "PR": (29.50, 1.50), "IR": (23.77, 3.69)}
+    for name, figures in expected.items():
+        assert found[name] == pytest.approx(figures, abs=0.006)

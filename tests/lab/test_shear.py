@@ -1,0 +1,174 @@
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from drystone.statics.flow.nonassociative import NonassociativeResult
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.result import LimitStatus
+from drystone_lab import shear
+from drystone_lab.shear import Predicted, run
+from drystone_lab.shear_walls import GRAVITY, SERIES, shear_wall
+from drystone_lab.table import BenchSettings
+
+WITHOUT = "without dilatancy"
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "validation.md"
+
+
+@pytest.fixture(scope="module")
+def quick():
+    """The first test of each series, both flow rules."""
+    return [table.records() for table in run(BenchSettings(quick=True))]
+
+
+@pytest.fixture(scope="module")
+def tables():
+    """Everything, without the slow answers without dilatancy."""
+    with pytest.MonkeyPatch.context() as patch:
+        nothing = NonassociativeResult(LimitStatus.FAILED, "right")
+        patch.setattr(shear, "nonassociative_load", lambda *_, **__: nothing)
+        return [table.records() for table in run(BenchSettings())]
+
+
+def rows_of(tables, number, **wanted):
+    return [row for row in tables[number] if all(row[k] == v for k, v in wanted.items())]
+
+
+def series_of(row):
+    return next(series for series in SERIES if series.name == row["series"])
+
+
+def both_rules(quick, tables, beam):
+    """Yield the rows of predictions with V by one flow rule."""
+    for made, rule in ((tables, "associative"), (quick, "associative"), (quick, WITHOUT)):
+        for row in made[0]:
+            yield row, row[f"{beam}, {rule}"]
+
+
+def test_a_level_beam_slides(quick, tables):
+    for row, found in both_rules(quick, tables, "beam level"):
+        assert found == pytest.approx(0.62 * row["N kN"], abs=0.051)
+
+
+def test_a_turning_beam_overturns_with_some_of_the_wall(quick, tables):
+    """Between the beam alone, which has no weight of its own, and the whole wall about its toe."""
+    for row, found in both_rules(quick, tables, "beam turns"):
+        series = series_of(row)
+        arm = series.length / 2 / series.load_height
+        tonnes = series.density_kg_m3 * series.length * series.height * series.thickness / 1e3
+        assert row["N kN"] * arm + 0.5 < found
+        assert found <= (row["N kN"] + tonnes * GRAVITY) * arm + 0.05
+
+
+def test_without_dilatancy_v_is_not_larger(quick):
+    for row in quick[0]:
+        for beam in ("beam turns", "beam level"):
+            assert row[f"{beam}, {WITHOUT}"] <= row[f"{beam}, associative"]
+
+
+@pytest.mark.parametrize("series", SERIES[:2], ids=lambda series: series.name)
+def test_each_kilonewton_on_a_turning_beam_adds_its_arm(series):
+    found = [
+        lateral_resistance(*shear_wall(series, vertical)).right.alpha for vertical in (30.0, 130.0)
+    ]
+    assert found[1] - found[0] == pytest.approx(100.0 * series.length / 2 / series.load_height)
+
+
+def test_both_sides_carry_the_same():
+    both = lateral_resistance(*shear_wall(SERIES[1], 100.0))
+    assert both.left.alpha == pytest.approx(both.right.alpha, abs=1e-6)
+
+
+@pytest.mark.parametrize(("series", "courses"), [(SERIES[0], 9), (SERIES[1], 8)])
+@pytest.mark.parametrize("halves_first", [False, True])
+def test_walls_are_in_running_bond(series, courses, halves_first):
+    model, loads = shear_wall(series, 30.0, halves_first=halves_first)
+    assert series.course_count == courses
+    whole = (courses + (not halves_first)) // 2
+    assert len(model.blocks) == 5 * whole + 6 * (courses - whole) + 1
+    on_ground = [i for i in model.interfaces if i.other == 0]
+    assert len(on_ground) == (6 if halves_first else 5)
+    volume = series.length * series.height * series.thickness
+    weight = -loads.dead[:-1, 1].sum()
+    assert weight == pytest.approx(series.density_kg_m3 * volume * GRAVITY / 1e3)
+    assert loads.dead[-1].tolist() == [0.0, -30.0, 0.0]
+    assert model.blocks[-1].centroid[1] == pytest.approx(series.load_height)
+    assert loads.live[-1].tolist() == pytest.approx([1.0, 0.0, 0.0])
+    assert not loads.live[:-1].any()
+
+
+def test_what_was_measured():
+    peaks = {test.name: test.peaks_kn for series in SERIES for test in series.tests}
+    assert len(peaks) == 21
+    assert peaks["SW.200.2"] == (68.6,)
+    assert peaks["WS2.175"] == (64.5, 71.3)
+
+
+def test_ratios_are_predicted_over_the_mean_of_both_sides(tables):
+    (predicted,) = rows_of(tables, 0, series=SERIES[2].name, **{"N kN": 175.0})
+    (test,) = rows_of(tables, 1, test="WS2.175")
+    model = "beam turns, associative"
+    assert test["measured kN"] == "64.5 / 71.3"
+    assert test[model] == pytest.approx(predicted[model] / 67.9, abs=0.006)
+
+
+def test_mean_and_scatter_are_those_of_the_tests(tables):
+    found = [row["beam turns, associative"] for row in tables[1] if row["test"].startswith("SW")]
+    mean = sum(found) / 7
+    deviation = (sum((ratio - mean) ** 2 for ratio in found) / 6) ** 0.5
+    (row,) = rows_of(tables, 2, series=SERIES[0].name)
+    printed = [float(word) for word in row["beam turns, associative"].split(" ± ")]
+    assert printed == pytest.approx([mean, deviation], abs=0.011)
+
+
+def test_answers_that_are_missing_stay_out(tables):
+    for number in (0, 1):
+        assert {row["beam turns, without dilatancy"] for row in tables[number]} == {None}
+    for number in (2, 3):
+        assert {row["beam turns, without dilatancy"] for row in tables[number]} == {"-"}
+
+
+def test_friction_moves_a_level_beam_but_hardly_a_turning_one(tables):
+    def mean(mu, model):
+        (row,) = rows_of(tables, 3, series=SERIES[1].name, mu=mu)
+        return float(row[f"{model}, associative"].split()[0])
+
+    assert mean(0.70, "beam level") / mean(0.55, "beam level") == pytest.approx(70 / 55, abs=0.01)
+    assert mean(0.70, "beam turns") - mean(0.55, "beam turns") < 0.02
+
+
+def test_the_full_version_draws_and_varies_what_is_not_known(monkeypatch, tmp_path):
+    asked = []
+
+    def cheap(series, loading):
+        asked.append((series.density_kg_m3, (series.height, loading)))
+        return Predicted(loading.mu * loading.vertical_kn, None)
+
+    monkeypatch.setattr(shear, "predict", cheap)
+    assert len(run(BenchSettings(output=tmp_path))) == 5
+    with Image.open(tmp_path / "shear_tests.png") as picture:
+        assert picture.width >= 800
+    loadings = [loading for _, (_, loading) in asked]
+    assert {loading.mu for loading in loadings} == {0.55, 0.62, 0.70}
+    assert {loading.halves_first for loading in loadings} == {False, True}
+    assert {density for density, _ in asked} == {2000.0, 2400.0, 2650.0, 2800.0}
+    assert len(asked) == len(set(asked))
+
+
+def test_density_and_bond_change_little_but_something(tables):
+    rows = rows_of(tables, 4, series=SERIES[0].name, **{"N kN": 30.0})
+    found = [row["associative"] for row in rows]
+    assert len(set(found)) == 4
+    assert max(found) - min(found) < 0.5
+
+
+def test_the_page_shows_these_numbers(quick, tables):
+    shown = {}
+    for line in PAGE.read_text("utf-8").splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        shown[cells[0]] = cells
+    for row in (*tables[1], *quick[1]):
+        for cell, model in zip(shown[row["test"]][3:], shear.MODELS, strict=True):
+            if row[model] is not None:
+                assert float(cell) == pytest.approx(row[model], abs=0.011)
