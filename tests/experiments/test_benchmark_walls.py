@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.experiments.benchmark_walls import coursed_labels, irregular_labels
-from drystone.statics.contacts.blocks import model_from_labels
 
 MAKERS = [coursed_labels, irregular_labels]
 

@@ -8,13 +8,13 @@ from drystone.experiments.benchmark_walls import coursed_labels
 from drystone.experiments.fresh_linprog import fresh_linprog
 from drystone.experiments.growing_walls import Pattern, built_up
 from drystone.experiments.table import BenchSettings
-from drystone.statics.appending import units_of
-from drystone.statics.growing import Grown, growing
+from drystone.statics.incremental import IncrementalResult, incremental_analysis
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.lp.program import units_of
 from drystone.statics.model import GROUND, RigidBlockModel
 
 PATTERN = Pattern.of(coursed_labels(np.random.default_rng(0), 12))
-NOTHING = growing(RigidBlockModel((), (), PATTERN.whole.mu), units_of(PATTERN.whole))
+NOTHING = incremental_analysis(RigidBlockModel((), (), PATTERN.whole.mu), units_of(PATTERN.whole))
 
 
 def test_every_answer_is_that_of_linprog_and_certified():
@@ -39,7 +39,7 @@ def test_what_is_wrong_is_a_miss(spoil, lost, monkeypatch):
     def wrong(analysis, model):
         grown = honest(analysis, model)
         resistance = grown.resistance
-        return Grown(replace(resistance, left=spoil(resistance.left)))
+        return IncrementalResult(replace(resistance, left=spoil(resistance.left)))
 
     honest = type(NOTHING).resistance_with
     monkeypatch.setattr(type(NOTHING), "resistance_with", wrong)

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from drystone.contacts.given import model_from_json
 from drystone.experiments.cases import (
     closed_forms,
     offset_stack,
@@ -16,10 +17,9 @@ from drystone.experiments.cases import (
     single_block,
     two_equal_blocks,
 )
-from drystone.statics.contacts.given import model_from_json
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.upright import held_by_upright_faces
+from drystone.statics.squeeze import held_by_upright_faces
 from tests.strategies import repeatable
 
 TOLERANCE = 1e-8

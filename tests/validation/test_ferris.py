@@ -11,8 +11,8 @@ import json
 
 import pytest
 
+from drystone.contacts.given import model_from_json
 from drystone.experiments.walls_of_ferris import WALLS
-from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 
 PUBLISHED = {

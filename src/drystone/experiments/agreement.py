@@ -4,9 +4,9 @@ import numpy as np
 
 from drystone.experiments.planned_walls import PlannedWall, missing_data, planned_walls
 from drystone.experiments.table import BenchSettings, Cell, Table
-from drystone.statics.asking import Solver
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.lp.extremes import Solver
 from drystone.statics.result import LateralResistance
 
 SOLVERS: tuple[Solver, ...] = ("highs", "highs-ipm", "clarabel")

@@ -11,8 +11,8 @@ from drystone.experiments.fresh_linprog import TOLERANCE, fresh_linprog
 from drystone.experiments.growing_walls import Pattern, built_up
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.model.wall import Labels
-from drystone.statics.appending import units_of
-from drystone.statics.growing import GrowingAnalysis, growing
+from drystone.statics.incremental import IncrementalAnalysis, incremental_analysis
+from drystone.statics.lp.program import units_of
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult
 
@@ -121,9 +121,11 @@ def _row(family: Family, seed: int) -> tuple[Cell, ...]:
     )  # fmt: skip
 
 
-def _asked(family: Family, pattern: Pattern) -> Iterator[GrowingAnalysis]:
+def _asked(family: Family, pattern: Pattern) -> Iterator[IncrementalAnalysis]:
     """Return the wall at every step that is asked about, before the first stone too."""
-    nothing = growing(RigidBlockModel((), (), pattern.whole.mu), units_of(pattern.whole))
+    nothing = incremental_analysis(
+        RigidBlockModel((), (), pattern.whole.mu), units_of(pattern.whole)
+    )
     for count, analysis in enumerate(chain([nothing], built_up(pattern, nothing))):
         if count > family.stones:
             break
@@ -145,7 +147,7 @@ def _candidates(
         yield pattern.with_stones(built, stones[first : first + 2])
 
 
-def _compare(analysis: GrowingAnalysis, model: RigidBlockModel, tally: Tally) -> None:
+def _compare(analysis: IncrementalAnalysis, model: RigidBlockModel, tally: Tally) -> None:
     grown = analysis.resistance_with(model)
     ends = (grown.resistance.left, grown.resistance.right)
     expected = fresh_linprog(model)

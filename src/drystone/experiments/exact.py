@@ -4,11 +4,11 @@ from collections.abc import Iterable, Sequence
 from itertools import chain, groupby
 from statistics import median
 
+from drystone.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.experiments.exact_walls import BuiltWall, built_walls
 from drystone.experiments.planned_walls import missing_data
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.model.overlap import deepest_overlap, shape_of
-from drystone.statics.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.statics.limit import lateral_resistance
 from drystone.verify.check import check_plan
 

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.optimize import linprog
 
+from drystone.statics.lp.program import assemble
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.program import assemble
 
 TOLERANCE = 1e-10
 """Primal and dual feasibility; with those of SciPy, 1e-7, alpha is off by up to 6e-8."""
@@ -32,7 +32,7 @@ def fresh_linprog(model: RigidBlockModel) -> Range:
 
     Examples
     --------
-    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.contacts.given import model_from_json
     >>> pile = model_from_json({"blocks_xywh": [[0, 0, 1, 2]], "mu": 0.58})
     >>> least, greatest = fresh_linprog(pile)
     >>> round(least, 9), round(greatest, 9)

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.model.wall import Labels
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.growing import GrowingAnalysis
+from drystone.statics.incremental import IncrementalAnalysis
 from drystone.statics.model import GROUND, Block, RigidBlockModel
 
 
@@ -62,19 +62,19 @@ class Pattern:
         return [stone for stone in self.stones if stone.id in near]
 
 
-def built_up(pattern: Pattern, analysis: GrowingAnalysis) -> Iterator[GrowingAnalysis]:
+def built_up(pattern: Pattern, analysis: IncrementalAnalysis) -> Iterator[IncrementalAnalysis]:
     """Build with the stones of a pattern from below, leaving out those that fall.
 
     Parameters
     ----------
     pattern : Pattern
         The stones.
-    analysis : GrowingAnalysis
+    analysis : IncrementalAnalysis
         Of nothing.
 
     Yields
     ------
-    analysis : GrowingAnalysis
+    analysis : IncrementalAnalysis
         After each stone that was placed.
     """
     for stone in pattern.stones:

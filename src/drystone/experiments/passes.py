@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from math import hypot
 from statistics import median
 
+from drystone.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.experiments.exact_walls import BuiltWall, Target, one_pass, targets
 from drystone.experiments.planned_walls import missing_data
 from drystone.experiments.table import BenchSettings, Cell, Table
@@ -13,7 +14,6 @@ from drystone.model.stone import StoneSet
 from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_wall import plan_wall
 from drystone.settle.rest import Repose, Scene, Turned, lay
-from drystone.statics.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.statics.limit import lateral_resistance
 
 COLUMNS = (

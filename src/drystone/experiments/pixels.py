@@ -4,13 +4,13 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.experiments.cases import Rectangle, closed_forms
 from drystone.experiments.refinement import RefinementStudy, refinement_study
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.experiments.walls_of_ferris import HEIGHT, MU, WALLS
 from drystone.model.wall import Labels
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.experiments.tilted_walls import tilted_wall
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus

@@ -12,17 +12,18 @@ from drystone.experiments.benchmark_walls import coursed_labels, irregular_label
 from drystone.experiments.fresh_linprog import TOLERANCE, fresh_linprog
 from drystone.experiments.growing_walls import Pattern, built_up
 from drystone.experiments.table import BenchSettings, Cell, Table
-from drystone.kernels.certificate import figures_numpy
-from drystone.kernels.simplex import MAX_PIVOTS, OPTIMAL, Added, Tilt
-from drystone.kernels.simplex_growth import solve_added_numpy
+from drystone.kernels import simplex
 from drystone.model.wall import Labels
-from drystone.statics import growing_highs
-from drystone.statics.appending import units_of
-from drystone.statics.asking import Solver
-from drystone.statics.ends import optimum
-from drystone.statics.growing import GrowingAnalysis, growing
-from drystone.statics.growing_simplex import MANY_BLOCKS, SimplexGrowth
+from drystone.statics.incremental import (
+    MANY_BLOCKS,
+    HighsAnalysis,
+    IncrementalAnalysis,
+    SimplexAnalysis,
+    incremental_analysis,
+)
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.lp.extremes import Solver
+from drystone.statics.lp.program import units_of
 from drystone.statics.model import Block, RigidBlockModel
 from drystone.statics.result import LateralResistance
 
@@ -41,17 +42,16 @@ KERNEL_UP_TO = 300
 EXPONENT_FROM = 30
 """Exponents are fitted from so many stones on."""
 
-LINPROG, SIMPLEX, IPM, CLARABEL, WARM, NUMPY, KERNEL, GROWING = (
+LINPROG, SIMPLEX, IPM, CLARABEL, WARM, KERNEL, GROWING = (
     "linprog",
     "HiGHS simplex",
     "HiGHS ipm",
     "Clarabel",
     "HiGHS warm",
-    "kernel, NumPy",
     "kernel",
     "growing",
 )
-METHODS = (LINPROG, SIMPLEX, IPM, CLARABEL, WARM, NUMPY, KERNEL, GROWING)
+METHODS = (LINPROG, SIMPLEX, IPM, CLARABEL, WARM, KERNEL, GROWING)
 SLOW = (LINPROG, SIMPLEX)
 """What takes half a minute a candidate at 1000 stones."""
 
@@ -75,14 +75,14 @@ class Standing:
     ----------
     pattern : Pattern
         Where stones lie.
-    analyses : mapping of str to GrowingAnalysis
+    analyses : mapping of str to IncrementalAnalysis
         Of the wall, by the name of the method.
     candidates : tuple of Block
         All stand on the wall.
     """
 
     pattern: Pattern
-    analyses: Mapping[str, GrowingAnalysis]
+    analyses: Mapping[str, IncrementalAnalysis]
     candidates: tuple[Block, ...]
 
 
@@ -135,12 +135,12 @@ def _standing(labels: Labels, count: int) -> Standing:
     """Build with the stones of a wall from below, leaving out those that fall."""
     pattern = Pattern.of(labels)
     nothing, units = RigidBlockModel((), (), pattern.whole.mu), units_of(pattern.whole)
-    starts: dict[str, GrowingAnalysis] = {
-        GROWING: growing(nothing, units),
-        WARM: growing_highs.begun(nothing, units),
+    starts: dict[str, IncrementalAnalysis] = {
+        GROWING: incremental_analysis(nothing, units),
+        WARM: HighsAnalysis.of(nothing, units),
     }
-    if count <= KERNEL_UP_TO:
-        starts[KERNEL] = SimplexGrowth.empty(nothing.mu, units, KERNEL_UP_TO)
+    if count <= KERNEL_UP_TO and simplex.AVAILABLE:
+        starts[KERNEL] = SimplexAnalysis.of_nothing(nothing.mu, units, KERNEL_UP_TO)
     chosen = [
         analysis.model.blocks[-1]
         for analysis, _ in zip(built_up(pattern, starts[GROWING]), range(count), strict=False)
@@ -153,13 +153,15 @@ def _standing(labels: Labels, count: int) -> Standing:
     return Standing(pattern, analyses, candidates)
 
 
-def _with(pattern: Pattern, analysis: GrowingAnalysis, stones: list[Block]) -> GrowingAnalysis:
+def _with(
+    pattern: Pattern, analysis: IncrementalAnalysis, stones: list[Block]
+) -> IncrementalAnalysis:
     for stone in stones:
         analysis = analysis.extended(pattern.with_stones(analysis.model, (stone,)))
     return analysis
 
 
-def _stands(pattern: Pattern, wall: GrowingAnalysis, stone: Block) -> bool:
+def _stands(pattern: Pattern, wall: IncrementalAnalysis, stone: Block) -> bool:
     model = pattern.with_stones(wall.model, (stone,))
     return wall.resistance_with(model).resistance.stable
 
@@ -200,13 +202,13 @@ def _measured(method: Method, models: list[RigidBlockModel]) -> Iterator[tuple[f
         yield 1e3 * median(times), found
 
 
-def _methods(wall: Standing) -> dict[str, tuple[Method, GrowingAnalysis]]:
+def _methods(wall: Standing) -> dict[str, tuple[Method, IncrementalAnalysis]]:
     """Return all methods that can do it, and the analysis whose candidates they take."""
 
     def asking(solver: Solver) -> Method:
         return lambda model: (_alphas(lateral_resistance(model, solver=solver)), False)
 
-    def of(analysis: GrowingAnalysis) -> Method:
+    def of(analysis: IncrementalAnalysis) -> Method:
         def method(model: RigidBlockModel) -> Found:
             grown = analysis.resistance_with(model)
             return _alphas(grown.resistance), grown.solved_cold
@@ -215,7 +217,7 @@ def _methods(wall: Standing) -> dict[str, tuple[Method, GrowingAnalysis]]:
 
     analyses = wall.analyses
     any_analysis = analyses[GROWING]
-    methods: dict[str, tuple[Method, GrowingAnalysis]] = {
+    methods: dict[str, tuple[Method, IncrementalAnalysis]] = {
         LINPROG: (_linprog, any_analysis),
         SIMPLEX: (asking("highs"), any_analysis),
         IPM: (asking("highs-ipm"), any_analysis),
@@ -224,8 +226,7 @@ def _methods(wall: Standing) -> dict[str, tuple[Method, GrowingAnalysis]]:
         GROWING: (of(any_analysis), any_analysis),
     }
     kernel = analyses.get(KERNEL)
-    if isinstance(kernel, SimplexGrowth):
-        methods[NUMPY] = (_in_numpy(kernel), kernel)
+    if isinstance(kernel, SimplexAnalysis):
         methods[KERNEL] = (of(kernel), kernel)
     return methods
 
@@ -238,30 +239,6 @@ def _alphas(resistance: LateralResistance) -> Alphas:
 def _linprog(model: RigidBlockModel) -> Found:
     ends = fresh_linprog(model)
     return (None if ends is None or not ends[0] <= 0.0 <= ends[1] else (-ends[0], ends[1])), False
-
-
-def _in_numpy(analysis: SimplexGrowth) -> Method:
-    """Return what the kernels in NumPy do for a candidate, without making its columns."""
-    program = analysis.program
-
-    def end(tilt: Tilt, added: Added) -> float | None:
-        answer = solve_added_numpy(tilt, added, MAX_PIVOTS)
-        if answer.status != OPTIMAL:
-            return None
-        found = figures_numpy(
-            program.cones, program.weights, added, answer.alpha, answer.forces, answer.velocity
-        )
-        certified = optimum(found, answer.alpha, tilt.sign, NUMPY)
-        return None if certified is None or certified.falls else tilt.sign * certified.alpha
-
-    def method(model: RigidBlockModel) -> Found:
-        assert model.added is not None  # noqa: S101 - candidates are made by adding
-        added = program.columns_of(model.added, model.mu)
-        assert added is not None  # noqa: S101 - they are loose stones
-        left, right = end(analysis.least, added), end(analysis.greatest, added)
-        return (None if left is None or right is None else (left, right)), False
-
-    return method
 
 
 Timings = Mapping[tuple[str, int], Mapping[str, Timing]]

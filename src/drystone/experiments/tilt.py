@@ -2,12 +2,12 @@
 
 import numpy as np
 
+from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.experiments.planned_walls import PlannedWall, missing_data, planned_walls
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.physics.compare import TiltComparison, compare_with_tilt
 from drystone.physics.scatter import usual_variations
 from drystone.physics.scene import Scene
-from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.statics.flow.nonassociative import nonassociative_load
 from drystone.statics.model import Direction, RigidBlockModel
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.experiments.reproduce import fig12
-from drystone.statics.contacts.blocks import model_from_labels
 from tests.experiments.reproduce.small_walls import RUBBLE, built, context, gids, rows
 
 

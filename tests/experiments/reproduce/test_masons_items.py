@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.experiments.reproduce import fig13, fig14_15, table2
 from drystone.experiments.reproduce.base import PaperWall
 from drystone.experiments.reproduce.best_trial import best_trial
@@ -14,7 +15,6 @@ from drystone.experiments.reproduce.item import Context
 from drystone.experiments.reproduce.masons_wall import MasonsWall, masons_wall, treatments
 from drystone.experiments.runs.source import published
 from drystone.metrics.measure import measure_labels
-from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
 from tests.experiments.reproduce.small_walls import RUBBLE, context, rows
 

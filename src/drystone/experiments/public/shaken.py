@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from drystone.contacts.outlines import outlines_of_labels
 from drystone.experiments.runs.outcome import Outcome
 from drystone.experiments.runs.spec import RunSpec
 from drystone.kernels.polygons import Points
@@ -12,7 +13,6 @@ from drystone.model.wall import Wall
 from drystone.physics.building import ROUNDED
 from drystone.physics.scene import Scene
 from drystone.physics.shake import shake_once
-from drystone.statics.contacts.outlines import outlines_of_labels
 
 
 def pga_of(spec: RunSpec, outcome: Outcome, data: Path | None) -> float | None:

@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.experiments.reproduce.base import PR, PaperWall
 from drystone.experiments.reproduce.item import Context, Item, Output, Picture
 from drystone.experiments.table import Cell, Table
@@ -13,7 +14,6 @@ from drystone.kernels.boundary import EMPTY, touching_edges
 from drystone.model.wall import Labels, Wall
 from drystone.plotting.interfaces import plot_blocks, plot_boundary_edges
 from drystone.plotting.stones import plot_labels
-from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 
 WAYS = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from statistics import median
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.experiments.reproduce import summary
 from drystone.experiments.reproduce.base import PR, PaperWall
 from drystone.experiments.reproduce.drawn import titled_wall
@@ -13,7 +14,6 @@ from drystone.model.wall import Labels
 from drystone.plotting.groups import group_panels
 from drystone.plotting.mechanism import plot_mechanism
 from drystone.plotting.wall_grid import plot_walls
-from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.failing.mechanism import describe_mechanism
 from drystone.statics.flow.nonassociative import NonassociativeResult, nonassociative_resistance
 from drystone.statics.limit import lateral_resistance

@@ -5,6 +5,8 @@ from functools import cached_property
 from pathlib import Path
 
 from drystone.clusters import cluster_stones
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
 from drystone.experiments.reproduce.base import PaperWall
 from drystone.experiments.reproduce.masons_gaps import dilated, drawn_together
 from drystone.io.published import published_file
@@ -13,8 +15,6 @@ from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone.poses import PoseBook
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.gaps import model_with_closed_gaps, settle_gaps
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 

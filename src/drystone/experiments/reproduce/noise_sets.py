@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from drystone.contacts.gaps import model_with_closed_gaps
 from drystone.experiments.reproduce.base import PaperWall
 from drystone.experiments.runs.source import generated, published
 from drystone.io.published import published_file
@@ -12,7 +13,6 @@ from drystone.io.wall_image import read_wall_image
 from drystone.metrics.measure import measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
-from drystone.statics.contacts.gaps import model_with_closed_gaps
 from drystone.statics.limit import lateral_resistance
 
 NOISES = tuple(range(10, 90, 10))
