@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.labels import coursed_labels, irregular_labels
+from drystone.contacts.blocks import model_from_labels
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.io.published import published_file
 from drystone.io.read_stones import read_stones
@@ -22,9 +23,8 @@ from drystone.placement.best import best_spots
 from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
-from drystone.statics.appending import units_of
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.growing import GrowingAnalysis, growing
+from drystone.statics.incremental import IncrementalAnalysis, incremental_analysis
+from drystone.statics.lp.program import units_of
 from drystone.statics.model import GROUND, RigidBlockModel
 
 WALL_PX = (560, 160)
@@ -163,13 +163,13 @@ class Standing:
 
     Parameters
     ----------
-    analysis : GrowingAnalysis
+    analysis : IncrementalAnalysis
         Of the wall.
     candidates : tuple of RigidBlockModel
         Models with one more stone each; all stand.
     """
 
-    analysis: GrowingAnalysis
+    analysis: IncrementalAnalysis
     candidates: tuple[RigidBlockModel, ...]
 
 
@@ -181,7 +181,7 @@ def standing(count: int, wanted: int = 8) -> Standing:
 
 def _standing(labels: NDArray[np.uint32], count: int, wanted: int) -> Standing:
     whole = model_from_labels(labels).model
-    analysis = growing(RigidBlockModel((), (), whole.mu), units_of(whole))
+    analysis = incremental_analysis(RigidBlockModel((), (), whole.mu), units_of(whole))
     candidates: list[RigidBlockModel] = []
     for stone in sorted(whole.blocks, key=lambda block: block.centroid[::-1]):
         there = {GROUND, stone.id, *(block.id for block in analysis.model.blocks)}
@@ -189,7 +189,7 @@ def _standing(labels: NDArray[np.uint32], count: int, wanted: int) -> Standing:
         new = tuple(i for i in touching if {i.block, i.other} <= there)
         model = analysis.model.with_added((stone,), new)
         extended = analysis.extended(model)
-        if not extended.grown.resistance.stable:
+        if not extended.result.resistance.stable:
             continue
         if len(analysis.model.blocks) < count:
             analysis = extended

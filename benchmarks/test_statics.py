@@ -8,9 +8,9 @@ from tests.naive import statics as naive
 
 from benchmarks.conftest import Row, Timer
 from benchmarks.scenes import Scene, places, standing
+from drystone.contacts.blocks import model_from_labels, model_with
+from drystone.contacts.interfaces import PointContacts, find_interfaces
 from drystone.model.placement import Placement
-from drystone.statics.contacts.blocks import model_from_labels, model_with
-from drystone.statics.contacts.interfaces import PointContacts, find_interfaces
 
 ONE = "contacts of one more stone"
 ALL = "contacts of a whole image"

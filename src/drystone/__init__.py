@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from drystone import generate as generate
     from drystone.assembly.read import read_assembly as read_assembly
+    from drystone.contacts.blocks import model_from_labels as model_from_labels
+    from drystone.contacts.given import model_from_json as model_from_json
     from drystone.errors import DrystoneError as DrystoneError
     from drystone.io.plan_folder import write_plan_folder as write_plan_folder
     from drystone.io.plan_json import read_plan as read_plan
@@ -36,8 +38,6 @@ if TYPE_CHECKING:
     from drystone.search.plan_result import PlanResult as PlanResult
     from drystone.search.plan_result import result_of as result_of
     from drystone.search.plan_wall import plan_wall as plan_wall
-    from drystone.statics.contacts.blocks import model_from_labels as model_from_labels
-    from drystone.statics.contacts.given import model_from_json as model_from_json
     from drystone.statics.flow.nonassociative import (
         nonassociative_resistance as nonassociative_resistance,
     )
@@ -66,8 +66,8 @@ _HOMES = {
     "Planner": "drystone.planner.planner",
     "PlannerSettings": "drystone.planner.settings",
     "method_settings": "drystone.planner.settings",
-    "model_from_labels": "drystone.statics.contacts.blocks",
-    "model_from_json": "drystone.statics.contacts.given",
+    "model_from_labels": "drystone.contacts.blocks",
+    "model_from_json": "drystone.contacts.given",
     "lateral_resistance": "drystone.statics.limit",
     "nonassociative_resistance": "drystone.statics.flow.nonassociative",
 }

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from drystone.statics.asking import Solver
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.lp.extremes import Solver
 from drystone.statics.result import LateralResistance
 from drystone_lab.planned_walls import PlannedWall, missing_data, planned_walls
 from drystone_lab.table import BenchSettings, Cell, Table

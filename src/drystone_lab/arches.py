@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from drystone.statics.contacts.given import model_from_json
+from drystone.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 

@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.model.wall import Labels
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone_lab.cases import Rectangle, closed_forms

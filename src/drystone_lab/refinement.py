@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus

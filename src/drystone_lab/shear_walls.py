@@ -21,7 +21,7 @@ from statistics import fmean
 
 import numpy as np
 
-from drystone.statics.contacts.given import model_from_json
+from drystone.contacts.given import model_from_json
 from drystone.statics.loads import Loads, point_load, weight
 from drystone.statics.model import RigidBlockModel
 

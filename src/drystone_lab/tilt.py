@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.physics.compare import TiltComparison, compare_with_tilt
 from drystone.physics.scatter import usual_variations
 from drystone.physics.scene import Scene
-from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.statics.flow.nonassociative import nonassociative_load
 from drystone.statics.model import Direction, RigidBlockModel
 from drystone_lab.planned_walls import PlannedWall, missing_data, planned_walls

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from shapely.geometry.polygon import orient
 from shapely.ops import split
 
+from drystone.contacts.given import model_from_json
 from drystone.kernels.outline import rasterise_polygon
 from drystone.model.wall import Labels
-from drystone.statics.contacts.given import model_from_json
 from drystone.statics.model import RigidBlockModel
 
 Points = NDArray[np.float64]

@@ -13,7 +13,7 @@ finds one of many; the ranges hold what several methods found and what is said t
 
 from dataclasses import dataclass
 
-from drystone.statics.contacts.given import model_from_json
+from drystone.contacts.given import model_from_json
 from drystone.statics.model import RigidBlockModel
 
 HEIGHT, MU = 1.75, 0.65

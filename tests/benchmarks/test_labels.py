@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from benchmarks.labels import coursed_labels, irregular_labels
 
-from drystone.statics.contacts.blocks import model_from_labels
+from drystone.contacts.blocks import model_from_labels
 
 MAKERS = [coursed_labels, irregular_labels]
 

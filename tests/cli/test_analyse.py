@@ -11,8 +11,8 @@ import pytest
 
 from drystone.cli.commands import analyse
 from drystone.io.wall_image import write_labels
+from drystone.statics.lp.program import EquilibriumProgram
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
-from drystone.statics.saved_program import load_program
 from drystone_lab.walls_of_ferris import WALLS
 from tests.cli.conftest import EXACT, Run
 from tests.statics.walls import coursed
@@ -455,7 +455,7 @@ def test_a_failed_solve_is_saved_for_a_report(
     ran = run("analyse", tower, "--associative-only", "-o", tmp_path / "out")
     assert ran.code == 5
     assert "E140" in ran.err
-    assert load_program(tmp_path / "out" / "drystone-failed.npz").block_ids == (1,)
+    assert EquilibriumProgram.load(tmp_path / "out" / "drystone-failed.npz").block_ids == (1,)
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import OptimizeResult
 
+from drystone.contacts.given import model_from_json
 from drystone.craft import Masonry, pins, wedge_loads
-from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 from tests.craft.walls import box
 

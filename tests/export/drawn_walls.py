@@ -11,8 +11,8 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from drystone.assembly.parts import Assembly, Part
+from drystone.contacts.given import model_from_json
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
-from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 
 STONE_PX = (60.0, 30.0)

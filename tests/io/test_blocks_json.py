@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import shapely
 
+from drystone.contacts.given import model_from_json, polygons_from_json
+from drystone.contacts.settled import model_of_outlines
 from drystone.io.blocks_json import BLOCKS, blocks_to_json, write_blocks
 from drystone.model.site import Site
 from drystone.model.wall import Wall
-from drystone.statics.contacts.given import model_from_json, polygons_from_json
-from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, RigidBlockModel
 from tests.verify.exact_examples import SETTINGS, exact_example

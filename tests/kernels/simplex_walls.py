@@ -1,16 +1,13 @@
 """Walls as the simplex kernel sees them, for its tests: what is added, step by step."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.kernels import simplex
-from drystone.kernels.backend import compiled
-from drystone.kernels.simplex import OPTIMAL, Added, Answer, Cones, Tilt
-from drystone.kernels.simplex_growth import grown_tilt_numpy, solve_added_numpy
-from drystone.statics.contacts.blocks import model_from_labels
+from drystone.kernels.simplex import OPTIMAL, Added, Answer, Cones, Optimum
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
 from tests.naive import simplex as naive
 from tests.statics.walls import Labels
@@ -20,37 +17,17 @@ NOTHING = np.empty(0, np.int32)
 LENGTH_PX = 15.0
 
 
-@dataclass(frozen=True)
-class Kernel:
-    """One of the two versions."""
-
-    name: str
-
-    def solve(self, tilt: Tilt, added: Added, max_pivots: int = simplex.MAX_PIVOTS) -> Answer:
-        if self.name == "numpy":
-            return solve_added_numpy(tilt, added, max_pivots)
-        return simplex.solve_added(tilt, added, max_pivots)
-
-    def grow(self, tilt: Tilt, added: Added, answer: Answer) -> Tilt:
-        if self.name == "numpy":
-            return grown_tilt_numpy(tilt, added, answer)
-        return simplex.grown_tilt(tilt, added, answer)
+needs_kernel = pytest.mark.skipif(
+    not simplex.AVAILABLE, reason="the simplex kernel is not compiled here; HiGHS answers instead"
+)
 
 
-absent = pytest.mark.skipif(compiled("simplex") is None, reason="kernels are not compiled here")
-KERNELS = [
-    pytest.param(Kernel("numpy"), id="numpy"),
-    pytest.param(Kernel("compiled"), id="compiled", marks=absent),
-]
-NUMPY, COMPILED = Kernel("numpy"), Kernel("compiled")
-
-
-def assert_right(tilt: Tilt, added: Added, answer: Answer, *, anew: bool = True) -> None:
+def assert_right(optimum: Optimum, added: Added, answer: Answer, *, anew: bool = True) -> None:
     """As the certificate says, and as the whole program says from the start."""
-    assert max(naive.errors(tilt, added, answer).values()) <= 1e-9
+    assert max(naive.errors(optimum, added, answer).values()) <= 1e-9
     if not anew:
         return
-    status, alpha = naive.solved(naive.whole(tilt, added), tilt.sign)
+    status, alpha = naive.solved(naive.whole(optimum, added), optimum.sign)
     assert answer.status == status
     if status == OPTIMAL:
         assert answer.alpha == pytest.approx(alpha, abs=1e-9)
@@ -111,16 +88,16 @@ def steps(labels: Labels, candidates: int, at_once: int = 1) -> Iterator[list[Ad
 
 
 def grown(
-    labels: Labels, kernel: Kernel, candidates: int = 1, at_once: int = 1
-) -> Iterator[tuple[dict[int, Tilt], list[Added]]]:
-    """The tilts of a wall that grows, and what may be added to it; ends when it falls."""
-    tilts = {sign: simplex.empty_tilt(sign) for sign in SIGNS}
+    labels: Labels, candidates: int = 1, at_once: int = 1
+) -> Iterator[tuple[dict[int, Optimum], list[Added]]]:
+    """The optima of a wall that grows, and what may be added to it; ends when it falls."""
+    optima = {sign: Optimum.of_nothing(sign) for sign in SIGNS}
     for choices in steps(labels, candidates, at_once):
-        yield tilts, choices
-        answers = {sign: kernel.solve(tilts[sign], choices[0]) for sign in SIGNS}
+        yield optima, choices
+        answers = {sign: optima[sign].solved_with(choices[0]) for sign in SIGNS}
         if any(answer.status != simplex.OPTIMAL for answer in answers.values()):
             return
-        tilts = {sign: kernel.grow(tilts[sign], choices[0], answers[sign]) for sign in SIGNS}
+        optima = {sign: optima[sign].extended(choices[0], answers[sign]) for sign in SIGNS}
 
 
 def with_columns(added: Added, more: Cones) -> Added:
@@ -143,10 +120,10 @@ def some_columns(some: Cones, places: object) -> Cones:
     return Cones(some.first[places], some.second[places], entries)
 
 
-def variants(tilt: Tilt, added: Added, seed: int) -> dict[str, Added]:
+def variants(optimum: Optimum, added: Added, seed: int) -> dict[str, Added]:
     """What else could be added: degenerate, near to it, with contacts that go."""
     rng = np.random.default_rng(seed)
-    new, old = added.cones, tilt.cones
+    new, old = added.cones, optimum.cones
     found = {
         "twice": with_columns(added, new),
         "nothing": Added(added.weights, some_columns(new, np.arange(0)), NOTHING),
@@ -161,7 +138,7 @@ def variants(tilt: Tilt, added: Added, seed: int) -> dict[str, Added]:
         )
     if len(old.first):
         columns = np.sort(rng.choice(len(old.first), min(4, len(old.first)), replace=False))
-        basic = np.sort(tilt.basis.heads[tilt.basis.heads >= 0])[:3]
+        basic = np.sort(optimum.basis.basic[optimum.basis.basic >= 0])[:3]
         moved = some_columns(old, columns)
         bent = moved.entries * (1.0 + 0.05 * rng.standard_normal(moved.entries.shape))
         between = Cones(moved.first, moved.second, bent)
@@ -175,11 +152,6 @@ def variants(tilt: Tilt, added: Added, seed: int) -> dict[str, Added]:
     return found
 
 
-def settled(tilt: Tilt) -> Tilt:
-    """The same for both kernels, after its arrays were replaced."""
-    return simplex._native(tilt)
-
-
 def identical(one: Answer, other: Answer) -> bool:
     """Equal, number by number."""
     same = (one.status, one.pivots, one.restarts) == (other.status, other.pivots, other.restarts)
@@ -188,11 +160,11 @@ def identical(one: Answer, other: Answer) -> bool:
     return bool(same and alpha and forces and np.array_equal(one.velocity, other.velocity))
 
 
-def differing(one: Tilt, other: Tilt) -> list[str]:
-    """Names of what is not equal in two tilts."""
+def differing(one: Optimum, other: Optimum) -> list[str]:
+    """Names of what is not equal in two optima."""
     names = [
         name
-        for name in ("unit", "alpha_place", "heads", "levels", "rows", "cols", "rates", "ties")
+        for name in vars(one.basis)
         if not np.array_equal(getattr(one.basis, name), getattr(other.basis, name))
     ]
     names += [

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from drystone.kernels import certificate as module
 from drystone.kernels.backend import compiled
 from drystone.kernels.certificate import figures, figures_numpy
-from drystone.kernels.simplex_types import Added, Cones
+from drystone.kernels.simplex import Added, Cones
 from tests.naive import columns as naive
 from tests.strategies import repeatable
 

@@ -1,4 +1,4 @@
-"""Slow, obvious twins of drystone.statics.contacts.gaps."""
+"""Slow, obvious twins of drystone.contacts.gaps."""
 
 import math
 

@@ -7,6 +7,7 @@ from itertools import product
 import numpy as np
 
 from drystone.clusters import cluster_stones
+from drystone.contacts.blocks import model_from_labels
 from drystone.indices.shape_factor import shape_factor
 from drystone.indices.values import Indices
 from drystone.model.placement import Placement, Wedge
@@ -18,7 +19,6 @@ from drystone.poses import PoseBook
 from drystone.selection.algorithm2 import Action
 from drystone.selection.sampling import sample_stones
 from drystone.stabilise.memory import StabiliseMemory
-from drystone.statics.contacts.blocks import model_from_labels
 from tests.naive import indices, placement, selection, statics
 
 

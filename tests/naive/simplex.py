@@ -1,4 +1,4 @@
-"""Slow twins of the simplex kernel: the whole program, written out and solved from the start."""
+"""Oracles of the simplex kernel: the whole program, written out and solved from the start."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from drystone.kernels.simplex import Added, Answer, Tilt
+from drystone.kernels.simplex import Added, Answer, Optimum
 
 Floats = NDArray[np.float64]
 OPTIMAL, UNSTABLE, UNBOUNDED = 0, 1, 2
@@ -22,12 +22,12 @@ class Whole:
     rhs: Floats
 
 
-def whole(tilt: Tilt, added: Added) -> Whole:
+def whole(optimum: Optimum, added: Added) -> Whole:
     """The program of a wall with a stone, entry by entry, without what is closed."""
-    weights = [*tilt.weights, *added.weights]
+    weights = [*optimum.weights, *added.weights]
     rows = 3 * len(weights)
     columns = []
-    for cones, closed in ((tilt.cones, set(added.closed.tolist())), (added.cones, set())):
+    for cones, closed in ((optimum.cones, set(added.closed.tolist())), (added.cones, set())):
         for number, (first, second) in enumerate(zip(cones.first, cones.second, strict=True)):
             if number in closed:
                 continue
@@ -76,25 +76,25 @@ def exact_minimum(columns: Floats, rhs: Floats, costs: list[float]) -> tuple[int
         line = [flip * Fraction(float(v)) for v in columns[i]]
         line += [Fraction(int(i == j)) for j in range(rows)]
         table.append([*line, flip * Fraction(float(rhs[i]))])
-    heads = list(range(count, count + rows))
+    basic = list(range(count, count + rows))
     first = [Fraction(0)] * count + [Fraction(1)] * rows
-    _bland(table, heads, first, count + rows)
-    if any(table[i][-1] > 0 for i in range(rows) if heads[i] >= count):
+    _bland(table, basic, first, count + rows)
+    if any(table[i][-1] > 0 for i in range(rows) if basic[i] >= count):
         return UNSTABLE, None
     for i in range(rows):  # artificial ones that are left are 0, and go if they can
-        if heads[i] >= count:
+        if basic[i] >= count:
             for j in range(count):
                 if table[i][j] != 0:
-                    _pivot(table, heads, i, j)
+                    _pivot(table, basic, i, j)
                     break
     second = [Fraction(float(c)) for c in costs] + [Fraction(0)] * rows
-    if not _bland(table, heads, second, count):
+    if not _bland(table, basic, second, count):
         return UNBOUNDED, None
-    return OPTIMAL, sum((second[h] * table[i][-1] for i, h in enumerate(heads)), Fraction(0))
+    return OPTIMAL, sum((second[h] * table[i][-1] for i, h in enumerate(basic)), Fraction(0))
 
 
 def _bland(
-    table: list[list[Fraction]], heads: list[int], costs: list[Fraction], allowed: int
+    table: list[list[Fraction]], basic: list[int], costs: list[Fraction], allowed: int
 ) -> bool:
     while True:
         rows = range(len(table))
@@ -102,7 +102,7 @@ def _bland(
             (
                 j
                 for j in range(allowed)
-                if costs[j] - sum((costs[heads[i]] * table[i][j] for i in rows), Fraction(0)) < 0
+                if costs[j] - sum((costs[basic[i]] * table[i][j] for i in rows), Fraction(0)) < 0
             ),
             None,
         )
@@ -111,23 +111,23 @@ def _bland(
         able = [i for i in rows if table[i][entering] > 0]
         if not able:
             return False
-        leaving = min(able, key=lambda i: (table[i][-1] / table[i][entering], heads[i]))
-        _pivot(table, heads, leaving, entering)
+        leaving = min(able, key=lambda i: (table[i][-1] / table[i][entering], basic[i]))
+        _pivot(table, basic, leaving, entering)
 
 
-def _pivot(table: list[list[Fraction]], heads: list[int], row: int, column: int) -> None:
+def _pivot(table: list[list[Fraction]], basic: list[int], row: int, column: int) -> None:
     pivot = table[row][column]
     table[row] = [v / pivot for v in table[row]]
     for i, line in enumerate(table):
         if i != row and line[column] != 0:
             factor = line[column]
             table[i] = [v - factor * w for v, w in zip(line, table[row], strict=True)]
-    heads[row] = column
+    basic[row] = column
 
 
-def errors(tilt: Tilt, added: Added, answer: Answer) -> dict[str, float]:
+def errors(optimum: Optimum, added: Added, answer: Answer) -> dict[str, float]:
     """What is wrong with the vectors of an answer, whatever it claims of itself."""
-    program, v = whole(tilt, added), answer.velocity
+    program, v = whole(optimum, added), answer.velocity
     largest = max(1.0, np.abs(v).max())
     opening = program.matrix.T @ v
     if answer.status == UNSTABLE:
@@ -143,6 +143,6 @@ def errors(tilt: Tilt, added: Added, answer: Answer) -> dict[str, float]:
         "residual": np.abs(balance).max(),
         "violation": max(0.0, -x.min(initial=0.0)),
         "closes": max(0.0, -opening.min(initial=0.0)) / largest,
-        "power": abs(tilt.sign * (program.live @ v) - 1.0) / largest,
-        "gap": abs(tilt.sign * (program.rhs @ v) - answer.alpha),
+        "power": abs(optimum.sign * (program.live @ v) - 1.0) / largest,
+        "gap": abs(optimum.sign * (program.rhs @ v) - answer.alpha),
     }

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from drystone.contacts.outlines import model_from_outlines
 from drystone.physics.compare import TiltComparison, compare_with_tilt
 from drystone.physics.scatter import TiltResult, Variation
 from drystone.physics.scene import EngineSettings, Scene
 from drystone.physics.tilt import TiltSettings, TiltTrial
-from drystone.statics.contacts.outlines import model_from_outlines
 from drystone_lab.walls_of_ferris import MU, WALLS
 
 ONCE = (Variation("as given", EngineSettings(), TiltSettings()),)

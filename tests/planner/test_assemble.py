@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from drystone.contacts.blocks import model_with
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement, Wedge
 from drystone.model.site import Site
@@ -17,9 +18,7 @@ from drystone.poses import PoseBook
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.stabilise.stabilise import Stabilised
-from drystone.statics.contacts.blocks import model_with
-from drystone.statics.growing import Grown
-from drystone.statics.growing_simplex import SimplexGrowth
+from drystone.statics.incremental import IncrementalAnalysis, IncrementalResult
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
@@ -114,14 +113,16 @@ def test_candidates_on_which_the_solver_gave_up_are_counted_and_said(
     assert plan_wall(stones, 60, 10, scale=1.0, method="paper").notices == ()
     calls = iter(range(1000))
 
-    def fails_first(analysis: SimplexGrowth, model: RigidBlockModel) -> Grown:
+    def fails_first(analysis: IncrementalAnalysis, model: RigidBlockModel) -> IncrementalResult:
         if next(calls) > 0:
             return analyse(analysis, model)
         gave_up = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
-        return Grown(LateralResistance(gave_up[0], gave_up[1], model.mu), solved_cold=True)
+        return IncrementalResult(
+            LateralResistance(gave_up[0], gave_up[1], model.mu), solved_cold=True
+        )
 
-    analyse = SimplexGrowth.resistance_with
-    monkeypatch.setattr(SimplexGrowth, "resistance_with", fails_first)
+    analyse = IncrementalAnalysis.resistance_with
+    monkeypatch.setattr(IncrementalAnalysis, "resistance_with", fails_first)
     result = plan_wall(stones, 60, 10, scale=1.0, method="paper")
     (notice,) = result.notices
     assert notice.code == "W303"
@@ -143,11 +144,11 @@ def test_candidates_that_were_solved_again_are_counted_and_change_nothing(
     assert (plain.notices, plain.solves) == ((), Solves())
     asked: list[RigidBlockModel] = []
 
-    def from_the_start(_: SimplexGrowth, model: RigidBlockModel) -> Grown:
+    def from_the_start(_: IncrementalAnalysis, model: RigidBlockModel) -> IncrementalResult:
         asked.append(model)
-        return Grown(lateral_resistance(model), solved_cold=True)
+        return IncrementalResult(lateral_resistance(model), solved_cold=True)
 
-    monkeypatch.setattr(SimplexGrowth, "resistance_with", from_the_start)
+    monkeypatch.setattr(IncrementalAnalysis, "resistance_with", from_the_start)
     again = planned()
     assert again.notices == ()  # it costs time alone
     assert again.solves.failed == 0

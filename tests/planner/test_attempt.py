@@ -17,7 +17,7 @@ from drystone.planner.profile import Profile
 from drystone.planner.proposing import RasterProposer, Spotted, Trial
 from drystone.planner.settings import PlannerSettings
 from drystone.stabilise.stabilise import Stabilised
-from drystone.statics.growing import GrowingAnalysis
+from drystone.statics.incremental import IncrementalAnalysis
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
 
 Key = tuple[int, float, str]
@@ -37,7 +37,7 @@ class _Calls:
             return spotted(this, trial)
 
         def judge_once(
-            this: Evaluator, wall: Wall, analysis: GrowingAnalysis, proposal: Proposal
+            this: Evaluator, wall: Wall, analysis: IncrementalAnalysis, proposal: Proposal
         ) -> object:
             self.judged[proposal.stone_id, proposal.trial_angle_deg, proposal.side] += 1
             return judge(this, wall, analysis, proposal)

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone.search.plan_wall import plan_wall
-from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
 from tests.naive import placement as naive
 from tests.naive.planner import SlowPlanner

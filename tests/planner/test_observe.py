@@ -9,6 +9,8 @@ import shapely
 from numpy.typing import NDArray
 from shapely import affinity
 
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.settled import model_of_outlines
 from drystone.errors import InputError, UsageError
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.model.site import Site
@@ -21,8 +23,6 @@ from drystone.planner.planner import Planner
 from drystone.planner.replay import stands
 from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_result import finish as finish_plan
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.limit import lateral_resistance
 from drystone.verify.check import check_plan
 from tests.planner.scenes import WITH_WEDGES, blocks, few_stones, finish, greedy, same

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from drystone.contacts.settled import PlacedPolygons, model_with_outlines
 from drystone.kernels.polygons import Points
 from drystone.model.outlines import Outlines
 from drystone.model.site import Site
@@ -16,13 +17,11 @@ from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.sturdy import ROUNDS, falls_when_let_go, sturdy_model_with
 from drystone.settle.settings import SettleSettings
-from drystone.statics.contacts.settled import PlacedPolygons, model_with_outlines
 from drystone.statics.flow.release import fall_of
-from drystone.statics.growing import Grown
-from drystone.statics.growing_simplex import SimplexGrowth
+from drystone.statics.incremental import IncrementalAnalysis, IncrementalResult
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.lp.program import assemble
 from drystone.statics.model import Block, Interface, RigidBlockModel
-from drystone.statics.program import assemble
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
 
@@ -242,15 +241,17 @@ def test_failures_of_the_solver_are_counted_in_either_model(
     next(step for step in planner.steps() if step.number == 2)
     build = planner.build
     one = build.analysis if which == "full" else build.sturdy_analysis
-    real = SimplexGrowth.resistance_with
+    real = IncrementalAnalysis.resistance_with
 
-    def gives_up(analysis: SimplexGrowth, model: RigidBlockModel) -> Grown:
+    def gives_up(analysis: IncrementalAnalysis, model: RigidBlockModel) -> IncrementalResult:
         if analysis is not one:
             return real(analysis, model)
         failed = [LimitResult(LimitStatus.FAILED, side) for side in ("left", "right")]
-        return Grown(LateralResistance(failed[0], failed[1], model.mu), solved_cold=True)
+        return IncrementalResult(
+            LateralResistance(failed[0], failed[1], model.mu), solved_cold=True
+        )
 
-    monkeypatch.setattr(SimplexGrowth, "resistance_with", gives_up)
+    monkeypatch.setattr(IncrementalAnalysis, "resistance_with", gives_up)
     attempt = Attempt(planner.workshop, settings, build)
     assert attempt.choose(np.random.default_rng(0)) is None
     judged = list(attempt._judged.values())

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.plotting import animation, mechanism_frames, save_mechanism_animation
 from drystone.plotting.animation import FRAME_MS, LONGER_SIDE_PX
-from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.limit import limit_load
 from drystone.statics.result import Mechanism
 from tests.plotting import examples

@@ -2,11 +2,11 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.plotting import plot_contacts
 from drystone.plotting.contacts import KIND_COLOURS, NORMAL_SHARE
 from drystone.plotting.scene import FIXED, PALE
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json, polygons_from_json
 from tests.plotting.test_stones import patches
 from tests.statics.walls import coursed, irregular, stacked
 

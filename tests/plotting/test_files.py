@@ -9,8 +9,8 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
+from drystone.contacts.settled import model_of_outlines
 from drystone.plotting import files, plot_mechanism, plot_wall, save, write_pictures
-from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from tests.plotting import examples

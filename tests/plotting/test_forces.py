@@ -3,10 +3,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
 from drystone.plotting import plot_forces
 from drystone.plotting.forces import LONGEST_SHARE, WIDEST_PT, resultants, round_number
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import limit_load
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from tests.plotting.test_contacts import dots, lines

@@ -5,8 +5,8 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.plotting.scatter import plot_scatter
-from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.result import LimitStatus
 from drystone.statics.scatter.scatter import scatter
 from drystone.statics.scatter.shaking import ScatterSettings

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.errors import Notice, PlanError
 from drystone.model.plan import PlanMetrics
 from drystone.plotting import write_pictures
@@ -22,7 +23,6 @@ from drystone.report.content import (
 )
 from drystone.report.embedding import viewer_frame, viewer_page, viewer_script, viewer_style
 from drystone.report.notebook import Shown
-from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
 from tests.plotting import examples
 from tests.report.walls import result

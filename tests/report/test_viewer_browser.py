@@ -12,10 +12,10 @@ import pytest
 import shapely
 from PIL import Image, ImageDraw
 
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
 from drystone.report import view_of_result, view_of_wall, write_report
 from drystone.report.embedding import json_in_html, viewer_page, viewer_script, viewer_style
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 from tests.report.walls import result
 

@@ -12,6 +12,8 @@ from PIL import Image, ImageDraw
 
 import drystone as ds
 from drystone.assembly.read import read_assembly
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
 from drystone.io.published_sets import SETS
 from drystone.model.plan import StoneStep
 from drystone.plotting.palette import cluster_colour
@@ -21,8 +23,6 @@ from drystone.report.crops import LONGEST_PX, photo_crops
 from drystone.report.masons import WALLS, masons_wall, masons_words
 from drystone.report.view_parts import PATTERNS, turned
 from drystone.report.view_statics import scaled_resistance
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 from tests.report.walls import result, sha256, written
 

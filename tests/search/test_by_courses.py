@@ -23,7 +23,7 @@ from drystone.search.found import Found
 from drystone.search.laying import Laid, lay
 from drystone.search.packed import Packed, found_again
 from drystone.search.plan_result import finish
-from drystone.statics.grown import Grown
+from drystone.statics.incremental import IncrementalResult
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify.check import check_plan
 from tests.planner import scenes
@@ -177,7 +177,7 @@ def test_every_solve_that_failed_is_counted(
         loaded = solve(*arguments)
         failed = len(solved) % 3 == 2
         solved.append(failed)
-        nothing = Grown(LateralResistance(given_up, given_up, loaded.model.mu))
+        nothing = IncrementalResult(LateralResistance(given_up, given_up, loaded.model.mu))
         return replace(loaded, grown=nothing) if failed else loaded
 
     for name in ("loaded", "_of_pixels"):

@@ -17,7 +17,7 @@ from drystone.planner.planner import Planner
 from drystone.search.course_plan import PlannedStone
 from drystone.search.laying import Laid, lay
 from drystone.search.laying_settings import LayingSettings, LetGoSettings
-from drystone.statics.grown import Grown
+from drystone.statics.incremental import IncrementalResult
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import Block, RigidBlockModel
 from tests.planner.scenes import RUBBLE_SITE, blocks, rubble, stones_of_masks
@@ -172,7 +172,7 @@ def test_a_wall_that_is_not_sturdy_counts_as_fallen(monkeypatch: pytest.MonkeyPa
     def never(*_: object) -> Loaded:
         # Nothing is below the stone.
         model = RigidBlockModel((), (), 0.0).with_added((Block(9, 1.0, (0.0, 5.0)),), ())
-        return Loaded(model, Grown(lateral_resistance(model)))
+        return Loaded(model, IncrementalResult(lateral_resistance(model)))
 
     monkeypatch.setattr(Evaluator, "sturdily", never)
     yard = Yard(stones_of_masks({1: np.ones((12, 24), bool), 2: TIP}), Site(60, 30))
@@ -212,7 +212,11 @@ def test_of_places_that_do_not_stand_sturdily_the_next_best_is_taken(
         found = sturdily(this, build, blocks)
         assert found is not None
         falls = RigidBlockModel((), (), 0.0).with_added((Block(9, 1.0, (0.0, 5.0)),), ())
-        return Loaded(falls, Grown(lateral_resistance(falls))) if len(asked) == 1 else found
+        return (
+            Loaded(falls, IncrementalResult(lateral_resistance(falls)))
+            if len(asked) == 1
+            else found
+        )
 
     monkeypatch.setattr(Evaluator, "sturdily", not_at_once)
     yard = Yard(blocks(BRICKS), Site(60, 20))

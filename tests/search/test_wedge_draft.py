@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from drystone.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.model.wall import outlined
 from drystone.planner.planner import Planner
 from drystone.search import wedge_draft
 from drystone.search.wedge_draft import Draft, analysis_of
 from drystone.search.wedge_places import Motion
-from drystone.statics import growing_highs
-from drystone.statics.contacts.settled import PlacedPolygons, model_of_outlines
-from drystone.statics.growing_simplex import SimplexGrowth
+from drystone.statics.incremental import HighsAnalysis, SimplexAnalysis
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import Direction
+from tests.kernels.simplex_walls import needs_kernel
 from tests.search.wedge_walls import all_places, limits_of, small_walls
 
 WALLS = pytest.mark.parametrize("wall", range(4))
@@ -103,12 +103,13 @@ def test_an_idle_wedge_is_none(wall: int) -> None:
         assert (idle or 0.0) == pytest.approx(without or 0.0, abs=1e-7), k
 
 
+@needs_kernel
 @OPEN_WALLS
 def test_other_solvers_say_the_same(wall: int) -> None:
     made, draft = drafted(wall)
-    assert isinstance(draft.analysis, SimplexGrowth)
+    assert isinstance(draft.analysis, SimplexAnalysis)
     units = draft.analysis.program.units
-    other = replace(draft, analysis=growing_highs.begun(draft.analysis.model, units))
+    other = replace(draft, analysis=HighsAnalysis.of(draft.analysis.model, units))
     number = made.workshop.next_wedge(made.build)
     directions: tuple[Direction, Direction] = ("left", "right")
     for direction in directions:
@@ -140,6 +141,7 @@ def test_a_mechanism_fails_under_the_load_that_the_wall_carries(wall: int) -> No
         assert pushed > 0.0
 
 
+@needs_kernel
 @WALLS
 def test_walls_of_many_blocks_are_analysed_by_the_kernel(
     wall: int, monkeypatch: pytest.MonkeyPatch
@@ -149,13 +151,13 @@ def test_walls_of_many_blocks_are_analysed_by_the_kernel(
     build = made.build
     states = build.states()
     few = states[3]
-    assert isinstance(few.analysis, SimplexGrowth)
+    assert isinstance(few.analysis, SimplexAnalysis)
     limited = replace(few.analysis, most=len(few.model.blocks))
     monkeypatch.setitem(few.__dict__, "analysis", limited)
     for after in states[4:]:
-        large = growing_highs.begun(after.model, limited.program.units)
+        large = HighsAnalysis.of(after.model, limited.program.units)
         monkeypatch.setitem(after.__dict__, "analysis", large)
     again = analysis_of(build)
-    assert isinstance(again, SimplexGrowth)
+    assert isinstance(again, SimplexAnalysis)
     assert again.most == wedge_draft.MOST_BLOCKS
-    assert again.grown.resistance.value == pytest.approx(build.actions[-1].resistance.value)
+    assert again.result.resistance.value == pytest.approx(build.actions[-1].resistance.value)

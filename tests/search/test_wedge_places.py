@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from drystone.contacts.settled import model_with_outlines
 from drystone.search.wedge_places import Motion, WedgePlace
-from drystone.statics.contacts.settled import model_with_outlines
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Block, RigidBlockModel
 from drystone.statics.result import LimitResult, Mechanism

@@ -11,6 +11,10 @@ import numpy as np
 import pytest
 import shapely
 
+from drystone.contacts.settled import (
+    PlacedPolygons,
+    model_of_outlines,
+)
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.kernels.polygons import Points, on_grid
 from drystone.kernels.raster import Mask
@@ -31,10 +35,6 @@ from drystone.search.wedge_draft import Draft
 from drystone.search.wedging import wedged_up
 from drystone.settle.placing import settled_placement
 from drystone.settle.rest import placed_outline
-from drystone.statics.contacts.settled import (
-    PlacedPolygons,
-    model_of_outlines,
-)
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify import check_plan

@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 
+from drystone.contacts.settled import PlacedPolygons
 from drystone.generate import PolygonSettings, RubbleSettings, polygon_stones, rubble_stones
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
@@ -13,7 +14,6 @@ from drystone.planner.planner import Planner
 from drystone.search.wedge_draft import MOST_UNDER_ONE
 from drystone.search.wedge_places import WedgePlace, wedge_places
 from drystone.settle.wedge import WedgeLimits
-from drystone.statics.contacts.settled import PlacedPolygons
 from tests.planner.scenes import finish, greedy
 
 LARGE = greedy({"wedge": {"thickness": 0.04, "height": 0.5, "area": 0.3}, "search": {"budget": 2}})

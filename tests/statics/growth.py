@@ -1,47 +1,44 @@
-"""Walls that grow stone by stone, for tests of the growing analysis."""
+"""Walls that grow stone by stone, for tests of the incremental analysis."""
 
 from collections.abc import Callable
 
 import pytest
 
-from drystone.kernels import certificate, cones, simplex
-from drystone.kernels.backend import compiled
-from drystone.statics import growing_highs, growing_large, growing_simplex
-from drystone.statics.appending import Units
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.growing import growing
+from drystone.contacts.blocks import model_from_labels
+from drystone.kernels import simplex
+from drystone.statics.incremental import (
+    LOCAL,
+    SIMPLEX,
+    IncrementalAnalysis,
+    LocalAnalysis,
+    incremental_analysis,
+)
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.lp.highs import WARM, WarmSession
+from drystone.statics.lp.program import Units
 from drystone.statics.model import GROUND, RigidBlockModel
-from drystone.statics.solvers import warm
 
 PX = Units(15.0, 225.0)
 
-IMPLEMENTATIONS = ["compiled", "numpy", "large", "highs"]
-"""The simplex kernel twice, walls of many stones, and HiGHS."""
+ANALYSES = ["simplex", "local", "highs"]
+"""What the incremental analysis falls through, from the top, the middle, and the bottom."""
 
-SOLVERS = {
-    "compiled": {growing_simplex.NAME},
-    "numpy": {growing_simplex.NAME},
-    "large": {growing_simplex.NAME, growing_large.NAME, warm.NAME},
-    "highs": {warm.NAME},
-}
+SOLVERS = {"simplex": {SIMPLEX}, "local": {SIMPLEX, LOCAL, WARM}, "highs": {WARM}}
 """Who answers about walls that stand."""
 
-Begin = Callable[[RigidBlockModel, Units], growing_simplex.GrowingAnalysis]
+Begin = Callable[[RigidBlockModel, Units], IncrementalAnalysis]
 
 
-def implementation(name: str, monkeypatch: pytest.MonkeyPatch) -> Begin:
-    """What begins a wall that is analysed by one of the implementations."""
+def beginning(name: str, monkeypatch: pytest.MonkeyPatch) -> Begin:
+    """What begins a wall that is analysed by one of the analyses."""
     if name == "highs":
-        return growing_highs.begun
-    if name == "compiled" and compiled("simplex") is None:
-        pytest.skip("kernels are not compiled here")
-    if name == "numpy":
-        for module in (simplex, certificate, cones):
-            monkeypatch.setattr(module, "_fast", None)
-    if name == "large":
-        return lambda model, units: growing_simplex.begun(model, units, most=1)
-    return growing
+        monkeypatch.setattr(simplex, "AVAILABLE", False)
+        return incremental_analysis
+    if not simplex.AVAILABLE:
+        pytest.skip("the simplex kernel is not compiled here")
+    if name == "local":
+        return lambda model, units: incremental_analysis(model, units, most=1)
+    return incremental_analysis
 
 
 def empty(mu=0.58):
@@ -61,7 +58,7 @@ def upwards(labels):
     return whole, sorted(whole.blocks, key=lambda block: block.centroid[1])
 
 
-def wall_and_candidates(labels, count, begin=growing):
+def wall_and_candidates(labels, count, begin=incremental_analysis):
     """The analysis of the lowest blocks, and models with each of the others that stand on them."""
     whole, blocks = upwards(labels)
     analysis = begin(empty(), PX)
@@ -70,32 +67,42 @@ def wall_and_candidates(labels, count, begin=growing):
     return analysis, [with_block(analysis.model, block, whole=whole) for block in blocks[count:]]
 
 
-def assert_same(grown, model, solvers):
+def wall_at_once(labels, count):
+    """A wall that stands and is given at once, and models with one more block."""
+    whole, blocks = upwards(labels)
+    there = {0, *(block.id for block in blocks[:count])}
+    interfaces = tuple(i for i in whole.interfaces if {i.block, i.other} <= there)
+    model = RigidBlockModel(tuple(blocks[:count]), interfaces, whole.mu)
+    analysis = LocalAnalysis.of(model, PX)
+    return analysis, [with_block(analysis.model, block, whole=whole) for block in blocks[count:]]
+
+
+def assert_same(result, model, solvers):
     """As the ordinary analysis says, certified, and found from what was known of the wall."""
     expected = lateral_resistance(model)
-    assert not grown.solved_cold
+    assert not result.solved_cold
     for direction in ("left", "right"):
-        found = getattr(grown.resistance, direction)
+        found = getattr(result.resistance, direction)
         sought = getattr(expected, direction)
         assert found.direction == direction
         assert (found.status, found.message) == (sought.status, sought.message)
         assert found.alpha == pytest.approx(sought.alpha, abs=1e-9)
         assert found.certificate.holds
         assert found.solver in solvers
-    assert grown.resistance.mu == model.mu
+    assert result.resistance.mu == model.mu
 
 
-def bits(grown):
-    both = grown.resistance.left, grown.resistance.right
+def bits(result):
+    both = result.resistance.left, result.resistance.right
     return [(r.status, r.alpha, r.certificate, r.solver) for r in both]
 
 
 class Pivots:
-    """Counts the calls of all sessions, and the pivots of their last runs."""
+    """Counts the calls of all warm sessions, and the pivots of their last runs."""
 
     def __init__(self, monkeypatch):
         self.count = self.calls = 0
-        minimise = warm.WarmSession.minimise
+        minimise = WarmSession.minimise
 
         def counted(session, costs):
             solution = minimise(session, costs)
@@ -103,7 +110,7 @@ class Pivots:
             self.count += session.highs.getInfo().simplex_iteration_count
             return solution
 
-        monkeypatch.setattr(warm.WarmSession, "minimise", counted)
+        monkeypatch.setattr(WarmSession, "minimise", counted)
 
     def of(self, work):
         before = self.count

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from drystone.statics.asking import Answer, answered
-from drystone.statics.certificate import certify, in_equilibrium
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
 from drystone.statics.limit import resistance_between
-from drystone.statics.program import assemble
+from drystone.statics.lp.certificate import certify, in_equilibrium
+from drystone.statics.lp.extremes import Extreme, certified_extreme
+from drystone.statics.lp.highs import HighsSession
+from drystone.statics.lp.program import assemble
+from drystone.statics.lp.solution import Solution
 from drystone.statics.result import CERTIFIED, Certificate, LimitStatus
-from drystone.statics.solvers.highs import HighsSession
-from drystone.statics.solvers.solution import Solution
 from tests.statics.walls import coursed, stacked
 
 MODEL = model_from_labels(coursed(5, 4, 90)).model
@@ -22,7 +22,7 @@ PROGRAM = assemble(MODEL)
 
 
 def solution(sign=1.0, program=PROGRAM):
-    return answered(program, HighsSession(program), sign).solution
+    return certified_extreme(program, HighsSession(program), sign).solution
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -114,9 +114,11 @@ def test_a_wall_is_not_called_unstable_on_a_false_proof():
     """The end asked for comes back with the mechanism of the other end."""
     stands = model_from_labels(stacked((20, 40, 0))).model
     program = assemble(stands)
-    least, greatest = (answered(program, HighsSession(program), sign) for sign in (-1.0, 1.0))
+    least, greatest = (
+        certified_extreme(program, HighsSession(program), sign) for sign in (-1.0, 1.0)
+    )
     stale = replace(greatest.solution, columns=-greatest.solution.columns)
-    false = Answer(stale, replace(greatest.certificate, lower=-0.5, upper=-0.5))
+    false = Extreme(stale, replace(greatest.certificate, lower=-0.5, upper=-0.5))
     both = resistance_between(program, least, false, 0.58)
     assert both.right.status is LimitStatus.FAILED
     assert both.left.status is LimitStatus.FAILED
@@ -130,7 +132,7 @@ def test_no_alpha_needs_a_mechanism_that_no_live_load_holds():
     assert found.status is LimitStatus.UNSTABLE
     assert certify(floating, found, 1.0).holds
     overhanging = assemble(FALLING)
-    end = answered(overhanging, HighsSession(overhanging), 1.0)
+    end = certified_extreme(overhanging, HighsSession(overhanging), 1.0)
     assert end.alpha < 0
     claimed = replace(end.solution, status=LimitStatus.UNSTABLE)
     assert not certify(overhanging, claimed, 1.0).holds
@@ -208,7 +210,7 @@ def test_no_load_is_called_without_limit_where_only_tension_carries_the_weight()
     growing = Solution(LimitStatus.UNBOUNDED, ray, None, "", "")
     held = Solution(LimitStatus.OPTIMAL, hung, None, "", "")
     assert certify(program, growing, 1.0).holds
-    assert answered(program, Claims(growing, held), 1.0).status is LimitStatus.FAILED
+    assert certified_extreme(program, Claims(growing, held), 1.0).status is LimitStatus.FAILED
     rough = assemble(hanging())
     honest = HighsSession(rough).minimise(np.zeros(rough.column_count))
-    assert answered(rough, Claims(growing, honest), 1.0).status is LimitStatus.UNBOUNDED
+    assert certified_extreme(rough, Claims(growing, honest), 1.0).status is LimitStatus.UNBOUNDED

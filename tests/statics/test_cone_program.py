@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from drystone.statics.appending import OpenProgram, Units
-from drystone.statics.cone_program import ConeProgram
-from drystone.statics.contacts.blocks import model_from_labels
+from drystone.contacts.blocks import model_from_labels
+from drystone.statics.lp.cone_program import ConeProgram
+from drystone.statics.lp.program import Units, assemble
 from drystone.statics.model import GROUND, Addition, RigidBlockModel
 from tests.naive import columns as naive
 from tests.statics.growth import empty, upwards, with_block
@@ -26,7 +26,7 @@ def varied(labels):
 
 def grown(whole, sizes=(1, 2)):
     """Both programs and the model, block by block or two at once, an interface lost at times."""
-    cones, program, model = ConeProgram.empty(UNITS), OpenProgram.empty(UNITS), empty(whole.mu)
+    cones, model = ConeProgram.empty(UNITS), empty(whole.mu)
     rest = list(whole.blocks)
     while rest:
         size = sizes[len(rest) % len(sizes)]
@@ -34,13 +34,8 @@ def grown(whole, sizes=(1, 2)):
         step = with_block(model, *blocks, whole=whole).added
         closed = (2, 5) if len(rest) % 7 == 4 and len(model.interfaces) > 5 else ()
         model = model.with_added(step.blocks, step.interfaces, closed)
-        if closed:
-            stay = np.isin(np.arange(len(model.added.base.interfaces)), closed, invert=True)
-            counts = [len(i.points) for i in model.added.base.interfaces]
-            program = program.with_points(np.repeat(stay, counts))
-        program = program.appended(model, model.added.blocks, model.added.interfaces)
         cones = cones.appended(model.added, cones.columns_of(model.added, model.mu))
-        yield cones, program.program, model
+        yield cones, assemble(model, units=UNITS), model
 
 
 @pytest.mark.parametrize("labels", [coursed(5, 4, 90, 3), irregular(6, 14, 90, 60)])

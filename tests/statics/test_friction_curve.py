@@ -5,8 +5,8 @@ from itertools import pairwise
 
 import pytest
 
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
 from drystone.statics.friction_curve import USUAL, friction_curve
 from drystone.statics.limit import lateral_resistance
 from tests.statics.walls import coursed

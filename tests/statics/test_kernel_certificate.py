@@ -7,20 +7,20 @@ import pytest
 
 from drystone.kernels.certificate import Figures, figures
 from drystone.kernels.simplex import Added, Cones
-from drystone.statics.appending import OpenProgram, Units
-from drystone.statics.asking import answered
-from drystone.statics.certificate import (
+from drystone.statics.incremental import certified_bound
+from drystone.statics.lp.certificate import (
     certify,
     fall_of,
     no_alpha_of,
     of_fall,
     optimum_of,
 )
-from drystone.statics.cone_program import ConeProgram
-from drystone.statics.ends import certified, no_alpha, optimum
+from drystone.statics.lp.cone_program import ConeProgram
+from drystone.statics.lp.extremes import certified_extreme
+from drystone.statics.lp.highs import HighsSession
+from drystone.statics.lp.program import Units, assemble
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus
-from drystone.statics.solvers.highs import HighsSession
 from tests.statics.growth import upwards, with_block
 from tests.statics.walls import coursed, irregular
 
@@ -33,12 +33,10 @@ def programs(labels):
     whole, blocks = upwards(labels)
     mu = whole.mu
     model, cones = RigidBlockModel((), (), mu), ConeProgram.empty(UNITS)
-    open_program = OpenProgram.empty(UNITS)
     for block in blocks:
         model = with_block(model, block, whole=whole)
         added = cones.columns_of(model.added, mu)
-        open_program = open_program.appended(model, model.added.blocks, model.added.interfaces)
-        yield cones, added, open_program.program
+        yield cones, added, assemble(model, units=UNITS)
         cones = cones.appended(model.added, added)
 
 
@@ -70,11 +68,11 @@ def test_both_certificates_agree_of_right_answers_and_of_wrong_ones(labels, sign
     rng = np.random.default_rng(0)
     held = broken = 0
     for cones, added, program in programs(labels):
-        right = answered(program, HighsSession(program), float(sign)).solution
+        right = certified_extreme(program, HighsSession(program), float(sign)).solution
         if right.status is LimitStatus.UNSTABLE:
             found = by_kernel(cones, added, right)
             assert_equal(no_alpha_of(found), certify(program, right, sign))
-            assert no_alpha(found, "some solver").falls.holds
+            assert certified_bound(found, np.nan, sign, "some solver").fall.holds
             continue
         for part in ("columns", "duals", None):
             wrong = right
@@ -121,18 +119,4 @@ def test_nothing_that_moves_is_no_fall():
     still = figures(*one_stone(), 0.0, np.empty(0), np.zeros(3))
     assert fall_of(still).fall_work == no_alpha_of(still).fall_work == 0.0
     assert not fall_of(still).holds
-    assert no_alpha(still, "some solver") is None
-
-
-def test_an_end_is_one_only_with_its_certificates():
-    """Of the end itself, and of the fall when alpha has the wrong sign."""
-    sound = Figures(0.0, 0.0, 1.0, 1.0, 0.0, 1.0, -0.5)
-    end = optimum(sound, -0.5, 1, "some solver")
-    assert (end.alpha, end.solver) == (-0.5, "some solver")
-    assert end.falls.fall_work == 0.5
-    assert optimum(sound, -0.4, 1, "some solver") is None
-    stands = optimum(sound._replace(rhs=0.5), 0.5, 1, "some solver")
-    assert (stands.alpha, stands.falls) == (0.5, None)
-    certificate = optimum_of(sound, -0.5, 1)
-    without_work = sound._replace(rhs=0.0)
-    assert certified(certificate, without_work, -0.5, 1, "some solver") is None
+    assert certified_bound(still, np.nan, 1, "some solver") is None

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json
-from drystone.statics.light_blocks import own_units
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.program import assemble
+from drystone.statics.lp.extremes import units_of_light_blocks
+from drystone.statics.lp.program import assemble
 from drystone.statics.result import LimitStatus
 from tests.statics.walls import coursed
 from tests.strategies import repeatable
@@ -65,4 +65,4 @@ def test_what_weighs_nothing_falls_at_no_load_of_its_own():
 
 def test_walls_of_like_stones_have_the_units_of_the_wall():
     model = model_from_labels(coursed(3, 3, 60)).model
-    assert own_units(model, assemble(model)) is None
+    assert units_of_light_blocks(model, assemble(model)) is None

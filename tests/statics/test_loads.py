@@ -4,9 +4,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
 from drystone.errors import InputError
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json
 from drystone.statics.failing.mechanism import describe_mechanism
 from drystone.statics.limit import lateral_resistance, limit_load, load_range
 from drystone.statics.loads import (

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from drystone.statics.contacts.given import model_from_json
+from drystone.contacts.given import model_from_json
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.upright import held_by_upright_faces
+from drystone.statics.squeeze import held_by_upright_faces
 from drystone_lab.cases import (
     closed_forms,
     offset_stack,

@@ -11,7 +11,7 @@ import json
 
 import pytest
 
-from drystone.statics.contacts.given import model_from_json
+from drystone.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 from drystone_lab.walls_of_ferris import WALLS
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from drystone.statics.contacts.blocks import model_from_labels
+from drystone.contacts.blocks import model_from_labels
 from drystone.statics.flow.flow_search import NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_load, nonassociative_resistance
 from drystone.statics.limit import lateral_resistance

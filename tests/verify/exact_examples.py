@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from drystone.contacts.settled import model_of_outlines
 from drystone.io.blocks_json import blocks_to_json
 from drystone.kernels.polygons import Points, on_grid
 from drystone.kernels.raster import turn
@@ -20,7 +21,6 @@ from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_result import finish
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import placed_outline
-from drystone.statics.contacts.settled import model_of_outlines
 from tests.planner.scenes import stones_of_masks
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example, stone_set
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from drystone.clusters import cluster_stones
+from drystone.contacts.blocks import model_from_labels
 from drystone.kernels.outline import pixel_polygon
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement, Side, Wedge
@@ -18,7 +19,6 @@ from drystone.planner.evaluate import action_indices
 from drystone.planner.settings import PlannerSettings
 from drystone.poses import PoseBook
 from drystone.stabilise.stabilise import Stabilised
-from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
 
 SETTINGS = PlannerSettings(orientations="quarter", two_sided=True)

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from drystone.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.model.plan import Plan
 from drystone.physics.building import BlockMove, BuildUp, build_up, tilt_of
 from drystone.physics.scatter import TiltResult
 from drystone.physics.tilt import TiltTrial
-from drystone.statics.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import Direction
 from drystone.verify.engine import CONFIRMED, check_engine, claimed_alpha

@@ -2,10 +2,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from drystone.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.kernels.polygons import Points, no_polygons
 from drystone.model.plan import WedgeStep
 from drystone.settle.wedge import WedgeLimits
-from drystone.statics.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.statics.model import RigidBlockModel
 from drystone.verify.wedges import check_settled_wedge
 

@@ -9,6 +9,8 @@ import numpy as np
 import shapely
 
 from drystone.assembly.parts import DENSITY_KG_M3, Assembly, Part
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.errors import InputError, PlanError, UsageError
 from drystone.io.photo_beside import photo_beside
 from drystone.io.walls import GivenWall, read_wall
@@ -16,8 +18,6 @@ from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.plan import Plan, StoneStep
 from drystone.model.steps import first_fault
 from drystone.plotting.outlines import label_regions
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json, polygons_from_json
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 

@@ -7,9 +7,9 @@ import numpy as np
 
 from drystone.cli.modelling import Modelled, Shapes
 from drystone.cli.scale import refuse_outside, scale_with, wall_picture_px
+from drystone.contacts.scarce import scarce_contacts
 from drystone.errors import Notice
 from drystone.io.walls import GivenWall
-from drystone.statics.contacts.scarce import scarce_contacts
 
 LISTED = 8
 """So many stones are named."""

@@ -11,20 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.cli.loads import is_plain, is_range, load_case
+from drystone.contacts.blocks import ImageModel, model_from_labels
+from drystone.contacts.gap_spread import closed_gap_spread
+from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
+from drystone.contacts.given import model_from_json, polygons_from_json
+from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.contacts.settled import SETBACK
 from drystone.errors import InputError, Notice, UsageError
 from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
-from drystone.statics.contacts.blocks import ImageModel, model_from_labels
-from drystone.statics.contacts.gaps import model_with_closed_gaps, settle_gaps
-from drystone.statics.contacts.given import model_from_json, polygons_from_json
-from drystone.statics.contacts.joints import with_head_friction
-from drystone.statics.contacts.outlines import model_from_outlines, outlines_of_labels
-from drystone.statics.contacts.settled import SETBACK
 from drystone.statics.failing.wording import Noun
+from drystone.statics.joints import with_head_friction
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
-from drystone.statics.scatter.gap_spread import closed_gap_spread
 
 Shapes = Labels | Mapping[int, NDArray[np.float64]]
 

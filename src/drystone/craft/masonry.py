@@ -8,6 +8,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.outlines import outlines_of_labels
 from drystone.craft.chains import Chain, chains
 from drystone.craft.joints import Joint, joints
 from drystone.craft.scans import Scan, scan
@@ -15,8 +17,6 @@ from drystone.craft.settings import CraftSettings
 from drystone.errors import UsageError
 from drystone.kernels.polygons import Polygons, area_and_centroid, no_polygons
 from drystone.model.wall import Labels
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.outlines import outlines_of_labels
 from drystone.statics.model import RigidBlockModel
 
 Points = NDArray[np.float64]

@@ -4,7 +4,7 @@ import numpy as np
 
 from drystone.craft.finding import Case, Finding, Limit, Rule
 from drystone.craft.masonry import Masonry
-from drystone.statics.contacts.joints import is_head_joint, loose_blocks
+from drystone.statics.joints import is_head_joint, loose_blocks
 from drystone.statics.model import GROUND
 
 RULE = Rule(

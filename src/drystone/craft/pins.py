@@ -10,7 +10,7 @@ from drystone.craft.finding import VERDICTS, Case, Finding, Limit, Line, Rule
 from drystone.craft.masonry import Masonry
 from drystone.craft.wedge_loads import least_wedge_loads
 from drystone.model.wedge_shape import WedgeRule, WedgeSettings, WedgeShape, open_sides
-from drystone.statics.contacts.joints import is_head_joint, loose_blocks
+from drystone.statics.joints import is_head_joint, loose_blocks
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus
 

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, linprog
 from scipy.sparse import csr_array, hstack
 
+from drystone.statics.lp.program import EquilibriumProgram, assemble
 from drystone.statics.model import GROUND, RigidBlockModel
-from drystone.statics.program import EquilibriumProgram, assemble
 from drystone.statics.result import LimitStatus
 
 INFEASIBLE = 2
@@ -39,7 +39,7 @@ def least_wedge_loads(
 
     Examples
     --------
-    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.contacts.given import model_from_json
     >>> pier, slab = [0, 0, 1, 1], [0, 1, 4, 1]
     >>> found = least_wedge_loads(model_from_json({"blocks_xywh": [pier, slab, [3, 0, 1, 1]]}),
     ...                           frozenset({3}))

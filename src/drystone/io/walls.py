@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.contacts.given import polygons_from_json
+from drystone.contacts.given_parts import read_mu
 from drystone.errors import InputError, Notice, UsageError
 from drystone.io.blocks_json import BLOCKS
 from drystone.io.plan_json import read_plan
@@ -18,9 +20,7 @@ from drystone.kernels.label_runs import label_runs
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.plan import Plan
 from drystone.model.wall import Labels
-from drystone.statics.contacts.given import polygons_from_json
-from drystone.statics.contacts.given_parts import read_mu
-from drystone.statics.contacts.joints import loose_blocks
+from drystone.statics.joints import loose_blocks
 from drystone.statics.model import RigidBlockModel
 
 CENTROID_PX = 0.01

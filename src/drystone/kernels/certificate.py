@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.kernels.backend import compiled
-from drystone.kernels.simplex_types import Added, Cones
+from drystone.kernels.simplex import Added, Cones
 
 Floats = NDArray[np.float64]
 

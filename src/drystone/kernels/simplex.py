@@ -5,129 +5,255 @@ For n free bodies of weights w, three rows each (horizontal force, vertical forc
     sum x_j a_j + alpha live = rhs,  x_j >= 0,  alpha free,  maximise sign * alpha
     live of body i = (w_i, 0, 0),  rhs of body i = (0, w_i, 0)
 
-A wall keeps an optimal basis for each tilt, with its inverse.  A stone adds three rows:
+The columns a_j are the edges of friction cones, the x_j forces along them.  The dual variables v
+are velocities of the bodies, a mechanism; the reduced cost a_j . v of a column is the rate at
+which the mechanism opens its contact.  Of a wall both directions (signs) have an optimal basis,
+with its inverse.  A stone adds three rows:
 
-1. The mechanism of the wall is extended to the stone.  That takes a linear program of three rows,
-   whose columns are those of the stone, with what each takes from alpha as its cost; if it has no
-   solution, nothing holds the stone up.  Its basis joins that of the wall, and no rate at which a
-   contact opens is below 0: alpha can only be less.
-2. The stone is let down: the forces go in a straight line from those of the wall, where the stone
-   weighs nothing, to those that the basis needs.  What would pull on the way leaves the basis,
-   and the contact of the smallest ratio of opening rate to slope enters (dual simplex method with
-   a parametric right-hand side).  Most rates are 0, as most of a wall rests: among equals, fixed
-   and arbitrary second costs decide.
-3. Where the mechanism of the wall cannot be extended, the rates below 0 are set to 0 first; after
-   the stone is down they count again (primal simplex method).
+1. A dual feasible basis.  The mechanism of the wall is extended to the stone by a program of three
+   rows, whose columns are those of the stone, with what each takes from alpha as its cost.  It is
+   solved in a tableau, phases 1 and 2.  If it has no solution, nothing holds the stone up.
+   Otherwise its basis joins that of the wall, and no reduced cost is negative.
+2. Parametric phase.  A parameter of the right-hand side goes from 1, where the stone weighs nothing
+   and the forces of the wall are feasible, to 0.  The row that first becomes infeasible leaves, and
+   a column enters by the ratio test of the dual simplex method.  Most reduced costs are 0, as most
+   of a wall rests: ties are broken by secondary costs, a fixed perturbation of the costs.
+3. Primal phase.  Where the mechanism of the wall cannot be extended, negative reduced costs are set
+   to 0 first (costs are shifted); afterwards they count again, by the primal simplex method.
 
-The inverse of the wall is only read.  What exchanges do to it is a factor that differs from the
-identity in a few columns.  At the end forces and mechanism are computed anew, and the equations
-are checked; see :mod:`drystone.kernels.simplex_state` for the tolerances.
+The inverse of the wall is only read: exchanges of the basis are kept as a few eta columns.  At the
+end basic values and reduced costs are computed anew and checked against the equations.
 
-Both kernels do the same operations in the same order: their results are equal, bit by bit.
+The method is that of Vanderbei, Linear Programming: Foundations and Extensions (4th edition, 2014):
+chapter 6 (matrix notation), sections 2.3 (phases), 3.3 and 3.4 (perturbation, Bland's rule), 5.6
+(dual simplex method), 7.3 (parametric method), 8.3 (eta matrices).  Ratio tests have tolerances in
+two passes (Harris, Mathematical Programming 5, 1973).
+
+It exists compiled only.  Where it was not built, :data:`AVAILABLE` is false and HiGHS answers
+instead (:mod:`drystone.statics.incremental`).
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, field
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drystone.kernels.backend import compiled
-from drystone.kernels.simplex_growth import grown_from, grown_tilt_numpy, solve_added_numpy
-from drystone.kernels.simplex_types import (
-    FAILED,
-    OPTIMAL,
-    UNSTABLE,
-    Added,
-    Answer,
-    Basis,
-    Cones,
-    Tilt,
-)
 
-__all__ = [
-    "FAILED", "OPTIMAL", "UNSTABLE", "Added", "Answer", "Cones", "Tilt",
-    "empty_tilt", "grown_tilt", "solve_added",
-]  # fmt: skip
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
 
-MAX_PIVOTS = 600
+OPTIMAL: Final = 0
+UNSTABLE: Final = 1
+"""Infeasible: no alpha at all holds the bodies up."""
+FAILED: Final = 2
+"""Gave up: too many pivots, numerics, or alpha has no bound."""
+
+MAX_PIVOTS: Final = 600
 
 _fast = compiled("simplex")
 
+AVAILABLE: Final = _fast is not None
 
-def empty_tilt(sign: int) -> Tilt:
-    """Return the tilt of no bodies and no columns; the first stone starts from it.
+
+@dataclass(frozen=True, eq=False)
+class Cones:
+    """Edges of friction cones: forces between two bodies, or between a body and the ground.
+
+    Parameters
+    ----------
+    first : (N,) int32 array
+        Body that the force acts on; never the ground.
+    second : (N,) int32 array
+        Body that takes the opposite force; -1 for the ground.
+    entries : (6, N) float64 array
+        C-contiguous: horizontal force, vertical force and moment on `first`, then the same on
+        `second`, all 0 where that is the ground.
+    """
+
+    first: Ints
+    second: Ints
+    entries: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Added:
+    """A stone and its wedges.
+
+    Parameters
+    ----------
+    weights : (k,) float64 array
+        Of the new bodies n ... n + k - 1, the stone first; positive.  There may be none.
+    cones : Cones
+        New columns, between any bodies.
+    closed : (c,) int32 array
+        Ascending columns of the wall that are there no more.
+    """
+
+    weights: Floats
+    cones: Cones
+    closed: Ints
+
+    def joined(self, wall: Cones) -> Cones:
+        """Return the columns of the wall that are left, then the new ones."""
+        closed, new = self.closed, self.cones
+        return Cones(
+            np.concatenate((np.delete(wall.first, closed), new.first)),
+            np.concatenate((np.delete(wall.second, closed), new.second)),
+            np.concatenate((np.delete(wall.entries, closed, axis=1), new.entries), axis=1),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """How the program of a wall with a stone ended, in one direction.
+
+    Parameters
+    ----------
+    status : int
+        OPTIMAL, UNSTABLE or FAILED.
+    alpha : float
+        Load multiplier; NaN unless the status is OPTIMAL.
+    forces : (columns,) float array
+        One a column: those of the wall that are left, in order, then the new ones.  Not below 0
+        but for rounding (1e-9 of a weight).  Empty unless the status is OPTIMAL.
+    velocity : (3 (n + k),) float array
+        OPTIMAL: the mechanism v, with a . v >= 0 for every column a and sign live . v = 1; by
+        duality alpha = sign rhs . v.
+        UNSTABLE: a fall, with a . v >= 0 for every column, live . v = 0 and rhs . v < 0; only the
+        direction counts.  FAILED: empty.
+    pivots : int
+        Exchanges of the basis, without those of the tableau of the stone.
+    restarts : int
+        How often a start, or an inverse that had lost its digits, had to be given up.
+    """
+
+    status: int
+    alpha: float
+    forces: Floats
+    velocity: Floats
+    pivots: int
+    restarts: int
+
+
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """An optimal basis of m = 3 n rows, with its inverse; forces in a unit of their own.
+
+    Parameters
+    ----------
+    unit : float
+        Unit of forces, a power of two, so that it costs no digit.
+    alpha_row : int
+        Where alpha is basic; -1 when there are no bodies.
+    basic : (m,) int32 array
+        What is basic in each row: a column, -1 for alpha, -2 - i for the artificial variable of
+        row i.
+    values : (m,) float64 array
+        Basic values; that of alpha is sign times alpha.
+    inverse, transposed : (m, m) float64 arrays
+        The inverse and its transpose, both C-contiguous: a pivot row needs rows of the inverse, a
+        pivot column those of the transpose.
+    reduced_costs : (N,) float64 array
+        Rate at which the mechanism opens each column, a . v; 0 if basic.
+    secondary_costs : (N,) float64 array
+        Reduced costs of the perturbation: positive, 0 if basic.
+    """
+
+    unit: float
+    alpha_row: int
+    basic: Ints
+    values: Floats
+    inverse: Floats
+    transposed: Floats
+    reduced_costs: Floats
+    secondary_costs: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum:
+    """The program of a wall, solved in one direction, ready for one more stone; immutable.
 
     Parameters
     ----------
     sign : int
         1 for the greatest alpha, -1 for the least.
-
-    Examples
-    --------
-    A square stone on two points of the ground, with a friction of 1, slides at its weight; both
-    edges of the cones at its corners push up, and one of them to the left.
-
-    >>> entries = np.array([[1.0, -1, 1, -1], [1, 1, 1, 1], [0, -1, 1, 0]])
-    >>> cones = Cones(
-    ...     np.zeros(4, np.int32),
-    ...     np.full(4, -1, np.int32),
-    ...     np.concatenate((entries, np.zeros((3, 4)))),
-    ... )
-    >>> stone = Added(np.ones(1), cones, np.empty(0, np.int32))
-    >>> answer = solve_added(empty_tilt(1), stone)
-    >>> answer.alpha, answer.forces.tolist()
-    (1.0, [0.0, 0.0, 0.0, 1.0])
+    weights : (n,) float64 array
+        Of the bodies.
+    cones : Cones
+        All columns.
+    alpha : float
+        Load multiplier; sign times infinity when there are no bodies.
+    forces : (N,) float64 array
+        One a column.
+    velocity : (3 n,) float64 array
+        The mechanism; see :class:`Answer`.
+    basis : Basis
+        Where the next stone starts from.
     """
-    nothing, none = np.empty(0), np.empty(0, np.int32)
-    cones = Cones(none, none, np.empty((6, 0)))
-    table = np.empty((0, 0))
-    basis = Basis(1.0, -1, none, nothing, table, table, nothing, nothing)
-    return _native(Tilt(sign, nothing, cones, sign * np.inf, nothing, nothing, basis))
 
+    sign: int
+    weights: Floats
+    cones: Cones
+    alpha: float
+    forces: Floats
+    velocity: Floats
+    basis: Basis
+    _program: Any = field(init=False, repr=False)
 
-def solve_added(tilt: Tilt, added: Added, max_pivots: int = MAX_PIVOTS) -> Answer:
-    """Solve one tilt of the wall with a stone; nothing changes.
+    def __post_init__(self) -> None:
+        # The same once more as C pointers, with scratch memory for those who ask.
+        object.__setattr__(self, "_program", _fast.Program(self) if _fast else None)
 
-    The answer depends on the tilt and the stone alone.  Threads may ask at the same time.
+    @classmethod
+    def of_nothing(cls, sign: int) -> "Optimum":
+        """Return that of no bodies and no columns; the first stone starts from it.
 
-    Parameters
-    ----------
-    tilt : Tilt
-        Of the wall.
-    added : Added
-        The stone and its wedges.
-    max_pivots : int
-        Gives up after so many.  Candidates at 60 stones need 10, those that change the mechanism
-        of a wall of 100 up to 300.
-    """
-    if _fast is None:
-        return solve_added_numpy(tilt, added, max_pivots)
-    return Answer(*tilt.native.solve_added(added, max_pivots))
+        Parameters
+        ----------
+        sign : int
+            1 for the greatest alpha, -1 for the least.
+        """
+        nothing, none, table = np.empty(0), np.empty(0, np.int32), np.empty((0, 0))
+        cones = Cones(none, none, np.empty((6, 0)))
+        basis = Basis(1.0, -1, none, nothing, table, table, nothing, nothing)
+        return cls(sign, nothing, cones, sign * np.inf, nothing, nothing, basis)
 
+    def solved_with(self, added: Added, max_pivots: int = MAX_PIVOTS) -> Answer:
+        """Solve the program of the wall with a stone; nothing changes.
 
-def grown_tilt(tilt: Tilt, added: Added, answer: Answer) -> Tilt:
-    """Return the tilt of the wall with the stone.
+        The answer depends on the wall and the stone alone.  Threads may ask at the same time.
 
-    Parameters
-    ----------
-    tilt : Tilt
-        Of the wall.
-    added : Added
-        The stone and its wedges.
-    answer : Answer
-        What :func:`solve_added` says of them; OPTIMAL.
+        Parameters
+        ----------
+        added : Added
+            The stone and its wedges.
+        max_pivots : int
+            Gives up after so many.  Candidates at 60 stones need 10, those that change the
+            mechanism of a wall of 100 up to 300.
+        """
+        return Answer(*self._program.solve_added(added, max_pivots))
 
-    Notes
-    -----
-    It goes the way to the answer once more, so that answers need not keep their basis.
-    """
-    if answer.status != OPTIMAL:
-        raise ValueError("only an optimal answer makes a tilt")
-    if _fast is None:
-        return grown_tilt_numpy(tilt, added, answer)
-    return _native(
-        grown_from(tilt, added, answer, Basis(*tilt.native.grown(added, answer.pivots + 1)))
-    )
+    def extended(self, added: Added, answer: Answer) -> "Optimum":
+        """Return the optimum of the wall with the stone.
 
+        Parameters
+        ----------
+        added : Added
+            The stone and its wedges.
+        answer : Answer
+            What :meth:`solved_with` says of them; OPTIMAL.
 
-def _native(tilt: Tilt) -> Tilt:
-    return tilt if _fast is None else replace(tilt, native=_fast.Wall(tilt))
+        Notes
+        -----
+        It goes the way to the answer once more, so that answers need not keep their basis.
+        """
+        if answer.status != OPTIMAL:
+            raise ValueError("only an optimal answer can be built on")
+        basis = Basis(*self._program.basis_with(added, answer.pivots + 1))
+        weights = np.concatenate((self.weights, added.weights))
+        cones = added.joined(self.cones)
+        return Optimum(
+            self.sign, weights, cones, answer.alpha, answer.forces, answer.velocity, basis
+        )

@@ -76,7 +76,7 @@ def compare_with_tilt(
         The wall in the engine.
     model : RigidBlockModel
         The same wall for the limit analysis; best of the same outlines
-        (:func:`drystone.statics.contacts.outlines.model_from_outlines`).
+        (:func:`drystone.contacts.outlines.model_from_outlines`).
     rng : numpy.random.Generator
         Of order and noise.
     nonassociative : callable or mapping, optional

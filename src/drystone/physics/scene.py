@@ -9,8 +9,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from drystone.contacts.blocks import check_mu
 from drystone.errors import InputError
-from drystone.statics.contacts.blocks import check_mu
 
 Points = NDArray[np.float64]
 

@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 from functools import cached_property
 
+from drystone.contacts.interfaces import PointContacts
 from drystone.indices.values import Indices
 from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone.stabilise.stabilise import Stabilised
-from drystone.statics.appending import Units
-from drystone.statics.contacts.interfaces import PointContacts
-from drystone.statics.growing import GrowingAnalysis, growing
+from drystone.statics.incremental import IncrementalAnalysis, incremental_analysis
+from drystone.statics.lp.program import Units
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 
@@ -126,23 +126,23 @@ class Build:
         Of the wall.
     actions : tuple of Candidate
         The chosen actions, in order.
-    grown_from : GrowingAnalysis or None
+    grown_from : IncrementalAnalysis or None
         Of the wall before the last action; None when nothing will be built on the wall.
     before : Build or None
         The state before the last action, if it was kept.
     sturdy_model : RigidBlockModel or None
         Of a wall of outlines: see :class:`Candidate`.
-    sturdy_from : GrowingAnalysis or None
+    sturdy_from : IncrementalAnalysis or None
         Of its sturdy model before the last action.
     """
 
     wall: Wall
     model: RigidBlockModel
     actions: tuple[Candidate, ...] = ()
-    grown_from: GrowingAnalysis | None = None
+    grown_from: IncrementalAnalysis | None = None
     before: "Build | None" = None
     sturdy_model: RigidBlockModel | None = None
-    sturdy_from: GrowingAnalysis | None = None
+    sturdy_from: IncrementalAnalysis | None = None
 
     @classmethod
     def empty(cls, site: Site, mu: float, stone_area_px: float, *, exact: bool = False) -> "Build":
@@ -162,14 +162,14 @@ class Build:
         """
         area = stone_area_px / site.scale**2 if exact else stone_area_px
         model = RigidBlockModel((), (), mu)
-        analysis = growing(model, Units(area**0.5, area))
+        analysis = incremental_analysis(model, Units(area**0.5, area))
         wall = Wall.empty(site, exact=exact)
         if not exact:
             return cls(wall, model, grown_from=analysis)
         return cls(wall, model, grown_from=analysis, sturdy_model=model, sturdy_from=analysis)
 
     @cached_property
-    def analysis(self) -> GrowingAnalysis:
+    def analysis(self) -> IncrementalAnalysis:
         """Limit analysis of the wall, ready for one more stone.
 
         It depends on the models of the actions, one after the other, and on nothing else.
@@ -178,7 +178,7 @@ class Build:
         return self.grown_from.extended(self.model)
 
     @cached_property
-    def sturdy_analysis(self) -> GrowingAnalysis | None:
+    def sturdy_analysis(self) -> IncrementalAnalysis | None:
         """Limit analysis of the sturdy model, ready for one more stone; None for pixels."""
         if self.sturdy_from is None or self.sturdy_model is None:
             return None

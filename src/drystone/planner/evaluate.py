@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field, replace
 
+from drystone.contacts.blocks import model_with
+from drystone.contacts.settled import model_with_outlines
 from drystone.indices.dice_score import geometrical_dice_score_at
 from drystone.indices.interlocking import interlocking_width_ratio
 from drystone.indices.inward_slope import inward_slope, is_boundary
@@ -21,9 +23,7 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
 from drystone.planner.sturdy import falls_when_let_go, sturdy_model_with
 from drystone.stabilise.stabilise import Stabilised
-from drystone.statics.contacts.blocks import model_with
-from drystone.statics.contacts.settled import model_with_outlines
-from drystone.statics.grown import Grown
+from drystone.statics.incremental import IncrementalResult
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 
@@ -36,12 +36,12 @@ class Loaded:
     ----------
     model : RigidBlockModel
         Of the wall with the stone.
-    grown : Grown
+    grown : IncrementalResult
         Its resistance, and how that was found.
     """
 
     model: RigidBlockModel
-    grown: Grown
+    grown: IncrementalResult
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,13 +15,13 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import nnls
 
+from drystone.contacts.settled import model_of_outlines, model_with_outlines
 from drystone.model.outlines import Outlined, Outlines
 from drystone.settle.settings import SettleSettings
-from drystone.statics.contacts.joints import slippery
-from drystone.statics.contacts.settled import model_of_outlines, model_with_outlines
 from drystone.statics.flow.release import AT_REST, fall_of, masses
+from drystone.statics.joints import slippery
+from drystone.statics.lp.program import Floats, assemble
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.program import Floats, assemble
 
 GRIP = 0.75
 """Share of the friction with which a wall must stand."""
@@ -81,7 +81,7 @@ def falls_when_let_go(model: RigidBlockModel) -> bool:
 
     Examples
     --------
-    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.contacts.given import model_from_json
     >>> jammed = model_from_json({"blocks_xywh": [[0, 0, 1, 4], [2, 0, 1, 4], [1, 1.5, 1, 1]]})
     >>> piers = replace(jammed, blocks=jammed.blocks[:2], interfaces=jammed.interfaces[:2])
     >>> falls_when_let_go(piers.with_added(jammed.blocks[2:], jammed.interfaces[2:]))

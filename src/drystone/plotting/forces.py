@@ -81,7 +81,7 @@ def resultants(model: RigidBlockModel, forces: Floats) -> tuple[Resultant, ...]:
 
     Examples
     --------
-    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.contacts.given import model_from_json
     >>> block = model_from_json({"blocks_xywh": [[0, 0, 4, 1]]})
     >>> resultants(block, np.array([[1.0, 0.0], [3.0, 0.0]]))[0].point.tolist()
     [3.0, 0.0]

@@ -72,7 +72,7 @@ def polygon_regions(polygons: Mapping[int, Loop]) -> tuple[Region, ...]:
     ----------
     polygons : mapping of int to (n, 2) float array
         Corners, either way round, closed or not; for example from
-        :func:`drystone.statics.contacts.given.polygons_from_json`.
+        :func:`drystone.contacts.given.polygons_from_json`.
 
     Examples
     --------
@@ -102,7 +102,7 @@ def wall_regions(wall: Labels | Mapping[int, Loop]) -> tuple[Region, ...]:
     ----------
     wall : (h, w) integer array, or mapping of int to (n, 2) float array
         A label image, which stands on its lowest stone pixel as
-        :func:`drystone.statics.contacts.blocks.model_from_labels` lets it, or polygons.
+        :func:`drystone.contacts.blocks.model_from_labels` lets it, or polygons.
 
     Examples
     --------

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from drystone.contacts.settled import model_of_outlines
 from drystone.errors import Notice
 from drystone.metrics.level import top_profile
 from drystone.model.plan import Plan, PlanMetrics
@@ -23,7 +24,6 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.search.goal import usable_area_px
 from drystone.search.notices import missing_stones
-from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel

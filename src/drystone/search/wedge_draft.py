@@ -6,13 +6,12 @@ from itertools import accumulate
 
 import numpy as np
 
-from drystone.kernels.simplex import OPTIMAL, solve_added
+from drystone.contacts.settled import PlacedPolygons, model_with_outlines
+from drystone.kernels.simplex import OPTIMAL
 from drystone.planner.build import Build
 from drystone.search.wedge_places import Motion, WedgePlace, wedge_places
 from drystone.settle.wedge import WedgeLimits, in_order, met_below
-from drystone.statics.contacts.settled import PlacedPolygons, model_with_outlines
-from drystone.statics.growing_simplex import SimplexGrowth
-from drystone.statics.grown import GrowingAnalysis
+from drystone.statics.incremental import IncrementalAnalysis, SimplexAnalysis
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Direction, Interface, RigidBlockModel
 from drystone.statics.result import LateralResistance
@@ -33,7 +32,7 @@ class Draft:
 
     Parameters
     ----------
-    analysis : GrowingAnalysis
+    analysis : IncrementalAnalysis
         Of the wall; wedges that were added are its last blocks.
     placed : PlacedPolygons
         All blocks, in the order of construction.
@@ -49,7 +48,7 @@ class Draft:
         Ids of the wedges that were added, and where they are.
     """
 
-    analysis: GrowingAnalysis
+    analysis: IncrementalAnalysis
     placed: PlacedPolygons
     counts: tuple[int, ...]
     width: float
@@ -74,7 +73,7 @@ class Draft:
     @property
     def resistance(self) -> LateralResistance:
         """What it carries."""
-        return self.analysis.grown.resistance
+        return self.analysis.result.resistance
 
     @property
     def weaker(self) -> Direction:
@@ -161,9 +160,9 @@ class Draft:
         analysis = self.analysis
         blocks = analysis.model.blocks
         centroids = {block.id: block.centroid for block in blocks}
-        if isinstance(analysis, SimplexGrowth):
-            tilt = analysis.least if direction == "left" else analysis.greatest
-            velocity = tilt.velocity.reshape(-1, 3) / [1.0, 1.0, analysis.program.units.length]
+        if isinstance(analysis, SimplexAnalysis):
+            optimum = analysis.least if direction == "left" else analysis.greatest
+            velocity = optimum.velocity.reshape(-1, 3) / [1.0, 1.0, analysis.program.units.length]
             ids = tuple(block.id for block in blocks)
         else:
             both = lateral_resistance(analysis.model, mechanism=True)
@@ -182,25 +181,26 @@ class Draft:
         """
         analysis, addition = self.analysis, model.added
         assert addition is not None  # noqa: S101 - it was made by adding
-        if isinstance(analysis, SimplexGrowth):
+        if isinstance(analysis, SimplexAnalysis):
             added = analysis.program.columns_of(addition, model.mu)
-            tilt, sign = (analysis.least, -1) if direction == "left" else (analysis.greatest, 1)
-            answer = solve_added(tilt, added) if added is not None else None
+            optimum = analysis.least if direction == "left" else analysis.greatest
+            answer = optimum.solved_with(added) if added is not None else None
             if answer is not None and answer.status == OPTIMAL:
-                return max(0.0, sign * answer.alpha)
+                return max(0.0, optimum.sign * answer.alpha)
         found = analysis.resistance_with(model).resistance
         return (found.left if direction == "left" else found.right).alpha
 
 
-def analysis_of(build: Build) -> GrowingAnalysis:
+def analysis_of(build: Build) -> IncrementalAnalysis:
     """Return the analysis of a wall that knows its states, by the simplex kernel if it can be."""
     states = build.states()
     last = len(states) - 1
-    while not isinstance(states[last].analysis, SimplexGrowth):
+    while last > 0 and not isinstance(states[last].analysis, SimplexAnalysis):
         last -= 1
-    analysis: GrowingAnalysis = states[last].analysis
-    assert isinstance(analysis, SimplexGrowth)  # noqa: S101 - walls begin empty
-    analysis = replace(analysis, most=MOST_BLOCKS)
+    start = states[last].analysis
+    if not isinstance(start, SimplexAnalysis):
+        return states[-1].analysis  # the kernel is not compiled
+    analysis: IncrementalAnalysis = replace(start, most=MOST_BLOCKS)
     for state in states[last + 1 :]:
         new = state.model.added
         assert new is not None  # noqa: S101 - it was made by adding

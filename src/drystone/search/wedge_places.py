@@ -12,11 +12,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.contacts.settled import PlacedPolygons
 from drystone.kernels.meetings import meetings
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.wedge_shape import open_sides
 from drystone.settle.wedge import WedgeLimits, rests, wedges_below
-from drystone.statics.contacts.settled import PlacedPolygons
 from drystone.statics.model import GROUND
 
 Ids = NDArray[np.int64]

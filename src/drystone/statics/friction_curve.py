@@ -51,7 +51,7 @@ def friction_curve(
     --------
     A block 1 wide and 2 high slides below mu = .5 and rocks above.
 
-    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.contacts.given import model_from_json
     >>> block = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
     >>> [round(at.alpha_right, 6) for at in friction_curve(block, mus=(0.4, 0.6))]
     [0.4, 0.5]

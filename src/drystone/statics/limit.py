@@ -5,7 +5,7 @@ interval of loads that the blocks can carry, [-alpha_left, alpha_right] on the t
 blocks stand under their dead load exactly when 0 lies in it.  So one program is set up and
 solved upwards, and then downwards from the basis that the first solution ended with.
 
-An answer counts only with a certificate that holds (:mod:`drystone.statics.certificate`); if it
+An answer counts only with a certificate that holds (:mod:`drystone.statics.lp.certificate`); if it
 does not, the program is solved again from the start and by other algorithms.
 """
 
@@ -13,12 +13,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from drystone.statics.asking import Answer, Solver
-from drystone.statics.certificate import of_fall
-from drystone.statics.light_blocks import extremes_of
 from drystone.statics.loads import Loads
+from drystone.statics.lp.certificate import of_fall
+from drystone.statics.lp.extremes import Extreme, Solver, extremes
+from drystone.statics.lp.highs import TOLERANCE
+from drystone.statics.lp.program import EquilibriumProgram, Floats, assemble
+from drystone.statics.lp.solution import Solution
 from drystone.statics.model import Direction, RigidBlockModel
-from drystone.statics.program import EquilibriumProgram, Floats, assemble
 from drystone.statics.result import (
     LateralResistance,
     LimitResult,
@@ -26,10 +27,8 @@ from drystone.statics.result import (
     LoadRange,
     Mechanism,
 )
-from drystone.statics.solvers.highs import TOLERANCE
-from drystone.statics.solvers.solution import Solution
 
-_MESSAGE = {
+MESSAGES = {
     LimitStatus.OPTIMAL: "The greatest load was found.",
     LimitStatus.UNSTABLE: "The blocks do not stand under dead load, their own weight.",
     LimitStatus.UNBOUNDED: "No load in this direction brings the blocks down.",
@@ -73,7 +72,7 @@ def limit_load(
 
     Examples
     --------
-    >>> from drystone.statics.contacts.blocks import model_from_labels
+    >>> from drystone.contacts.blocks import model_from_labels
     >>> wall = model_from_labels(np.ones((40, 20), np.uint32)).model
     >>> result = limit_load(wall, "right")
     >>> round(result.alpha, 6), result.certificate.holds
@@ -100,7 +99,7 @@ def lateral_resistance(
     if all(block.fixed for block in model.blocks):
         return LateralResistance(_no_blocks("left"), _no_blocks("right"), model.mu)
     program = assemble(model, loads)
-    least, greatest = extremes_of(model, program, solver, mechanism=mechanism)
+    least, greatest = extremes(model, program, solver, mechanism=mechanism)
     return resistance_between(program, least, greatest, model.mu, mechanism=mechanism)
 
 
@@ -127,7 +126,7 @@ def load_range(
     --------
     How light may a block be, 1 wide and 2 high, that is pushed at mid-height with .3?
 
-    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.contacts.given import model_from_json
     >>> from drystone.statics.loads import gravity_factor, point_load
     >>> block = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
     >>> push = point_load(block, 1, (0, 1), (0.3, 0))
@@ -138,15 +137,15 @@ def load_range(
     if all(block.fixed for block in model.blocks):
         return LoadRange(_no_blocks("left"), _no_blocks("right"))
     program = assemble(model, loads)
-    least, greatest = extremes_of(model, program, solver, mechanism=mechanism)
+    least, greatest = extremes(model, program, solver, mechanism=mechanism)
     ends = zip(("left", "right"), (least, greatest), strict=True)
     return LoadRange(*(_end(d, answer, program, mechanism) for d, answer in ends))  # type: ignore[arg-type]
 
 
 def resistance_between(
     program: EquilibriumProgram,
-    least: Answer,
-    greatest: Answer,
+    least: Extreme,
+    greatest: Extreme,
     mu: float,
     *,
     mechanism: bool = False,
@@ -165,22 +164,22 @@ def _no_blocks(direction: Direction) -> LimitResult:
     return LimitResult(LimitStatus.UNBOUNDED, direction, message=said)
 
 
-def _fall(program: EquilibriumProgram, least: Answer, greatest: Answer) -> Answer | None:
+def _fall(program: EquilibriumProgram, least: Extreme, greatest: Extreme) -> Extreme | None:
     """Return the answer whose mechanism brings the blocks down by themselves, if there is one."""
     for answer, sign in ((greatest, 1.0), (least, -1.0)):
         if answer.status is LimitStatus.UNSTABLE:
             return answer
         if answer.status is LimitStatus.OPTIMAL and sign * answer.alpha < -TOLERANCE:
             assert answer.solution.duals is not None  # noqa: S101 - an optimal solution has them
-            return Answer(answer.solution, of_fall(program, -answer.solution.duals))
+            return Extreme(answer.solution, of_fall(program, -answer.solution.duals))
     return None
 
 
 def _direction(
     direction: Direction,
-    answer: Answer,
-    other: Answer,
-    fall: Answer | None,
+    answer: Extreme,
+    other: Extreme,
+    fall: Extreme | None,
     wanted: EquilibriumProgram | None,
 ) -> LimitResult:
     """Tell one direction; mechanism and forces are made when the program is given.
@@ -195,7 +194,7 @@ def _direction(
             direction,
             mechanism=_mechanism(wanted, fall.solution) if wanted else None,
             certificate=fall.certificate,
-            message=_MESSAGE[LimitStatus.UNSTABLE],
+            message=MESSAGES[LimitStatus.UNSTABLE],
             solver=fall.solution.solver,
         )
     if answer.status is LimitStatus.FAILED:
@@ -205,23 +204,23 @@ def _direction(
         return LimitResult(LimitStatus.FAILED, direction, message=said)
     sign = -1.0 if direction == "left" else 1.0
     alpha = max(0.0, sign * answer.alpha) if answer.status is LimitStatus.OPTIMAL else None
-    return _told(direction, answer, alpha, wanted)
+    return _result(direction, answer, alpha, wanted)
 
 
 def _end(
-    direction: Direction, answer: Answer, program: EquilibriumProgram, mechanism: bool
+    direction: Direction, answer: Extreme, program: EquilibriumProgram, mechanism: bool
 ) -> LimitResult:
     """Tell one end of the range of alpha."""
     if answer.status is LimitStatus.FAILED:
         return _failed(direction, answer)
     if answer.status is LimitStatus.UNSTABLE:
-        told = _told(direction, answer, None, program if mechanism else None)
-        return replace(told, message="No alpha holds the blocks up.")
+        result = _result(direction, answer, None, program if mechanism else None)
+        return replace(result, message="No alpha holds the blocks up.")
     alpha = answer.alpha if answer.status is LimitStatus.OPTIMAL else None
-    return _told(direction, answer, alpha, program if mechanism else None)
+    return _result(direction, answer, alpha, program if mechanism else None)
 
 
-def _failed(direction: Direction, answer: Answer) -> LimitResult:
+def _failed(direction: Direction, answer: Extreme) -> LimitResult:
     solution = answer.solution
     claimed = solution.status is not LimitStatus.FAILED
     doubt = ", but that could not be certified" if claimed else ""
@@ -235,8 +234,8 @@ def _failed(direction: Direction, answer: Answer) -> LimitResult:
     )
 
 
-def _told(
-    direction: Direction, answer: Answer, alpha: float | None, wanted: EquilibriumProgram | None
+def _result(
+    direction: Direction, answer: Extreme, alpha: float | None, wanted: EquilibriumProgram | None
 ) -> LimitResult:
     solution = answer.solution
     optimal = answer.status is LimitStatus.OPTIMAL
@@ -247,7 +246,7 @@ def _told(
         _mechanism(wanted, solution) if wanted else None,
         _forces(wanted, solution) if wanted and optimal else None,
         answer.certificate,
-        _MESSAGE[answer.status],
+        MESSAGES[answer.status],
         solution.solver,
     )
 

@@ -80,7 +80,7 @@ def friction_sensitivity(
 
     Examples
     --------
-    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.contacts.given import model_from_json
     >>> from drystone.statics.limit import limit_load
     >>> flat = model_from_json({"blocks_xywh": [[0, 0, 4, 2]]})
     >>> round(friction_sensitivity(flat, limit_load(flat, "right", mechanism=True)).total, 6)

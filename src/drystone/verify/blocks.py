@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import shapely
 
+from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.errors import DrystoneError
 from drystone.kernels.polygons import Points
 from drystone.model.plan import Plan
-from drystone.statics.contacts.given import model_from_json, polygons_from_json
 from drystone.statics.model import Block, Interface, RigidBlockModel
 from drystone.verify.pieces import piece_name
 from drystone.verify.replay import Replay

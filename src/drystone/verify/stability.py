@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.settled import model_of_outlines
 from drystone.model.plan import StoneStep, WedgeStep
 from drystone.model.wall import Labels, Wall
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.sturdy import sturdy_model_of
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.settled import model_of_outlines
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
+from drystone.contacts.outlines import outlines_of_labels
 from drystone.kernels.polygons import Points
 from drystone.model.wall import Wall
 from drystone.physics.building import ROUNDED
 from drystone.physics.scene import Scene
 from drystone.physics.shake import shake_once
-from drystone.statics.contacts.outlines import outlines_of_labels
 from drystone_lab.runs.outcome import Outcome
 from drystone_lab.runs.spec import RunSpec
 

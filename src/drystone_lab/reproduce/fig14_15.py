@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from statistics import median
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.model.wall import Labels
 from drystone.plotting.groups import group_panels
 from drystone.plotting.mechanism import plot_mechanism
 from drystone.plotting.wall_grid import plot_walls
-from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.failing.mechanism import describe_mechanism
 from drystone.statics.flow.nonassociative import NonassociativeResult, nonassociative_resistance
 from drystone.statics.limit import lateral_resistance

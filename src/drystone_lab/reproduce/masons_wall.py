@@ -5,14 +5,14 @@ from functools import cached_property
 from pathlib import Path
 
 from drystone.clusters import cluster_stones
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
 from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone.poses import PoseBook
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.gaps import model_with_closed_gaps, settle_gaps
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone_lab.reproduce.base import PaperWall

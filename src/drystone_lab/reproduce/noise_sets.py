@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from drystone.contacts.gaps import model_with_closed_gaps
 from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
 from drystone.metrics.measure import measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
-from drystone.statics.contacts.gaps import model_with_closed_gaps
 from drystone.statics.limit import lateral_resistance
 from drystone_lab.reproduce.base import PaperWall
 from drystone_lab.runs.source import generated, published

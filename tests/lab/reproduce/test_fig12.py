@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from drystone.statics.contacts.blocks import model_from_labels
+from drystone.contacts.blocks import model_from_labels
 from drystone_lab.reproduce import fig12
 from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, rows
 

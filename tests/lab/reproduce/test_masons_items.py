@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from drystone.contacts.blocks import model_from_labels
 from drystone.metrics.measure import measure_labels
-from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.limit import lateral_resistance
 from drystone_lab.reproduce import fig13, fig14_15, table2
 from drystone_lab.reproduce.base import PaperWall

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
 from drystone.statics.failing.mechanism import describe_mechanism
 from drystone.statics.limit import lateral_resistance, limit_load
 from drystone.statics.model import GROUND

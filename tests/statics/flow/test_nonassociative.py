@@ -5,8 +5,8 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
 from drystone.statics.flow import nonassociative
 from drystone.statics.flow.flow_check import FlowCheck, check_flow
 from drystone.statics.flow.flow_search import NonassociativeSettings

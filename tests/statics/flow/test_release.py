@@ -8,8 +8,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
 from drystone.statics.flow import release
 from drystone.statics.flow.flow_check import check_flow
 from drystone.statics.flow.flow_search import NonassociativeSettings
@@ -17,7 +17,7 @@ from drystone.statics.flow.nonassociative import nonassociative_load, nonassocia
 from drystone.statics.flow.release import fall_of, with_inertia
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
-from drystone.statics.program import assemble
+from drystone.statics.lp.program import assemble
 from drystone.statics.result import LimitStatus, Mechanism
 from drystone_lab.arches import arch
 from tests.naive.release import greatest_power_of_a_fall

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
 from drystone.errors import InputError
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus

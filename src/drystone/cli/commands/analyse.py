@@ -26,11 +26,11 @@ from drystone.statics.flow.nonassociative import (
 )
 from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import Loads
+from drystone.statics.lp.program import assemble
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
-from drystone.statics.saved_program import save_program
 from drystone.statics.sensitivity import friction_sensitivity
-from drystone.statics.upright import held_by_upright_faces
+from drystone.statics.squeeze import held_by_upright_faces
 
 CLEARLY_LESS = 0.99
 """Share of the associative load multiplier; above it the mechanisms are mostly the same."""
@@ -209,7 +209,7 @@ def _print_range(wall: Modelled, arguments: argparse.Namespace, pictures: list[P
 def _keep_failure(model: RigidBlockModel, loads: Loads, folder: Path | None) -> ExitCode:
     """Save the program that no solver could solve (E140)."""
     path = (folder or Path()) / "drystone-failed.npz"
-    save_program(model, loads, path)
+    assemble(model, loads).save(path)
     said = Notice(
         "E140",
         "no solver found an answer that can be certified.",

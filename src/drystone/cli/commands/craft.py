@@ -7,12 +7,12 @@ from pathlib import Path
 
 from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.output import prepare_files, print_json
+from drystone.contacts.given import model_from_json, polygons_from_json
+from drystone.contacts.pieces import notice_of_pieces
 from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look
 from drystone.craft.look import UNSEEN
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.walls import GivenWall, read_wall
-from drystone.statics.contacts.given import model_from_json, polygons_from_json
-from drystone.statics.contacts.pieces import notice_of_pieces
 
 SHEET_DPI, SINGLE_DPI = 130, 150
 

@@ -9,14 +9,14 @@ from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.lengths import parse_wall
 from drystone.cli.output import number, prepare_files, print_json, print_table
 from drystone.cli.scale import option_of, refuse_outside, scale_with, wall_picture_px
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
+from drystone.contacts.pieces import notice_of_pieces
 from drystone.errors import ExitCode, UsageError
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
-from drystone.statics.contacts.blocks import model_from_labels
-from drystone.statics.contacts.given import model_from_json
-from drystone.statics.contacts.pieces import notice_of_pieces
 from drystone.statics.limit import lateral_resistance
 
 

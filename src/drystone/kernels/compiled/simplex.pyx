@@ -1,139 +1,1372 @@
 # cython: language_level=3, boundscheck=False, wraparound=False, cdivision=True, initializedcheck=False
-"""Twin of :mod:`drystone.kernels.simplex_solve`, and what Python sees of it."""
+"""The simplex method of :mod:`drystone.kernels.simplex`, which says what it solves and how.
+
+Vanderbei, Linear Programming: Foundations and Extensions (4th edition, 2014) has all that is used:
+chapter 6 (simplex method in matrix notation), 7.3 (parametric method), 5.6 (dual simplex method),
+3.3 and 3.4 (perturbation, Bland's rule), 2.3 (phases 1 and 2), 8.3 (products of eta matrices).
+
+From top to bottom: data; columns; basis inverse; ratio tests; state; tableau of the new bodies;
+start; phases; what is written out; what Python sees.  Sums are added in a fixed order: plans must
+be the same bytes on every machine.
+"""
 
 from libc.math cimport fabs, frexp, ldexp
-from libc.stdint cimport int32_t
+from libc.stdint cimport int32_t, uint64_t
 from libc.stdlib cimport free, malloc
-from libc.string cimport memset
+from libc.string cimport memcpy, memset
 
 import numpy as np
 
-from drystone.kernels.compiled.simplex_choice cimport (
-    LARGE_PIVOT, PLACE_SEED, SMALL_PIVOT, blocking, entering, leaving, scattered,
-)
-from drystone.kernels.compiled.simplex_growth cimport (
-    write_forces, write_inverse, write_rest, write_velocity,
-)
-from drystone.kernels.compiled.simplex_inverse cimport row_of
-from drystone.kernels.compiled.simplex_start cimport start
-from drystone.kernels.compiled.simplex_state cimport (
-    FAILED, GOING_ON, LOST, OPTIMAL, UNSTABLE, State, admissible, column_of, dual_step, exchange,
-    falls, lay_out, renewed_inverse, set_steps, slopes_of, take_levels, take_rates, within_bounds,
-)
+# ---- Data ----------------------------------------------------------------------------------------
 
+cdef enum:
+    # What is basic in a row: a column, alpha, or ARTIFICIAL - i, the artificial variable of row i.
+    ALPHA = -1
+    ARTIFICIAL = -2
+
+cdef enum:
+    OPTIMAL = 0
+    UNSTABLE = 1
+    FAILED = 2
+    UNFINISHED = -1
+    INACCURATE = -2
+
+cdef enum:
+    # Where the perturbations of basic values and of the small program begin; columns begin at 0.
+    VALUE_SEED = 0x10000000
+    SMALL_SEED = 0x20000000
+
+# Of the equations: basic values with larger residuals are refined once, and refused above the
+# second.  Forces are in weights of the first stone or so.
+cdef double REFINED_ABOVE = 1e-11
+cdef double RESIDUAL = 1e-10
+# A basic value leaves the basis only if it is negative by more; an answer may be by twice as much.
+cdef double PRIMAL_TOLERANCE = 1e-10
+cdef double PRIMAL_ACCEPTED = 2e-10
+# Of reduced costs, over the largest velocity.
+cdef double DUAL_TOLERANCE = 1e-10
+# The same of a ray that proves infeasibility.
+cdef double RAY_TOLERANCE = 1e-9
+# Pivots are larger than the first; than the second where there are none or they led astray, as
+# what is not looked at can leave its bounds by a millionth of a step.
+cdef double LARGE_PIVOT = 1e-6
+cdef double SMALL_PIVOT = 1e-9
+# What a ratio may be missed by so that a large pivot can be taken (Harris), of costs and of the
+# secondary ones.
+cdef double HARRIS_SLACK = 1e-10
+cdef double SECONDARY_SLACK = 1e-1
+# By which a pivot may differ between its row and its column.
+cdef double PIVOT_ERROR = 1e-8
+# Of the inverse times the basis; above it a new wall's inverse is made anew.
+cdef double INVERSE_ERROR = 1e-11
+cdef double SINGULAR = 1e-10
+# Of a weight: about what basic values are perturbed by in the parametric phase.
+cdef double PERTURBATION = 1e-2
 cdef int ROUNDS = 6
-cdef double DRIFT = 1e-8
 
+# Columns of friction cones: where their two bodies begin in a table of velocities, which begins
+# with three zeros for the ground, and their six entries, the first ones of all columns first.
+cdef struct Columns:
+    Py_ssize_t count
+    const int32_t *first
+    const int32_t *second
+    const double *entries
+
+# The optimal basis of the wall.
+cdef struct WallBasis:
+    Py_ssize_t size
+    Py_ssize_t alpha_row
+    const int32_t *basic
+    const double *values
+    const double *inverse
+    const double *transposed
+    const double *reduced_costs
+    const double *secondary_costs
+
+# The basis inverse: F times the inverse of the wall, bordered by an identity for the new bodies
+# and by minus the live load on them in the column of alpha.  F is an identity but for a few eta
+# columns: `eta[t * size : ...]` is that of row `eta_row[t]`, and `slot` is the way back.
+cdef struct Inverse:
+    const double *rows
+    const double *cols
+    const double *values
+    Py_ssize_t old
+    Py_ssize_t alpha_row
+    const double *live
+    Py_ssize_t new
+    Py_ssize_t size
+    Py_ssize_t count
+    int32_t *eta_row
+    int32_t *slot
+    double *eta
+    # Scratch for sums of lines.
+    double *factors
+    const double **lines
+
+cdef struct State:
+    WallBasis wall
+    Columns old
+    Columns new
+    Py_ssize_t columns
+    Py_ssize_t size
+    Py_ssize_t alpha_row
+    const int32_t *closed
+    Py_ssize_t closed_count
+    Inverse inverse
+    double speed
+    double pivot
+    int pivots
+    int restarts
+    bint reinverted
+    # One number a row.  Of the basic values x at the parameter 0, x + direction at 1; `feasible`
+    # are those that the next parametric phase starts near.  A basic variable that is fixed, an
+    # artificial one or a closed column, has to be 0.
+    double *rhs
+    double *live
+    double *values
+    double *direction
+    double *feasible
+    double *velocity
+    double *ray
+    double *inverse_row
+    double *pivot_column
+    double *residual
+    double *secondary_values
+    int32_t *basic
+    char *fixed
+    # Three more than that, for the ground.
+    double *with_ground
+    double *total
+    # One number a column.
+    double *reduced_costs
+    double *secondary_costs
+    double *pivot_row
+    double *opened
+    char *open
+    # One number a new column.
+    int32_t *new_first
+    int32_t *new_second
+    # One number a row or a column, whichever are more.
+    int32_t *listed
+    double *tableau
+    double *small_ray
+    int32_t *small_basic
+    # A new inverse, when the old one is inaccurate.
+    double *anew
+
+
+cdef void perturbation(uint64_t seed, Py_ssize_t count, double *out) noexcept nogil:
+    """Write fixed numbers in [0, 1) without pattern: SplitMix64 (Steele, Lea & Flood, 2014)."""
+    cdef Py_ssize_t i
+    cdef uint64_t bits
+    for i in range(count):
+        bits = (seed + 1 + <uint64_t>i) * <uint64_t>0x9E3779B97F4A7C15ULL
+        bits = (bits ^ (bits >> 30)) * <uint64_t>0xBF58476D1CE4E5B9ULL
+        bits = (bits ^ (bits >> 27)) * <uint64_t>0x94D049BB133111EBULL
+        bits ^= bits >> 31
+        out[i] = <double>(bits >> 11) * (1.0 / 9007199254740992.0)
+
+
+# ---- Columns -------------------------------------------------------------------------------------
+
+cdef void price_part(const Columns *part, const double *with_ground, double *out) noexcept nogil:
+    cdef Py_ssize_t j, count = part.count
+    cdef const double *e = part.entries
+    cdef const double *a
+    cdef const double *b
+    for j in range(count):
+        a = with_ground + part.first[j]
+        b = with_ground + part.second[j]
+        out[j] = (
+            a[0] * e[j] + a[1] * e[count + j] + a[2] * e[2 * count + j]
+            + b[0] * e[3 * count + j] + b[1] * e[4 * count + j] + b[2] * e[5 * count + j]
+        )
+
+
+cdef void price(State *state, const double *row, double *out, Py_ssize_t first) noexcept nogil:
+    """Write the products of a row vector with all columns (first is 0), or only the new ones.
+
+    Of a velocity these are the rates at which it opens the contacts.
+    """
+    state.with_ground[0] = state.with_ground[1] = state.with_ground[2] = 0.0
+    memcpy(state.with_ground + 3, row, state.size * sizeof(double))
+    if first == 0:
+        price_part(&state.old, state.with_ground, out)
+    price_part(&state.new, state.with_ground, out + state.old.count)
+
+
+cdef void clear_basic(State *state, double *values) noexcept nogil:
+    """Set what belongs to basic and to closed columns to 0."""
+    cdef Py_ssize_t i
+    for i in range(state.size):
+        if state.basic[i] >= 0:
+            values[state.basic[i]] = 0.0
+    for i in range(state.closed_count):
+        values[state.closed[i]] = 0.0
+
+
+cdef Columns *part_of(State *state, Py_ssize_t *number) noexcept nogil:
+    if number[0] < state.old.count:
+        return &state.old
+    number[0] -= state.old.count
+    return &state.new
+
+
+cdef Py_ssize_t entries_of(
+    State *state, Py_ssize_t variable, Py_ssize_t *rows, double *entries
+) noexcept nogil:
+    """Write the rows and entries, up to six, of any variable but alpha; return how many."""
+    cdef Py_ssize_t q, row, count = 0, number = variable
+    cdef Columns *part
+    if variable <= ARTIFICIAL:
+        rows[0] = ARTIFICIAL - variable
+        entries[0] = 1.0
+        return 1
+    part = part_of(state, &number)
+    for q in range(6):
+        row = (part.first[number] + q if q < 3 else part.second[number] + q - 3) - 3
+        if row >= 0:
+            rows[count] = row
+            entries[count] = part.entries[q * part.count + number]
+            count += 1
+    return count
+
+
+# ---- Basis inverse -------------------------------------------------------------------------------
+
+cdef void add_lines(
+    double *out, Py_ssize_t size, const double *factors, const double **lines, Py_ssize_t count
+) noexcept nogil:
+    """Add multiples of lines, one after the other; four in one pass save memory traffic."""
+    cdef Py_ssize_t i, t = 0
+    cdef const double *a
+    cdef const double *b
+    cdef const double *c
+    cdef const double *d
+    cdef double f, g, h, k
+    while t + 4 <= count:
+        a, b, c, d = lines[t], lines[t + 1], lines[t + 2], lines[t + 3]
+        f, g, h, k = factors[t], factors[t + 1], factors[t + 2], factors[t + 3]
+        for i in range(size):
+            out[i] = out[i] + f * a[i] + g * b[i] + h * c[i] + k * d[i]
+        t += 4
+    while t < count:
+        a, f = lines[t], factors[t]
+        for i in range(size):
+            out[i] += f * a[i]
+        t += 1
+
+
+cdef void border(Inverse *inverse) noexcept nogil:
+    """Start with the inverse of the wall; eta columns of new rows come first, then alpha's."""
+    cdef Py_ssize_t i
+    for i in range(inverse.size):
+        inverse.slot[i] = -1
+    inverse.count = 0
+    for i in range(inverse.new):
+        open_eta(inverse, inverse.old + i)
+    if inverse.old:
+        open_eta(inverse, inverse.alpha_row)
+
+
+cdef void open_eta(Inverse *inverse, Py_ssize_t row) noexcept nogil:
+    cdef double *column = inverse.eta + inverse.count * inverse.size
+    memset(column, 0, inverse.size * sizeof(double))
+    column[row] = 1.0
+    inverse.slot[row] = <int32_t>inverse.count
+    inverse.eta_row[inverse.count] = <int32_t>row
+    inverse.count += 1
+
+
+cdef void inverse_row(Inverse *inverse, Py_ssize_t row, double *out) noexcept nogil:
+    """Write a row of the inverse (BTRAN of a unit vector)."""
+    cdef Py_ssize_t i, t, found = 0
+    cdef double factor
+    cdef double *factors = inverse.factors
+    memset(out, 0, inverse.size * sizeof(double))
+    for t in range(inverse.count):
+        factors[t] = inverse.eta[t * inverse.size + row]
+    for i in range(inverse.new):
+        out[inverse.old + i] = factors[i]
+    if inverse.old == 0:
+        return
+    for i in range(0, inverse.new, 3):
+        factors[inverse.new] -= inverse.live[i] * factors[i]
+    for t in range(inverse.new, inverse.count):
+        factor = factors[t]
+        if factor != 0.0:
+            factors[found] = factor
+            inverse.lines[found] = inverse.rows + inverse.eta_row[t] * inverse.old
+            found += 1
+    if inverse.slot[row] < 0:
+        factors[found] = 1.0
+        inverse.lines[found] = inverse.rows + row * inverse.old
+        found += 1
+    add_lines(out, inverse.old, factors, inverse.lines, found)
+
+
+cdef void apply_eta(Inverse *inverse, double *vector) noexcept nogil:
+    """Multiply what the wall's inverse has made of a vector by border and eta columns, in place."""
+    cdef Py_ssize_t i, t, found = 0
+    cdef double at
+    if inverse.old:
+        for i in range(0, inverse.new, 3):
+            vector[inverse.old + i] -= inverse.live[i] * vector[inverse.alpha_row]
+    for t in range(inverse.count):
+        at = vector[inverse.eta_row[t]]
+        vector[inverse.eta_row[t]] = 0.0
+        if at != 0.0:
+            inverse.factors[found] = at
+            inverse.lines[found] = inverse.eta + t * inverse.size
+            found += 1
+    add_lines(vector, inverse.size, inverse.factors, inverse.lines, found)
+
+
+cdef void ftran(
+    Inverse *inverse, const Py_ssize_t *rows, const double *entries, Py_ssize_t count, double *out
+) noexcept nogil:
+    """Write the inverse times a column with a few entries; rows are all there are when NULL."""
+    cdef Py_ssize_t i, row, found = 0
+    memset(out, 0, inverse.size * sizeof(double))
+    for i in range(count):
+        row = rows[i] if rows != NULL else i
+        if row >= inverse.old:
+            out[row] = entries[i]
+        elif entries[i] != 0.0:
+            inverse.factors[found] = entries[i]
+            inverse.lines[found] = inverse.cols + row * inverse.old
+            found += 1
+    add_lines(out, inverse.old, inverse.factors, inverse.lines, found)
+    apply_eta(inverse, out)
+
+
+cdef void update_eta(Inverse *inverse, Py_ssize_t row, const double *pivot_column) noexcept nogil:
+    """Bring another column into the basis; `pivot_column` is the inverse times it."""
+    cdef Py_ssize_t i, t
+    cdef double factor
+    cdef double *kept
+    if inverse.slot[row] < 0:
+        open_eta(inverse, row)
+    for t in range(inverse.count):
+        kept = inverse.eta + t * inverse.size
+        factor = kept[row] / pivot_column[row]
+        if factor != 0.0:
+            for i in range(inverse.size):
+                kept[i] -= factor * pivot_column[i]
+            kept[row] = factor
+
+
+cdef bint invert(double *matrix, Py_ssize_t size, double *line, int32_t *swaps) noexcept nogil:
+    """Invert a matrix in place; False when it has no inverse.
+
+    Gauss-Jordan with exchanges of rows: the libraries for it differ in the last bits from machine
+    to machine.
+    """
+    cdef Py_ssize_t step, best, i, j
+    cdef double pivot, factor
+    cdef double *other
+    for step in range(size):
+        best = step
+        for i in range(step + 1, size):
+            if fabs(matrix[i * size + step]) > fabs(matrix[best * size + step]):
+                best = i
+        pivot = matrix[best * size + step]
+        if not fabs(pivot) > SINGULAR:
+            return False
+        swaps[step] = <int32_t>best
+        for j in range(size):
+            line[j] = matrix[best * size + j]
+            matrix[best * size + j] = matrix[step * size + j]
+        line[step] = 1.0
+        for j in range(size):
+            line[j] /= pivot
+        for i in range(size):
+            other = matrix + i * size
+            factor = other[step]
+            if i != step and factor != 0.0:
+                other[step] = 0.0
+                for j in range(size):
+                    other[j] -= factor * line[j]
+        for j in range(size):
+            matrix[step * size + j] = line[j]
+    for step in range(size - 1, -1, -1):
+        best = swaps[step]
+        if best != step:
+            for i in range(size):
+                other = matrix + i * size
+                pivot = other[step]
+                other[step] = other[best]
+                other[best] = pivot
+    return True
+
+
+cdef void transpose(const double *rows, double *cols, Py_ssize_t size) noexcept nogil:
+    """Copy a square matrix, transposed, in tiles that fit into the cache."""
+    cdef Py_ssize_t i, j, top, left
+    for top in range(0, size, 16):
+        for left in range(0, size, 16):
+            for i in range(top, min(top + 16, size)):
+                for j in range(left, min(left + 16, size)):
+                    cols[j * size + i] = rows[i * size + j]
+
+
+# ---- Ratio tests ---------------------------------------------------------------------------------
+
+cdef Py_ssize_t leaving_row(State *state) noexcept nogil:
+    """Return the row that is infeasible down to the largest parameter; -1 if none is at 0.
+
+    That is the row which leaves first as the parameter of the right-hand side goes from 1 to 0.
+    """
+    cdef Py_ssize_t i, row = -1
+    cdef double excess, towards, parameter, largest = -1.0
+    for i in range(state.size):
+        excess = fabs(state.values[i]) if state.fixed[i] else -state.values[i]
+        if not excess > PRIMAL_TOLERANCE or i == state.alpha_row:
+            continue
+        towards = state.direction[i]
+        if state.fixed[i] and state.values[i] > 0.0:
+            towards = -towards
+        parameter = excess / towards if towards > 1e-14 else 1e30
+        if parameter > largest:
+            largest = parameter
+            row = i
+    return row
+
+
+cdef Py_ssize_t harris(
+    const double *pivots, double sign, const double *values, double slack, int32_t *listed,
+    Py_ssize_t count
+) noexcept nogil:
+    """Keep of a list what passes a ratio test with slack, in two passes; return how many.
+
+    Harris, Pivot selection methods of the Devex LP code, Mathematical Programming 5 (1973).
+    """
+    cdef Py_ssize_t i, first = 0, kept = 0
+    cdef double value, ratio, pivot, least = 0.0
+    for i in range(count):
+        value = values[listed[i]]
+        value = value if value > 0.0 else 0.0
+        ratio = (value + slack) / (sign * pivots[listed[i]])
+        if i == 0 or ratio < least:
+            least = ratio
+            first = i
+    for i in range(count):
+        value = values[listed[i]]
+        value = value if value > 0.0 else 0.0
+        pivot = sign * pivots[listed[i]]
+        # The first one also where it is so large that the slack is lost.
+        if value <= least * pivot or i == first:
+            listed[kept] = listed[i]
+            kept += 1
+    return kept
+
+
+cdef Py_ssize_t ratio_test(
+    const double *pivots, double sign, const double *values, const double *secondary,
+    int32_t *listed, Py_ssize_t count
+) noexcept nogil:
+    """Return what has the smallest ratio of value to pivot, then of secondary value; -1 if none.
+
+    Of what is equal within tolerances the largest pivot is taken.
+    """
+    cdef Py_ssize_t i, best = 0
+    if count == 0:
+        return -1
+    count = harris(pivots, sign, values, HARRIS_SLACK, listed, count)
+    count = harris(pivots, sign, secondary, SECONDARY_SLACK, listed, count)
+    for i in range(1, count):
+        if sign * pivots[listed[i]] > sign * pivots[listed[best]]:
+            best = i
+    return listed[best]
+
+
+cdef Py_ssize_t dual_ratio_test(
+    State *state, double sign, Py_ssize_t count, double smallest
+) noexcept nogil:
+    """Return the column, of the first so many, that enters where the pivot row has this sign."""
+    cdef Py_ssize_t j, found = 0
+    for j in range(count):
+        state.listed[found] = <int32_t>j
+        found += sign * state.pivot_row[j] > smallest
+    return ratio_test(
+        state.pivot_row, sign, state.reduced_costs, state.secondary_costs, state.listed, found
+    )
+
+
+cdef Py_ssize_t primal_ratio_test(State *state) noexcept nogil:
+    """Return the row that leaves as a column enters; -1 if the column can grow for ever.
+
+    A basic variable that is fixed cannot change at all, and goes first.
+    """
+    cdef Py_ssize_t i, row = -1, found = 0
+    cdef const double *column = state.pivot_column
+    for i in range(state.size):
+        if state.fixed[i] and fabs(column[i]) > state.pivot:
+            if row < 0 or fabs(column[i]) > fabs(column[row]):
+                row = i
+    if row >= 0:
+        return row
+    for i in range(state.size):
+        state.listed[found] = <int32_t>i
+        found += column[i] > state.pivot and not state.fixed[i] and i != state.alpha_row
+    return ratio_test(column, 1.0, state.values, state.secondary_values, state.listed, found)
+
+
+# ---- State ---------------------------------------------------------------------------------------
+
+cdef char *take_memory(char *memory, Py_ssize_t *used, Py_ssize_t size) noexcept nogil:
+    """Take so many bytes of a block, on a border of 64 bytes."""
+    cdef char *taken = memory + used[0] if memory != NULL else NULL
+    used[0] += (size + 63) // 64 * 64
+    return taken
+
+
+cdef Py_ssize_t tableau_size(Py_ssize_t rows, Py_ssize_t count) noexcept nogil:
+    return (rows + 2) * (count + rows + 1)
+
+
+cdef Py_ssize_t lay_out(State *state, char *memory) noexcept nogil:
+    """Share out a block of memory for the sizes given; return how many bytes it takes."""
+    cdef Py_ssize_t used = 0, size = state.size, columns = state.columns
+    cdef Py_ssize_t new = size - state.wall.size
+    cdef Py_ssize_t longest = size if size > columns else columns
+    cdef double **rows[13]
+    cdef double **per_column[4]
+    cdef Py_ssize_t i
+    rows[:] = [
+        &state.rhs, &state.live, &state.values, &state.direction, &state.feasible,
+        &state.velocity, &state.ray, &state.inverse_row, &state.pivot_column, &state.residual,
+        &state.secondary_values, &state.with_ground, &state.total,
+    ]
+    per_column[:] = [
+        &state.reduced_costs, &state.secondary_costs, &state.pivot_row, &state.opened,
+    ]
+    for i in range(13):
+        rows[i][0] = <double *>take_memory(memory, &used, (size + 3) * sizeof(double))
+    for i in range(4):
+        per_column[i][0] = <double *>take_memory(memory, &used, columns * sizeof(double))
+    state.basic = <int32_t *>take_memory(memory, &used, size * sizeof(int32_t))
+    state.fixed = take_memory(memory, &used, size)
+    state.open = take_memory(memory, &used, columns)
+    state.new_first = <int32_t *>take_memory(memory, &used, state.new.count * sizeof(int32_t))
+    state.new_second = <int32_t *>take_memory(memory, &used, state.new.count * sizeof(int32_t))
+    state.listed = <int32_t *>take_memory(memory, &used, (longest + 1) * sizeof(int32_t))
+    i = tableau_size(new, state.new.count + 1)
+    state.tableau = <double *>take_memory(memory, &used, i * sizeof(double))
+    state.small_ray = <double *>take_memory(
+        memory, &used, (new + state.new.count + 1) * sizeof(double)
+    )
+    state.small_basic = <int32_t *>take_memory(memory, &used, new * sizeof(int32_t))
+    state.inverse.eta_row = <int32_t *>take_memory(memory, &used, size * sizeof(int32_t))
+    state.inverse.slot = <int32_t *>take_memory(memory, &used, size * sizeof(int32_t))
+    state.inverse.factors = <double *>take_memory(memory, &used, (size + 1) * sizeof(double))
+    state.inverse.lines = <const double **>take_memory(
+        memory, &used, (size + 1) * sizeof(double *)
+    )
+    # Mostly not touched: a few eta columns only.
+    state.inverse.eta = <double *>take_memory(memory, &used, size * size * sizeof(double))
+    return used
+
+
+cdef void reset(State *state) noexcept nogil:
+    """Begin with the basis of the wall, and artificial variables on the new bodies."""
+    cdef Py_ssize_t i, j, old = state.wall.size, more = state.new.count
+    cdef double alpha
+    state.inverse.rows = state.wall.inverse
+    state.inverse.cols = state.wall.transposed
+    state.inverse.values = state.wall.values
+    state.inverse.old = old
+    state.inverse.alpha_row = state.alpha_row = state.wall.alpha_row
+    state.inverse.live = state.live + old
+    state.inverse.new = state.size - old
+    state.inverse.size = state.size
+    border(&state.inverse)
+    for i in range(old):
+        j = state.basic[i] = state.wall.basic[i]
+        state.fixed[i] = j <= ARTIFICIAL or (j >= 0 and not state.open[j])
+        state.values[i] = state.feasible[i] = state.wall.values[i]
+        state.direction[i] = 0.0
+    for i in range(old, state.size):
+        state.basic[i] = <int32_t>(ARTIFICIAL - i)
+        state.fixed[i] = True
+        state.values[i] = state.rhs[i]
+        state.feasible[i] = state.direction[i] = 0.0
+    if old:
+        alpha = state.wall.values[state.wall.alpha_row]
+        for i in range(old, state.size):
+            state.values[i] -= state.live[i] * alpha
+    for j in range(state.old.count):
+        state.reduced_costs[j] = state.wall.reduced_costs[j]
+        state.secondary_costs[j] = state.wall.secondary_costs[j]
+    perturbation(state.old.count, more, state.secondary_costs + state.old.count)
+    for j in range(state.old.count, state.columns):
+        state.reduced_costs[j] = 0.0
+        state.secondary_costs[j] = 1.0 + state.secondary_costs[j]
+
+
+cdef void compute_pivot_row(State *state, Py_ssize_t row) noexcept nogil:
+    """Multiply a row of the inverse by all that may enter the basis."""
+    inverse_row(&state.inverse, row, state.inverse_row)
+    price(state, state.inverse_row, state.pivot_row, 0)
+    clear_basic(state, state.pivot_row)
+
+
+cdef void compute_pivot_column(State *state, Py_ssize_t number) noexcept nogil:
+    """Multiply the inverse by a column."""
+    cdef Py_ssize_t[6] rows
+    cdef double[6] entries
+    cdef Py_ssize_t count = entries_of(state, number, rows, entries)
+    ftran(&state.inverse, rows, entries, count, state.pivot_column)
+
+
+cdef void pivot_on(State *state, Py_ssize_t row, Py_ssize_t variable) noexcept nogil:
+    """Make a variable basic in a row; `state.pivot_column` is the inverse times its column."""
+    cdef Py_ssize_t i
+    cdef const double *column = state.pivot_column
+    cdef double value = state.values[row] / column[row]
+    cdef double step = state.direction[row] / column[row]
+    update_eta(&state.inverse, row, column)
+    for i in range(state.size):
+        state.values[i] -= value * column[i]
+        state.direction[i] -= step * column[i]
+    state.values[row] = value
+    state.direction[row] = step
+    state.basic[row] = <int32_t>variable
+    state.fixed[row] = variable <= ARTIFICIAL
+    state.pivots += 1
+
+
+cdef void dual_pivot_on(State *state, Py_ssize_t row, Py_ssize_t number) noexcept nogil:
+    """Let a column enter and update reduced costs, none of which falls below 0."""
+    cdef Py_ssize_t j, leaves = state.basic[row]
+    cdef const double *pivot_row = state.pivot_row
+    cdef double step = max(state.reduced_costs[number], 0.0) / pivot_row[number]
+    cdef double secondary = max(state.secondary_costs[number], 0.0) / pivot_row[number]
+    for j in range(state.columns):
+        state.reduced_costs[j] -= step * pivot_row[j]
+        state.secondary_costs[j] -= secondary * pivot_row[j]
+    state.reduced_costs[number] = state.secondary_costs[number] = 0.0
+    if leaves >= 0:
+        state.reduced_costs[leaves] = -step
+        state.secondary_costs[leaves] = -secondary
+    pivot_on(state, row, number)
+
+
+cdef bint compute_reduced_costs(State *state) noexcept nogil:
+    """Compute velocities, the duals, and reduced costs anew; False when they are inaccurate."""
+    cdef Py_ssize_t i
+    cdef double error = 0.0
+    inverse_row(&state.inverse, state.alpha_row, state.velocity)
+    state.speed = 1.0
+    for i in range(state.size):
+        state.speed = max(state.speed, fabs(state.velocity[i]))
+    price(state, state.velocity, state.reduced_costs, 0)
+    for i in range(state.size):
+        if state.basic[i] >= 0:
+            error = max(error, fabs(state.reduced_costs[state.basic[i]]))
+    clear_basic(state, state.reduced_costs)
+    return error <= DUAL_TOLERANCE * state.speed
+
+
+cdef bint compute_basic_values(State *state) noexcept nogil:
+    """Compute basic values anew, refined once; False when they are inaccurate."""
+    cdef Py_ssize_t i, old = state.inverse.old
+    for i in range(state.size):
+        state.values[i] = state.inverse.values[i] if i < old else state.rhs[i]
+    apply_eta(&state.inverse, state.values)
+    if compute_residual(state) <= REFINED_ABOVE:
+        return True
+    ftran(&state.inverse, NULL, state.residual, state.size, state.pivot_column)
+    for i in range(state.size):
+        state.values[i] += state.pivot_column[i]
+    return compute_residual(state) <= RESIDUAL
+
+
+cdef double compute_residual(State *state) noexcept nogil:
+    """Compute rhs minus basis times basic values; return the largest."""
+    cdef Py_ssize_t i, q, number
+    cdef double value, largest = 0.0
+    cdef double *total = state.total
+    cdef Columns *part
+    memset(total, 0, (state.size + 3) * sizeof(double))
+    for i in range(state.size):
+        if state.basic[i] >= 0:
+            number = state.basic[i]
+            value = state.values[i]
+            part = part_of(state, &number)
+            for q in range(3):
+                total[part.first[number] + q] += part.entries[q * part.count + number] * value
+            for q in range(3):
+                total[part.second[number] + q] += (
+                    part.entries[(3 + q) * part.count + number] * value
+                )
+    value = state.values[state.alpha_row]
+    for i in range(state.size):
+        total[3 + i] = state.live[i] * value + total[3 + i]
+    for i in range(state.size):
+        if state.basic[i] <= ARTIFICIAL:
+            total[3 + ARTIFICIAL - state.basic[i]] += state.values[i]
+    for i in range(state.size):
+        state.residual[i] = state.rhs[i] - total[3 + i]
+        largest = max(largest, fabs(state.residual[i]))
+    return largest
+
+
+cdef bint primal_feasible(State *state) noexcept nogil:
+    cdef Py_ssize_t i
+    cdef double excess
+    for i in range(state.size):
+        excess = fabs(state.values[i]) if state.fixed[i] else -state.values[i]
+        if not excess <= PRIMAL_ACCEPTED and i != state.alpha_row:
+            return False
+    return True
+
+
+cdef bint dual_feasible(State *state) noexcept nogil:
+    cdef Py_ssize_t j
+    cdef double least = -DUAL_TOLERANCE * state.speed
+    for j in range(state.columns):
+        if not state.reduced_costs[j] >= least:
+            return False
+    return True
+
+
+cdef bint proves_infeasible(State *state) noexcept nogil:
+    """Say whether `state.ray` is a fall: no alpha and no forces balance the weights (Farkas)."""
+    cdef Py_ssize_t i
+    cdef double largest = 0.0, closes = 0.0, work = 0.0, fall = 0.0
+    for i in range(state.size):
+        largest = max(largest, fabs(state.ray[i]))
+        work += state.live[i] * state.ray[i]
+        fall -= state.rhs[i] * state.ray[i]
+    price(state, state.ray, state.opened, 0)
+    for i in range(state.columns):
+        if state.open[i]:
+            closes = max(closes, -state.opened[i])
+    closes = max(closes, fabs(work))
+    return closes <= RAY_TOLERANCE * largest and fall > closes
+
+
+cdef void write_basis_matrix(State *state, double *matrix) noexcept nogil:
+    cdef Py_ssize_t[6] rows
+    cdef double[6] entries
+    cdef Py_ssize_t i, column, count, size = state.size
+    memset(matrix, 0, size * size * sizeof(double))
+    for column in range(size):
+        if state.basic[column] == ALPHA:
+            for i in range(size):
+                matrix[i * size + column] = state.live[i]
+        else:
+            count = entries_of(state, state.basic[column], rows, entries)
+            for i in range(count):
+                matrix[rows[i] * size + column] = entries[i]
+
+
+cdef void write_values(State *state, const double *cols, double *out) noexcept nogil:
+    """Write the inverse, given by its columns, times the right-hand side."""
+    cdef Py_ssize_t i, j, size = state.size
+    memset(out, 0, size * sizeof(double))
+    for i in range(size):
+        if state.rhs[i] != 0.0:
+            for j in range(size):
+                out[j] += state.rhs[i] * cols[i * size + j]
+
+
+cdef bint reinvert(State *state) noexcept nogil:
+    """Invert the basis from scratch, once; False when it is singular or was inverted before."""
+    cdef Py_ssize_t size = state.size
+    cdef double *cols
+    if state.reinverted:
+        return False
+    state.anew = <double *>malloc((2 * size * size + size) * sizeof(double))
+    if state.anew == NULL:
+        return False
+    cols = state.anew + size * size
+    write_basis_matrix(state, state.anew)
+    if not invert(state.anew, size, state.pivot_column, state.listed):
+        free(state.anew)
+        state.anew = NULL
+        return False
+    state.reinverted = True
+    state.restarts += 1
+    transpose(state.anew, cols, size)
+    write_values(state, cols, cols + size * size)
+    state.inverse.rows = state.anew
+    state.inverse.cols = cols
+    state.inverse.values = cols + size * size
+    state.inverse.old = size
+    state.inverse.new = 0
+    state.inverse.alpha_row = state.alpha_row
+    border(&state.inverse)
+    return True
+
+
+# ---- Tableau of the new bodies: phases 1 and 2 of the primal simplex method ----------------------
+
+cdef enum:
+    SMALL_OPTIMAL = 0
+    SMALL_INFEASIBLE = 1
+    SMALL_UNBOUNDED = 2
+    SMALL_FAILED = 3
+
+cdef double SMALL_DUAL_TOLERANCE = 1e-11
+cdef double SMALL_PRIMAL_TOLERANCE = 1e-9
+cdef double TABLEAU_PIVOT = 1e-9
+cdef double ARTIFICIAL_PIVOT = 1e-7
+cdef double SMALL_PERTURBATION = 1e-6
+
+
+cdef int solve_small(
+    double *tableau, Py_ssize_t rows, Py_ssize_t count, int32_t *basic, double *ray, double *lift
+) noexcept nogil:
+    """Minimise costs . x for columns x = rhs, x >= 0, of which `ray` is a certificate if empty.
+
+    The tableau has a line for each row: columns, room for artificial variables, right-hand side;
+    then one for the costs of phase 1, and one for those of phase 2.  Lines are `count + rows + 1`
+    long.  To be filled in are columns, right-hand side and costs of phase 2; the last line ends as
+    the reduced costs.  `lift` is scratch for `count` numbers; `ray` may be the same.
+    """
+    cdef Py_ssize_t i, j, width = count + rows + 1
+    cdef double *line
+    cdef double *phase1 = tableau + rows * width
+    cdef double flip
+    cdef int status
+    # A little of every column on the right-hand side: no ties, and no solution is lost by it.
+    perturbation(SMALL_SEED, count, lift)
+    for j in range(width):
+        phase1[j] = 0.0
+    for j in range(count):
+        lift[j] = SMALL_PERTURBATION * (0.5 + lift[j])
+    for i in range(rows):
+        line = tableau + i * width
+        for j in range(count):
+            line[width - 1] += lift[j] * line[j]
+        flip = -1.0 if line[width - 1] < 0.0 else 1.0
+        for j in range(count, width - 1):
+            line[j] = 0.0
+        for j in range(width):
+            line[j] *= flip
+        line[count + i] = 1.0
+        basic[i] = <int32_t>(count if flip > 0.0 else -1)
+    for i in range(rows):
+        line = tableau + i * width
+        for j in range(count):
+            phase1[j] -= line[j]
+        phase1[width - 1] -= line[width - 1]
+    for i in range(rows):
+        ray[i] = 1.0 if basic[i] >= 0 else -1.0
+        basic[i] = <int32_t>count
+    for j in range(count, width):
+        phase1[width + j] = 0.0
+    status = two_phases(tableau, rows, count, basic)
+    if status == SMALL_OPTIMAL and -phase1[width - 1] > SMALL_PRIMAL_TOLERANCE:
+        status = SMALL_INFEASIBLE
+    # Artificial variables cost 1 each, so their reduced costs are 1 - y.
+    for i in range(rows):
+        ray[i] = (phase1[count + i] - 1.0) * ray[i]
+    return status
+
+
+cdef int two_phases(
+    double *tableau, Py_ssize_t rows, Py_ssize_t count, int32_t *basic
+) noexcept nogil:
+    """Pivot by Dantzig's rule, after a while by Bland's, until no column improves the costs."""
+    cdef Py_ssize_t step, row, column, patience = 20 + 10 * rows, width = count + rows + 1
+    for step in range(6 * patience):
+        column = tableau_column(tableau + rows * width, width, count, step > patience)
+        if column < 0:
+            return SMALL_OPTIMAL
+        row = tableau_row(tableau, rows, count, column, basic)
+        if row < 0:
+            return SMALL_UNBOUNDED
+        tableau_pivot(tableau, rows + 2, width, row, column)
+        basic[row] = <int32_t>column
+    return SMALL_FAILED
+
+
+cdef Py_ssize_t tableau_column(
+    const double *phase1, Py_ssize_t width, Py_ssize_t count, bint bland
+) noexcept nogil:
+    """Return the column that enters, in phase 2 once phase 1 has ended at 0; -1 if none does."""
+    cdef Py_ssize_t j, best = -1
+    cdef const double *phase2 = phase1 + width
+    cdef double tolerance = SMALL_DUAL_TOLERANCE
+    for j in range(count):
+        if phase1[j] < -tolerance and (best < 0 or (not bland and phase1[j] < phase1[best])):
+            best = j
+    if best >= 0 or -phase1[width - 1] > SMALL_PRIMAL_TOLERANCE:
+        return best
+    for j in range(count):
+        if phase1[j] <= tolerance and phase2[j] < -tolerance:
+            if best < 0 or (not bland and phase2[j] < phase2[best]):
+                best = j
+    return best
+
+
+cdef Py_ssize_t tableau_row(
+    const double *tableau, Py_ssize_t rows, Py_ssize_t count, Py_ssize_t column,
+    const int32_t *basic
+) noexcept nogil:
+    """Return the row that leaves, the largest pivot among equals; -1 if none does.
+
+    Artificial variables that are 0 go first: in phase 2 they must not grow again.
+    """
+    cdef Py_ssize_t i, best = -1, width = count + rows + 1
+    cdef double pivot, value, ratio, most = 0.0, least = 0.0
+    cdef bint bounded = False
+    for i in range(rows):
+        pivot = fabs(tableau[i * width + column])
+        if basic[i] == count and tableau[i * width + width - 1] <= SMALL_PRIMAL_TOLERANCE:
+            if pivot > ARTIFICIAL_PIVOT and pivot > most:
+                most = pivot
+                best = i
+    if best >= 0:
+        return best
+    for i in range(rows):
+        pivot = tableau[i * width + column]
+        if pivot > TABLEAU_PIVOT:
+            value = tableau[i * width + width - 1]
+            ratio = ((value if value > 0.0 else 0.0) + 1e-12) / pivot
+            if not bounded or ratio < least:
+                bounded = True
+                least = ratio
+    for i in range(rows):
+        pivot = tableau[i * width + column]
+        if pivot > TABLEAU_PIVOT:
+            value = tableau[i * width + width - 1]
+            if not (value if value > 0.0 else 0.0) <= least * pivot:
+                pivot = 0.0
+            if best < 0 or pivot > most:
+                best = i
+                most = pivot
+    return best
+
+
+cdef void tableau_pivot(
+    double *tableau, Py_ssize_t rows, Py_ssize_t width, Py_ssize_t row, Py_ssize_t column
+) noexcept nogil:
+    cdef Py_ssize_t i, j
+    cdef double factor
+    cdef double *line = tableau + row * width
+    cdef double *other
+    factor = line[column]
+    for j in range(width):
+        line[j] /= factor
+    for i in range(rows):
+        other = tableau + i * width
+        factor = other[column]
+        if i != row and factor != 0.0:
+            for j in range(width):
+                other[j] -= factor * line[j]
+
+
+# ---- Start ---------------------------------------------------------------------------------------
+
+cdef int start(State *state) noexcept nogil:
+    """Find a dual feasible basis: that of the wall, and that of the new bodies on it.
+
+    Where there is none, reduced costs below 0 are left for the phases to deal with.
+    """
+    cdef bint wall = state.wall.size > 0
+    cdef int found
+    cdef Py_ssize_t count
+    reset(state)
+    if state.size == 0:
+        return FAILED
+    price_new_columns(state)
+    if state.size == state.wall.size:
+        return UNFINISHED
+    found = solve_new_bodies(state, &count)
+    if found == SMALL_INFEASIBLE:
+        extend_ray(state)
+        if proves_infeasible(state):
+            return UNSTABLE
+    if found == SMALL_OPTIMAL and adopt_small_basis(state, count):
+        return UNFINISHED
+    if not wall:
+        return FAILED
+    state.restarts += 1
+    reset(state)
+    price_new_columns(state)
+    return UNFINISHED
+
+
+cdef void price_new_columns(State *state) noexcept nogil:
+    """Drive closed columns out of the basis, then price new columns by the wall's velocities."""
+    if state.wall.size == 0:
+        memset(state.velocity, 0, state.size * sizeof(double))
+        return
+    if state.closed_count:
+        drive_out_closed(state)
+    inverse_row(&state.inverse, state.alpha_row, state.velocity)
+    price(state, state.velocity, state.reduced_costs, state.old.count)
+
+
+cdef void drive_out_closed(State *state) noexcept nogil:
+    """Replace closed columns by others of the wall, or by an artificial variable."""
+    cdef Py_ssize_t i, row, number, artificial
+    cdef double one = 1.0, sign
+    for row in range(state.wall.size):
+        if state.basic[row] < 0 or not state.fixed[row]:
+            continue
+        compute_pivot_row(state, row)
+        sign = 1.0 if state.values[row] > 0.0 else -1.0
+        number = dual_ratio_test(state, sign, state.old.count, LARGE_PIVOT)
+        if number >= 0:
+            # New columns have no reduced costs yet.
+            for i in range(state.old.count, state.columns):
+                state.pivot_row[i] = 0.0
+            compute_pivot_column(state, number)
+            dual_pivot_on(state, row, number)
+            continue
+        artificial = 0
+        for i in range(state.inverse.old):
+            if fabs(state.inverse_row[i]) > fabs(state.inverse_row[artificial]):
+                artificial = i
+        ftran(&state.inverse, &artificial, &one, 1, state.pivot_column)
+        pivot_on(state, row, ARTIFICIAL - artificial)
+
+
+cdef int solve_new_bodies(State *state, Py_ssize_t *count) noexcept nogil:
+    """Solve for the forces on the new bodies, with alpha eliminated; write how many columns.
+
+    On a wall alpha is eliminated by the row in which it is basic: a column costs what it takes
+    from alpha, and one more column takes 1 from alpha and does nothing else.  Without a wall it is
+    eliminated by the first row.
+    """
+    cdef Py_ssize_t i, j, q, row, old = state.inverse.old, new = state.size - old
+    cdef Py_ssize_t columns = state.new.count, width
+    cdef double *tableau = state.tableau
+    cdef double *costs
+    cdef double *last
+    if old == 0:
+        # With room for the row that is eliminated.
+        width = columns + new
+        costs = tableau
+        tableau = tableau + width
+    else:
+        width = columns + 1 + new + 1
+        costs = state.reduced_costs + state.old.count
+    memset(state.tableau, 0, (width * (new + 2)) * sizeof(double))
+    for j in range(columns):
+        for q in range(6):
+            row = (state.new.first[j] + q if q < 3 else state.new.second[j] + q - 3) - 3 - old
+            if row >= 0:
+                state.tableau[row * width + j] = state.new.entries[q * columns + j]
+    if old:
+        count[0] = columns + 1
+        for i in range(0, new, 3):
+            for j in range(columns):
+                tableau[i * width + j] -= state.live[old + i] * costs[j]
+        for i in range(new):
+            tableau[i * width + columns] = -state.live[old + i]
+            tableau[i * width + width - 1] = state.values[old + i]
+        last = tableau + (new + 1) * width
+        memcpy(last, costs, columns * sizeof(double))
+        last[columns] = 1.0
+        return solve_small(
+            tableau, new, columns + 1, state.small_basic, state.small_ray, state.small_ray + new
+        )
+    count[0] = columns
+    for j in range(columns):
+        costs[j] /= state.live[0]
+    for i in range(3, new, 3):
+        for j in range(columns):
+            state.tableau[i * width + j] -= state.live[i] * costs[j]
+    for i in range(1, new):
+        state.tableau[i * width + width - 1] = state.values[i]
+    last = tableau + new * width
+    memcpy(last, costs, columns * sizeof(double))
+    return solve_small(
+        tableau, new - 1, columns, state.small_basic, state.small_ray, state.small_ray + new
+    )
+
+
+cdef void extend_ray(State *state) noexcept nogil:
+    """Extend a fall of the new bodies to the wall, so that the live load does no work on it."""
+    cdef Py_ssize_t i, old = state.inverse.old
+    cdef double work = 0.0
+    if old:
+        memcpy(state.ray + old, state.small_ray, (state.size - old) * sizeof(double))
+        for i in range(old, state.size):
+            work += state.live[i] * state.ray[i]
+        for i in range(old):
+            state.ray[i] = -work * state.velocity[i]
+        return
+    state.ray[0] = 0.0
+    memcpy(state.ray + 1, state.small_ray, (state.size - 1) * sizeof(double))
+    for i in range(state.size):
+        work += state.live[i] * state.ray[i]
+    state.ray[0] = -work / state.live[0]
+
+
+cdef bint adopt_small_basis(State *state, Py_ssize_t count) noexcept nogil:
+    """Replace the artificial variables by the basis of the small program."""
+    cdef Py_ssize_t i, j, variable, old = state.inverse.old, columns = state.new.count
+    cdef Py_ssize_t rows = state.size - old - (old == 0)
+    cdef Py_ssize_t width = count + rows + 1
+    cdef const double *costs = state.tableau + (rows + 1 + (old == 0)) * width
+    cdef bint wall_rests = False
+    if old == 0:
+        memcpy(state.pivot_column, state.live, state.size * sizeof(double))
+        apply_eta(&state.inverse, state.pivot_column)
+        state.alpha_row = replace_artificial(state, ALPHA)
+        if state.alpha_row < 0:
+            return False
+    for i in range(rows):
+        variable = state.small_basic[i]
+        if variable < columns:
+            compute_pivot_column(state, state.old.count + variable)
+            if replace_artificial(state, state.old.count + variable) < 0:
+                return False
+        elif old and variable == columns:
+            wall_rests = True
+    if wall_rests:
+        if not adopt_wall_column(state):
+            return False
+    elif old:
+        for j in range(state.old.count):
+            state.reduced_costs[j] *= costs[columns]
+    memcpy(state.reduced_costs + state.old.count, costs, columns * sizeof(double))
+    for i in range(state.size):
+        if state.basic[i] >= 0:
+            state.reduced_costs[state.basic[i]] = state.secondary_costs[state.basic[i]] = 0.0
+    return True
+
+
+cdef bint adopt_wall_column(State *state) noexcept nogil:
+    """Let a column of the wall replace the last one: the new bodies move and the wall rests."""
+    cdef Py_ssize_t j, number, old = state.old.count
+    cdef double step
+    for j in range(old):
+        state.pivot_row[j] = state.reduced_costs[j] if state.open[j] else 0.0
+    memset(state.reduced_costs, 0, old * sizeof(double))
+    number = dual_ratio_test(state, 1.0, old, LARGE_PIVOT)
+    if number < 0:
+        return False
+    compute_pivot_column(state, number)
+    if replace_artificial(state, number) < 0:
+        return False
+    step = max(state.secondary_costs[number], 0.0) / state.pivot_row[number]
+    for j in range(old):
+        state.secondary_costs[j] -= step * state.pivot_row[j]
+    return True
+
+
+cdef Py_ssize_t replace_artificial(State *state, Py_ssize_t variable) noexcept nogil:
+    """Let a variable enter for the artificial one of the largest pivot; return its row, or -1."""
+    cdef Py_ssize_t i, row = -1
+    cdef double size, largest = ARTIFICIAL_PIVOT
+    for i in range(state.inverse.old, state.size):
+        size = fabs(state.pivot_column[i])
+        if state.fixed[i] and size > largest:
+            largest = size
+            row = i
+    if row >= 0:
+        pivot_on(state, row, variable)
+    return row
+
+
+# ---- Phases --------------------------------------------------------------------------------------
 
 cdef int solve(State *state, int max_pivots) noexcept nogil:
     """Run to the end and return the status."""
     cdef int turn, status = start(state)
     for turn in range(ROUNDS):
-        if status != GOING_ON:
+        if status != UNFINISHED:
             break
         status = solve_round(state, max_pivots)
-        if status == LOST:
-            if renewed_inverse(state) and take_levels(state) and take_rates(state):
-                status = GOING_ON
+        if status == INACCURATE:
+            if reinvert(state) and compute_basic_values(state) and compute_reduced_costs(state):
+                status = UNFINISHED
             else:
                 status = FAILED
-    return FAILED if status == GOING_ON else status
+    return FAILED if status == UNFINISHED else status
 
 
 cdef int solve_round(State *state, int max_pivots) noexcept nogil:
-    """Bring the levels within bounds, then make the mechanism admissible, then look at both."""
-    cdef int status = let_down(state, max_pivots)
-    if status != GOING_ON:
+    """Make the basis primal feasible, then dual feasible; it is optimal if it is both at once."""
+    cdef int status = parametric_phase(state, max_pivots)
+    if status != UNFINISHED:
         return status
-    if not (take_levels(state) and take_rates(state)):
-        return LOST
+    if not (compute_basic_values(state) and compute_reduced_costs(state)):
+        return INACCURATE
     state.pivot = SMALL_PIVOT
-    if not within_bounds(state):
-        return GOING_ON
-    if admissible(state):
+    if not primal_feasible(state):
+        return UNFINISHED
+    if dual_feasible(state):
         return OPTIMAL
-    return make_admissible(state, max_pivots)
+    return primal_phase(state, max_pivots)
 
 
-cdef void refer(State *state) noexcept nogil:
-    """Let the next steps begin here."""
+cdef void set_direction(State *state) noexcept nogil:
+    """Let the basic values at the parameter 1 be feasible: the last feasible ones, perturbed."""
     cdef Py_ssize_t i
+    perturbation(VALUE_SEED, state.size, state.direction)
     for i in range(state.size):
-        state.reference[i] = state.levels[i]
+        if state.fixed[i]:
+            state.direction[i] = -state.values[i]
+        else:
+            state.direction[i] = (
+                max(state.feasible[i], 0.0) + PERTURBATION * (0.1 + state.direction[i])
+            ) - state.values[i]
+    state.direction[state.alpha_row] = 0.0
 
 
-cdef int let_down(State *state, int max_pivots) noexcept nogil:
-    """Give the stone its weight little by little: the dual simplex method."""
-    cdef Py_ssize_t j, place, number
-    cdef double flip, slope
-    set_steps(state)
+cdef int parametric_phase(State *state, int max_pivots) noexcept nogil:
+    """Let the parameter of the right-hand side go from 1 to 0, by dual pivots.
+
+    Negative reduced costs count as 0.  That shifts costs, which :func:`primal_phase` puts right.
+    """
+    cdef Py_ssize_t j, row, number
+    cdef double sign, element
+    set_direction(state)
     for j in range(state.columns):
-        state.rates[j] = max(state.rates[j], 0.0)
+        state.reduced_costs[j] = max(state.reduced_costs[j], 0.0)
     while True:
-        place = leaving(
-            state.levels, state.steps, state.fixed, state.size, state.alpha_place
-        )
-        if place < 0:
-            refer(state)
-            return GOING_ON
+        row = leaving_row(state)
+        if row < 0:
+            memcpy(state.feasible, state.values, state.size * sizeof(double))
+            return UNFINISHED
         if state.pivots >= max_pivots:
             return FAILED
-        row_of(&state.inverse, place, state.row)
-        slopes_of(state, state.row)
-        flip = 1.0 if state.levels[place] > 0.0 else -1.0
-        number = entering(
-            state.slopes, flip, state.rates, state.ties, state.columns, LARGE_PIVOT, state.listed
-        )
+        compute_pivot_row(state, row)
+        sign = 1.0 if state.values[row] > 0.0 else -1.0
+        number = dual_ratio_test(state, sign, state.columns, LARGE_PIVOT)
         if number < 0:
+            # Dual unbounded: the row is a ray along which nothing closes.
             for j in range(state.size):
-                state.fall[j] = -flip * state.row[j]
-            if falls(state):
+                state.ray[j] = -sign * state.inverse_row[j]
+            if proves_infeasible(state):
                 return UNSTABLE
-            number = entering(
-                state.slopes, flip, state.rates, state.ties, state.columns, SMALL_PIVOT,
-                state.listed,
-            )
+            number = dual_ratio_test(state, sign, state.columns, SMALL_PIVOT)
         if number < 0:
-            return LOST
-        column_of(state, number, state.column)
-        slope = state.slopes[number]
-        if not fabs(state.column[place] - slope) <= DRIFT * (1.0 + fabs(slope)):
-            return LOST
-        dual_step(state, place, state.slopes, number, state.column)
+            return INACCURATE
+        compute_pivot_column(state, number)
+        element = state.pivot_row[number]
+        if not fabs(state.pivot_column[row] - element) <= PIVOT_ERROR * (1.0 + fabs(element)):
+            return INACCURATE
+        dual_pivot_on(state, row, number)
 
 
-cdef int make_admissible(State *state, int max_pivots) noexcept nogil:
-    """Exchange columns that the mechanism closes: the primal simplex method."""
-    cdef Py_ssize_t i, place, number
+cdef int primal_phase(State *state, int max_pivots) noexcept nogil:
+    """Let columns of negative reduced cost enter, by Dantzig's rule, until there are none."""
+    cdef Py_ssize_t i, row, number
     cdef double step
-    cdef double *ties = state.second
-    scattered(PLACE_SEED, state.size, ties)
+    cdef double *secondary = state.secondary_values
+    perturbation(VALUE_SEED, state.size, secondary)
     for i in range(state.size):
-        ties[i] = 0.5 + ties[i]
-    while not admissible(state):
+        secondary[i] = 0.5 + secondary[i]
+    while not dual_feasible(state):
         if state.pivots >= max_pivots:
             return FAILED
         number = 0
         for i in range(1, state.columns):
-            if state.rates[i] < state.rates[number]:
+            if state.reduced_costs[i] < state.reduced_costs[number]:
                 number = i
-        column_of(state, number, state.column)
-        place = blocking(
-            state.column, state.levels, ties, state.fixed, state.size, state.alpha_place,
-            state.pivot, state.listed,
-        )
-        if place < 0:
+        compute_pivot_column(state, number)
+        row = primal_ratio_test(state)
+        if row < 0:
             return FAILED
-        step = max(ties[place], 0.0) / state.column[place]
+        step = max(secondary[row], 0.0) / state.pivot_column[row]
         for i in range(state.size):
-            ties[i] -= step * state.column[i]
-        ties[place] = step
-        exchange(state, place, state.column, number)
-        if not take_rates(state):
-            return LOST
-    refer(state)
-    return GOING_ON
+            secondary[i] -= step * state.pivot_column[i]
+        secondary[row] = step
+        pivot_on(state, row, number)
+        if not compute_reduced_costs(state):
+            return INACCURATE
+    memcpy(state.feasible, state.values, state.size * sizeof(double))
+    return UNFINISHED
 
+
+# ---- What is written out -------------------------------------------------------------------------
+
+cdef void write_forces(State *state, double unit, double[::1] forces) noexcept nogil:
+    """Write the forces of the open columns."""
+    cdef Py_ssize_t i, j, kept = 0
+    memset(state.pivot_row, 0, state.columns * sizeof(double))
+    for i in range(state.size):
+        if state.basic[i] >= 0:
+            state.pivot_row[state.basic[i]] = state.values[i] * unit
+    for j in range(state.columns):
+        if state.open[j]:
+            forces[kept] = state.pivot_row[j]
+            kept += 1
+
+
+cdef void write_inverse(State *state, double *rows, double *cols) noexcept nogil:
+    """Write the inverse and its transpose, made anew if eta columns have cost it digits."""
+    cdef Py_ssize_t i, size = state.size
+    cdef double *matrix
+    for i in range(size):
+        inverse_row(&state.inverse, i, rows + i * size)
+    transpose(rows, cols, size)
+    if inverse_error(state, cols) <= INVERSE_ERROR:
+        return
+    matrix = <double *>malloc(size * size * sizeof(double))
+    if matrix == NULL:
+        return
+    write_basis_matrix(state, matrix)
+    if invert(matrix, size, state.pivot_column, state.listed):
+        memcpy(rows, matrix, size * size * sizeof(double))
+        transpose(rows, cols, size)
+    free(matrix)
+
+
+cdef double inverse_error(State *state, const double *cols) noexcept nogil:
+    """Return how far the inverse, given by its columns, times the basis is from 1."""
+    cdef Py_ssize_t[6] rows
+    cdef double[6] entries
+    cdef Py_ssize_t i, column, count, size = state.size
+    cdef double *product = state.pivot_column
+    cdef double *factors = state.inverse.factors
+    cdef const double **lines = state.inverse.lines
+    cdef double largest = 0.0
+    for column in range(size):
+        if state.basic[column] == ALPHA:
+            count = size // 3
+            for i in range(count):
+                factors[i] = state.live[3 * i]
+                lines[i] = cols + 3 * i * size
+        else:
+            count = entries_of(state, state.basic[column], rows, entries)
+            for i in range(count):
+                factors[i] = entries[i]
+                lines[i] = cols + rows[i] * size
+        memset(product, 0, size * sizeof(double))
+        add_lines(product, size, factors, lines, count)
+        product[column] -= 1.0
+        for i in range(size):
+            largest = max(largest, fabs(product[i]))
+    return largest
+
+
+cdef void write_rest(
+    State *state, const double *rows, int32_t[::1] basic, double[::1] reduced_costs,
+    double[::1] secondary_costs
+) noexcept nogil:
+    """Write what is basic, reduced costs, and secondary ones that begin anew."""
+    cdef Py_ssize_t i, j, kept = 0
+    price(state, rows + state.alpha_row * state.size, state.pivot_row, 0)
+    for i in range(state.size):
+        if state.basic[i] >= 0:
+            state.pivot_row[state.basic[i]] = 0.0
+    perturbation(0, secondary_costs.shape[0], &secondary_costs[0])
+    for j in range(state.columns):
+        if state.open[j]:
+            reduced_costs[kept] = max(state.pivot_row[j], 0.0)
+            secondary_costs[kept] = 1.0 + secondary_costs[kept]
+            # From now on: the number of the column among those that are left.
+            state.listed[j] = <int32_t>kept
+            kept += 1
+    for i in range(state.size):
+        basic[i] = state.basic[i]
+        if state.basic[i] >= 0:
+            basic[i] = state.listed[state.basic[i]]
+            secondary_costs[basic[i]] = 0.0
+
+
+# ---- What Python sees ----------------------------------------------------------------------------
 
 cdef class Scratch:
     """A block of memory."""
@@ -151,12 +1384,12 @@ cdef class Scratch:
         free(self.memory)
 
 
-cdef class Wall:
-    """A tilt for the compiled kernel.
+cdef class Program:
+    """The program of a wall with its optimal basis, and scratch memory for those who ask.
 
     Parameters
     ----------
-    tilt : Tilt
+    optimum : Optimum
         Its arrays are read, and kept.
     """
 
@@ -168,75 +1401,85 @@ cdef class Wall:
     cdef tuple kept
     cdef list spare
 
-    def __init__(self, tilt):
-        cdef const double[::1] levels = tilt.basis.levels, rates = tilt.basis.rates
-        cdef const double[::1] ties = tilt.basis.ties
-        cdef const double[:, ::1] rows = tilt.basis.rows, cols = tilt.basis.cols
-        cdef const double[:, ::1] entries = tilt.cones.entries
-        cdef const int32_t[::1] heads = tilt.basis.heads
-        cdef const int32_t[::1] first = 3 * tilt.cones.first + 3
-        cdef const int32_t[::1] second = 3 * tilt.cones.second + 3
-        self.kept = (tilt.basis, tilt.cones, first.base, second.base)
-        self.weights = tilt.weights
-        self.unit = tilt.basis.unit
-        self.sign = tilt.sign
+    def __init__(self, optimum):
+        basis, cones = optimum.basis, optimum.cones
+        cdef const double[::1] values = basis.values, reduced_costs = basis.reduced_costs
+        cdef const double[::1] secondary_costs = basis.secondary_costs
+        cdef const double[:, ::1] inverse = basis.inverse, transposed = basis.transposed
+        cdef const double[:, ::1] entries = cones.entries
+        cdef const int32_t[::1] basic = basis.basic
+        cdef const int32_t[::1] first = 3 * cones.first + 3
+        cdef const int32_t[::1] second = 3 * cones.second + 3
+        self.kept = (basis, cones, first.base, second.base)
+        self.weights = optimum.weights
+        self.unit = basis.unit
+        self.sign = optimum.sign
         self.bodies = self.weights.shape[0]
         self.spare = []
         memset(&self.blank, 0, sizeof(State))
-        self.blank.wall.size = heads.shape[0]
-        self.blank.wall.alpha_place = tilt.basis.alpha_place
+        self.blank.wall.size = basic.shape[0]
+        self.blank.wall.alpha_row = basis.alpha_row
         self.blank.old.count = first.shape[0]
         if self.bodies:
-            self.blank.wall.heads = &heads[0]
-            self.blank.wall.levels = &levels[0]
-            self.blank.wall.rows = &rows[0, 0]
-            self.blank.wall.cols = &cols[0, 0]
+            self.blank.wall.basic = &basic[0]
+            self.blank.wall.values = &values[0]
+            self.blank.wall.inverse = &inverse[0, 0]
+            self.blank.wall.transposed = &transposed[0, 0]
         if first.shape[0]:
             self.blank.old.first = &first[0]
             self.blank.old.second = &second[0]
             self.blank.old.entries = &entries[0, 0]
-            self.blank.wall.rates = &rates[0]
-            self.blank.wall.ties = &ties[0]
+            self.blank.wall.reduced_costs = &reduced_costs[0]
+            self.blank.wall.secondary_costs = &secondary_costs[0]
 
     def solve_added(self, added, int max_pivots):
-        """Return status, alpha, forces, velocity, pivots and restarts; see `Answer`."""
+        """Return the fields of an `Answer`."""
         cdef State state
         cdef double unit = self.unit_with(added.weights)
         cdef Scratch scratch = self.opened(&state, added, unit)
         cdef int status
+        cdef Py_ssize_t i
+        cdef double[::1] written
         with nogil:
             status = solve(&state, max_pivots)
             free(state.anew)
         alpha, forces, velocity = np.nan, np.empty(0), np.empty(0)
         if status == OPTIMAL:
-            alpha = self.sign * state.levels[state.alpha_place]
+            alpha = self.sign * state.values[state.alpha_row]
             forces = np.empty(state.columns - state.closed_count)
             write_forces(&state, unit, forces)
         if status == OPTIMAL or status == UNSTABLE:
-            velocity = np.empty(state.size)
-            write_velocity(&state, unit, status == UNSTABLE, velocity)
+            written = velocity = np.empty(state.size)
+            for i in range(state.size):
+                written[i] = state.velocity[i] / unit if status == OPTIMAL else state.ray[i]
         self.spare.append(scratch)
         return status, alpha, forces, velocity, state.pivots, state.restarts
 
-    def grown(self, added, int max_pivots):
-        """Return the arguments of the `Basis` of the wall with the stone."""
+    def basis_with(self, added, int max_pivots):
+        """Return the fields of the `Basis` of the wall with the stone."""
         cdef State state
         cdef double unit = self.unit_with(added.weights)
         cdef Scratch scratch = self.opened(&state, added, unit)
         cdef Py_ssize_t left = state.columns - state.closed_count
-        heads, levels = np.empty(state.size, np.int32), np.empty(state.size)
-        rows, cols = np.empty((state.size, state.size)), np.empty((state.size, state.size))
-        rates, ties = np.empty(left), np.empty(left)
-        cdef int32_t[::1] heads_out = heads
-        cdef double[::1] levels_out = levels, rates_out = rates, ties_out = ties
-        cdef double[:, ::1] rows_out = rows, cols_out = cols
+        basic, values = np.empty(state.size, np.int32), np.empty(state.size)
+        inverse = np.empty((state.size, state.size))
+        transposed = np.empty((state.size, state.size))
+        reduced_costs, secondary_costs = np.empty(left), np.empty(left)
+        cdef int32_t[::1] basic_out = basic
+        cdef double[::1] values_out = values
+        cdef double[::1] reduced_out = reduced_costs, secondary_out = secondary_costs
+        cdef double[:, ::1] rows_out = inverse, cols_out = transposed
         with nogil:
             solve(&state, max_pivots)
-            write_inverse(&state, rows_out, cols_out)
-            write_rest(&state, rows_out, cols_out, heads_out, levels_out, rates_out, ties_out)
+            write_inverse(&state, &rows_out[0, 0], &cols_out[0, 0])
+            write_values(&state, &cols_out[0, 0], &values_out[0])
+            write_rest(&state, &rows_out[0, 0], basic_out, reduced_out, secondary_out)
             free(state.anew)
         self.spare.append(scratch)
-        return unit, state.alpha_place, heads, levels, rows, cols, rates, ties
+        return (
+            unit, state.alpha_row, basic, values, inverse, transposed, reduced_costs,
+            secondary_costs,
+        )
 
     cdef double unit_with(self, const double[::1] weights):
         """Return the unit of forces: about the weight of the first stone."""

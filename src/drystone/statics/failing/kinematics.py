@@ -108,7 +108,7 @@ def kinematics(model: RigidBlockModel, mechanism: Mechanism, tolerance: float) -
 
     Examples
     --------
-    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.contacts.given import model_from_json
     >>> block = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
     >>> slide = Mechanism((1,), np.array([[1.0, 0.58, 0.0]]))
     >>> kinematics(block, slide, 1e-6).kinds

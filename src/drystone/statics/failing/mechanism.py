@@ -78,7 +78,7 @@ def describe_mechanism(
 
     Examples
     --------
-    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.contacts.given import model_from_json
     >>> from drystone.statics.limit import limit_load
     >>> tower = model_from_json({"blocks_xywh": [[0, 0, 6, 1], [2, 1, 1, 2], [2, 3, 1, 2]]})
     >>> result = limit_load(tower, "right", mechanism=True)

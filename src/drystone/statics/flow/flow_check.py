@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from drystone.statics.loads import Loads, tilting_table
+from drystone.statics.lp.program import Floats
 from drystone.statics.model import FREEDOMS, GROUND, Direction, RigidBlockModel
-from drystone.statics.program import Floats
 from drystone.statics.result import Mechanism
 
 HOLDS = 1e-7
@@ -99,7 +99,7 @@ def check_flow(
     --------
     A cube of weight 1 slides on ground with mu = .3 under a load of .3.
 
-    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.contacts.given import model_from_json
     >>> cube = model_from_json({"blocks_xywh": [[0, 0, 1, 1]], "mu": 0.3})
     >>> slides = Mechanism((1,), np.array([[1.0, 0.0, 0.0]]))
     >>> normal = np.array([0.5 - 0.15, 0.5 + 0.15]) if cube.interfaces[0].points[0, 0] == 0 else (

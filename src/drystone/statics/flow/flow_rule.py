@@ -17,10 +17,9 @@ import highspy
 import numpy as np
 from scipy.sparse import csc_array, vstack
 
-from drystone.statics.program import EquilibriumProgram, Floats
+from drystone.statics.lp.highs import TOLERANCE, HighsSession, silent_highs
+from drystone.statics.lp.program import EquilibriumProgram, Floats
 from drystone.statics.result import LimitStatus
-from drystone.statics.solvers.highs import TOLERANCE, HighsSession
-from drystone.statics.solvers.silent import silent_highs
 
 NOTHING = 1e-9
 """Forces and velocities below this share of the largest one are taken as none."""

@@ -16,9 +16,9 @@ from drystone.statics.flow.flow_rule import (
     MotionsOfForces,
     State,
 )
-from drystone.statics.program import EquilibriumProgram, Floats
+from drystone.statics.lp.highs import HighsSession
+from drystone.statics.lp.program import EquilibriumProgram, Floats
 from drystone.statics.result import LimitStatus
-from drystone.statics.solvers.highs import HighsSession
 
 Pattern = Literal["even", "head joints", "bed joints", "mechanism", "rest", "random"]
 

@@ -53,8 +53,8 @@ from drystone.statics.flow.flow_search import NonassociativeSettings, Search
 from drystone.statics.flow.release import fall_of, with_inertia
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
+from drystone.statics.lp.program import EquilibriumProgram, Floats, assemble
 from drystone.statics.model import Direction, RigidBlockModel
-from drystone.statics.program import EquilibriumProgram, Floats, assemble
 from drystone.statics.result import LimitResult, LimitStatus, Mechanism
 
 STANDING = 1e-9
@@ -172,7 +172,7 @@ def nonassociative_load(
 
     Examples
     --------
-    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.contacts.given import model_from_json
     >>> wall = model_from_json({"blocks_xywh": [[0, 0, 1, 2]], "mu": 0.7})
     >>> result = nonassociative_load(wall, "right")
     >>> round(result.alpha, 6), result.check.holds

@@ -38,11 +38,10 @@ from scipy.sparse import block_array, csc_array, diags_array
 
 from drystone.statics.flow.flow_rule import ContactRates
 from drystone.statics.loads import Loads
+from drystone.statics.lp.clarabel import least_constraint
+from drystone.statics.lp.highs import TOLERANCE, silent_highs
+from drystone.statics.lp.program import EquilibriumProgram, Floats
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.program import EquilibriumProgram, Floats
-from drystone.statics.solvers.clarabel import least_constraint
-from drystone.statics.solvers.highs import TOLERANCE
-from drystone.statics.solvers.silent import silent_highs
 
 AT_REST = 1e-6
 """Blocks whose weight does no more work than this on their acceleration rest; in mean weights
@@ -100,8 +99,8 @@ def fall_of(
 
     Examples
     --------
-    >>> from drystone.statics.contacts.given import model_from_json
-    >>> from drystone.statics.program import assemble
+    >>> from drystone.contacts.given import model_from_json
+    >>> from drystone.statics.lp.program import assemble
     >>> piers = [[0, 0, 1, 4], [2, 0, 1, 4]]
     >>> jammed = model_from_json({"blocks_xywh": [*piers, [1, 1.5, 1, 1]]})
     >>> fall_of(jammed, assemble(jammed), 9).acceleration.round(6)[-2]

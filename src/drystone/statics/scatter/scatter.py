@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.lp.program import Floats
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.program import Floats
 from drystone.statics.result import LateralResistance, LimitStatus
 from drystone.statics.scatter.shaking import ScatterSettings, shaken
 
@@ -139,7 +139,7 @@ def scatter(
 
     Examples
     --------
-    >>> from drystone.statics.contacts.given import model_from_json
+    >>> from drystone.contacts.given import model_from_json
     >>> block = model_from_json({"blocks_xywh": [[0, 0, 4, 2]]})
     >>> found = scatter(block, ScatterSettings(samples=20, mu=(0.4, 0.8)))
     >>> bool(np.allclose(found.alpha, found.mu)), found.falling_share

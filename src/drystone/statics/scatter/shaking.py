@@ -30,8 +30,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import InputError
+from drystone.statics.lp.program import Floats
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
-from drystone.statics.program import Floats
 
 RESOLVED = 3.0
 """Shortest length, in standard deviations of the outline, over which its direction is known."""

@@ -1,0 +1,169 @@
+"""Rigid block models of label images (Pic-to-Ri, §4.2; DESIGN 4.8)."""
+
+from dataclasses import dataclass
+from math import isfinite
+
+import numpy as np
+
+from drystone.contacts.interfaces import PointContacts, find_interfaces, interfaces_in
+from drystone.contacts.pieces import notice_of_pieces
+from drystone.errors import InputError, LabelImageError, Notice
+from drystone.kernels.label_runs import label_runs
+from drystone.kernels.patches import Part, painted_patch
+from drystone.model.placement import Placement, Wedge
+from drystone.model.wall import Labels
+from drystone.statics.model import Block, RigidBlockModel
+
+
+@dataclass(frozen=True, eq=False)
+class ImageModel:
+    """The rigid blocks of a label image.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Lengths in px; y = 0 at the lowest stone pixel's lower edge.
+    ground_row : int
+        The ground is the upper edge of this image row, or the image's lower edge; y of the wall
+        frame is `ground_row` minus the row coordinate.
+    notices : tuple of Notice
+        W301 when empty rows below the stones were left out, W304 when pixels of a stone lie
+        apart from it.
+    """
+
+    model: RigidBlockModel
+    ground_row: int
+    notices: tuple[Notice, ...] = ()
+
+
+def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
+    """Make the rigid block model of a label image that stands on its lowest stone pixel.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        0 where nothing is, otherwise the id of a stone or wedge; row 0 at the top.  All pixels
+        of an id are one block.
+    mu : float
+        Coefficient of friction, the same everywhere.
+
+    Returns
+    -------
+    ImageModel
+        A model without blocks for an empty image.
+
+    Raises
+    ------
+    LabelImageError
+        E301 when the array is not a picture of ids.
+    InputError
+        E302 when mu is not a number >= 0.
+
+    Examples
+    --------
+    >>> labels = np.array([[7, 7], [7, 7], [0, 0]], np.uint32)
+    >>> picture = model_from_labels(labels)
+    >>> picture.model.blocks[0].centroid, picture.ground_row, picture.notices[0].code
+    ((1.0, 1.0), 2, 'W301')
+    """
+    _check_labels(labels)
+    check_mu(mu)
+    filled = np.flatnonzero((labels > 0).any(axis=1))
+    height = int(filled[-1]) + 1 if filled.size else labels.shape[0]
+    notices = []
+    if height < labels.shape[0]:
+        notices.append(
+            Notice(
+                "W301",
+                f"The {labels.shape[0] - height} empty rows below the stones were left out:"
+                " the wall stands on its lowest stone pixel.",
+            )
+        )
+    standing = labels[:height]
+    model = RigidBlockModel(_all_blocks(standing), find_interfaces(standing), mu)
+    return ImageModel(model, height, (*notices, *notice_of_pieces(standing)))
+
+
+def model_with(
+    model: RigidBlockModel,
+    labels: Labels,
+    placement: Placement,
+    wedges: tuple[Wedge, ...] = (),
+    points: PointContacts | None = None,
+) -> RigidBlockModel:
+    """Return the model of a wall with one more stone and its wedges.
+
+    Only what is around them is looked at, however large the wall is.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Of the wall without them.
+    labels : (h, w) uint32 array
+        The wall without them, as large as the site; its lower edge is the ground.
+    placement : Placement
+        The stone.
+    wedges : tuple of Wedge
+        The wedges under it.
+    points : PointContacts, optional
+        Of `model`, for whoever asks for many candidates; otherwise they are looked for here.
+
+    Returns
+    -------
+    RigidBlockModel
+        With the blocks and interfaces of :func:`model_from_labels`, in the order of
+        construction.
+    """
+    parts = [(placement.stone_id, placement.row, placement.col, placement.posed.mask)]
+    parts += [(wedge.id, wedge.row, wedge.col, wedge.mask) for wedge in wedges]
+    patch, sums = painted_patch(labels, parts)
+    blocks = tuple(
+        _block(part, sums_of_part, labels.shape[0])
+        for part, sums_of_part in zip(parts, sums, strict=True)
+    )
+    if points is None or points.interfaces is not model.interfaces:
+        points = PointContacts.of(model.interfaces)
+    return model.with_added(blocks, interfaces_in(patch), points.closed_in(patch))
+
+
+def check_mu(mu: float) -> None:
+    """Raise InputError (E302) unless mu is a finite number >= 0."""
+    if not (isfinite(mu) and mu >= 0):
+        raise InputError(
+            "E302",
+            f"a coefficient of friction of {mu} makes no sense.",
+            where="mu",
+            cure="Give a number >= 0; dry stone has about 0.58.",
+        )
+
+
+def _check_labels(labels: Labels) -> None:
+    if labels.ndim != 2 or labels.dtype.kind not in "iu" or (labels.size and labels.min() < 0):
+        raise LabelImageError(
+            "E301",
+            f"an array of shape {labels.shape} and type {labels.dtype} is no picture of ids.",
+            where="label image",
+            cure="Give a two-dimensional array of integers: 0 for nothing, ids above 0.",
+        )
+
+
+def _block(part: Part, sums: tuple[int, int, int], height_px: int) -> Block:
+    """Return the block of a part, from its area and the sums of its columns and rows."""
+    block_id, row, col, mask = part
+    area, cols, rows = sums
+    x = (cols + 0.5 * area) / area
+    y = (area * mask.shape[0] - rows - 0.5 * area) / area
+    bottom = height_px - row - mask.shape[0]
+    return Block(block_id, float(area), (col + x, bottom + y))
+
+
+def _all_blocks(labels: Labels) -> tuple[Block, ...]:
+    runs = label_runs(labels)
+    ids, place = np.unique(runs.labels, return_inverse=True)
+    # All sums are multiples of a half, exact in floats in any order.
+    area = np.bincount(place, runs.lengths, len(ids))
+    x = np.bincount(place, runs.lengths * (runs.begins + runs.ends) / 2.0, len(ids)) / area
+    up = labels.shape[0] - runs.rows - 0.5
+    y = np.bincount(place, runs.lengths * up, len(ids)) / area
+    columns = zip(ids.tolist(), area.tolist(), x.tolist(), y.tolist(), strict=True)
+    return tuple(Block(i, a, (cx, cy)) for i, a, cx, cy in columns)

@@ -1,0 +1,259 @@
+"""Pictures of real walls have gaps between the stones: close them for the contacts, or settle."""
+
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from scipy.spatial import cKDTree
+
+from drystone.contacts.blocks import ImageModel, model_from_labels
+from drystone.kernels.raster import Mask
+from drystone.kernels.runs import narrow_gaps
+from drystone.model.wall import Labels
+from drystone.statics.model import GROUND, Interface
+
+TIE_BREAK = (-1e-4, -3e-5)
+"""Added to (row, col): of two stones at one distance the upper or left one is the nearer."""
+
+
+def close_gaps(labels: Labels, reach_px: float) -> Labels:
+    """Give the pixels of narrow gaps to the stones beside them.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        0 where nothing is, otherwise the id of a stone; row 0 at the top; the ground is below
+        the lowest stone pixel.
+    reach_px : float
+        Widest gap that is closed, >= 0.
+
+    Returns
+    -------
+    (h, w) integer array
+        Every stone pixel as before.  A pixel of a gap belongs to the stone nearest to it, so
+        that stones meet in the middle; a gap above the ground belongs to the stone above.
+
+    Notes
+    -----
+    An empty pixel lies in a gap when two stones, or a stone and the ground, bound it on both
+    sides in its row or column.  The width of the gap is that run, or h v / sqrt(h^2 + v^2) when
+    both are bounded, which is the width of a straight tilted gap.  It goes to the nearest of the
+    stones that bound it.  What gaps that are closed
+    leave open between them, no wider than the reach, as where joints meet, is closed as well.
+    Stones that are further apart than the reach are not brought into contact; nor does a stone
+    grow where only air is beyond.
+
+    Examples
+    --------
+    >>> close_gaps(np.array([[1, 0, 0, 2, 0, 0, 0, 3, 0]]), 2)
+    array([[1, 1, 2, 2, 0, 0, 0, 3, 0]])
+    """
+    filled = np.flatnonzero((labels > 0).any(axis=1))
+    if not filled.size or reach_px < 1:
+        return labels.copy()
+    height = int(filled[-1]) + 1
+    cells, ground = _with_ground(labels[:height])
+    gap, nearest = narrow_gaps(cells, ground, reach_px)
+    grown = np.where(gap, nearest, cells)
+    # By what grew beside them: a stone itself would bulge into a joint that meets it.
+    grown = _filled(grown, ground, _holes_between(cells, gap, reach_px))
+    _drop_islands(cells, grown)
+    _part_strangers(cells, grown, reach_px)
+    closed = labels.copy()
+    stones = np.where(grown[:-1] == ground, 0, grown[:-1])
+    closed[:height] = stones.astype(labels.dtype)
+    return closed
+
+
+def model_with_closed_gaps(labels: Labels, reach_px: float, mu: float = 0.58) -> ImageModel:
+    """Make the rigid block model of a label image, with contacts across narrow gaps.
+
+    Parameters
+    ----------
+    labels, reach_px
+        As for :func:`close_gaps`.
+    mu : float
+        Coefficient of friction.
+
+    Returns
+    -------
+    ImageModel
+        Weights and centroids are those of the pixels of the stones; contact points lie in the
+        middle of the gaps.  Between stones a contact may reach into the gaps beside it, as far as
+        these are closed.
+
+    Examples
+    --------
+    >>> wall = np.kron([[1], [0], [2]], np.ones((2, 8), int))
+    >>> [len(model_with_closed_gaps(wall, reach).model.interfaces) for reach in (1, 2)]
+    [1, 2]
+    """
+    picture = model_from_labels(labels, mu)
+    closed = model_from_labels(close_gaps(labels, reach_px), mu)
+    interfaces = tuple(_on_own_foot(i, labels) for i in closed.model.interfaces)
+    return replace(picture, model=replace(picture.model, interfaces=interfaces))
+
+
+def _on_own_foot(interface: Interface, labels: Labels) -> Interface:
+    """Keep a contact with the ground within the columns of its stone: toes do not grow."""
+    if interface.other != GROUND:
+        return interface
+    cols = np.flatnonzero((labels == interface.block).any(axis=0))
+    points = interface.points.copy()
+    points[:, 0] = np.clip(points[:, 0], cols[0], cols[-1] + 1)
+    return replace(interface, points=points)
+
+
+def settle_gaps(
+    labels: Labels, push: Literal["left", "right"] | None = None
+) -> tuple[Labels, dict[int, tuple[int, int]]]:
+    """Lower stones by whole pixels until they rest on others; nothing turns or overlaps.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        As for :func:`close_gaps`.
+    push : {"left", "right"}, optional
+        Also move stones to this side until they touch the next stone, if there is one.
+
+    Returns
+    -------
+    settled : (h, w) integer array
+        The same stones.
+    moved : dict of int to (int, int)
+        By id of the stones that moved: px to the right and px down.
+
+    Examples
+    --------
+    >>> settled, moved = settle_gaps(np.array([[1, 1, 0], [0, 0, 0], [0, 2, 2]]))
+    >>> settled[1].tolist(), moved
+    ([1, 1, 0], {1: (0, 1)})
+    """
+    filled = np.flatnonzero((labels > 0).any(axis=1))
+    settled = labels.copy()
+    if not filled.size:
+        return settled, {}
+    wall = settled[: int(filled[-1]) + 1]
+    ids = np.unique(labels[labels > 0]).tolist()
+    moved = dict.fromkeys(ids, (0, 0))
+    moving = True
+    while moving:
+        moving = False
+        bottoms = {block: int(np.flatnonzero((wall == block).any(axis=1))[-1]) for block in ids}
+        for block in sorted(ids, key=lambda i: (-bottoms[i], i)):
+            down = _room(wall, block)
+            aside = 0
+            if push is not None and not down:
+                aside = _room_aside(wall, block, push)
+            if down or aside:
+                pixels = wall == block
+                wall[pixels] = 0
+                wall[np.roll(pixels, (down, aside), axis=(0, 1))] = block
+                moved[block] = (moved[block][0] + aside, moved[block][1] + down)
+                moving = True
+    return settled, {block: way for block, way in moved.items() if way != (0, 0)}
+
+
+def _with_ground(labels: Labels) -> tuple[NDArray[np.int64], int]:
+    """Add a row of ground, with an id of its own, below."""
+    ground = int(labels.max()) + 1
+    below = np.full((1, labels.shape[1]), ground)
+    return np.vstack([labels.astype(np.int64), below]), ground
+
+
+def _holes_between(cells: NDArray[np.int64], gap: Mask, reach_px: float) -> Mask:
+    """Find what closed gaps leave open between them, no larger than the reach."""
+    pieces, count = ndimage.label((cells == 0) & ~gap)
+    holes = np.zeros_like(gap)
+    for number, window in enumerate(ndimage.find_objects(pieces, count), start=1):
+        rows, cols = window
+        small = max(rows.stop - rows.start, cols.stop - cols.start) <= reach_px
+        if small and rows.start > 0 and cols.start > 0 and cols.stop < cells.shape[1]:
+            around = (slice(rows.start - 1, rows.stop + 1), slice(cols.start - 1, cols.stop + 1))
+            hole = pieces[around] == number
+            beside = ndimage.binary_dilation(hole) & ~hole
+            if gap[around][beside].any():
+                holes[around] |= hole
+    return holes
+
+
+def _filled(cells: NDArray[np.int64], ground: int, holes: Mask) -> NDArray[np.int64]:
+    """Give the pixels of holes to the nearest stones."""
+    stone = (cells > 0) & (cells != ground)
+    rim = np.argwhere(stone & ~ndimage.binary_erosion(stone))
+    _, nearest = cKDTree(rim).query(np.argwhere(holes) + TIE_BREAK)
+    filled = cells.copy()
+    filled[holes] = cells[tuple(rim[nearest].T)]
+    return filled
+
+
+def _drop_islands(cells: NDArray[np.int64], grown: NDArray[np.int64]) -> None:
+    """Take back pixels that are not connected with the stone they were given to."""
+    for block in np.unique(grown[grown != cells]).tolist():
+        pieces, _ = ndimage.label(grown == block)
+        own = np.unique(pieces[cells == block])
+        grown[(pieces > 0) & ~np.isin(pieces, own)] = 0
+
+
+def _part_strangers(cells: NDArray[np.int64], grown: NDArray[np.int64], reach_px: float) -> None:
+    """Take back pixels by which stones touch that are further apart than the reach."""
+    known: dict[tuple[int, int], bool] = {}
+    while True:
+        bad = np.zeros(grown.shape, bool)
+        for first, second in ((np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:])):
+            a, b = grown[first], grown[second]
+            new = (cells[first] == 0) | (cells[second] == 0)
+            for row, col in np.argwhere(new & (a != b) & (a > 0) & (b > 0)).tolist():
+                pair = int(a[row, col]), int(b[row, col])
+                if pair not in known:
+                    known[pair] = known[pair[::-1]] = _are_within(cells, *pair, reach_px)
+                if not known[pair]:
+                    bad[first][row, col] = bad[second][row, col] = True
+        bad &= cells == 0
+        if not bad.any():
+            return
+        grown[bad] = 0
+
+
+def _are_within(cells: NDArray[np.int64], one: int, other: int, reach_px: float) -> bool:
+    """Tell whether the edges of two blocks are no further apart than the reach."""
+    here, there = np.argwhere(cells == one), np.argwhere(cells == other)
+    for _ in range(2):  # only what lies near the other's bounding box can be near it
+        margin = int(reach_px) + 1
+        near = (here >= there.min(axis=0) - margin) & (here <= there.max(axis=0) + margin)
+        here, there = there, here[near.all(axis=1)]
+        if not len(there):
+            return False
+    tree = cKDTree(here)
+    close = tree.query_ball_point(there, reach_px + 1.5)  # centres are at most sqrt 2 further
+    return any(
+        np.hypot(*np.maximum(np.abs(here[found] - pixel) - 1, 0).T).min() <= reach_px
+        for pixel, found in zip(there, close, strict=True)
+        if found
+    )
+
+
+def _room(wall: Labels, block: int) -> int:
+    """Return by how many px a stone can be lowered."""
+    rows, cols = np.nonzero(wall == block)
+    others = np.vstack([(wall > 0) & (wall != block), np.ones((1, wall.shape[1]), bool)])
+    down = 0
+    while not others[rows + down + 1, cols].any():
+        down += 1
+    return down
+
+
+def _room_aside(wall: Labels, block: int, push: Literal["left", "right"]) -> int:
+    """Return by how many px a stone can move to a side until it touches another; 0 if none is."""
+    step = -1 if push == "left" else 1
+    rows, cols = np.nonzero(wall == block)
+    others = (wall > 0) & (wall != block)
+    room = int(cols.min()) if step < 0 else wall.shape[1] - 1 - int(cols.max())
+    for way in range(room + 1):
+        ahead = cols + step * (way + 1)
+        inside = (ahead >= 0) & (ahead < wall.shape[1])
+        if others[rows[inside], ahead[inside]].any():
+            return step * way
+    return 0

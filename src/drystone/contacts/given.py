@@ -1,0 +1,275 @@
+"""Block models given as rectangles or polygons (DESIGN §2): a dict in, a model out."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import inf, sqrt
+from typing import Any
+
+import numpy as np
+import shapely
+
+from drystone.contacts.given_parts import (
+    LARGEST,
+    bad,
+    read_friction,
+    read_interfaces,
+    read_list,
+    read_mu,
+    read_numbers,
+)
+from drystone.contacts.touching import Points, touching_interfaces
+from drystone.errors import InputError
+from drystone.model.overlap import overlap_depth
+from drystone.statics.joints import with_head_friction, with_pair_friction
+from drystone.statics.model import FREEDOMS, GROUND, Block, Interface, RigidBlockModel
+
+LARGEST_RATIO = 1e6
+"""Of weights; errors of an answer are relative to the mean weight, up to 1e-8 of it."""
+
+STRAIGHT = 1e-12
+"""A corner this far from the line between its neighbours, in sizes of the block, is none."""
+
+RELATIVE_TOLERANCE = 1e-5
+"""Gaps and overlaps up to this share of the size of the smaller block, the root of its area, count
+as contact: coordinates are written with six digits or so."""
+
+SMALLEST = 1.0 / LARGEST
+"""Of sizes and densities."""
+
+FARTHEST = 1e9
+"""From the origin, in sizes of a block: beyond it coordinates lack the digits to tell contacts."""
+
+
+def model_from_json(data: Mapping[str, Any]) -> RigidBlockModel:
+    """Make a rigid block model from what a block model file says.
+
+    Parameters
+    ----------
+    data : mapping
+        `{"blocks_xywh": [[x, y, w, h], ...], "mu": .65}`: rectangles by their lower left corner
+        and size, numbered from 1; or `{"blocks": [{"id", "polygon": [[x, y], ...], "density",
+        "fixed", "held"}, ...], "mu"}`, where density is 1 and fixed false unless given, and held
+        lists what a guide keeps a block from: "x", "y", "turn".  Any unit of length, y up; what
+        touches y = 0 stands on the ground.  `mu` is 0.58 unless given, `"mu_head"` is that of head
+        joints, and `"friction": [{"between": [3, 1], "mu": 0.4}, ...]` that of all joints of a
+        pair (0 is the ground).  `"interfaces": [{"between": [3, 1], "points": [[x, y], ...],
+        "normal": [nx, ny], "mu"}, ...]` says where blocks touch, normals pointing into the first
+        block of a pair; without it that is found.  Other keys are ignored.
+
+    Returns
+    -------
+    RigidBlockModel
+        With an interface on every common piece of two edges and a contact at a point where a
+        corner touches the inside of an edge.
+
+    Raises
+    ------
+    InputError
+        E302 for mu, E303 for what is no block or interface, E304 for blocks that overlap or reach
+        below the ground.
+
+    Examples
+    --------
+    >>> model = model_from_json({"blocks_xywh": [[0, 0, 4, 2], [1, 2, 4, 2]], "mu": 0.65})
+    >>> [(i.block, i.other, i.length) for i in model.interfaces]
+    [(1, 0, 4.0), (2, 1, 3.0)]
+    """
+    given = _given_blocks(data)
+    ids = [block.id for block, _ in given]
+    if len(set(ids)) != len(ids):
+        raise bad("two blocks have the same id.", "blocks", "Give every block its own id.")
+    corners = {block.id: polygon for block, polygon in given}
+    blocks = tuple(_measured(block, polygon) for block, polygon in given)
+    _check_weights(blocks)
+    if "interfaces" in data:
+        interfaces = read_interfaces(read_list(data, "interfaces"), ids)
+    else:
+        sizes = {block.id: sqrt(block.area) for block in blocks}
+        interfaces = _all_interfaces(corners, sizes)
+    model = RigidBlockModel(blocks, interfaces, read_mu(data, "mu", 0.58))
+    if "mu_head" in data:
+        model = with_head_friction(model, read_mu(data, "mu_head", 0.0))
+    if "friction" in data:
+        model = with_pair_friction(model, read_friction(read_list(data, "friction"), ids))
+    return model
+
+
+def _check_weights(blocks: tuple[Block, ...]) -> None:
+    """Refuse weights that no solver can tell from rounding beside the others."""
+    weights = [block.weight for block in blocks if not block.fixed]
+    if weights and max(weights) > LARGEST_RATIO * min(weights):
+        raise bad(
+            f"the heaviest block weighs more than {LARGEST_RATIO:g} times the lightest.",
+            "blocks",
+            "What has no weight of its own is a load: see --dead. What does not move is fixed.",
+        )
+
+
+def polygons_from_json(data: Mapping[str, Any]) -> dict[int, Points]:
+    """Return the closed, counter-clockwise polygons of a block model file, by id.
+
+    Parameters
+    ----------
+    data : mapping
+        As for :func:`model_from_json`.
+
+    Raises
+    ------
+    InputError
+        E303 for what is no block.
+    """
+    return {block.id: polygon for block, polygon in _given_blocks(data)}
+
+
+def _given_blocks(data: Mapping[str, Any]) -> list[tuple[Block, Points]]:
+    if "blocks_xywh" in data:
+        rows = enumerate(read_list(data, "blocks_xywh"), start=1)
+        return [(Block(i, 0.0, (0.0, 0.0)), _rectangle(i, row)) for i, row in rows]
+    if "blocks" in data:
+        return [_polygon_block(i, entry) for i, entry in enumerate(read_list(data, "blocks"))]
+    raise bad("there is neither 'blocks_xywh' nor 'blocks'.", "block model", "Give one.")
+
+
+def _rectangle(number: int, row: Any) -> Points:
+    where = f"blocks_xywh, block {number}"
+    x, y, width, height = read_numbers(row, (4,), where)
+    if width <= 0 or height <= 0:
+        raise bad(f"a block of {width} x {height}.", where, "Give a width and height above 0.")
+    _check_size(min(width, height), max(abs(x), abs(y)), where)
+    right, top = x + width, y + height
+    return np.array([[x, y], [right, y], [right, top], [x, top], [x, y]])
+
+
+def _polygon_block(place: int, entry: Any) -> tuple[Block, Points]:
+    where = f"blocks, entry {place + 1}"
+    if not isinstance(entry, Mapping) or "polygon" not in entry:
+        raise bad("it has no 'polygon'.", where, "Give id and polygon.")
+    block_id, fixed, density = entry.get("id"), entry.get("fixed", False), entry.get("density", 1.0)
+    if (
+        not isinstance(block_id, int)
+        or isinstance(block_id, bool)
+        or not (GROUND < block_id < 2**32)
+    ):
+        raise bad(f"its id is {block_id!r}.", where, "Give a whole number from 1 to 4294967295.")
+    density = float(read_numbers(density, (), where))
+    if density < SMALLEST or not isinstance(fixed, bool):
+        raise bad(
+            f"density must be above 0 ({SMALLEST:g} or more) and fixed true or false.",
+            where,
+            "Correct it.",
+        )
+    held = entry.get("held", [])
+    if not isinstance(held, list | tuple) or not all(one in FREEDOMS for one in held):
+        raise bad(f"held is {held!r}.", where, 'List what is held: "x", "y", "turn".')
+    corners = read_numbers(entry["polygon"], (-1, 2), where)
+    if len(corners):
+        size = float(np.ptp(corners, axis=0).max())
+        _check_size(size, float(np.abs(corners).max()), where)
+    corners = _apart(corners)
+    shape = shapely.Polygon(corners) if len(corners) >= 3 else shapely.Polygon()
+    if shape.is_empty or not shape.is_valid or shape.area <= 0:
+        raise bad("its polygon has no area or crosses itself.", where, "Correct its corners.")
+    line = shapely.get_coordinates(shapely.remove_repeated_points(shape))
+    if not shape.exterior.is_ccw:
+        line = line[::-1].copy()
+    line = _without_straight_corners(line)
+    return Block(block_id, 0.0, (0.0, 0.0), density, fixed, tuple(held)), line
+
+
+def _check_size(size: float, farthest: float, where: str) -> None:
+    """Refuse what arithmetic cannot carry; a block without size is refused elsewhere."""
+    if 0.0 < size < SMALLEST:
+        raise bad(
+            f"its size, {size:g}, is below {SMALLEST:g}.", where, "Use another unit of length."
+        )
+    if 0.0 < size < farthest / FARTHEST:
+        raise bad(
+            f"it is {farthest / size:.0e} times as far from the origin as it is large: its"
+            " coordinates have too few digits to tell what touches.",
+            where,
+            "Put the origin near the wall.",
+        )
+
+
+def _apart(corners: Points) -> Points:
+    """Drop corners that are the next one but for rounding, as one that closes a line may be.
+
+    Each of both would be on the line through the other, and neither a corner.
+    """
+    if not len(corners):
+        return corners
+    steps = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
+    kept: Points = corners[steps > STRAIGHT * np.ptp(corners, axis=0).max()]
+    return kept
+
+
+def _without_straight_corners(line: Points) -> Points:
+    """Drop corners at which a closed line goes straight on: a corner on one would be on an edge.
+
+    Some digits of rounding do not make a corner.
+    """
+    corners = line[:-1]
+    before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
+    area = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+    chord = np.hypot(*(before + after).T)
+    # How far the corner is from the line between those beside it.
+    kept = corners[area > STRAIGHT * chord * np.ptp(line, axis=0).max()]
+    return np.concatenate((kept, kept[:1]))
+
+
+def _measured(block: Block, polygon: Points) -> Block:
+    """Fill in area and centroid of a closed, counter-clockwise polygon."""
+    # About its first corner, so that a block far from the origin loses no digits.
+    x, y = (polygon - polygon[0]).T
+    cross = x[:-1] * y[1:] - x[1:] * y[:-1]
+    area = float(cross.sum()) / 2.0
+    if not 0.0 < area < inf:
+        what = "it is too small or too large to have an area."
+        raise bad(what, f"block {block.id}", "Use another unit of length.")
+    cx = float((x[:-1] + x[1:]) @ cross) / (6.0 * area) + float(polygon[0, 0])
+    cy = float((y[:-1] + y[1:]) @ cross) / (6.0 * area) + float(polygon[0, 1])
+    return replace(block, area=area, centroid=(cx, cy))
+
+
+def _all_interfaces(corners: dict[int, Points], sizes: dict[int, float]) -> tuple[Interface, ...]:
+    """Find the interfaces of all polygons, sorted by ids; of two the larger id is `block`."""
+    found = [*_on_ground(corners, sizes), *_among_blocks(corners, sizes)]
+    return tuple(sorted(found, key=lambda interface: (interface.block, interface.other)))
+
+
+def _on_ground(corners: dict[int, Points], sizes: dict[int, float]) -> list[Interface]:
+    found = []
+    for block, polygon in corners.items():
+        tolerance = RELATIVE_TOLERANCE * sizes[block]
+        depth = -float(polygon[:, 1].min())
+        if depth > tolerance:
+            raise _too_deep(f"block {block} reaches {depth:g} below the ground, y = 0.")
+        if depth >= -tolerance:
+            left, right = polygon[:, 0].min() - sizes[block], polygon[:, 0].max() + sizes[block]
+            ground = np.array([[right, 0.0], [left, 0.0]])
+            found += touching_interfaces(block, polygon, GROUND, ground, tolerance)
+    return found
+
+
+def _among_blocks(corners: dict[int, Points], sizes: dict[int, float]) -> list[Interface]:
+    if not corners:
+        return []
+    ids = sorted(corners)
+    shapes = np.array([shapely.Polygon(corners[i]) for i in ids])
+    reach = RELATIVE_TOLERANCE * np.array([sizes[i] for i in ids])
+    near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=reach)
+    found = []
+    for high, low in sorted({(max(pair), min(pair)) for pair in near.T.tolist()}):
+        if high == low:
+            continue
+        block, other = ids[high], ids[low]
+        tolerance = float(min(reach[high], reach[low]))
+        depth = overlap_depth(shapes[high], shapes[low])
+        if depth > tolerance:
+            raise _too_deep(f"blocks {other} and {block} overlap by {depth:g}.")
+        found += touching_interfaces(block, corners[block], other, corners[other], tolerance)
+    return found
+
+
+def _too_deep(what: str) -> InputError:
+    return InputError("E304", what, where="block model", cure="Move them apart.")

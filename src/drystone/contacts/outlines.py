@@ -1,0 +1,249 @@
+"""Outlines of the stones of a label image that share their joints (DESIGN 4.8, 4.9)."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping
+from itertools import pairwise
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from drystone.contacts.settled import PlacedPolygons, model_of_outlines
+from drystone.kernels.boundary import touching_edges, trace_chains
+from drystone.kernels.segments import REACH_PX, Line, fitted_lines, meeting_point, with_area
+from drystone.model.overlap import common_parts
+from drystone.model.wall import Labels
+from drystone.statics.model import RigidBlockModel
+
+Points = NDArray[np.float64]
+Node = tuple[int, int]
+Piece = tuple[Node, ...]
+"""Pixel corners (x, y) from one junction to the next, or around a stone that has none."""
+Fit = tuple[list[int], list[Line]]
+
+OUTLINE_TOLERANCE_PX = 0.75
+"""How far the contour may stay away from the line that is fitted to it.
+
+A straight joint moves by up to half a pixel when it is rasterised, and a fitted line by some more
+at its ends.  Smaller tolerances follow the steps of the grid: their slopes do not go away as the
+resolution grows, nor does what they do to the load multiplier.
+"""
+
+
+SAME_SHARE = 0.88
+"""An outline covers at least this share of its pixels; small stones keep their pixel edges else."""
+
+
+def outlines_of_labels(
+    labels: Labels, *, tolerance_px: float = OUTLINE_TOLERANCE_PX
+) -> dict[int, Points]:
+    """Find the outlines of all stones of a label image.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        0 where nothing is, otherwise the id of a stone; row 0 at the top; the ground is below
+        the last row.
+    tolerance_px : float
+        How far the contour may stay away from the line that is fitted to it, above 0.
+
+    Returns
+    -------
+    dict of int to (n, 2) float array
+        By id: corners in the wall frame, px, counter-clockwise, closed: the first one is
+        repeated at the end.  y = 0 at the image's lower edge.
+
+    Notes
+    -----
+    The contour (the midpoints of pixel edges) is cut where three or more stones, ground and
+    nothing meet, and every piece is simplified once, for both its sides, into fitted lines.
+    Then its corners move a little so that the area beside it is that of the pixels.  A stone
+    that has no such outline, as some of a few pixels, keeps its pixel edges.  Holes are
+    filled, with whatever lies in them; of an id in several pieces the largest is taken.
+
+    Examples
+    --------
+    >>> outlines_of_labels(np.full((20, 30), 7))[7].tolist()
+    [[0.0, 0.0], [30.0, 0.0], [30.0, 20.0], [0.0, 20.0], [0.0, 0.0]]
+    """
+    rings = _rings(labels)
+    junctions = _junctions(labels)
+    pieces = {block: _pieces(ring, junctions) for block, ring in rings.items()}
+    fits = {
+        piece: fitted_lines(np.array(piece, float), tolerance_px)
+        for piece in dict.fromkeys(_key(piece) for mine in pieces.values() for piece in mine)
+    }
+    while True:
+        outlines = _assembled(rings, pieces, fits)
+        unsound = [
+            block for block in rings if not _is_sound(outlines[block], rings[block], tolerance_px)
+        ]
+        # The shortest piece first: two junctions close together are most often the reason.
+        keys = [sorted((_key(p) for p in pieces[block]), key=len) for block in unsound]
+        blocky = {next((key for key in mine if key in fits), None) for mine in keys} - {None}
+        if not blocky:  # pixel edges may pass one corner twice, but never cross
+            return outlines
+        fits = {piece: fit for piece, fit in fits.items() if piece not in blocky}
+
+
+def model_from_outlines(
+    outlines: Mapping[int, Points],
+    mu: float = 0.58,
+    *,
+    contact_tolerance_px: float = 0.1,
+    setback: float = 0.0,
+) -> RigidBlockModel:
+    """Make the rigid block model of stones with given outlines.
+
+    Parameters
+    ----------
+    outlines : mapping of int to (n, 2) float array
+        By id: closed, counter-clockwise.
+    mu : float
+        Coefficient of friction.
+    contact_tolerance_px : float
+        Gap or overlap up to which edges and corners touch, same unit as the outlines, above 0.
+    setback : float
+        See :func:`drystone.kernels.meetings.meetings`.
+
+    Returns
+    -------
+    RigidBlockModel
+        Blocks and interfaces by ids; of two the larger id is `block`.  Weights and centroids are
+        those of the outlines.  Overlaps are not looked for: whoever makes outlines checks them.
+
+    Examples
+    --------
+    >>> labels = np.kron([[2, 2], [1, 0]], np.ones((10, 10), int))
+    >>> model = model_from_outlines(outlines_of_labels(labels))
+    >>> [(i.block, i.other, i.length) for i in model.interfaces]
+    [(1, 0, 10.0), (2, 1, 10.0)]
+    """
+    blocks = ((block, outlines[block][:-1]) for block in sorted(outlines))
+    return model_of_outlines(PlacedPolygons.of(blocks), mu, contact_tolerance_px, setback)
+
+
+def _rings(labels: Labels) -> dict[int, Piece]:
+    """Return the pixel corners around the largest piece of each id, counter-clockwise."""
+    ids, place = np.unique(labels, return_inverse=True)
+    if len(ids) and ids[0] > 0:
+        ids, place = np.concatenate([[0], ids]), place + 1
+    rings = {}
+    windows = ndimage.find_objects(place.reshape(labels.shape))
+    for block, window in zip(ids[1:].tolist(), windows, strict=True):
+        cells = np.pad(labels[window] == block, 1).astype(np.int64)
+        chains = [chain.nodes for chain in trace_chains(touching_edges(cells, cells >= 0))]
+        nodes = max(chains, key=lambda chain: _area(np.column_stack([chain[:, 1], -chain[:, 0]])))
+        x = nodes[:, 1] - 1 + window[1].start
+        y = labels.shape[0] - (nodes[:, 0] - 1 + window[0].start)
+        rings[block] = tuple(zip(x.tolist(), y.tolist(), strict=True))
+    return rings
+
+
+def _junctions(labels: Labels) -> set[Node]:
+    """Return the pixel corners (x, y) where three or four pixel edges meet."""
+    cells = np.pad(labels.astype(np.int64), 1)
+    cells[-1] = -1  # the ground is not nothing
+    a, b, c, d = cells[:-1, :-1], cells[:-1, 1:], cells[1:, :-1], cells[1:, 1:]
+    edges = np.sum([a != b, c != d, a != c, b != d], axis=0)
+    row, col = np.nonzero(edges >= 3)
+    return set(zip(col.tolist(), (labels.shape[0] - row).tolist(), strict=True))
+
+
+def _pieces(ring: Piece, junctions: set[Node]) -> list[Piece]:
+    """Cut a closed ring at its junctions."""
+    at = [i for i, node in enumerate(ring[:-1]) if node in junctions]
+    if not at:  # it begins at its furthest point, which is a corner if it has any
+        nodes = np.array(ring[:-1], float)
+        at = [int(np.hypot(*(nodes - nodes.mean(axis=0)).T).argmax())]
+    turned = (*ring[at[0] : -1], *ring[: at[0] + 1])
+    cuts = [*(i - at[0] for i in at), len(ring) - 1]
+    return [turned[first : last + 1] for first, last in pairwise(cuts)]
+
+
+def _key(piece: Piece) -> Piece:
+    """Return the piece in the sense that both its sides know it by."""
+    return min(piece, piece[::-1])
+
+
+def _assembled(
+    rings: Mapping[int, Piece], pieces: Mapping[int, list[Piece]], fits: Mapping[Piece, Fit]
+) -> dict[int, Points]:
+    """Join pieces to outlines; those without a fit keep their pixel edges."""
+    users = Counter(_key(piece) for mine in pieces.values() for piece in mine)
+    drawn = _drawn(users, fits)
+    outlines = {}
+    for block, mine in pieces.items():
+        lines = [drawn[_key(p)] if p == _key(p) else drawn[_key(p)][::-1] for p in mine]
+        # Junctions that move take area from one stone to another; a free side gives it back.
+        free = [i for i, p in enumerate(mine) if users[_key(p)] == 1 and len(lines[i]) > 2]
+        free = [i for i in free if _key(mine[i]) in fits]
+        if free:
+            longest = max(free, key=lambda i: len(mine[i]))
+            lost = _area(_joined(lines)) - _area(np.array(rings[block], float))
+            beside = lines[longest]
+            lines[longest] = with_area(beside, beside, -lost)
+        outlines[block] = _joined(lines)
+    return outlines
+
+
+def _drawn(pieces: Iterable[Piece], fits: Mapping[Piece, Fit]) -> dict[Piece, Points]:
+    """Simplify every piece once."""
+    meeting = defaultdict(list)
+    pinned = set()
+    for piece in pieces:
+        if piece not in fits:
+            pinned |= {piece[0], piece[-1]}
+            continue
+        _, lines = fits[piece]
+        meeting[piece[0]].append(lines[0])
+        meeting[piece[-1]].append(lines[-1])
+    drawn = {}
+    for piece in pieces:
+        nodes = np.array(piece, float)
+        if piece not in fits:
+            drawn[piece] = _bends(nodes)
+            continue
+        cuts, lines = fits[piece]
+        first, last = (
+            nodes[i] if piece[i] in pinned else meeting_point(meeting[piece[i]], nodes[i])
+            for i in (0, -1)
+        )
+        inner = [
+            meeting_point(list(lines[i - 1 : i + 1]), nodes[cuts[i]]) for i in range(1, len(lines))
+        ]
+        drawn[piece] = with_area(np.array([first, *inner, last]), nodes)
+    return drawn
+
+
+def _joined(lines: list[Points]) -> Points:
+    """Join lines to a closed one; junctions that moved to one place become one corner."""
+    corners = np.vstack([*(line[:-1] for line in lines), lines[0][:1]])
+    apart = np.abs(np.diff(corners, axis=0)).max(axis=1) > 1e-9
+    return np.asarray(corners[np.concatenate([apart, [True]])])
+
+
+def _is_sound(outline: Points, ring: Piece, tolerance_px: float) -> bool:
+    """Tell whether an outline does not cross itself and follows its pixel edges everywhere."""
+    if len(outline) < 4:
+        return False
+    pixels, shape = shapely.Polygon(ring), shapely.Polygon(outline)
+    if not shape.is_valid:
+        return False
+    away = shapely.hausdorff_distance(pixels.exterior, shape.exterior)
+    # Pixel edges that pass one corner twice make no valid area; a hair's breadth inside is one.
+    common = sum(part.area for part in common_parts(pixels.buffer(-1e-6), shape))
+    return bool(away <= tolerance_px + REACH_PX and common >= SAME_SHARE * pixels.area)
+
+
+def _bends(nodes: Points) -> Points:
+    """Leave out the pixel corners that lie between two others on one line."""
+    step = np.diff(nodes, axis=0)
+    turns = (step[1:] != step[:-1]).any(axis=1)
+    return np.asarray(nodes[np.concatenate([[True], turns, [True]])])
+
+
+def _area(polygon: Points) -> float:
+    x, y = polygon.T
+    return float(x[:-1] @ y[1:] - x[1:] @ y[:-1]) / 2.0

@@ -1,0 +1,595 @@
+"""Limit analysis of a wall that grows stone by stone, without starting anew (§4.1).
+
+A step of the planner asks for the resistance of the wall with each of many stones on top, and
+then places one of them.  A stone adds three equations and a few unknowns to the program of the
+wall, and the mechanism of the wall is close to that of the wall with the stone: each end of the
+range of alpha is found from where the same end of the wall was.  Three analyses do that, and what
+one of them is not made for falls through to the next:
+
+1. :class:`SimplexAnalysis`, the simplex method of our own, for loose stones, up to some hundred.
+2. :class:`LocalAnalysis`, for more: small programs of what is below a stone.
+3. :class:`HighsAnalysis`, for all else: fixed and guided blocks, walls that fell, models that were
+   not made by adding, and all walls where the simplex kernel is not compiled.
+
+Like all answers these count only with a certificate that holds; otherwise the wall with the
+stone is solved from the start by :func:`drystone.statics.limit.lateral_resistance`.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from highspy import HighsBasis
+
+from drystone.kernels import simplex
+from drystone.kernels.certificate import Figures, figures
+from drystone.kernels.simplex import Added, Answer, Optimum
+from drystone.statics.limit import MESSAGES, lateral_resistance, resistance_between
+from drystone.statics.local_update import PrimalDual, local_update
+from drystone.statics.lp.certificate import fall_of, no_alpha_of, of_fall, optimum_of
+from drystone.statics.lp.cone_program import ConeProgram
+from drystone.statics.lp.extremes import Extreme, certified_extreme
+from drystone.statics.lp.highs import (
+    TOLERANCE,
+    HighsSession,
+    WarmBasis,
+    WarmSession,
+    read_basis,
+)
+from drystone.statics.lp.program import EquilibriumProgram, Units, assemble
+from drystone.statics.model import GROUND, Addition, Direction, RigidBlockModel
+from drystone.statics.result import Certificate, LateralResistance, LimitResult, LimitStatus
+
+SIMPLEX = "simplex"
+LOCAL = "HiGHS simplex below the stone"
+
+MANY_BLOCKS = 120
+"""Walls of more blocks are not for the simplex kernel.
+
+At 120 the inverses of both ends take 4 MB, and all states that a plan may go back to, which it
+keeps, 170 MB; at 200 it would be 800 MB.  In time the break-even is about 400.
+"""
+
+MANY_BLOCKS_AT_ONCE = 100
+"""From here on a model that does not grow gets its first bases by an interior point method."""
+
+
+@dataclass(frozen=True, eq=False)
+class IncrementalResult:
+    """Resistance of a wall with one more stone.
+
+    Parameters
+    ----------
+    resistance : LateralResistance
+        As :func:`drystone.statics.limit.lateral_resistance` gives it, to the last digits.
+    solved_cold : bool
+        True when a warm answer had no certificate, so that all was solved again from the start.
+    """
+
+    resistance: LateralResistance
+    solved_cold: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class IncrementalAnalysis(ABC):
+    """Limit analysis of a wall on the tilting table, ready for one more stone; immutable.
+
+    Answers depend on the wall and on how it has grown, and not on what else was asked, in which
+    order, or in which thread.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        The wall.
+    result : IncrementalResult
+        Its resistance.
+    """
+
+    model: RigidBlockModel
+    result: IncrementalResult
+
+    def resistance_with(self, model: RigidBlockModel) -> IncrementalResult:
+        """Return the resistance of the wall with one more stone, a candidate; nothing changes.
+
+        Parameters
+        ----------
+        model : RigidBlockModel
+            Made from :attr:`model` by :meth:`RigidBlockModel.with_added`, as
+            :func:`drystone.contacts.blocks.model_with` does.  Any other model is answered too,
+            without the gain in time.
+        """
+        return self.result if model is self.model else self._result_with(model)
+
+    def extended(self, model: RigidBlockModel) -> "IncrementalAnalysis":
+        """Return the analysis of the wall with one more stone, the chosen one.
+
+        Its `result` equals what `resistance_with` returns for the same model, bit by bit.
+        """
+        return self if model is self.model else self._extended_to(model)
+
+    @abstractmethod
+    def _result_with(self, model: RigidBlockModel) -> IncrementalResult: ...
+
+    @abstractmethod
+    def _extended_to(self, model: RigidBlockModel) -> "IncrementalAnalysis": ...
+
+    def _added(self, model: RigidBlockModel, program: ConeProgram) -> Added | None:
+        """Return what is new; None when it is not for the cone program."""
+        addition = model.added
+        if addition is None or addition.base is not self.model:
+            return None
+        return program.columns_of(addition, model.mu)
+
+
+def incremental_analysis(
+    model: RigidBlockModel, units: Units, most: int = MANY_BLOCKS
+) -> IncrementalAnalysis:
+    """Begin with a wall, which may be empty.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        What is built.
+    units : Units
+        Of the equations, for as long as the wall grows: those of a typical stone.  Certificates
+        are relative to their weight; alpha does not depend on them.
+    most : int
+        Walls of more blocks are not for the simplex kernel.
+
+    Examples
+    --------
+    A stone on a stone, half as wide as high; the pile is as stable as a block of twice its height.
+
+    >>> from drystone.contacts.given import model_from_json
+    >>> from drystone.statics.lp.program import units_of
+    >>> pile = model_from_json({"blocks_xywh": [[0, 0, 1, 2], [0, 2, 1, 2]], "mu": 0.58})
+    >>> first = RigidBlockModel(pile.blocks[:1], pile.interfaces[:1], pile.mu)
+    >>> wall = incremental_analysis(first, units_of(first))
+    >>> round(wall.result.resistance.right.alpha, 6)
+    0.5
+    >>> taller = wall.model.with_added(pile.blocks[1:], pile.interfaces[1:])
+    >>> round(wall.resistance_with(taller).resistance.right.alpha, 6)
+    0.25
+    """
+    if not simplex.AVAILABLE:
+        return HighsAnalysis.of(model, units)
+    if len(model.blocks) > most:
+        return LocalAnalysis.of(model, units)
+    # Block by block in the order of the model; what cannot be built in this order is for HiGHS.
+    analysis = SimplexAnalysis.of_nothing(model.mu, units, most)
+    place = {GROUND: -1, **{block.id: i for i, block in enumerate(model.blocks)}}
+    last = np.array([max(place[i.block], place[i.other]) for i in model.interfaces], np.int32)
+    for i, block in enumerate(model.blocks):
+        new = tuple(model.interfaces[k] for k in np.flatnonzero(last == i))
+        extended = analysis.extended(analysis.model.with_added((block,), new))
+        if not isinstance(extended, SimplexAnalysis):
+            return HighsAnalysis.of(model, units)
+        analysis = extended
+    order = np.argsort(last, kind="stable").astype(np.int32)
+    program = replace(analysis.program, interfaces=order[analysis.program.interfaces])
+    return replace(analysis, model=model.forgetting(), program=program)
+
+
+@dataclass(frozen=True, eq=False)
+class SimplexAnalysis(IncrementalAnalysis):
+    """What the inner loop of a planner asks: loose stones, by :mod:`drystone.kernels.simplex`.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        The wall: loose blocks.
+    result : IncrementalResult
+        Its resistance.
+    program : ConeProgram
+        Its equations.
+    greatest, least : Optimum
+        Its program, solved for both ends of the range of alpha.
+    most : int
+        Walls of more blocks are left to others.
+    """
+
+    program: ConeProgram
+    greatest: Optimum
+    least: Optimum
+    most: int = MANY_BLOCKS
+
+    @classmethod
+    def of_nothing(cls, mu: float, units: Units, most: int = MANY_BLOCKS) -> "SimplexAnalysis":
+        """Return the analysis before the first stone."""
+        model = RigidBlockModel((), (), mu)
+        result = IncrementalResult(lateral_resistance(model))
+        greatest, least = Optimum.of_nothing(1), Optimum.of_nothing(-1)
+        return cls(model, result, ConeProgram.empty(units), greatest, least, most)
+
+    def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
+        added = self._added(model, self.program)
+        if added is None:
+            return self._by_highs().resistance_with(model)
+        ends = (self.greatest, self.least)
+        return _result_between(model, (self._bound(optimum, added)[1] for optimum in ends))
+
+    def _extended_to(self, model: RigidBlockModel) -> IncrementalAnalysis:
+        added = self._added(model, self.program)
+        if added is None:
+            return self._by_highs().extended(model)
+        assert model.added is not None  # noqa: S101 - or nothing would be added
+        greatest, upper = self._bound(self.greatest, added)
+        least, lower = self._bound(self.least, added)
+        result = _result_between(model, (upper, lower))
+        program = self.program.appended(model.added, added)
+        model = model.forgetting()  # or every model would keep all those before it
+        certified = upper is not None and lower is not None
+        optimal = greatest.status == simplex.OPTIMAL and least.status == simplex.OPTIMAL
+        if not (certified and optimal) or len(program.weights) > self.most:
+            return replace(LocalAnalysis.of(model, program.units), result=result)
+        return SimplexAnalysis(
+            model,
+            result,
+            program,
+            self.greatest.extended(added, greatest),
+            self.least.extended(added, least),
+            self.most,
+        )
+
+    def _added(self, model: RigidBlockModel, program: ConeProgram) -> Added | None:
+        added = super()._added(model, program)
+        if added is None or not len(program.weights) + len(added.weights):
+            return None
+        return added
+
+    def _bound(self, optimum: Optimum, added: Added) -> "tuple[Answer, Bound | None]":
+        """Solve for one end; no bound without a certificate that holds."""
+        answer = optimum.solved_with(added)
+        if answer.status == simplex.FAILED:
+            return answer, None
+        return answer, _bound_of(self.program, added, answer, optimum.sign, SIMPLEX)
+
+    def _by_highs(self) -> "HighsAnalysis":
+        nothing = RigidBlockModel((), (), self.model.mu)
+        return HighsAnalysis.of(nothing, self.program.units)
+
+
+@dataclass(frozen=True, eq=False)
+class LocalAnalysis(IncrementalAnalysis):
+    """Many loose stones: what a stone changes near it first, then the whole wall.
+
+    See :mod:`drystone.statics.local_update` for the small programs.  An answer of theirs counts
+    only with a certificate of the whole wall; without one HiGHS solves the whole program.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        The wall.
+    result : IncrementalResult
+        Its resistance.
+    by_highs : HighsAnalysis
+        The same wall in HiGHS.
+    program : ConeProgram
+        Its equations, the columns in the same order.
+    greatest, least : PrimalDual
+        Both ends of the range of alpha.
+    """
+
+    by_highs: "HighsAnalysis"
+    program: ConeProgram
+    greatest: PrimalDual
+    least: PrimalDual
+
+    @classmethod
+    def of(cls, model: RigidBlockModel, units: Units) -> IncrementalAnalysis:
+        """Begin with a wall of many stones."""
+        by_highs = HighsAnalysis.of(model, units)
+        addition = Addition(RigidBlockModel((), (), model.mu), model.blocks, model.interfaces)
+        program = ConeProgram.empty(units)
+        added = program.columns_of(addition, model.mu)
+        if added is None:
+            return by_highs
+        return cls._of(by_highs, by_highs.result, program.appended(addition, added))
+
+    @classmethod
+    def _of(
+        cls, by_highs: "HighsAnalysis", result: IncrementalResult, program: ConeProgram
+    ) -> IncrementalAnalysis:
+        """Look near stones from now on, if both ends are known."""
+        if by_highs.extremes is None:
+            return by_highs
+        least, greatest = by_highs.extremes
+        if not least.status is greatest.status is LimitStatus.OPTIMAL:
+            return replace(by_highs, result=result)
+        ends = (_primal_dual(greatest, 1), _primal_dual(least, -1))
+        return cls(by_highs.model, result, by_highs, program, *ends)
+
+    def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
+        added = self._added(model, self.program)
+        if added is None:
+            return self.by_highs.resistance_with(model)
+        return _result_between(model, self._bounds(model, added))
+
+    def _extended_to(self, model: RigidBlockModel) -> IncrementalAnalysis:
+        added = self._added(model, self.program)
+        by_highs = self.by_highs.extended(model)
+        if added is None:
+            return by_highs
+        assert model.added is not None  # noqa: S101 - or nothing would be added
+        result = _result_between(model, self._bounds(model, added))
+        return self._of(by_highs, result, self.program.appended(model.added, added))
+
+    def _bounds(self, model: RigidBlockModel, added: Added) -> "Iterator[Bound | None]":
+        """Find the greatest alpha, then the least."""
+        whole = None
+        ends = (self.greatest, self.least)
+        for end, opposite in (ends, ends[::-1]):
+            near = local_update(self.program, end, opposite, added)
+            bound = None
+            if near is not None:
+                bound = _bound_of(self.program, added, near, end.sign, LOCAL)
+            if bound is None:
+                whole = whole or self.by_highs.prepared(model)
+                bound = highs_bound(*whole, end.sign)
+            yield bound
+
+
+def _primal_dual(extreme: Extreme, sign: int) -> PrimalDual:
+    solution = extreme.solution
+    assert solution.columns is not None  # noqa: S101 - an optimal solution has both
+    assert solution.duals is not None  # noqa: S101
+    return PrimalDual(sign, extreme.alpha, solution.columns[1:], -solution.duals)
+
+
+class WarmBases(NamedTuple):
+    """Where the two ends of the range of alpha are looked for from."""
+
+    least: WarmBasis = WarmBasis()
+    greatest: WarmBasis = WarmBasis()
+
+    def appended(self, program: EquilibriumProgram) -> "WarmBases":
+        """Return bases of a program with more columns and rows."""
+        size = program.column_count, len(program.rhs)
+        return WarmBases(self.least.appended(*size), self.greatest.appended(*size))
+
+
+@dataclass(frozen=True, eq=False)
+class HighsAnalysis(IncrementalAnalysis):
+    """Any model: the primal simplex method of HiGHS from the bases of the wall.
+
+    A solver is used for one model only, so that answers do not depend on what was asked before.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        The wall.
+    result : IncrementalResult
+        Its resistance.
+    units : Units
+        Of its equations.
+    bases : WarmBases
+        Optimal ones; where there is none, the last ones.
+    extremes : (Extreme, Extreme) or None
+        The least and the greatest alpha; None without free blocks.
+    """
+
+    units: Units
+    bases: WarmBases
+    extremes: tuple[Extreme, Extreme] | None = None
+
+    @classmethod
+    def of(cls, model: RigidBlockModel, units: Units) -> "HighsAnalysis":
+        """Begin with a wall, which may be empty."""
+        program = assemble(model, units=units)
+        starts = WarmBases().appended(program)
+        if len(program.block_ids) >= MANY_BLOCKS_AT_ONCE:
+            starts = _by_interior_point(program, starts)
+        return cls._of(model, units, program, starts)
+
+    @classmethod
+    def _of(
+        cls, model: RigidBlockModel, units: Units, program: EquilibriumProgram, starts: WarmBases
+    ) -> "HighsAnalysis":
+        model = model.forgetting()  # or every model would keep all those before it
+        if not program.block_ids:
+            return cls(model, IncrementalResult(lateral_resistance(model)), units, starts)
+        least, greatest, lower, upper = _both_extremes(program, starts)
+        bases = WarmBases(read_basis(lower) or starts.least, read_basis(upper) or starts.greatest)
+        result = _highs_result(model, program, least, greatest)
+        return cls(model, result, units, bases, (least, greatest))
+
+    def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
+        program, starts = self.prepared(model)
+        if not program.block_ids:
+            return IncrementalResult(lateral_resistance(model))
+        least, greatest, _, _ = _both_extremes(program, starts)
+        return _highs_result(model, program, least, greatest)
+
+    def extended(self, model: RigidBlockModel) -> "HighsAnalysis":
+        """See :meth:`IncrementalAnalysis.extended`."""
+        return self if model is self.model else self._extended_to(model)
+
+    def _extended_to(self, model: RigidBlockModel) -> "HighsAnalysis":
+        return self._of(model, self.units, *self.prepared(model))
+
+    def prepared(self, model: RigidBlockModel) -> tuple[EquilibriumProgram, WarmBases]:
+        """Return the program of another model, and bases to start from.
+
+        Parameters
+        ----------
+        model : RigidBlockModel
+            Where it is made from :attr:`model`, its bases are those of the wall.
+        """
+        program = assemble(model, units=self.units)
+        added, bases = model.added, self.bases
+        if added is None or added.base is not self.model:
+            return program, WarmBases().appended(program)
+        if added.closed:
+            stay = np.ones(len(self.model.interfaces), bool)
+            stay[list(added.closed)] = False
+            counts = [2 * len(interface.points) for interface in self.model.interfaces]
+            columns = np.concatenate(([True], np.repeat(stay, counts)))
+            bases = WarmBases(*(basis.with_columns(columns) for basis in bases))
+        return program, bases.appended(program)
+
+
+def highs_bound(program: EquilibriumProgram, starts: WarmBases, sign: int) -> "Bound | None":
+    """Find one end of the range of alpha; None without a certificate, or where it has no end.
+
+    Parameters
+    ----------
+    program, starts
+        See :meth:`HighsAnalysis.prepared`.
+    sign : int
+        1 for the greatest alpha, -1 for the least.
+    """
+    start = starts.greatest if sign > 0 else starts.least
+    extreme = _warm_extreme(program, WarmSession(program), start, sign)
+    solution, certificate = extreme.solution, extreme.certificate
+    if certificate is None or solution.duals is None or extreme.status is LimitStatus.FAILED:
+        return None
+    if extreme.status is LimitStatus.UNSTABLE:
+        return Bound(float("nan"), certificate, certificate, solution.solver)
+    fall = None
+    if sign * extreme.alpha < -TOLERANCE:
+        fall = of_fall(program, -solution.duals)
+        if not fall.holds:
+            return None
+    return Bound(extreme.alpha, certificate, fall, solution.solver)
+
+
+def _both_extremes(
+    program: EquilibriumProgram, starts: WarmBases
+) -> tuple[Extreme, Extreme, HighsBasis, HighsBasis]:
+    """Find the least and the greatest alpha, each from its basis, and the bases they ended with."""
+    session = WarmSession(program)
+    greatest = _warm_extreme(program, session, starts.greatest, 1)
+    upper = session.highs.getBasis()
+    if greatest.status is LimitStatus.UNSTABLE:  # no alpha holds the blocks up
+        return greatest, greatest, upper, upper
+    least = _warm_extreme(program, session, starts.least, -1)
+    return least, greatest, session.highs.getBasis(), upper
+
+
+def _warm_extreme(
+    program: EquilibriumProgram, session: WarmSession, start: WarmBasis, sign: int
+) -> Extreme:
+    """Solve from a basis; once more from the last one if there is no certificate.
+
+    Thousands of blocks can cost the factors of the basis their last digits; then they are made
+    anew.
+    """
+    session.start_from(start)
+    extreme = certified_extreme(program, session, float(sign))
+    optimal = extreme.solution.status is LimitStatus.OPTIMAL
+    if not (extreme.status is LimitStatus.FAILED and optimal):
+        return extreme
+    last = read_basis(session.highs.getBasis())
+    if last is None:
+        return extreme
+    session.start_from(last)
+    return certified_extreme(program, session, float(sign))
+
+
+def _highs_result(
+    model: RigidBlockModel, program: EquilibriumProgram, least: Extreme, greatest: Extreme
+) -> IncrementalResult:
+    both = resistance_between(program, least, greatest, model.mu)
+    if both.failed:
+        return IncrementalResult(lateral_resistance(model), solved_cold=True)
+    return IncrementalResult(both)
+
+
+def _by_interior_point(program: EquilibriumProgram, otherwise: WarmBases) -> WarmBases:
+    """Find bases near the optimum by crossover: hundreds of times quicker for many blocks."""
+    session = HighsSession(program, "ipm")
+    certified_extreme(program, session, 1.0)
+    greatest = read_basis(session.highs.getBasis())
+    certified_extreme(program, session, -1.0)
+    least = read_basis(session.highs.getBasis())
+    return WarmBases(least or otherwise.least, greatest or otherwise.greatest)
+
+
+class Bound(NamedTuple):
+    """One end of the range of alpha, certified.
+
+    Parameters
+    ----------
+    alpha : float
+        Load multiplier; NaN when there is none at all.
+    certificate : Certificate
+        That it is the end, or that there is none.
+    fall : Certificate or None
+        That the blocks do not stand by themselves.
+    solver : str
+        Which one found it.
+    """
+
+    alpha: float
+    certificate: Certificate
+    fall: Certificate | None
+    solver: str
+
+
+def _bound_of(
+    program: ConeProgram, added: Added, answer: Answer | PrimalDual, sign: int, solver: str
+) -> Bound | None:
+    """Certify forces and mechanism of a wall with a stone."""
+    found = figures(
+        program.cones, program.weights, added, answer.alpha, answer.forces, answer.velocity
+    )
+    return certified_bound(found, answer.alpha, sign, solver)
+
+
+def certified_bound(found: Figures, alpha: float, sign: int, solver: str) -> Bound | None:
+    """Return the greatest (sign 1) or least (-1) alpha if the figures prove it.
+
+    With an alpha that is NaN they have to prove that no alpha holds the blocks up.
+    """
+    if np.isnan(alpha):
+        certificate = no_alpha_of(found)
+        return Bound(alpha, certificate, certificate, solver) if certificate.holds else None
+    certificate = optimum_of(found, alpha, sign)
+    if not certificate.holds:
+        return None
+    if not sign * alpha < -TOLERANCE:
+        return Bound(alpha, certificate, None, solver)
+    fall = fall_of(found)
+    return Bound(alpha, certificate, fall, solver) if fall.holds else None
+
+
+def _result_between(model: RigidBlockModel, bounds: Iterable[Bound | None]) -> IncrementalResult:
+    """Return the resistance of a wall.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        The wall.
+    bounds : iterable of Bound or None
+        The greatest alpha, then the least, which is not looked at when the first says enough.
+        Without a certificate for one of them the wall is solved from the start.
+    """
+    found = []
+    for bound in bounds:
+        if bound is None:
+            return IncrementalResult(lateral_resistance(model), solved_cold=True)
+        if bound.fall is not None:
+            fall = bound._replace(certificate=bound.fall)
+            return _result(LimitStatus.UNSTABLE, fall, fall, model.mu)
+        found.append(bound)
+    greatest, least = found
+    return _result(LimitStatus.OPTIMAL, least, greatest, model.mu)
+
+
+def _result(status: LimitStatus, least: Bound, greatest: Bound, mu: float) -> IncrementalResult:
+    stands = status is LimitStatus.OPTIMAL
+
+    def result(direction: Direction, bound: Bound, alpha: float) -> LimitResult:
+        return LimitResult(
+            status,
+            direction,
+            max(0.0, alpha) if stands else None,
+            certificate=bound.certificate,
+            message=MESSAGES[status],
+            solver=bound.solver,
+        )
+
+    left, right = result("left", least, -least.alpha), result("right", greatest, greatest.alpha)
+    return IncrementalResult(LateralResistance(left, right, mu))

@@ -1,0 +1,225 @@
+"""What a stone changes near it: small programs whose answers are proved for the whole wall.
+
+Most stones on a large wall leave its mechanism as it is: they rest on what does not move, or go
+along with what does.  Then alpha is that of the wall, or that of the stone alone on supports that
+do not yield, and what is left to find are forces that carry the stone to the ground at this alpha.
+A strip of the wall below the stone does that while all other forces stay as they are.
+
+Nothing here is sure to hold.  Forces and mechanism of the whole wall are put together, and it is
+for the caller to certify them; what was not found, or not proved, is for another solver.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array
+
+from drystone.kernels.simplex import OPTIMAL, UNSTABLE, Added, Cones, Optimum
+from drystone.statics.lp.cone_program import NONE_CLOSED, ConeProgram
+from drystone.statics.lp.program import Floats
+from drystone.statics.lp.standard_form import least
+
+REACH = 2.0
+"""Half width of the strip beyond the centroids of what the stone touches, in units of length."""
+
+NO_WORK = 1e-11
+"""Work of a stone on the mechanism of the wall that counts as none."""
+
+
+class PrimalDual(NamedTuple):
+    """Forces and mechanism of one end of the range of alpha.
+
+    Parameters
+    ----------
+    sign : int
+        1 for the greatest alpha, -1 for the least.
+    alpha : float
+        Load multiplier; NaN when there is none.
+    forces : (N,) float array
+        One a column; empty when there is no alpha.
+    velocity : (3 n,) float array
+        The mechanism, with sign live . v = 1; a fall when there is no alpha.
+    """
+
+    sign: int
+    alpha: float
+    forces: Floats
+    velocity: Floats
+
+
+def local_update(
+    program: ConeProgram, end: PrimalDual, opposite: PrimalDual, added: Added
+) -> PrimalDual | None:
+    """Put together forces and a mechanism of a wall with one more stone.
+
+    Parameters
+    ----------
+    program : ConeProgram
+        Of the wall.
+    end, opposite : PrimalDual
+        The end to be found, of the wall without the stone, and the other one.
+    added : Added
+        The stone and its wedges.
+
+    Returns
+    -------
+    PrimalDual or None
+        None when the stone changes the mechanism, or when the strip is not enough.
+    """
+    moved = _mechanism(program, end, added) if len(added.weights) else None
+    if moved is None or np.isnan(moved.alpha):
+        return moved
+    carried = end.forces
+    if moved.alpha != end.alpha:
+        if end.sign * (moved.alpha - opposite.alpha) < 0.0:
+            return None
+        # Any alpha between the two ends is carried by a mixture of their forces.
+        share = (moved.alpha - opposite.alpha) / (end.alpha - opposite.alpha)
+        carried = share * end.forces + (1.0 - share) * opposite.forces
+    forces = _Strip.under(program, added).solved(moved.alpha, carried, end.forces > 0.0)
+    return None if forces is None else moved._replace(forces=forces)
+
+
+def _mechanism(program: ConeProgram, end: PrimalDual, added: Added) -> PrimalDual | None:
+    """Return alpha and a mechanism: of the stone alone, or that of the wall, extended."""
+    alone, work = _on_supports(program, end, added)
+    stone = Added(added.weights, alone, NONE_CLOSED)
+    answer = Optimum.of_nothing(end.sign).solved_with(stone)
+    rest = np.zeros(len(end.velocity))
+    if answer.status == UNSTABLE:
+        velocity = np.concatenate((rest, answer.velocity))
+        return PrimalDual(end.sign, answer.alpha, answer.forces, velocity)
+    if answer.status == OPTIMAL and end.sign * (end.alpha - answer.alpha) > 0.0:
+        velocity = np.concatenate((rest, answer.velocity))
+        return PrimalDual(end.sign, answer.alpha, answer.forces, velocity)
+    rhs = np.zeros(3 * len(added.weights))
+    rhs[0::3] = -end.alpha * added.weights
+    rhs[1::3] = added.weights
+    found = least(work, _matrix(alone, len(added.weights)), rhs)
+    if found is None or abs(float((work * found.unknowns).sum())) > NO_WORK:
+        return None
+    velocity = np.concatenate((end.velocity, -found.duals))
+    return PrimalDual(end.sign, end.alpha, found.unknowns, velocity)
+
+
+def _on_supports(program: ConeProgram, end: PrimalDual, added: Added) -> tuple[Cones, Floats]:
+    """Return the columns of a stone on supports that do not yield.
+
+    Returns
+    -------
+    cones : Cones
+        Of the stone and its wedges alone.
+    work : (columns,) float array
+        Of each column on the velocities of the blocks of the wall.
+    """
+    built, cones = len(program.weights), added.cones
+    # Where the first body is of the wall, the two change places.
+    swapped = cones.first < built
+    first = np.where(swapped, cones.second, cones.first) - built
+    second = np.where(swapped, cones.first, cones.second)
+    entries = np.where(swapped, np.roll(cones.entries, 3, axis=0), cones.entries)
+    on_wall = (second >= 0) & (second < built)
+    velocity = end.velocity.reshape(-1, 3).T[:, np.where(on_wall, second, 0)]
+    work = np.where(on_wall, (entries[3:] * velocity).sum(axis=0), 0.0)
+    second = np.where(second < built, -1, second - built)
+    entries[3:, second < 0] = 0.0
+    new = first >= 0
+    alone = Cones(
+        first[new].astype(np.int32),
+        second[new].astype(np.int32),
+        np.ascontiguousarray(entries[:, new]),
+    )
+    return alone, work[new]
+
+
+@dataclass(frozen=True, eq=False)
+class _Strip:
+    """The blocks of a wall below a stone, and the stone.
+
+    Parameters
+    ----------
+    program : ConeProgram
+        Of the wall.
+    added : Added
+        The stone and its wedges.
+    place : (n + k,) int array
+        Place in the strip of each body of the wall and the stone; -1 outside.
+    """
+
+    program: ConeProgram
+    added: Added
+    place: NDArray[np.int32]
+
+    @classmethod
+    def under(cls, program: ConeProgram, added: Added) -> "_Strip":
+        built, x = len(program.weights), program.centroid_x
+        touched = np.concatenate((added.cones.first, added.cones.second))
+        under = x[touched[(touched >= 0) & (touched < built)]]
+        inside = np.ones(built + len(added.weights), bool)
+        inside[:built] = False
+        if len(under):
+            reach = REACH * program.units.length
+            inside[:built] = (x >= under.min() - reach) & (x <= under.max() + reach)
+        place = np.where(inside, np.cumsum(inside) - 1, -1).astype(np.int32)
+        return cls(program, added, place)
+
+    def solved(self, alpha: float, carried: Floats, basic: NDArray[np.bool_]) -> Floats | None:
+        """Find forces that carry the stone down through the strip.
+
+        Parameters
+        ----------
+        alpha : float
+            Load multiplier.
+        carried : (N,) float array
+            Forces that carry the wall without the stone at this alpha.
+        basic : (N,) bool array
+            Columns to start with.
+
+        Returns
+        -------
+        (columns,) float array or None
+            Of the wall's columns that are left, then of the new ones.
+        """
+        wall, added, place = self.program.cones, self.added, self.place
+        first = place[wall.first]
+        second = np.where(wall.second < 0, -1, place[wall.second])
+        inside = (first >= 0) & ((second >= 0) | (wall.second < 0))
+        across = ((first >= 0) | (second >= 0)) & ~inside
+        inside[added.closed] = across[added.closed] = False
+        cones = Cones(
+            np.concatenate((first[inside], place[added.cones.first])),
+            np.concatenate(
+                (second[inside], np.where(added.cones.second < 0, -1, place[added.cones.second]))
+            ),
+            np.concatenate((wall.entries[:, inside], added.cones.entries), axis=1),
+        )
+        rhs = self._loads(alpha)
+        for bodies, entries in ((first, wall.entries[:3]), (second, wall.entries[3:])):
+            at = across & (bodies >= 0)
+            np.subtract.at(rhs, bodies[at], (carried[at] * entries[:, at]).T)
+        starts = np.concatenate((basic[inside], np.zeros(len(added.cones.first), bool)))
+        matrix = _matrix(cones, len(rhs))
+        found = least(np.zeros(len(starts)), matrix, rhs.ravel(), starts)
+        if found is None:
+            return None
+        count = np.count_nonzero(inside)
+        forces = carried.copy()
+        forces[inside] = found.unknowns[:count]
+        return np.concatenate((np.delete(forces, added.closed), found.unknowns[count:]))
+
+    def _loads(self, alpha: float) -> Floats:
+        """Return what the contacts of each body of the strip must carry."""
+        weights = np.concatenate((self.program.weights, self.added.weights))[self.place >= 0]
+        return np.column_stack((-alpha * weights, weights, np.zeros(len(weights))))
+
+
+def _matrix(cones: Cones, bodies: int) -> csc_array:
+    """Return the same as a sparse matrix, without what acts on the ground."""
+    places = np.repeat((cones.first, cones.second), 3, axis=0).T
+    rows = 3 * places + np.tile(np.arange(3), 2)
+    moves = places >= 0
+    start = np.concatenate(([0], np.cumsum(moves.sum(axis=1)))).astype(np.int32)
+    parts = cones.entries.T[moves], rows[moves].astype(np.int32), start
+    return csc_array(parts, shape=(3 * bodies, len(cones.first)))

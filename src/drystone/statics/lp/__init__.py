@@ -1,0 +1,1 @@
+"""The linear program of the limit analysis, what solves it, and what proves the answers."""

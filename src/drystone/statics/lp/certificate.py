@@ -1,0 +1,150 @@
+"""Certificates of answers, computed from the program and independent of what a solver claims."""
+
+import numpy as np
+
+from drystone.kernels.certificate import Figures
+from drystone.statics.lp.program import EquilibriumProgram, Floats
+from drystone.statics.lp.solution import Solution
+from drystone.statics.result import CERTIFIED, Certificate, LimitStatus
+
+
+def certify(program: EquilibriumProgram, solution: Solution, sign: float) -> Certificate | None:
+    """Check the forces and the mechanism of a solution for the extreme of alpha.
+
+    Parameters
+    ----------
+    program : EquilibriumProgram
+        The equations.
+    solution : Solution
+        For costs of 1 or -1 on alpha and 0 on all forces.
+    sign : float
+        1 when the greatest alpha was asked for, -1 for the least.  The mechanism of the other end
+        is no proof.
+
+    Returns
+    -------
+    Certificate or None
+        None when the solver failed or brought no vectors.  Whether it holds is for the caller to
+        ask.
+
+    Notes
+    -----
+    With duals y, v = -y are the velocities of the blocks and g . v >= 0 for every edge g of a
+    friction cone says that they open contacts at least as fast as the associated flow rule
+    demands.  For any such v and any forces in equilibrium, alpha live . v <= -dead . v: the
+    balance of work bounds alpha on the side to which v goes along with the live load.
+    """
+    if solution.status is LimitStatus.OPTIMAL:
+        assert solution.columns is not None  # noqa: S101 - an optimal solution has both
+        assert solution.duals is not None  # noqa: S101
+        found = _figures(program, solution.columns, -solution.duals)
+        return optimum_of(found, float(solution.columns[0]), sign)
+    if solution.status is LimitStatus.UNSTABLE and solution.duals is not None:
+        return no_alpha_of(_figures(program, None, -solution.duals))
+    if solution.status is LimitStatus.UNBOUNDED and solution.columns is not None:
+        return _of_growth(program, solution.columns, sign)
+    return None
+
+
+def in_equilibrium(program: EquilibriumProgram, solution: Solution) -> bool:
+    """Say whether the forces of an optimal solution balance the loads within friction."""
+    assert solution.columns is not None  # noqa: S101 - an optimal solution has them
+    residual = _largest(np.abs(program.matrix @ solution.columns - program.rhs))
+    violation = _largest(-solution.columns[1:])
+    return residual <= CERTIFIED and violation <= CERTIFIED
+
+
+def of_fall(program: EquilibriumProgram, velocity: Floats) -> Certificate:
+    """Certify that the blocks do not stand under dead load: it does work on a mechanism.
+
+    Parameters
+    ----------
+    program : EquilibriumProgram
+        The equations.
+    velocity : (rows,) float array
+        The mechanism, one entry a row of the program.
+    """
+    return fall_of(_figures(program, None, velocity))
+
+
+def optimum_of(found: Figures, alpha: float, sign: float) -> Certificate:
+    """Certify that alpha is an extreme.
+
+    Parameters
+    ----------
+    found : Figures
+        Of the forces and the mechanism.
+    alpha : float
+        Load multiplier of the forces.
+    sign : float
+        1 when it is said to be the greatest, -1 for the least.
+    """
+    # Of the live load; along the end that was asked for.
+    power = sign * found.live
+    upper = slack = None
+    if power > 0.0:
+        upper = sign * found.rhs / power
+        slack = found.inadmissible * found.total / power
+    return Certificate(
+        found.residual,
+        found.violation,
+        found.inadmissible / max(1.0, found.largest),
+        alpha,
+        upper,
+        slack,
+    )
+
+
+def fall_of(found: Figures) -> Certificate:
+    """Certify that the dead load does work on a mechanism."""
+    if found.largest == 0.0:
+        return Certificate(fall_work=0.0)
+    return Certificate(
+        inadmissible=found.inadmissible / found.largest, fall_work=-found.rhs / found.largest
+    )
+
+
+def no_alpha_of(found: Figures) -> Certificate:
+    """Certify that no alpha holds the blocks up: as a fall on which the live load does no work."""
+    if found.largest == 0.0:
+        return Certificate(fall_work=0.0)
+    return Certificate(
+        inadmissible=max(found.inadmissible, abs(found.live)) / found.largest,
+        fall_work=-found.rhs / found.largest,
+    )
+
+
+def _figures(program: EquilibriumProgram, columns: Floats | None, velocity: Floats) -> Figures:
+    """Measure forces, if there are any, and a mechanism."""
+    residual = violation = total = 0.0
+    if columns is not None:
+        residual = _largest(np.abs(program.matrix @ columns - program.rhs))
+        violation = _largest(-columns[1:])
+        total = float(np.abs(columns[1:]).sum())
+    powers = program.matrix.T @ velocity
+    return Figures(
+        residual,
+        violation,
+        total,
+        _largest(np.abs(velocity)),
+        _largest(-powers[1:]),
+        float(powers[0]),
+        float(program.rhs @ velocity),
+    )
+
+
+def _of_growth(program: EquilibriumProgram, ray: Floats, sign: float) -> Certificate | None:
+    """Certify a state of self-stress that carries any live load."""
+    if not sign * ray[0] > 0.0:
+        return None
+    ray = ray / abs(ray[0])
+    return Certificate(
+        residual=_largest(np.abs(program.matrix @ ray)),
+        violation=_largest(-ray[1:]),
+        lower=sign * np.inf,
+    )
+
+
+def _largest(values: Floats) -> float:
+    """Return the largest value above 0; NaN when there is one."""
+    return float(values.max(initial=0.0)) + 0.0  # never -0.0

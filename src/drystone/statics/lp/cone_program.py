@@ -1,0 +1,146 @@
+"""The program of the limit analysis for the simplex kernel: loose blocks, columns in arrays."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.kernels.cones import GROUND_BODY, Body, cone_edges
+from drystone.kernels.simplex import Added, Cones
+from drystone.statics.lp.program import Units
+from drystone.statics.model import GROUND, NO_SLIP, Addition, Block, Interface
+
+Ints = NDArray[np.int32]
+
+NONE_CLOSED = np.empty(0, np.int32)
+NONE_CLOSED.flags.writeable = False
+
+
+@dataclass(frozen=True, eq=False)
+class ConeProgram:
+    """Equilibrium of loose blocks on the tilting table, as :mod:`drystone.kernels.simplex` has it.
+
+    Its numbers are those of :class:`drystone.statics.lp.program.EquilibriumProgram`.
+
+    Parameters
+    ----------
+    units : Units
+        Of lengths and forces.
+    bodies : mapping of int to Body
+        Of every block and of the ground, by id.
+    weights : (n,) float array
+        Of the blocks, in units of weight.
+    cones : Cones
+        Edges of the cones of friction at all contact points.
+    interfaces : (N,) int array
+        Place of the interface of each column in the model.
+    """
+
+    units: Units
+    bodies: Mapping[int, Body]
+    weights: NDArray[np.float64]
+    cones: Cones
+    interfaces: Ints
+
+    @classmethod
+    def empty(cls, units: Units) -> "ConeProgram":
+        """Return the program of no blocks."""
+        none = NONE_CLOSED
+        cones = Cones(none, none, np.empty((6, 0)))
+        return cls(units, {GROUND: GROUND_BODY}, np.empty(0), cones, none)
+
+    @cached_property
+    def centroid_x(self) -> NDArray[np.float64]:
+        """Where the blocks are along the wall, in the order of their places."""
+        return np.array([x for place, x, _ in self.bodies.values() if place >= 0])
+
+    def columns_of(self, addition: Addition, mu: float) -> Added | None:
+        """Return what a stone and its wedges add.
+
+        Parameters
+        ----------
+        addition : Addition
+            To the model of this program.
+        mu : float
+            Friction of interfaces that have none of their own.
+
+        Returns
+        -------
+        Added or None
+            None when a block is fixed or held, or weighs nothing, or when an interface is not
+            between a block and another one or the ground: that is for other solvers.
+        """
+        new = self._new_bodies(addition.blocks)
+        if new is None:
+            return None
+        cones = self._cones(new, addition.interfaces, mu)
+        if cones is None:
+            return None
+        weight = self.units.weight
+        weights = np.array([block.weight / weight for block in addition.blocks], np.float64)
+        return Added(weights, cones, self._columns(addition.closed))
+
+    def appended(self, addition: Addition, added: Added) -> "ConeProgram":
+        """Return the program with a stone and its wedges.
+
+        Parameters
+        ----------
+        addition : Addition
+            What is new.
+        added : Added
+            What :meth:`columns_of` makes of it.
+        """
+        bodies = self._new_bodies(addition.blocks)
+        assert bodies is not None  # noqa: S101 - or there would be no columns
+        return ConeProgram(
+            self.units,
+            {**self.bodies, **bodies},
+            np.concatenate((self.weights, added.weights)),
+            added.joined(self.cones),
+            self._appended_interfaces(addition, added.closed),
+        )
+
+    def _new_bodies(self, blocks: tuple[Block, ...]) -> dict[int, Body] | None:
+        place = len(self.weights)
+        new: dict[int, Body] = {}
+        for block in blocks:
+            if block.fixed or block.held or not block.weight > 0.0:
+                return None
+            x, y = block.centroid
+            new[block.id] = (place, x, y)
+            place += 1
+        return new
+
+    def _cones(
+        self, new: Mapping[int, Body], interfaces: tuple[Interface, ...], mu: float
+    ) -> Cones | None:
+        old = self.bodies
+        bodies, normals, frictions, points = [], [], [], []
+        for interface in interfaces:
+            one, two = interface.block, interface.other
+            first = new.get(one) or old.get(one)
+            second = new.get(two) or old.get(two)
+            if first is None or second is None or first[0] < 0:
+                return None
+            bodies.append((first, second))
+            normals.append(interface.normal)
+            frictions.append(min(mu if interface.mu is None else interface.mu, NO_SLIP))
+            points.append(interface.points)
+        return Cones(*cone_edges(bodies, normals, frictions, points, self.units.length))
+
+    def _columns(self, closed: tuple[int, ...]) -> Ints:
+        """Return the columns of interfaces that are there no more."""
+        if not closed:
+            return NONE_CLOSED
+        return np.flatnonzero(np.isin(self.interfaces, closed)).astype(np.int32)
+
+    def _appended_interfaces(self, addition: Addition, closed: Ints) -> Ints:
+        """Return the interface of each column in the model with the addition."""
+        left = np.delete(self.interfaces, closed)
+        left -= np.searchsorted(addition.closed, left).astype(np.int32)
+        first = len(addition.base.interfaces) - len(addition.closed)
+        new = np.arange(first, first + len(addition.interfaces), dtype=np.int32)
+        counts = [2 * len(interface.points) for interface in addition.interfaces]
+        return np.concatenate((left, np.repeat(new, counts)))

@@ -1,0 +1,228 @@
+"""The linear program of the limit analysis as arrays (Eq. 23-24), free of any solver."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array
+
+from drystone.statics.loads import Loads, tilting_table
+from drystone.statics.model import FREEDOMS, GROUND, Block, RigidBlockModel
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Units:
+    """What lengths and forces are measured in.
+
+    Parameters
+    ----------
+    length : float
+        About the root of the area of a block.
+    weight : float
+        About the weight of a block.
+    """
+
+    length: float
+    weight: float
+
+
+def units_of(model: RigidBlockModel) -> Units:
+    """Return the units in which free blocks have the mean weight 1 and the mean area 1.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        With at least one free block.
+
+    Examples
+    --------
+    >>> units_of(RigidBlockModel((Block(1, 4.0, (1.0, 1.0), density=2.0),), ()))
+    Units(length=2.0, weight=8.0)
+    """
+    free = [block for block in model.blocks if not block.fixed]
+    area = np.mean([block.area for block in free])
+    return Units(float(np.sqrt(area)), float(np.mean([block.weight for block in free])))
+
+
+@dataclass(frozen=True, eq=False)
+class EquilibriumProgram:
+    """Equilibrium of the free blocks: alpha live + contact forces = -dead, contact forces >= 0.
+
+    Column 0 is alpha and free; then come two columns for each contact point, the forces along the
+    two edges of its friction cone, normal + mu tangent and normal - mu tangent.  Each free block
+    has up to three rows, the horizontal and vertical forces on it and their moment about its
+    centroid; what it is held in has no row.  The matrix is stored by columns.
+
+    Parameters
+    ----------
+    block_ids : (n,) tuple of int
+        Free blocks.
+    rows : (n, 3) int array
+        Row of each freedom of each free block; -1 for what is held.
+    start : (2 m + 2,) int array
+        Where each column starts in `index` and `value`.
+    index : int array
+        Rows.
+    value : float array
+        Coefficients.
+    rhs : float array
+        Right-hand side.
+    friction : (m,) float array
+        Coefficient of friction at each contact point.
+    length : float
+        Characteristic length: moments are divided by it, so that all rows are of one size.
+    weight : float
+        Unit of force: mean weight of the free blocks.
+    """
+
+    block_ids: tuple[int, ...]
+    rows: Ints
+    start: Ints
+    index: Ints
+    value: Floats
+    rhs: Floats
+    friction: Floats
+    length: float
+    weight: float
+
+    @property
+    def column_count(self) -> int:
+        """Number of unknowns."""
+        return len(self.start) - 1
+
+    @cached_property
+    def matrix(self) -> csc_array:
+        """The equations as a sparse matrix."""
+        shape = (len(self.rhs), self.column_count)
+        return csc_array((self.value, self.index, self.start), shape=shape)
+
+    def save(self, path: Path) -> None:
+        """Write the program as NPZ, for a report of what no solver could solve (E140)."""
+        arrays = {name: getattr(self, name) for name in _ARRAYS}
+        scales = np.array([self.length, self.weight])
+        ids = np.array(self.block_ids, np.int64)
+        with path.open("wb") as file:
+            np.savez_compressed(file, block_ids=ids, scales=scales, **arrays)
+
+    @classmethod
+    def load(cls, path: Path) -> "EquilibriumProgram":
+        """Read what :meth:`save` wrote."""
+        with np.load(path) as saved:  # noqa: TID251 - what this module wrote
+            length, weight = saved["scales"].tolist()
+            arrays = {name: saved[name] for name in _ARRAYS}
+            ids = tuple(saved["block_ids"].tolist())
+        return cls(block_ids=ids, length=length, weight=weight, **arrays)
+
+
+_ARRAYS = ("rows", "start", "index", "value", "rhs", "friction")
+
+
+def assemble(
+    model: RigidBlockModel, loads: Loads | None = None, units: Units | None = None
+) -> EquilibriumProgram:
+    """Set up Eq. 23-24 in scaled units.
+
+    A force f at point p on block i, centroid c, enters its rows as (f, (p - c) x f); the block
+    on the other side takes -f, the ground and fixed blocks nothing.  The cone |t| <= mu n,
+    n >= 0 of a contact point is spanned by the forces normal +- mu tangent.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Blocks and interfaces.
+    loads : Loads, optional
+        Dead and live loads; the tilting table unless given.
+    units : Units, optional
+        Those of :func:`units_of` unless given, which takes a free block.
+
+    Examples
+    --------
+    >>> assemble(RigidBlockModel((Block(1, 4.0, (1.0, 1.0)),), ())).column_count
+    1
+    """
+    loads = tilting_table(model) if loads is None else loads
+    places = [i for i, block in enumerate(model.blocks) if not block.fixed]
+    free = [model.blocks[i] for i in places]
+    units = units_of(model) if units is None else units
+    unit = units.weight * np.array([1.0, 1.0, units.length])
+    rows = _rows(free)
+    moving = rows >= 0
+    friction = _friction(model)
+    force, arm, blocks = _cone_edges(model, free, friction)
+
+    value = np.empty((len(force), 2, 3))
+    value[:, :, :2] = np.array([[1.0], [-1.0]]) * force[:, None, :]
+    arm = arm / units.length
+    value[:, :, 2] = arm[:, :, 0] * value[:, :, 1] - arm[:, :, 1] * value[:, :, 0]
+    # The last row, that of -1, is for what does not move.
+    index = np.vstack((rows, np.full(3, -1, np.int32)))[blocks]
+    kept = index >= 0
+
+    live = (loads.live[places] / unit)[moving]
+    pushed = np.flatnonzero(live)
+    rhs = -(loads.dead[places] / unit)[moving]
+    entries = np.concatenate(([len(pushed)], kept.sum(axis=(1, 2))))
+    return EquilibriumProgram(
+        block_ids=tuple(block.id for block in free),
+        rows=rows,
+        start=np.concatenate(([0], np.cumsum(entries))).astype(np.int32),
+        index=np.concatenate((pushed, index[kept])).astype(np.int32),
+        value=np.concatenate((live[pushed], value[kept])),
+        rhs=rhs,
+        friction=friction,
+        length=units.length,
+        weight=units.weight,
+    )
+
+
+def _rows(free: list[Block]) -> Ints:
+    """Give every freedom of the free blocks a row; -1 for what is held."""
+    if not any(block.held for block in free):
+        return np.arange(3 * len(free), dtype=np.int32).reshape(-1, 3)
+    moving = np.array([[freedom not in block.held for freedom in FREEDOMS] for block in free])
+    rows = np.full(moving.shape, -1, np.int32)
+    rows[moving] = np.arange(int(moving.sum()))
+    return rows
+
+
+def _friction(model: RigidBlockModel) -> Floats:
+    """Return the coefficient of friction at every contact point."""
+    each = [model.friction(interface) for interface in model.interfaces]
+    counts = [len(interface.points) for interface in model.interfaces]
+    return np.repeat(np.array(each, float), np.array(counts, np.int64))
+
+
+def _cone_edges(
+    model: RigidBlockModel, free: list[Block], friction: Floats
+) -> tuple[Floats, Floats, Ints]:
+    """List the two edges of the friction cone at every contact point.
+
+    Returns
+    -------
+    force : (m, 2) float array
+        On the block that the normal points into.
+    arm : (m, 2, 2) float array
+        From the centroids of that block and of the other one to the point; anything for the
+        ground.
+    blocks : (m, 2) int array
+        Their places in `free`, -1 for what does not move.
+    """
+    place = {block.id: -1 for block in model.blocks}
+    place[GROUND] = -1
+    place.update((block.id, i) for i, block in enumerate(free))
+    points = [interface.points for interface in model.interfaces]
+    repeats = 2 * np.array([len(ends) for ends in points], np.int64)
+    at = np.repeat(np.concatenate([np.empty((0, 2)), *points]), 2, axis=0)
+    pairs = [(place[i.block], place[i.other]) for i in model.interfaces]
+    blocks = np.repeat(np.array(pairs, np.int32).reshape(-1, 2), repeats, axis=0)
+    normals = [interface.normal for interface in model.interfaces]
+    normal = np.repeat(np.array(normals, float).reshape(-1, 2), repeats, axis=0)
+    tangent = np.column_stack((normal[:, 1], -normal[:, 0]))
+    along = np.repeat(friction, 2) * np.tile([1.0, -1.0], len(friction))
+    centroid = np.array([*(block.centroid for block in free), (0.0, 0.0)])
+    return normal + along[:, None] * tangent, at[:, None, :] - centroid[blocks], blocks

@@ -1,1 +1,0 @@
-"""Linear programs in, solutions out: one module a library."""

@@ -1,0 +1,59 @@
+"""Blocks that are held by their own squeeze: by friction on upright faces alone (DESIGN 4.8)."""
+
+from dataclasses import replace
+
+from drystone.statics.failing.mechanism import describe_mechanism
+from drystone.statics.joints import slippery
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.loads import Loads
+from drystone.statics.lp.extremes import Solver
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LimitStatus
+
+
+def held_by_upright_faces(
+    model: RigidBlockModel, loads: Loads | None = None, *, solver: Solver = "auto"
+) -> tuple[int, ...] | None:
+    """Name the blocks that fall when upright faces have no friction.
+
+    Equilibrium asks only whether forces exist.  Upright faces can be pressed together as hard
+    as it takes to hold what is between them, by nothing but themselves, and the analysis says
+    that the wall stands; in the world nothing may have pressed them.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        A wall that stands under its dead load.
+    loads : Loads, optional
+        Those of the analysis; the tilting table unless given.
+    solver : {"auto", "highs", "highs-ipm", "clarabel"}
+        As for :func:`drystone.statics.limit.lateral_resistance`.
+
+    Returns
+    -------
+    tuple of int or None
+        In the order of the model; none when the wall stands without that friction.  Those that
+        move in the mechanism, then with these held fast those of the next one, until the rest
+        stands.  None when a solver gave up.
+
+    Examples
+    --------
+    A brick between two piers.
+
+    >>> from drystone.contacts.given import model_from_json
+    >>> piers = [[0, 0, 1, 4], [2, 0, 1, 4]]
+    >>> held_by_upright_faces(model_from_json({"blocks_xywh": [*piers, [1, 1.5, 1, 1]]}))
+    (3,)
+    """
+    smooth = replace(model, interfaces=slippery(model.interfaces, model.mu))
+    fallen: set[int] = set()
+    while True:
+        found = lateral_resistance(smooth, loads, mechanism=True, solver=solver).left
+        if found.status is LimitStatus.FAILED:
+            return None
+        if found.status is not LimitStatus.UNSTABLE:
+            return tuple(block.id for block in model.blocks if block.id in fallen)
+        assert found.mechanism is not None  # noqa: S101 - it was asked for, and is the proof
+        fallen.update(describe_mechanism(smooth, found.mechanism).moving)
+        blocks = (replace(b, fixed=b.fixed or b.id in fallen) for b in smooth.blocks)
+        smooth = replace(smooth, blocks=tuple(blocks))

@@ -1,0 +1,156 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from drystone.contacts.blocks import model_from_labels, model_with
+from drystone.contacts.interfaces import PointContacts, find_interfaces
+from drystone.errors import InputError, LabelImageError
+from drystone.model.placement import Placement, Wedge
+from drystone.model.pose import PosedStone
+from drystone.model.stone import Stone
+from drystone.statics.model import GROUND, Block, RigidBlockModel
+from tests.strategies import repeatable
+
+pictures = arrays(
+    np.uint32, st.tuples(st.integers(1, 10), st.integers(1, 10)), elements=st.integers(0, 4)
+)
+
+
+def placed(labels, block_id):
+    """The pixels of one id as a placement."""
+    rows, cols = np.nonzero(labels == block_id)
+    mask = (labels == block_id)[rows.min() : rows.max() + 1, cols.min() : cols.max() + 1].copy()
+    posed = PosedStone(Stone(block_id, mask), 0.0, 1.0, mask, (0.0, 0.0))
+    return Placement(posed, int(rows.min()), int(cols.min()))
+
+
+def as_wedge(labels, block_id, under):
+    place = placed(labels, block_id)
+    return Wedge(block_id, under, place.posed.mask.copy(), place.row, place.col)
+
+
+def told(model):
+    """What a model says, in an order that does not depend on construction."""
+    interfaces = [
+        (i.block, i.other, [tuple(p) for p in i.points.tolist()], i.normal)
+        for i in model.interfaces
+    ]
+    return sorted(model.blocks, key=lambda block: block.id), sorted(interfaces), model.mu
+
+
+def test_area_and_centroid_of_pixel_squares():
+    labels = np.zeros((6, 8), np.uint32)
+    labels[4:, 2:6] = 70_000
+    labels[2:4, 2:4] = 70_000
+    (block,) = model_from_labels(labels).model.blocks
+    assert block == Block(70_000, 12.0, ((8 * 4 + 4 * 3) / 12, (8 * 1 + 4 * 3) / 12))
+
+
+def test_empty_rows_below_are_cropped_and_that_is_said():
+    labels = np.zeros((50, 30), np.uint32)
+    labels[0:40, 5:25] = 1
+    picture = model_from_labels(labels, mu=0.4)
+    assert picture.ground_row == 40
+    assert [notice.code for notice in picture.notices] == ["W301"]
+    assert "10 empty rows" in str(picture.notices[0])
+    assert picture.model.blocks[0].centroid == (15.0, 20.0)
+    assert picture.model.interfaces[0].other == GROUND
+    assert picture.model.mu == 0.4
+
+
+def test_nothing_is_said_when_nothing_is_cropped():
+    assert model_from_labels(np.ones((2, 2), np.uint32)).notices == ()
+
+
+def test_an_empty_image_has_no_blocks():
+    picture = model_from_labels(np.zeros((4, 5), np.uint32))
+    assert (picture.model.blocks, picture.model.interfaces) == ((), ())
+    assert (picture.ground_row, picture.notices) == (4, ())
+
+
+@pytest.mark.parametrize(
+    "labels",
+    [np.ones(4, np.uint32), np.ones((2, 2)), np.array([[1, -1]]), np.ones((2, 2, 3), np.uint8)],
+)
+def test_what_is_no_label_image_is_refused(labels):
+    with pytest.raises(LabelImageError, match="E301"):
+        model_from_labels(labels)
+
+
+@pytest.mark.parametrize("mu", [-0.1, float("nan"), float("inf")])
+def test_what_is_no_friction_is_refused(mu):
+    with pytest.raises(InputError, match="E302"):
+        model_from_labels(np.ones((2, 2), np.uint32), mu)
+
+
+def test_labels_of_other_integer_types_are_read():
+    labels = np.ones((4, 2))
+    assert told(model_from_labels(labels.astype(np.int64)).model) == told(
+        model_from_labels(labels.astype(np.uint8)).model
+    )
+
+
+@given(labels=pictures, order=st.permutations(range(1, 5)), with_wedge=st.booleans())
+@repeatable(100)
+def test_stone_after_stone_gives_the_model_of_the_whole(labels, order, with_wedge):
+    labels = labels.copy()
+    labels[-1, 0] = 1  # something on the lowest row, so that nothing is cropped
+    present = [block for block in order if (labels == block).any()]
+    built, model = np.zeros_like(labels), RigidBlockModel((), (), 0.5)
+    while present:
+        first, *wedges = present[: 1 + with_wedge]
+        present = present[1 + with_wedge :]
+        before = built.copy()
+        parts = tuple(as_wedge(labels, wedge, first) for wedge in wedges)
+        model = model_with(model, built, placed(labels, first), parts)
+        assert (built == before).all()
+        new = np.isin(labels, [first, *wedges])
+        built[new] = labels[new]
+    expected = model_from_labels(labels, 0.5).model
+    blocks, interfaces, mu = told(model)
+    assert (interfaces, mu) == told(expected)[1:]
+    for block, other in zip(blocks, told(expected)[0], strict=True):
+        assert (block.id, block.area) == (other.id, other.area)
+        assert block.centroid == pytest.approx(other.centroid, abs=1e-12)
+
+
+def told_exactly(model):
+    return told(model), model.added.closed
+
+
+@given(labels=pictures, first=st.integers(1, 4))
+@repeatable(100)
+def test_points_known_before_change_nothing(labels, first):
+    labels = labels.copy()
+    labels[-1, 0], labels[-1, -1] = 1, first
+    wall = np.where(labels == first, 0, labels)
+    model, new = model_from_labels(labels).model, placed(labels, first)
+    model = RigidBlockModel(model.blocks, find_interfaces(wall), model.mu)
+    anew = told_exactly(model_with(model, wall, new))
+    points = PointContacts.of(model.interfaces)
+    assert told_exactly(model_with(model, wall, new, points=points)) == anew
+    others = PointContacts.of(find_interfaces(labels))
+    assert told_exactly(model_with(model, wall, new, points=others)) == anew
+
+
+def test_points_known_before_are_believed():
+    labels = np.kron([[1, 0], [0, 2]], np.ones((4, 4))).astype(np.uint32)
+    model = model_from_labels(labels).model
+    stone = PosedStone(Stone(3, np.ones((4, 4), bool)), 0.0, 1.0, np.ones((4, 4), bool), (2.0, 2.0))
+    for points, closed in (
+        (None, (1,)),
+        (PointContacts.of(model.interfaces), (1,)),
+        (PointContacts(model.interfaces, ()), ()),
+    ):
+        grown = model_with(model, labels, Placement(stone, 4, 0), points=points)
+        assert grown.added.closed == closed
+
+
+def test_a_placement_knows_area_and_centroid_of_its_pixels():
+    labels = np.zeros((30, 40), np.uint32)
+    mask = np.array([[1, 1, 0], [1, 1, 1]], bool)
+    posed = PosedStone(Stone(5, mask), 0.0, 1.0, mask, (0.0, 0.0))
+    model = model_with(RigidBlockModel((), ()), labels, Placement(posed, 20, 30))
+    assert model.blocks == (Block(5, 5.0, (30 + 6.5 / 5, 8 + 4.5 / 5)),)

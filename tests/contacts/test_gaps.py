@@ -1,0 +1,216 @@
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.gap_spread import closed_gap_spread
+from drystone.contacts.gaps import close_gaps, model_with_closed_gaps, settle_gaps
+from drystone.contacts.pieces import notice_of_pieces, pieces_apart
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import GROUND
+from tests.naive.gaps import distance, lies_between
+from tests.statics.walls import brick_model
+from tests.strategies import repeatable
+
+
+def bond(courses, half_px, tall_px, joint_px):
+    """Running bond of three bricks a course; joints are cut from bricks of the tight bond."""
+    pitch = tall_px + joint_px
+    labels = np.zeros((courses * pitch, 6 * half_px), np.uint32)
+    number = 0
+    for course in range(courses):
+        edges = [0, 2, 4, 6] if course % 2 == 0 else [0, 1, 3, 5, 6]
+        rows = slice(labels.shape[0] - course * pitch - tall_px, labels.shape[0] - course * pitch)
+        for left, right in pairwise(edges):
+            number += 1
+            first = left * half_px + (joint_px // 2 if left else 0)
+            last = right * half_px - (joint_px - joint_px // 2 if right < 6 else 0)
+            labels[rows, first:last] = number
+    return labels
+
+
+def pairs(model):
+    return {(i.block, i.other) for i in model.interfaces}
+
+
+@pytest.mark.parametrize(("courses", "tall", "joint"), [(6, 38, 2), (6, 37, 3), (8, 38, 2)])
+def test_a_bond_with_open_joints_is_as_strong_as_the_tight_one(courses, tall, joint):
+    labels = bond(courses, 20, tall, joint)
+    tight = brick_model(courses, 3, (tall + joint) / 20, 0.58)
+    closed = model_with_closed_gaps(labels, joint).model
+    assert pairs(closed) == pairs(tight)
+    assert len(closed.interfaces) == len(tight.interfaces)
+    found, true = lateral_resistance(closed), lateral_resistance(tight)
+    assert found.left.alpha == pytest.approx(true.left.alpha, rel=0.02)
+    assert found.right.alpha == pytest.approx(true.right.alpha, rel=0.02)
+    assert lateral_resistance(model_with_closed_gaps(labels, joint - 1).model).value is None
+
+
+def test_weights_and_centroids_are_those_of_the_stones():
+    labels = bond(4, 12, 20, 2)
+    assert model_with_closed_gaps(labels, 2).model.blocks == model_from_labels(labels).model.blocks
+
+
+def test_stones_meet_in_the_middle_of_the_gap():
+    labels = np.kron([[1], [0], [0], [2]], np.ones((2, 9), int))
+    (joint,) = [i for i in model_with_closed_gaps(labels, 4).model.interfaces if i.other != GROUND]
+    assert joint.points.tolist() == [[9, 4], [0, 4]]
+    assert joint.normal == (0, -1)
+
+
+def test_a_tilted_gap_is_as_wide_as_it_is_across():
+    row, col = np.mgrid[:60, :60]
+    away = (row - 30 - 0.5 * (col - 30)) / np.hypot(1, 0.5)
+    labels = np.where(away < -3, 1, np.where(away > 3, 2, 0))
+    for reach, closed in ((4, False), (8, True)):
+        assert ((2, 1) in pairs(model_with_closed_gaps(labels, reach).model)) == closed
+    away = (row - col) / np.hypot(1, 1)
+    labels = np.where(away < -3, 1, np.where(away > 3, 2, 0))
+    assert (close_gaps(labels, 6.5) > 0).mean() > 0.98
+    assert (close_gaps(labels, 5) == labels).mean() > 0.98
+
+
+def test_nothing_grows_into_free_air():
+    labels = np.zeros((20, 30), np.uint32)
+    labels[5:, :12], labels[8:, 14:26] = 1, 2
+    closed = close_gaps(labels, 6)
+    grown = np.argwhere(closed != labels)
+    assert grown.min(axis=0).tolist() == [8, 12]
+    assert grown.max(axis=0).tolist() == [19, 13]
+    assert (closed[8:, 12] == 1).all()
+    assert (closed[8:, 13] == 2).all()
+
+
+def test_gaps_wider_than_the_reach_stay_as_they_are():
+    labels = bond(4, 12, 20, 3)
+    assert (close_gaps(labels, 2) == labels).all()
+
+
+def test_what_grows_is_connected_with_its_stone():
+    labels = np.zeros((9, 14), np.uint32)
+    labels[0, :2], labels[:4, 4:8], labels[8, 1], labels[5:, 10:13], labels[8, 13] = 1, 4, 5, 3, 2
+    assert pieces_apart(close_gaps(labels, 5)) == ()
+    assert (5, 3) not in pairs(model_from_labels(close_gaps(labels, 5)).model)
+    assert distance(labels, 5, 3) > 5
+
+
+def test_stones_beyond_the_reach_do_not_meet_through_what_others_leave_open():
+    labels = np.zeros((12, 15), np.uint32)
+    labels[:2, 7], labels[2:6, 8:12], labels[5, 2], labels[6:9, 14], labels[11, 3] = 5, 3, 4, 2, 1
+    assert distance(labels, 3, 1) > 6
+    assert (3, 1) not in pairs(model_from_labels(close_gaps(labels, 6)).model)
+
+
+def test_a_stone_does_not_grow_into_the_head_joint_below_it():
+    labels = np.full((20, 30), 3)
+    labels[8:, :14], labels[8:, 14:17], labels[8:, 17:] = 1, 0, 2
+    closed = close_gaps(labels, 4)
+    assert (closed[8:, 14:16] == 1).all()
+    assert (closed[8:, 16] == 2).all()
+
+
+def test_a_stone_just_above_the_ground_stands_on_it():
+    labels = np.zeros((12, 20), np.uint32)
+    labels[:10, :8], labels[2:, 10:] = 1, 2
+    assert (1, GROUND) not in pairs(model_with_closed_gaps(labels, 1).model)
+    assert (1, GROUND) in pairs(model_with_closed_gaps(labels, 2).model)
+
+
+scattered = arrays(
+    np.uint32,
+    st.tuples(st.integers(2, 12), st.integers(2, 12)),
+    elements=st.sampled_from([0, 0, 0, 1, 2, 3, 4]),
+    fill=st.just(0),
+)
+
+
+@given(labels=scattered, reach=st.integers(1, 6))
+@repeatable(150)
+def test_closing_keeps_stones_and_joins_only_those_within_reach(labels, reach):
+    closed = close_gaps(labels, reach)
+    assert (closed[labels > 0] == labels[labels > 0]).all()
+    assert set(np.unique(closed)) <= set(np.unique(labels)) | {0}
+    height = int(np.flatnonzero(labels.any(axis=1))[-1]) + 1 if labels.any() else 0
+    for row, col in np.argwhere(closed != labels).tolist():
+        assert lies_between(closed[:height] * (closed[:height] == labels[:height]), row, col)
+    for one, other in pairs(model_from_labels(closed).model):
+        if other != GROUND:
+            assert distance(labels, one, other) <= reach
+
+
+def test_settled_stones_rest_without_overlap():
+    labels = bond(4, 10, 12, 3)
+    settled, moved = settle_gaps(labels)
+    assert moved[4] == (0, 3)
+    assert max(down for _, down in moved.values()) == 9
+    assert 1 not in moved
+    assert (settled == 0)[:9].all()
+    resting = {i.block for i in model_from_labels(settled).model.interfaces if i.normal[1] > 0.9}
+    assert resting == set(range(1, 15))
+
+
+def test_pushed_stones_touch_their_neighbours():
+    settled, moved = settle_gaps(bond(2, 10, 12, 2), "left")
+    assert moved[2] == (-2, 0)
+    assert moved[3] == (-4, 0)
+    assert (2, 1) in pairs(model_from_labels(settled).model)
+    mirrored, ways = settle_gaps(bond(2, 10, 12, 2)[:, ::-1], "right")
+    assert (mirrored == settled[:, ::-1]).all()
+    assert ways == {block: (-aside, down) for block, (aside, down) in moved.items()}
+
+
+@given(labels=scattered, push=st.sampled_from([None, "left", "right"]))
+@repeatable(100)
+def test_settling_moves_stones_as_rigid_bodies_until_they_rest(labels, push):
+    settled, moved = settle_gaps(labels, push)
+    height = int(np.flatnonzero(labels.any(axis=1))[-1]) + 1 if labels.any() else 0
+    below = np.vstack([settled[:height], np.full((1, labels.shape[1]), 99)])
+    for block in np.unique(labels[labels > 0]).tolist():
+        aside, down = moved.get(block, (0, 0))
+        assert down >= 0
+        there = np.argwhere(settled == block).tolist()
+        assert there == (np.argwhere(labels == block) + np.array([down, aside])).tolist()
+        assert any(below[row + 1, col] not in (0, block) for row, col in there)
+
+
+def test_the_spread_says_what_the_reach_decides():
+    labels = bond(6, 20, 38, 2)
+    spread = closed_gap_spread(labels, 2)
+    assert spread.chosen.f_lr == pytest.approx(0.596, abs=0.01)
+    assert [v.f_lr for v in spread.others] == [None, spread.chosen.f_lr]
+    assert spread.words().startswith("F_LR .596 with gaps up to 2 px closed (unstable with gaps")
+    settled = closed_gap_spread(labels, None)
+    pushed = lateral_resistance(model_from_labels(settle_gaps(labels, "right")[0]).model)
+    assert settled.others[1].f_lr == pushed.value
+    assert settled.chosen.name == "stones settled"
+
+
+def test_without_friction_the_spread_of_gaps_has_no_number():
+    stack = np.kron([[1], [0], [2]], np.ones((2, 8), int))
+    words = closed_gap_spread(stack, 2, mu=0.0).words()
+    assert words.startswith("F_LR not defined with gaps up to 2 px closed")
+    assert "optimal" not in words
+
+
+def test_pixels_that_lie_apart_are_counted_and_said():
+    labels = np.zeros((6, 9), np.uint32)
+    labels[:3, :3], labels[3, 3], labels[5, 6:8], labels[0, 8] = 7, 7, 7, 2
+    assert pieces_apart(labels) == ((7, 2),)
+    (notice,) = notice_of_pieces(labels)
+    assert notice.code == "W304"
+    assert notice.message.startswith("2 pixels of stone 7 lie apart from it;")
+    assert notice_of_pieces(np.ones((2, 2), int)) == ()
+
+
+def test_no_toe_grows_beyond_its_stone():
+    labels = np.zeros((23, 60), np.uint32)
+    labels[:20, 10:20], labels[3:, 22:40] = 1, 2
+    for interface in model_with_closed_gaps(labels, 4).model.interfaces:
+        if interface.other == 0:
+            cols = np.flatnonzero((labels == interface.block).any(axis=0))
+            assert interface.points[:, 0].min() >= cols[0]
+            assert interface.points[:, 0].max() <= cols[-1] + 1

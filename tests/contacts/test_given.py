@@ -1,0 +1,332 @@
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from drystone.contacts.given import model_from_json, polygons_from_json
+from drystone.errors import InputError
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import GROUND
+from tests.polygons import outlines_along_a_line
+from tests.strategies import repeatable
+
+
+def told(model):
+    return [
+        (i.block, i.other, [tuple(p) for p in i.points.round(9).tolist()], i.normal)
+        for i in model.interfaces
+    ]
+
+
+def square(x, y, size=2.0):
+    return [[x, y], [x + size, y], [x + size, y + size], [x, y + size]]
+
+
+def test_rectangles_touch_along_bed_and_head_joints():
+    model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [2, 0, 2, 1], [1, 1, 2, 1]], "mu": 0.65})
+    assert model.mu == 0.65
+    assert [(b.id, b.area, b.centroid) for b in model.blocks] == [
+        (1, 2, (1, 0.5)),
+        (2, 2, (3, 0.5)),
+        (3, 2, (2, 1.5)),
+    ]
+    assert told(model) == [
+        (1, GROUND, [(0, 0), (2, 0)], (0, 1)),
+        (2, GROUND, [(2, 0), (4, 0)], (0, 1)),
+        (2, 1, [(2, 1), (2, 0)], (1, 0)),
+        (3, 1, [(1, 1), (2, 1)], (0, 1)),
+        (3, 2, [(2, 1), (3, 1)], (0, 1)),
+    ]
+
+
+def test_corners_that_meet_only_at_a_corner_are_no_contact():
+    model = model_from_json({"blocks_xywh": [[0, 0, 1, 1], [1, 1, 1, 1]]})
+    assert told(model) == [(1, GROUND, [(0, 0), (1, 0)], (0, 1))]
+
+
+def test_polygons_in_either_sense_with_density_and_fixed():
+    data = {
+        "blocks": [
+            {"id": 7, "polygon": square(0, 0), "fixed": True},
+            {"id": 3, "polygon": square(0, 2)[::-1], "density": 2.5},
+        ]
+    }
+    model = model_from_json(data)
+    assert model.mu == 0.58
+    assert [(b.id, b.weight, b.fixed) for b in model.blocks] == [(7, 4, True), (3, 10, False)]
+    assert told(model) == [
+        (7, GROUND, [(0, 0), (2, 0)], (0, 1)),
+        (7, 3, [(2, 2), (0, 2)], (0, -1)),
+    ]
+
+
+def test_a_tilted_joint_has_its_own_normal():
+    lower, upper = [[0, 0], [4, 0], [4, 3], [0, 1]], [[0, 1], [4, 3], [4, 6], [0, 6]]
+    model = model_from_json(
+        {"blocks": [{"id": i, "polygon": p} for i, p in ((1, lower), (2, upper))]}
+    )
+    assert model.interfaces[-1].normal == pytest.approx((-1 / 5**0.5, 2 / 5**0.5))
+
+
+def test_a_corner_that_stands_on_an_edge_is_a_contact_at_a_point():
+    roof = [[0, 0], [4, 0], [2, 2]]
+    beam = [[0, 2], [4, 2], [4, 3], [0, 3]]
+    for ids in ((1, 2), (2, 1)):
+        model = model_from_json(
+            {"blocks": [{"id": i, "polygon": p} for i, p in zip(ids, (roof, beam), strict=True)]}
+        )
+        (contact,) = (i for i in model.interfaces if i.other != GROUND)
+        assert contact.points.tolist() == [[2, 2]]
+        assert contact.normal == (0, 1 if contact.block == ids[1] else -1)
+
+
+def test_a_block_on_its_corner_touches_the_ground_at_a_point():
+    diamond = [[0, 0], [1, 1], [0, 2], [-1, 1]]
+    model = model_from_json({"blocks": [{"id": 1, "polygon": diamond}]})
+    assert told(model) == [(1, GROUND, [(0, 0)], (0, 1))]
+
+
+def test_the_density_is_the_weight():
+    """A heavy cap moves the common centre of mass: b/h of the whole, not of the blocks."""
+    blocks = [{"id": 1, "polygon": square(0, 0)}, {"id": 2, "polygon": square(0, 2), "density": 3}]
+    both = lateral_resistance(model_from_json({"blocks": blocks, "mu": 2.0}))
+    centre = (1 * 1 + 3 * 3) / 4
+    assert both.right.alpha == pytest.approx(1 / centre)
+
+
+def test_gaps_within_the_tolerance_are_contacts_and_wider_ones_are_not():
+    for gap, count in ((1e-7, 2), (1e-4, 1)):
+        model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [0, 1 + gap, 2, 1]]})
+        assert len(model.interfaces) == count
+
+
+def two_and_a_far_one(gap, far, size=1.0, above=1.0):
+    """A block, one above it with a gap, and one far away; the second may be of another size."""
+    second = [0, size + gap, above, above]
+    return {"blocks_xywh": [[0, 0, size, size], second, [far, 0, size, size]], "mu": 0.58}
+
+
+@pytest.mark.parametrize("far", [5.0, 1e3, 2e6, 1e8])
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_a_far_block_changes_no_answer_nearby(far, size):
+    for gap, stands in ((0.0, True), (1e-6 * size, True), (1e-3 * size, False)):
+        model = model_from_json(two_and_a_far_one(gap, far * size, size, size))
+        both = lateral_resistance(model)
+        assert both.stable == stands
+        if stands:
+            assert both.right.alpha == pytest.approx(0.5, abs=1e-5)
+
+
+def test_the_tolerance_of_a_pair_is_that_of_the_smaller_block():
+    """A gap that is nothing beside a large block is one beside a small one."""
+    for above, stands in ((1.0, True), (1e-2, False)):
+        gap = 3e-7
+        assert lateral_resistance(
+            model_from_json(two_and_a_far_one(gap, 10.0, above=above))
+        ).stable == stands  # fmt: skip
+
+
+@given(
+    seed=st.integers(0, 10**6),
+    size=st.sampled_from([1e-3, 1.0, 1e3]),
+    far=st.sampled_from([0.0, 1e3, 1e6]),
+    angle_deg=st.floats(0.0, 180.0),
+)
+@repeatable(40)
+def test_two_halves_of_a_polygon_touch_and_do_not_overlap(seed, size, far, angle_deg):
+    """However rounding turns their common edge."""
+    rng = np.random.default_rng(seed)
+    angles = np.sort(rng.random(8)) * 2.0 * np.pi
+    corners = np.column_stack((np.cos(angles), 2.0 + np.sin(angles)))
+    turn = math.radians(angle_deg)
+    normal = np.array([math.cos(turn), math.sin(turn)])
+    sides = (corners - corners.mean(axis=0)) @ normal
+    cuts = []
+    for i in range(8):
+        j = (i + 1) % 8
+        if sides[i] * sides[j] < 0.0:
+            share = sides[i] / (sides[i] - sides[j])
+            cuts.append((i, corners[i] + share * (corners[j] - corners[i])))
+    assume(len(cuts) == 2)
+    (i, first), (j, second) = cuts
+    halves = [[first, *corners[i + 1 : j + 1], second]]
+    halves.append([second, *corners[j + 1 :], *corners[: i + 1], first])
+    areas = [shapely.Polygon(half).area for half in halves]
+    assume(min(areas) > 1e-3)
+
+    def model(deep):
+        """Push the second half into the first by so many tolerances."""
+        into = normal if sides[i + 1] > 0.0 else -normal
+        shift = deep * 1e-5 * math.sqrt(min(areas)) * into
+        moved = [np.array(halves[0]), np.array(halves[1]) + shift]
+        blocks = [
+            {"id": k, "polygon": (size * half + [size * far, 0.0]).tolist()}
+            for k, half in enumerate(moved, start=1)
+        ]
+        return model_from_json({"blocks": blocks})
+
+    edge = float(np.hypot(*(second - first)))
+    assume(edge > 0.05)
+    for deep in (0.0, 0.8, -0.8):
+        (joint,) = (i for i in model(deep).interfaces if i.other == 1)
+        assert joint.length == pytest.approx(size * edge, rel=1e-2)
+    with pytest.raises(InputError, match="blocks 1 and 2 overlap"):
+        model(3.0)
+    assert not any(i.other == 1 and i.length for i in model(-1.5).interfaces)
+
+
+def test_bars_that_cross_overlap_although_no_corner_is_inside():
+    bars = {"blocks_xywh": [[0, 1, 3, 1], [1, 0, 1, 3]]}
+    with pytest.raises(InputError, match="blocks 1 and 2 overlap"):
+        model_from_json(bars)
+
+
+def test_a_gap_that_opens_along_an_edge_leaves_a_contact_at_a_point():
+    lower = {"id": 1, "polygon": [[0, 0], [2, 0], [2, 1], [0, 1]]}
+    upper = {"id": 2, "polygon": [[0.5, 1], [1.5, 1.0005], [1.5, 2], [0.5, 2]]}
+    model = model_from_json({"blocks": [lower, upper]})
+    assert told(model)[1:] == [(2, 1, [(0.5, 1)], (0, 1))]
+
+
+def test_a_closed_polygon_and_repeated_corners_are_read():
+    polygon = [*square(0, 0), [0, 0]]
+    polygon.insert(1, polygon[1])
+    model = model_from_json({"blocks": [{"id": 1, "polygon": polygon}]})
+    assert told(model) == [(1, GROUND, [(0, 0), (2, 0)], (0, 1))]
+
+
+@pytest.mark.parametrize("last", [(-1e-17, 0.0), (0.0, 1e-13), (-1e-16, 1e-16)])
+def test_a_closing_corner_but_for_rounding_is_read(last):
+    """Each of both was on the line through the other, and the block lost half of its area."""
+    polygon = [*square(0, 0), last]
+    model = model_from_json({"blocks": [{"id": 1, "polygon": polygon}]})
+    assert model.blocks[0].area == pytest.approx(4.0)
+    assert lateral_resistance(model).value == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("angle_deg", range(1, 90, 4))
+def test_a_turned_square_that_is_closed_by_its_angle_is_whole(angle_deg):
+    angles = math.radians(angle_deg) + np.pi / 2 * np.arange(5)
+    corners = np.column_stack((np.cos(angles), 2.0 + np.sin(angles)))
+    model = model_from_json({"blocks": [{"id": 1, "polygon": corners.tolist()}]})
+    assert model.blocks[0].area == pytest.approx(2.0)
+
+
+def test_no_blocks_is_a_model():
+    assert model_from_json({"blocks_xywh": []}).blocks == ()
+
+
+def test_blocks_far_from_the_origin_lose_no_digits():
+    model = model_from_json({"blocks_xywh": [[1e8, 0, 1, 2]]})
+    assert model.blocks[0].centroid == (1e8 + 0.5, 1.0)
+    assert lateral_resistance(model).right.alpha == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("data", "code"),
+    [
+        ({}, "E303"),
+        ({"blocks_xywh": 3}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1]]}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1, "wide"]]}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1, math.nan]]}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1, 0]]}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1, 1]], "mu": "rough"}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1, 1]], "mu": -1}, "E302"),
+        ({"blocks_xywh": [[0, -1, 1, 3]]}, "E304"),
+        ({"blocks_xywh": [[0, 0, 2, 2], [1, 1, 2, 2]]}, "E304"),
+        ({"blocks": [{"id": 1}]}, "E303"),
+        ({"blocks": [7]}, "E303"),
+        ({"blocks": [{"polygon": square(0, 0)}]}, "E303"),
+        ({"blocks": [{"id": 0, "polygon": square(0, 0)}]}, "E303"),
+        ({"blocks": [{"id": True, "polygon": square(0, 0)}]}, "E303"),
+        ({"blocks": [{"id": 1, "polygon": square(0, 0)[:2]}]}, "E303"),
+        ({"blocks": [{"id": 1, "polygon": [[0, 0], [2, 2], [2, 0], [0, 2]]}]}, "E303"),
+        ({"blocks": [{"id": 1, "polygon": square(0, 0), "density": 0}]}, "E303"),
+        ({"blocks": [{"id": 1, "polygon": square(0, 0), "fixed": "yes"}]}, "E303"),
+        ({"blocks": [{"id": 1, "polygon": square(x, 0)} for x in (0, 2)]}, "E303"),
+    ],
+)
+def test_what_is_no_block_model_is_refused(data, code):
+    with pytest.raises(InputError, match=code) as refused:
+        model_from_json(data)
+    assert refused.value.cure
+    assert refused.value.where
+
+
+def test_a_corner_at_which_an_edge_goes_straight_on_is_none():
+    feet = {"id": 2, "polygon": [[1, 1], [3, 2], [5, 1], [5, 4], [1, 4]]}
+    for step in (0, 1e-13, -1e-13):
+        slab = [[0, 0], [6, 0], [6, 1], [5, 1 + step], [1, 1], [0, 1]]
+        model = model_from_json({"blocks": [{"id": 1, "polygon": slab}, feet]})
+        assert [p.tolist() for i in model.interfaces[1:] for p in i.points] == [[1, 1], [5, 1]]
+    # A turn of a thousandth is a corner.
+    bent = [[0, 0], [6, 0], [6, 1], [3, 1.001], [0, 1]]
+    assert len(polygons_from_json({"blocks": [{"id": 1, "polygon": bent}]})[1]) == 6
+
+
+def test_points_of_an_interface_run_along_it():
+    three = {"between": [1, 0], "points": [[2, 0], [0, 0], [4, 0]], "normal": [0, 1]}
+    model = model_from_json({"blocks_xywh": [[0, 0, 4, 4]], "mu": 2, "interfaces": [three]})
+    assert model.interfaces[0].points.tolist() == [[0, 0], [2, 0], [4, 0]]
+    assert model.interfaces[0].length == 4
+
+
+@pytest.mark.parametrize("unit", [1e-49, 1e-12, 1e12, 1e49])
+def test_any_unit_that_arithmetic_carries(unit):
+    rows = [[0, 0, 0.5, 1], [0.1, 1, 0.4, 0.5]]
+    model = model_from_json({"blocks_xywh": [[unit * v for v in row] for row in rows]})
+    both = lateral_resistance(model)
+    assert (both.left.alpha, both.right.alpha) == pytest.approx((0.37, 0.33), abs=1e-6)
+
+
+def polygon(x, y, size):
+    return {"blocks": [{"id": 1, "polygon": square(x, y, size)}]}
+
+
+@pytest.mark.parametrize(
+    ("data", "cure"),
+    [
+        ({"blocks_xywh": [[0, 0, 1e150, 1e150]]}, "another unit"),
+        ({"blocks_xywh": [[0, 0, 1e60, 1]]}, "another unit"),
+        ({"blocks_xywh": [[1e308, 0, 1e308, 1]]}, "another unit"),
+        ({"blocks_xywh": [[0, 0, 1, 1e-60]]}, "another unit"),
+        ({"blocks_xywh": [[1e17, 0, 1, 1]]}, "origin"),
+        (polygon(0, 0, 1e150), "another unit"),
+        (polygon(0, 0, 1e-150), "another unit"),
+        (polygon(0, 1e10, 1), "origin"),
+    ],
+)
+def test_coordinates_beyond_what_arithmetic_carries_are_refused(data, cure):
+    """Without a warning of NumPy: warnings are errors here."""
+    with pytest.raises(InputError, match="E303") as refused:
+        model_from_json(data)
+    assert cure in refused.value.cure
+
+
+@pytest.mark.parametrize("density", [1e60, 1e-60])
+def test_densities_beyond_what_arithmetic_carries_are_refused(density):
+    block = {"id": 1, "polygon": square(0, 0), "density": density}
+    with pytest.raises(InputError, match="E303"):
+        model_from_json({"blocks": [block]})
+
+
+def test_numbers_that_no_float_holds_are_refused():
+    for data, code in (
+        ({"blocks_xywh": [[0, 0, 1, 10**400]]}, "E303"),
+        ({"blocks_xywh": [[0, 0, 1, 1]], "mu": 10**400}, "E302"),
+    ):
+        with pytest.raises(InputError, match=code):
+            model_from_json(data)
+
+
+def test_blocks_with_a_common_line_do_not_overlap():
+    """In floats GEOS finds three of a hundred such pairs to overlap by up to their whole area."""
+    rng = np.random.default_rng(3)
+    for _ in range(300):
+        pair = outlines_along_a_line(rng)
+        blocks = [{"id": i, "polygon": p.tolist()} for i, p in enumerate(pair, 1)]
+        assert {i.other for i in model_from_json({"blocks": blocks}).interfaces} == {1}

@@ -1,0 +1,195 @@
+"""Models of settled stones: closed forms, exact walls with gaps, and a twin by dense sampling."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+from shapely.geometry.polygon import orient
+
+from drystone.contacts.given import model_from_json
+from drystone.contacts.outlines import model_from_outlines
+from drystone.contacts.settled import (
+    PlacedPolygons,
+    model_of_outlines,
+    model_with_outlines,
+)
+from drystone.errors import InputError
+from drystone.kernels.polygons import area_and_centroid
+from drystone.kernels.raster import turn
+from drystone.statics.incremental import SIMPLEX, incremental_analysis
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.lp.highs import WARM
+from drystone.statics.lp.program import units_of
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LimitStatus
+from drystone_lab.tilted_walls import tilted_wall
+from tests.naive import meetings as naive
+from tests.statics.growth import assert_same
+
+MU = 0.58
+
+
+def box(left, bottom, width, height):
+    corners = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]]
+    return np.array(corners) + np.array([left, bottom])
+
+
+def model_of(*polygons, mu=MU, tolerance=0.1, setback=0.0):
+    placed = PlacedPolygons.of(enumerate(polygons, start=1))
+    return model_of_outlines(placed, mu, tolerance, setback)
+
+
+def alphas(model):
+    found = lateral_resistance(model)
+    return found.left.alpha, found.right.alpha
+
+
+def statuses(model):
+    found = lateral_resistance(model)
+    return found.left.status, found.right.status
+
+
+def settled_wall(seed, loose, lean):
+    """A wall 200 high of polygons with gaps of about .01, moved and turned a little."""
+    rng = np.random.default_rng(seed)
+    placed = []
+    for polygon in tilted_wall(rng, courses=3).polygons:
+        smaller = shapely.Polygon(polygon * 200.0).buffer(
+            -0.005, join_style="mitre", mitre_limit=20.0
+        )
+        corners = shapely.get_coordinates(orient(smaller))[:-1]
+        _, x, y = area_and_centroid(corners)
+        turned = turn(corners - np.array([x, y]), np.degrees(rng.uniform(-lean, lean)))
+        moved = np.array([x, y + loose]) + rng.uniform(-loose, loose, 2)
+        placed.append(turned + moved)
+    return placed
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.01, 0.099])
+def test_a_block_tilts_about_its_toe_whatever_the_gap(gap):
+    """min(mu, b / h)."""
+    assert alphas(model_of(box(0, gap, 20, 40))) == pytest.approx((0.5, 0.5), abs=1e-8)
+    assert alphas(model_of(box(0, gap, 40, 20))) == pytest.approx((MU, MU), abs=1e-8)
+
+
+def test_a_block_out_of_reach_falls():
+    assert statuses(model_of(box(0, 0.11, 20, 40))) == (LimitStatus.UNSTABLE,) * 2
+
+
+WALLS = {
+    "a quarter over": [[0, 0, 40, 20], [10, 20, 40, 20]],
+    "running bond": [[0, 0, 40, 20], [40, 0, 40, 20], [20, 20, 40, 20], [60, 20, 20, 20]],
+    "four joints meet": [[0, 0, 40, 20], [40, 0, 40, 20], [0, 20, 40, 20], [40, 20, 40, 20]],
+    "lintel on two posts": [[0, 0, 20, 60], [80, 0, 20, 60], [0, 60, 100, 10]],
+}
+
+
+@pytest.mark.parametrize("name", WALLS)
+@pytest.mark.parametrize("mu", [0.3, 0.58, 0.9])
+def test_walls_of_boxes_are_as_strong_as_without_gaps(name, mu):
+    boxes = WALLS[name]
+    exact = alphas(model_from_json({"blocks_xywh": boxes, "mu": mu}))
+    # Every box keeps .01 from the left, and what is below.
+    level = {y: k + 1 for k, y in enumerate(sorted({y for _, y, _, _ in boxes}))}
+    placed = [box(x + 0.01 * (x // 20), y + 0.01 * level[y], w, h) for x, y, w, h in boxes]
+    assert alphas(model_of(*placed, mu=mu)) == pytest.approx(exact, abs=2e-3)
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.01, 0.09])
+def test_a_corbel_inside_and_outside_of_its_limit(gap):
+    base = box(0, 0.01, 40, 20)
+    inside, outside = box(19.99, 20.01 + gap, 40, 5), box(20.01, 20.01 + gap, 40, 5)
+    assert statuses(model_of(base, inside)) == (LimitStatus.OPTIMAL,) * 2
+    assert statuses(model_of(base, outside)) == (LimitStatus.UNSTABLE,) * 2
+
+
+def test_a_square_in_a_notch_slides_out_over_a_face():
+    """The faces lean by 45 degrees: alpha = tan(45 degrees + friction angle)."""
+    notch = np.array([[-40.0, 0.0], [40.0, 0.0], [40.0, 80.0], [0.0, 40.0], [-40.0, 80.0]])
+    square = turn(box(0, 0, 20, 20), 45.0) + np.array([0.0, 40.0142])
+    model = model_of(notch, square)
+    fixed = replace(model, blocks=(replace(model.blocks[0], fixed=True), model.blocks[1]))
+    expected = (1 + MU) / (1 - MU)
+    assert alphas(fixed) == pytest.approx((expected, expected), abs=1e-5)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_settled_walls_are_as_strong_as_those_without_gaps(seed):
+    exact = alphas(tilted_wall(np.random.default_rng(seed), courses=3).model())
+    for loose, lean in ((0.0, 0.0), (0.02, 1e-4)):
+        placed = settled_wall(seed, loose, lean)
+        assert alphas(model_of(*placed)) == pytest.approx(exact, abs=1e-3)
+        closed = {i: np.vstack([c, c[:1]]) for i, c in enumerate(placed, start=1)}
+        others = model_from_outlines(closed, MU)
+        assert alphas(model_of(*placed)) == pytest.approx(alphas(others), abs=1e-3)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 3])
+def test_settled_walls_are_as_strong_as_with_a_contact_wherever_stones_are_near(seed):
+    placed = settled_wall(seed, 0.003, 2e-5)
+    twin = naive.model(placed, MU, 0.1, step=1.0)
+    assert twin.contact_count > 3 * model_of(*placed).contact_count
+    assert alphas(model_of(*placed)) == pytest.approx(alphas(twin), abs=1e-3)
+
+
+def test_gaps_that_open_count_as_far_as_they_are_within_the_tolerance():
+    """A brick that leans by .5 degrees on a brick, with the load where only part of it touches."""
+    base = box(0, 0.0, 100, 20)
+    for angle in (0.02, 0.1, 0.5):
+        leaning = turn(box(0, 0, 30, 100), angle) + np.array([20.0, 20.01])
+        found, twin = model_of(base, leaning), naive.model([base, leaning], MU, 0.1, step=0.05)
+        # Towards the side where it touches they agree; on the other one reach is a little less.
+        both, bound = lateral_resistance(found), lateral_resistance(twin)
+        if angle < 0.3:
+            assert both.left.alpha == pytest.approx(bound.left.alpha, abs=1e-3)
+            assert both.right.alpha == pytest.approx(bound.right.alpha, abs=0.02)
+            assert both.right.alpha <= bound.right.alpha + 1e-6
+        assert both.left.status == bound.left.status
+
+
+def test_blocks_and_interfaces_do_not_depend_on_how_they_are_added():
+    placed = settled_wall(2, 0.01, 1e-5)
+    whole = model_of(*placed)
+    ids = list(range(1, len(placed) + 1))
+    grown = RigidBlockModel((), (), MU)
+    for place in range(0, len(placed), 2):  # a stone and its wedge at a time
+        around = PlacedPolygons.of(list(zip(ids, placed, strict=True))[:place])
+        blocks = list(zip(ids, placed, strict=True))[place : place + 2]
+        grown = model_with_outlines(grown, blocks, around, 0.1, 0.0)
+    assert grown.blocks == whole.blocks
+    assert told(grown) == told(whole)
+    assert all(i.block > i.other for i in whole.interfaces)
+
+
+def told(model):
+    return [(i.block, i.other, i.points.tolist(), i.normal) for i in model.interfaces]
+
+
+def test_ids_need_not_ascend():
+    placed = PlacedPolygons.of([(7, box(0, 0.01, 4, 2)), (3, box(2, 2.02, 4, 2))])
+    model = model_of_outlines(placed)
+    assert [(i.block, i.other) for i in model.interfaces] == [(7, 0), (3, 7)]
+    assert model.interfaces[1].normal == (0.0, 1.0)
+
+
+@pytest.mark.parametrize("seed", [1, 4])
+def test_a_wall_that_grows_has_the_load_multipliers_of_the_whole_one(seed):
+    placed = list(enumerate(settled_wall(seed, 0.01, 1e-5), start=1))
+    empty = RigidBlockModel((), (), MU)
+    analysis = incremental_analysis(empty, units_of(model_of_outlines(PlacedPolygons.of(placed))))
+    for count in range(len(placed)):
+        around = PlacedPolygons.of(placed[:count])
+        taller = model_with_outlines(analysis.model, placed[count : count + 1], around, 0.1)
+        candidate = analysis.resistance_with(taller)
+        assert_same(candidate, taller, {SIMPLEX, WARM})
+        analysis = analysis.extended(taller)
+    whole = model_of_outlines(PlacedPolygons.of(placed))
+    found = analysis.result.resistance
+    assert (found.left.alpha, found.right.alpha) == pytest.approx(alphas(whole), abs=1e-9)
+
+
+def test_nothing_and_bad_friction():
+    assert model_of_outlines(PlacedPolygons.of([])).blocks == ()
+    with pytest.raises(InputError, match="friction"):
+        model_of_outlines(PlacedPolygons.of([]), mu=-1.0)

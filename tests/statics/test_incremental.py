@@ -1,0 +1,523 @@
+"""Walls that grow: as strong as walls analysed whole, and believed only where it is proved."""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from drystone.contacts.blocks import model_from_labels, model_with
+from drystone.contacts.given import model_from_json
+from drystone.kernels.certificate import Figures
+from drystone.kernels.simplex import Optimum
+from drystone.statics import incremental
+from drystone.statics.incremental import (
+    LOCAL,
+    HighsAnalysis,
+    LocalAnalysis,
+    SimplexAnalysis,
+    certified_bound,
+    highs_bound,
+    incremental_analysis,
+)
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.lp.highs import WARM, HighsSession, WarmSession
+from drystone.statics.lp.program import Units, units_of
+from drystone.statics.model import Interface, RigidBlockModel
+from drystone.statics.result import LimitStatus
+from tests.kernels.simplex_walls import needs_kernel
+from tests.statics.growth import (
+    ANALYSES,
+    PX,
+    SOLVERS,
+    Pivots,
+    assert_same,
+    beginning,
+    bits,
+    empty,
+    upwards,
+    wall_and_candidates,
+    wall_at_once,
+    with_block,
+)
+from tests.statics.walls import coursed, irregular, stacked
+from tests.strategies import repeatable, walls
+
+
+@pytest.fixture(params=ANALYSES)
+def name(request):
+    return request.param
+
+
+@pytest.fixture
+def begin(name, monkeypatch):
+    """What begins a wall that is analysed by it."""
+    return beginning(name, monkeypatch)
+
+
+@pytest.mark.parametrize(
+    "labels", [coursed(1, 5, 110, 2), coursed(2, 4, 80), irregular(3, 24, 110, 80)]
+)
+def test_walls_grown_stone_by_stone_are_as_strong_as_walls_analysed_whole(labels, begin, name):
+    whole, blocks = upwards(labels)
+    analysis = begin(empty(), PX)
+    unstable = 0
+    solvers = set()
+    for block in blocks:
+        model = with_block(analysis.model, block, whole=whole)
+        found = analysis.resistance_with(model)
+        assert_same(found, model, SOLVERS[name])
+        solvers |= {found.resistance.left.solver, found.resistance.right.solver}
+        if found.resistance.stable:
+            analysis = analysis.extended(model)
+            assert bits(analysis.result) == bits(found)
+            assert bits(analysis.resistance_with(analysis.model)) == bits(found)
+            assert analysis.extended(analysis.model).model is analysis.model
+            assert analysis.model.interfaces is model.interfaces
+            assert analysis.model.added is None
+        unstable += not found.resistance.stable
+    assert len(analysis.model.blocks) == len(blocks) - unstable > 10
+    assert solvers == SOLVERS[name]
+
+
+def test_a_wall_that_fell_can_be_propped(begin, name):
+    """Growing goes on after a stone that falls; the next one holds it."""
+    model = model_from_labels(stacked((20, 20, 0), (20, 20, 14))).model
+    alone = with_block(empty(), model.blocks[0], whole=model)
+    fallen = begin(alone, PX).extended(model)
+    assert fallen.result.resistance.left.status is LimitStatus.UNSTABLE
+    labels = np.zeros((40, 40), np.uint32)
+    labels[20:, :20], labels[:20, 14:34], labels[20:, 24:40] = 1, 2, 3
+    whole = model_from_labels(labels).model
+    prop = tuple(i for i in whole.interfaces if 3 in (i.block, i.other))
+    propped = fallen.model.with_added(whole.blocks[2:], prop)
+    assert fallen.resistance_with(propped).resistance.stable
+    assert_same(fallen.resistance_with(propped), propped, {*SOLVERS[name], WARM})
+
+
+def test_walls_of_pixels_with_contacts_at_points(begin, name):
+    """Stones of any shape on each other: points that close, stones that fall or float."""
+
+    @repeatable(15)
+    @given(walls(max_stones=6))
+    def check(wall):
+        analysis = begin(empty(), Units(5.0, 25.0))
+        built = type(wall).empty(wall.site)
+        for group in wall.groups:
+            model = model_with(analysis.model, built.labels, group.placement, group.wedges)
+            found = analysis.resistance_with(model)
+            assert_same(found, model, {*SOLVERS[name], WARM})
+            analysis = analysis.extended(model)
+            assert bits(analysis.result) == bits(found)
+            built = built.add(group.placement, group.wedges)
+
+    check()
+
+
+def test_two_blocks_at_once(begin, name):
+    """A stone and its wedge."""
+    whole, blocks = upwards(coursed(4, 3, 70))
+    analysis = begin(empty(), PX)
+    for first, second in zip(blocks[::2], blocks[1::2], strict=False):
+        model = with_block(analysis.model, first, second, whole=whole)
+        assert_same(analysis.resistance_with(model), model, SOLVERS[name])
+        analysis = analysis.extended(model)
+    assert len(analysis.model.blocks) >= 6
+
+
+def test_contacts_that_carry_may_go(begin, name):
+    """With a stone or without one; the gaps that they leave in the bases are filled."""
+    whole, blocks = upwards(coursed(6, 4, 80))
+    analysis = begin(empty(), PX)
+    for block in blocks[:-1]:
+        analysis = analysis.extended(with_block(analysis.model, block, whole=whole))
+    stone = with_block(analysis.model, blocks[-1], whole=whole).added
+    changed = 0
+    for gone in range(0, len(analysis.model.interfaces), 2):
+        for blocks, interfaces in (((), ()), (stone.blocks, stone.interfaces)):
+            model = analysis.model.with_added(blocks, interfaces, (gone,))
+            found = analysis.resistance_with(model)
+            assert_same(found, model, {*SOLVERS[name], WARM})
+        changed += found.resistance.value != analysis.result.resistance.value
+        if gone % 10 == 0:
+            extended = analysis.extended(model)
+            assert bits(extended.result) == bits(found)
+            # What is left has moved up.
+            again = extended.model.with_added((), (), (gone,))
+            assert_same(extended.resistance_with(again), again, {*SOLVERS[name], WARM})
+    assert changed > 5
+
+
+def test_neither_order_nor_threads_change_a_bit(begin):
+    analysis, candidates = wall_and_candidates(irregular(0, 26, 110, 80), 12, begin)
+    expected = [bits(analysis.resistance_with(model)) for model in candidates]
+    backwards = [bits(analysis.resistance_with(model)) for model in reversed(candidates)]
+    assert backwards[::-1] == expected
+    with ThreadPoolExecutor(4) as threads:
+        found = list(threads.map(analysis.resistance_with, candidates * 2))
+    assert [bits(one) for one in found] == expected * 2
+    again, same = wall_and_candidates(irregular(0, 26, 110, 80), 12, begin)
+    assert [bits(again.resistance_with(model)) for model in same] == expected
+    for model, told in zip(candidates, expected, strict=True):
+        assert bits(analysis.extended(model).result) == told
+
+
+@pytest.mark.parametrize("units", [Units(1.0, 1.0), Units(300.0, 1e4), Units(15.0, 3e6)])
+def test_alpha_does_not_depend_on_units(units, begin):
+    whole, blocks = upwards(coursed(8, 4, 80, 2))
+    analysis = begin(empty(), units)
+    for block in blocks[:10]:
+        model = with_block(analysis.model, block, whole=whole)
+        found = analysis.resistance_with(model).resistance
+        assert found.left.alpha == pytest.approx(lateral_resistance(model).left.alpha, abs=1e-9)
+        assert found.right.alpha == pytest.approx(lateral_resistance(model).right.alpha, abs=1e-9)
+        analysis = analysis.extended(model)
+
+
+def test_any_other_model_is_answered_too(begin):
+    analysis, candidates = wall_and_candidates(coursed(2, 4, 80), 8, begin)
+    model = candidates[0]
+    held = replace(model.blocks[-1], held=("turn",))
+    weightless = replace(model.blocks[-1], density=0.0)
+    others = [
+        replace(model, mu=0.4),
+        replace(model, blocks=model.blocks[::-1]),
+        replace(model, blocks=(replace(model.blocks[0], density=9.0), *model.blocks[1:])),
+        replace(model, interfaces=model.interfaces[::-1]),
+        replace(model, interfaces=model.interfaces[4:] + model.interfaces[:4]),
+        replace(analysis.model, mu=0.3).with_added(model.added.blocks, model.added.interfaces),
+        analysis.model.with_added((held,), model.added.interfaces),
+        analysis.model.with_added((weightless,), model.added.interfaces),
+        model_from_labels(stacked((20, 40, 0))).model,
+    ]
+    for other in others:
+        assert_same(analysis.resistance_with(other), other, {WARM})
+        assert bits(analysis.extended(other).result) == bits(analysis.resistance_with(other))
+    assert analysis.extended(others[-1]).result.resistance.right.alpha == pytest.approx(0.5)
+
+
+def test_nothing_free_carries_anything(begin):
+    fixed = {"id": 7, "polygon": [[0, 0], [2, 0], [2, 1], [0, 1]], "fixed": True}
+    base = model_from_json({"blocks": [fixed], "mu": 0.58})
+    analysis = begin(empty(), PX)
+    assert analysis.result.resistance.right.status is LimitStatus.UNBOUNDED
+    for model in (empty(), base, empty().with_added((), ()), analysis.model.with_added((), ())):
+        assert analysis.resistance_with(model).resistance.right.status is LimitStatus.UNBOUNDED
+        assert not analysis.resistance_with(model).solved_cold
+        assert analysis.extended(model).result.resistance.left.status is LimitStatus.UNBOUNDED
+    upright = {"id": 8, "polygon": [[0, 1], [1, 1], [1, 3], [0, 3]]}
+    both = model_from_json({"blocks": [fixed, upright], "mu": 0.58})
+    assert both.blocks[:1] == base.blocks
+    assert analysis.extended(base).resistance_with(both).resistance.right.alpha == pytest.approx(
+        0.5
+    )
+
+
+def test_no_load_brings_down_what_is_wedged_between_pins(begin):
+    """A block on pins of the ground to both sides: alpha has no end, and that is no failure."""
+    pinned = model_from_json({"blocks_xywh": [[0, 0, 2, 1]], "mu": 0.58})
+    block, (floor,) = pinned.blocks, pinned.interfaces
+    sides = [((0.0, 0.5), (1.0, 0.0)), ((2.0, 0.5), (-1.0, 0.0))]
+    pins = [replace(floor, points=np.array([at]), normal=normal) for at, normal in sides]
+    analysis = begin(empty(), PX)
+    model = analysis.model.with_added(block, (floor, *pins))
+    for found in (analysis.resistance_with(model), analysis.extended(model).result):
+        assert found.resistance.left.status is LimitStatus.UNBOUNDED
+        assert found.resistance.right.status is LimitStatus.UNBOUNDED
+
+
+def test_a_wall_may_be_given_at_once(begin, name):
+    """In any order of blocks and interfaces; what closes later is still known."""
+    analysis, candidates = wall_and_candidates(coursed(6, 4, 80), 9, begin)
+    shuffled = np.random.default_rng(0).permutation(len(analysis.model.interfaces))
+    given_at_once = replace(
+        analysis.model, interfaces=tuple(analysis.model.interfaces[k] for k in shuffled)
+    )
+    wall = begin(given_at_once, PX)
+    assert_same(wall.result, given_at_once, SOLVERS[name])
+    for candidate in candidates:
+        for closed in ((), (3,), (0, 5)):
+            added = candidate.added
+            model = wall.model.with_added(added.blocks, added.interfaces, closed)
+            assert_same(wall.resistance_with(model), model, {*SOLVERS[name], WARM})
+    upside_down = replace(analysis.model, blocks=analysis.model.blocks[::-1])
+    assert_same(begin(upside_down, PX).result, upside_down, {*SOLVERS[name], WARM})
+
+
+PROVED = Figures(0.0, 0.0, 1.0, 1.0, 0.0, 1.0, -0.5)
+"""Of alpha = -.5 to the right: the dead load does work of .5 on a mechanism without error."""
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("alpha", [-2e-9, -9e-9, -0.5])
+def test_an_end_beyond_0_needs_a_proof_of_the_fall_too(sign, alpha):
+    """That a mechanism lacks which closes contacts faster than the dead load does work on it."""
+    honest = PROVED._replace(live=float(sign), rhs=alpha, inadmissible=1e-10)
+    found = certified_bound(honest, sign * alpha, sign, "")
+    assert found.alpha == sign * alpha
+    assert found.fall.holds
+    closing = honest._replace(inadmissible=max(0.99e-8, -alpha) if alpha > -1e-8 else 1.0)
+    assert certified_bound(closing, sign * alpha, sign, "") is None
+    stands = certified_bound(honest._replace(rhs=0.5), 0.5 * sign, sign, "")
+    assert stands.fall is None
+
+
+@pytest.mark.parametrize(
+    "error",
+    [{"residual": 2e-8}, {"violation": 2e-8}, {"inadmissible": 2e-8}, {"rhs": -0.5 + 1e-7}],
+)
+def test_no_bound_without_a_certificate(error):
+    assert certified_bound(PROVED._replace(**error), -0.5, 1, "") is None
+
+
+def test_no_alpha_needs_work_and_no_help_of_the_live_load():
+    falling, nan = PROVED._replace(live=0.0), float("nan")
+    assert certified_bound(falling, nan, 1, "").fall.holds
+    for error in ({"live": 0.1}, {"rhs": 0.5}, {"inadmissible": 1e-7}, {"largest": 0.0}):
+        assert certified_bound(falling._replace(**error), nan, 1, "") is None
+
+
+def test_a_fall_that_is_not_proved_is_not_believed(begin, monkeypatch):
+    """The upper block is over the edge by a hair, and the mechanism slides a little as well.
+
+    It proves alpha to 1e-8, as it must, and not that the wall falls.
+    """
+    rows = [[0, 0, 1, 1], [0.5 + 2e-9, 1, 1, 1]]
+    both = model_from_json({"blocks_xywh": rows, "mu": 0.9})
+    first = RigidBlockModel(both.blocks[:1], both.interfaces[:1], both.mu)
+    analysis = begin(first, units_of(first))
+    over = analysis.model.with_added(both.blocks[1:], both.interfaces[1:])
+    honest = analysis.resistance_with(over)
+    assert honest.resistance.left.status is LimitStatus.UNSTABLE
+    assert not honest.solved_cold
+
+    def slides(velocity):
+        changed = velocity.copy()
+        changed[-3] += 8e-9 * np.abs(velocity).max()
+        return changed
+
+    lie(monkeypatch, lambda answer: replace(answer, velocity=slides(answer.velocity)))
+    lie_of_highs(monkeypatch, lambda one: replace(one, duals=slides(one.duals)))
+    assert analysis.resistance_with(over).solved_cold
+
+
+def lie(monkeypatch, spoil, signs=(1, -1)):
+    """Let the kernel lie about some ends; nothing near a stone is found."""
+    honest = Optimum.solved_with
+
+    def wrong(optimum, added):
+        answer = honest(optimum, added)
+        return spoil(answer) if optimum.sign in signs else answer
+
+    monkeypatch.setattr(Optimum, "solved_with", wrong)
+    monkeypatch.setattr(incremental, "local_update", lambda *_: None)
+
+
+def lie_of_highs(monkeypatch, spoil, signs=(1, -1)):
+    """Let HiGHS lie about some ends."""
+    honest = WarmSession.minimise
+
+    def wrong(session, costs):
+        solution = honest(session, costs)
+        lies = -costs[0] in signs and solution.columns is not None
+        return spoil(solution) if lies else solution
+
+    monkeypatch.setattr(WarmSession, "minimise", wrong)
+
+
+def faster(answer):
+    """A block moves on its own."""
+    velocity = answer.velocity.copy()
+    velocity[-2] -= 1e-3
+    return replace(answer, velocity=velocity)
+
+
+NOTHING = {"alpha": float("nan"), "forces": np.empty(0)}
+LIES = {
+    "more force": lambda answer: replace(answer, forces=answer.forces * (1 + 1e-6)),
+    "faster": faster,
+    "other alpha": lambda answer: replace(answer, alpha=answer.alpha * 0.999),
+    "other sign": lambda answer: replace(answer, alpha=-answer.alpha),
+    "gives up": lambda answer: replace(answer, status=2, velocity=np.empty(0), **NOTHING),
+    "falls": lambda answer: replace(answer, status=1, **NOTHING),
+}
+
+
+@needs_kernel
+@pytest.mark.parametrize("lies", LIES)
+@pytest.mark.parametrize("sign", [1, -1])
+def test_answers_of_the_kernel_without_a_certificate_are_found_again_cold(lies, sign):
+    analysis, candidates = wall_and_candidates(coursed(1, 4, 80), 8)
+    model = candidates[0]
+    assert not analysis.resistance_with(model).solved_cold
+    with pytest.MonkeyPatch.context() as patch:
+        lie(patch, LIES[lies], (sign,))
+        found, expected = analysis.resistance_with(model), lateral_resistance(model)
+        extended = analysis.extended(model)
+    assert found.solved_cold
+    assert found.resistance.left.alpha == expected.left.alpha
+    assert found.resistance.left.solver == expected.left.solver != incremental.SIMPLEX
+    assert bits(extended.result) == bits(found)
+    assert extended.result.solved_cold
+    # The wall goes on without the kernel.
+    further = with_block(extended.model, candidates[1].blocks[-1], whole=candidates[1])
+    assert_same(extended.resistance_with(further), further, {WARM, LOCAL})
+
+
+@pytest.mark.parametrize("name", ["local", "highs"], indirect=True)
+@pytest.mark.parametrize("sign", [1, -1])
+def test_answers_of_highs_without_a_certificate_are_found_again_cold(begin, sign, monkeypatch):
+    analysis, candidates = wall_and_candidates(coursed(1, 4, 80), 8, begin)
+    lie(monkeypatch, lambda answer: answer)
+    assert not analysis.resistance_with(candidates[0]).solved_cold
+    lie_of_highs(monkeypatch, lambda one: replace(one, columns=one.columns * (1 + 1e-6)), (sign,))
+    found, expected = analysis.resistance_with(candidates[0]), lateral_resistance(candidates[0])
+    assert found.solved_cold
+    assert found.resistance.left.alpha == expected.left.alpha
+    assert found.resistance.left.solver == expected.left.solver != WARM
+    assert analysis.extended(candidates[0]).result.solved_cold
+
+
+@pytest.mark.parametrize("name", ["local", "highs"], indirect=True)
+def test_an_answer_that_drifted_is_found_again_from_its_basis(begin, monkeypatch):
+    """Once: its factors are made anew."""
+    analysis, candidates = wall_and_candidates(coursed(1, 4, 80), 8, begin)
+    lie(monkeypatch, lambda answer: answer)
+    expected, asked = analysis.resistance_with(candidates[0]), []
+
+    def drifts(solution):
+        asked.append(solution)
+        first = len(asked) % 2
+        return replace(solution, columns=solution.columns * (1 + 1e-6)) if first else solution
+
+    lie_of_highs(monkeypatch, drifts)
+    found = analysis.resistance_with(candidates[0])
+    assert not found.solved_cold
+    for side in ("left", "right"):
+        again, sought = (getattr(one.resistance, side) for one in (found, expected))
+        assert again.certificate.holds
+        assert again.alpha == pytest.approx(sought.alpha, abs=1e-9)
+
+
+@needs_kernel
+def test_a_wall_that_outgrows_the_kernel_goes_on():
+    whole, blocks = upwards(coursed(1, 5, 110, 2))
+    analysis = incremental_analysis(empty(), PX, most=9)
+    kinds = []
+    for block in blocks[:14]:
+        model = with_block(analysis.model, block, whole=whole)
+        found = analysis.resistance_with(model)
+        analysis = analysis.extended(model)
+        assert bits(analysis.result) == bits(found)
+        kinds.append(type(analysis))
+    assert kinds == [SimplexAnalysis] * 9 + [LocalAnalysis] * 5
+    at_once = incremental_analysis(analysis.model, PX, most=9)
+    assert isinstance(at_once, LocalAnalysis)
+    assert_same(at_once.result, analysis.model, {WARM})
+
+
+@needs_kernel
+@pytest.mark.parametrize("labels", [coursed(1, 7, 150), irregular(4, 50, 150, 110)])
+def test_most_answers_about_large_walls_need_no_look_at_the_whole(labels):
+    analysis, candidates = wall_at_once(labels, 40)
+    assert isinstance(analysis, LocalAnalysis)
+    near = 0
+    for model in candidates:
+        both = analysis.resistance_with(model).resistance
+        near += both.left.solver == both.right.solver == LOCAL
+    assert near > len(candidates) / 3
+
+
+@needs_kernel
+def test_a_stone_that_floats_is_known_to_fall_at_once():
+    analysis, _ = wall_at_once(coursed(1, 7, 150), 40)
+    _, blocks = upwards(coursed(1, 7, 150))
+    model = analysis.model.with_added((blocks[-1],), ())
+    found = analysis.resistance_with(model)
+    assert not lateral_resistance(model).stable
+    assert_same(found, model, {LOCAL})
+    # HiGHS goes on with a wall that fell.
+    fallen = analysis.extended(model)
+    assert bits(fallen.result) == bits(found)
+    assert isinstance(fallen, HighsAnalysis)
+
+
+def test_many_blocks_at_once_begin_with_an_interior_point(monkeypatch):
+    analysis, candidates = wall_and_candidates(coursed(3, 5, 90), 14)
+    asked = []
+
+    def counted(program, algorithm):
+        asked.append(algorithm)
+        return HighsSession(program, algorithm)
+
+    pivots = Pivots(monkeypatch)
+    monkeypatch.setattr(incremental, "MANY_BLOCKS_AT_ONCE", 14)
+    monkeypatch.setattr(incremental, "HighsSession", counted)
+    at_once = HighsAnalysis.of(analysis.model, units_of(analysis.model))
+    assert asked == ["ipm"]
+    assert pivots.count == 0
+    assert_same(at_once.result, analysis.model, {WARM})
+    for model in candidates:
+        assert_same(at_once.resistance_with(model), model, {WARM})
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_one_end_alone_is_found_from_its_own_basis(sign, monkeypatch):
+    analysis, candidates = wall_and_candidates(coursed(3, 5, 90), 14, HighsAnalysis.of)
+    pivots = Pivots(monkeypatch)
+    same = highs_bound(*analysis.prepared(analysis.model.with_added((), ())), sign)
+    assert (pivots.count, pivots.calls) == (0, 1)
+    side = "right" if sign > 0 else "left"
+    known = getattr(analysis.result.resistance, side)
+    assert sign * same.alpha == pytest.approx(known.alpha, abs=1e-12)
+    compared = 0
+    for model in candidates:
+        bound = highs_bound(*analysis.prepared(model), sign)
+        expected = lateral_resistance(model)
+        assert bound.certificate.holds
+        if expected.stable:
+            assert bound.fall is None
+            sought = getattr(expected, side)
+            assert sign * bound.alpha == pytest.approx(sought.alpha, abs=1e-9)
+            compared += 1
+    assert compared > 3
+
+
+def test_an_end_beyond_0_is_a_fall():
+    """The upper block lies over the edge by more than half: it needs a push to the left."""
+    model = model_from_labels(stacked((20, 20, 0), (20, 20, 12)), 0.9).model
+    first = RigidBlockModel(model.blocks[:1], model.interfaces[:1], model.mu)
+    analysis = HighsAnalysis.of(first, PX)
+    over = analysis.model.with_added(model.blocks[1:], model.interfaces[1:])
+    greatest = highs_bound(*analysis.prepared(over), 1)
+    assert greatest.alpha == pytest.approx(-0.2)
+    assert greatest.fall.holds
+    assert greatest.fall.fall_work > 0
+    assert highs_bound(*analysis.prepared(over), -1).fall is None
+
+
+def test_no_end_is_none():
+    """Between pins of the ground alpha has no end."""
+    floor = model_from_labels(stacked((20, 20, 0))).model
+    analysis = HighsAnalysis.of(empty(), PX)
+    pins = [
+        Interface(1, 0, np.array([[x, 10.0]]), (side, 0.0)) for x, side in ((0, 1.0), (20, -1.0))
+    ]
+    pinned = analysis.model.with_added(floor.blocks, (*floor.interfaces, *pins))
+    assert highs_bound(*analysis.prepared(pinned), 1) is None
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_the_bases_of_the_wall_save_most_of_the_work(closed, monkeypatch):
+    """Also when contacts go, and their columns with them."""
+    analysis, candidates = wall_and_candidates(coursed(1, 6, 130), 30, HighsAnalysis.of)
+    pivots = Pivots(monkeypatch)
+    assert pivots.of(lambda: analysis.resistance_with(analysis.model.with_added((), ()))) == 0
+    assert pivots.calls == 2
+    if closed:
+        candidates = [analysis.model.with_added((), (), (k,)) for k in (3, 9)]
+    warm = pivots.of(lambda: [analysis.resistance_with(model) for model in candidates])
+    start = HighsAnalysis.of(empty(), PX)
+    cold = pivots.of(lambda: [start.resistance_with(model) for model in candidates])
+    assert 0 < warm < cold / 3
