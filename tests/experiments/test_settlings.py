@@ -5,8 +5,6 @@ import pytest
 from drystone.experiments import settlings
 from drystone.experiments.exact_walls import QUICK
 from drystone.experiments.table import BenchSettings
-from drystone.kernels.settling import settle
-from drystone.kernels.settling_python import settle_python
 
 SETTINGS = BenchSettings(quick=True)
 
@@ -30,7 +28,6 @@ def test_every_settling_ends_in_one_way(tables, attempts):
     )
     assert row["rest %"] >= 50
     assert 0 < row["median"] <= row["95 %"] <= row["99 %"] <= row["longest"]
-    assert row["Python median"] > 0
     assert row["steps"] >= 1
 
 
@@ -51,17 +48,15 @@ def test_a_machine_with_one_core_has_all_columns(monkeypatch):
         assert whole[1].records()[0]["1 threads"] > 0
 
 
-def test_what_is_let_go_is_in_the_scene_and_ends_alike_without_compiled_kernels(attempts):
+def test_what_is_let_go_is_in_the_scene(attempts):
     assert len({len(one.scene.polygons) for one in attempts}) == 3  # every third step of nine
     for one in attempts[::7]:
         x, y = one.start
         assert 0 <= x <= 108
         assert y > 0
-        fast, slow = settlings._by(settle, one), settlings._by(settle_python, one)
-        assert fast == slow
 
 
 def test_the_least_of_several_times_counts(attempts, monkeypatch):
-    clock = iter([0.0, 5.0, 10.0, 12.0, 20.0, 23.0])
+    clock = iter([0.0, 5.0, 10.0, 12.0, 20.0, 23.0, 30.0, 34.0, 40.0, 46.0])
     monkeypatch.setattr(settlings.time, "perf_counter", lambda: next(clock))
-    assert settlings._least_ms(attempts[0], settle, 3) == 2000.0
+    assert settlings._least_ms(attempts[0]) == 2000.0

@@ -3,7 +3,7 @@
 import os
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -14,7 +14,6 @@ from drystone.experiments.exact_walls import Target, one_pass, targets
 from drystone.experiments.planned_walls import missing_data
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.kernels.settling import Settling, settle
-from drystone.kernels.settling_python import settle_python
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Side
 from drystone.model.site import Site
@@ -34,9 +33,6 @@ EVERY = 3
 
 SAMPLE = 400
 """Settlings that are timed one by one."""
-
-SLOW_SAMPLE = 40
-"""Of these, how many are timed without compiled kernels as well."""
 
 REPEATS = 5
 """Each is timed so often, and its least time counts."""
@@ -69,14 +65,13 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
         Table(
             "Milliseconds of a settling, and what becomes of proposals",
             (
-                "wall", "settlings", "median", "95 %", "99 %", "longest", "Python median",
+                "wall", "settlings", "median", "95 %", "99 %", "longest",
                 "steps", "rest %", "fall %", "too far %", "other %",
             ),
             tuple(_settlings(target, stones, settings) for target, stones in found),
             (
-                "Every proposal of one pass, let go as the planner lets it go; compiled kernels "
-                "(the least of five times each), and a sample in plain Python. Rest, fall, too "
-                "far: of the first way of settling that is tried.",
+                "Every proposal of one pass, let go as the planner lets it go (the least of five "
+                "times each). Rest, fall, too far: of the first way of settling that is tried.",
                 *missing_data(settings),
             ),
         ),
@@ -95,9 +90,7 @@ def _settlings(target: Target, stones: StoneSet, settings: BenchSettings) -> tup
     size = min(len(attempts), 20 if settings.quick else SAMPLE)
     sample = [attempts[k] for k in rng.choice(len(attempts), size, replace=False)]
     outcomes = [_settled(one) for one in sample]
-    times = np.array([_least_ms(one, settle) for one in sample])
-    few = sample[:: max(1, size // (3 if settings.quick else SLOW_SAMPLE))]
-    slow = np.array([_least_ms(one, settle_python, 1) for one in few])
+    times = np.array([_least_ms(one) for one in sample])
     ended = Counter(outcome.status.name for outcome in outcomes)
     shares = {name: 100.0 * count / size for name, count in ended.items()}
     known = ("RESTS", "FALLS", "FAR")
@@ -106,7 +99,6 @@ def _settlings(target: Target, stones: StoneSet, settings: BenchSettings) -> tup
         len(attempts),
         float(np.median(times)),
         *(float(np.percentile(times, share)) for share in (95, 99, 100)),
-        float(np.median(slow)),
         float(np.median([outcome.steps for outcome in outcomes])),
         *(shares.get(name, 0.0) for name in known),
         sum(share for name, share in shares.items() if name not in known),
@@ -136,21 +128,17 @@ def _let_go(planner: Planner, build: Build) -> Iterator[Attempted]:
 
 
 def _settled(one: Attempted) -> Settling:
-    return _by(settle, one)
-
-
-def _by(kernel: Callable[..., Settling], one: Attempted) -> Settling:
     stone, scene = one.stone, one.scene
     rules = ways(stone, scene, SettleSettings())[0]
     start = (*one.start, 0.0)
-    return kernel(stone.corners, stone.edges, start, scene.polygons, scene.width_px, rules)
+    return settle(stone.corners, stone.edges, start, scene.polygons, scene.width_px, rules)
 
 
-def _least_ms(one: Attempted, kernel: Callable[..., Settling], repeats: int = REPEATS) -> float:
+def _least_ms(one: Attempted) -> float:
     times = []
-    for _ in range(repeats):
+    for _ in range(REPEATS):
         started = time.perf_counter()
-        _by(kernel, one)
+        _settled(one)
         times.append(time.perf_counter() - started)
     return 1e3 * min(times)
 
