@@ -15,6 +15,11 @@ def declare(_type: object, value: Any = None) -> Any:
     return value
 
 
+def cast(_type: object, value: float) -> int:
+    """Return the whole number that C would."""
+    return int(value)
+
+
 def exceptval(*_values: object, **_options: bool) -> Callable[[Any], Any]:
     """Decorate by nothing."""
     return cfunc
