@@ -2,7 +2,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 # What an installation is made from; the kernels are compiled when there is a compiler.
-SOURCES := pyproject.toml requirements.lock setup.py $(wildcard src/drystone/kernels/compiled/*.p[yx][xd])
+KERNELS := $(shell grep -rl --include=*.py "import cython" src/drystone/kernels; find src/drystone/kernels -name "*.p[yx][xd]")
+SOURCES := pyproject.toml requirements.lock setup.py $(KERNELS)
 
 .PHONY: demo test lint bench docs lock clean
 

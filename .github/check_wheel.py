@@ -1,6 +1,6 @@
-"""Check an installed wheel: compiled kernels are there, and plan what those in NumPy plan.
+"""Check an installed wheel: compiled kernels are there, and plan what they plan in Python.
 
-``python check_wheel.py [compiled|NumPy]``: which kernels must be in it, compiled ones unless said.
+``python check_wheel.py [compiled|Python]``: which kernels must be in it, compiled ones unless said.
 Everything runs in processes of their own, as a user would run it.
 """
 
@@ -39,7 +39,7 @@ def check(wanted: str, folder: Path) -> None:
     drystone("generate", "rubble", "-o", stones, *STONES)
     for method in ("paper", "best"):
         plans = []
-        for kernels in ("auto", "numpy"):
+        for kernels in ("auto", "python"):
             output = folder / f"{method}-{kernels}"
             words = (stones, *PLAN, "--method", method, "-o", str(output))
             drystone("plan", *words, kernels=kernels)

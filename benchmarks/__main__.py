@@ -24,12 +24,12 @@ LIMITS = {"full": ("0.5", "5"), "quick": ("0.1", "3"), "smoke": ("0.01", "1")}
 
 
 def main(arguments: argparse.Namespace) -> None:
-    """Measure with the kernels that are installed, then with those in NumPy; print."""
+    """Measure with the kernels that are installed, then with kernels in Python; print."""
     with tempfile.TemporaryDirectory() as folder:
         first = measured(arguments.sizes, Path(folder) / "first.json")
         numpy = None
-        if first.kernels != "NumPy":
-            numpy = measured(arguments.sizes, Path(folder) / "numpy.json", kernels="numpy")
+        if first.kernels != "Python":
+            numpy = measured(arguments.sizes, Path(folder) / "numpy.json", kernels="python")
     found = tables(first, numpy)
     for table in found.values():
         text = table.markdown() if arguments.markdown else table.text()

@@ -16,7 +16,6 @@ from drystone.kernels.drops import Wanted, drops
 from drystone.kernels.meetings import meetings
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import HeightProfile, bare, extremes, in_a_row, raised
-from drystone.kernels.settling_python import settle_python
 
 SHARES = "share of every pixel that an outline covers"
 PROFILE = "lowest and highest point of an outline over every column"
@@ -127,20 +126,6 @@ def test_settling(timer: Timer, wall: OutlineScene) -> None:
         row(wall, SETTLE, len(wall.let_go)),
         lambda: [wall.settled(one) for one in wall.let_go],
     )
-
-
-@pytest.mark.slow
-def test_settling_slowly(timer: Timer, wall: OutlineScene) -> None:
-    """The same steps without compiled kernels, whatever was built."""
-
-    def call() -> None:
-        for one in wall.let_go:
-            stone = one.hung.turned
-            settle_python(
-                stone.corners, stone.edges, one.start, wall.polygons, wall.scene.width_px, one.rules
-            )
-
-    timer.times(1, row(wall, SETTLE, len(wall.let_go), "the same steps in Python"), call)
 
 
 def test_meetings(timer: Timer, wall: OutlineScene, resting: list[Points]) -> None:

@@ -1,17 +1,25 @@
 """Which kernels run, and that the choice can be made and is told."""
 
+import subprocess
 import sys
-from types import ModuleType
 
 import pytest
 
 from drystone.kernels import backend
 
 
-def test_numpy_is_used_when_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(backend.VARIABLE, "numpy")
+@pytest.mark.parametrize("name", ["python", "numpy"])
+def test_nothing_compiled_is_used_where_python_is_asked_for(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(backend.VARIABLE, name)
     assert backend.compiled("bits") is None
-    assert backend.describe() == "NumPy"
+    assert backend.describe() == "Python"
+    code = "from drystone.kernels import seidel; print(seidel.__file__)"
+    ran = subprocess.run(  # noqa: S603 - our own code
+        [sys.executable, "-c", code], check=True, stdout=subprocess.PIPE, text=True
+    )
+    assert ran.stdout.strip().endswith("seidel.py")
 
 
 def test_what_was_not_built_is_an_error_only_when_it_must_be_there(
@@ -33,7 +41,12 @@ def test_an_unknown_choice_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_description_names_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(backend.VARIABLE, "auto")
     monkeypatch.setattr(backend, "kernel_names", lambda: ["here", "gone"])
-    monkeypatch.setitem(sys.modules, "drystone.kernels.compiled.here", ModuleType("here"))
-    assert backend.describe() == "compiled, NumPy: gone"
+    monkeypatch.setattr(backend, "_is_compiled", lambda name: name == "here")
+    assert backend.describe() == "compiled, Python: gone"
+    monkeypatch.setenv(backend.VARIABLE, "compiled")
+    assert backend.fault() == "gone: not compiled here"
+    with pytest.raises(ImportError, match="not compiled here"):
+        backend.require_nothing_compiled()
     monkeypatch.setattr(backend, "kernel_names", lambda: ["here"])
     assert backend.describe() == "compiled"
+    assert backend.fault() is None

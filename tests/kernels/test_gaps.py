@@ -1,4 +1,4 @@
-"""Gaps between polygons: both versions against shapely's distances."""
+"""Gaps between polygons against shapely's distances."""
 
 import math
 
@@ -8,23 +8,13 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels import crossings, gaps
-from drystone.kernels.backend import compiled
+from drystone.kernels.gaps import END, GROUND, crosses_any, gaps_around
 from drystone.kernels.polygons import no_polygons, polygon_edges
 from drystone.model.overlap import overlap_depth
 from tests.naive.settling import distances, placed
 from tests.polygons import simple_polygons
 from tests.strategies import repeatable
 
-absent = pytest.mark.skipif(compiled("gaps") is None, reason="kernels are not compiled here")
-VERSIONS = [
-    pytest.param(gaps.gaps_python, id="python"),
-    pytest.param(gaps.gaps_around, id="compiled", marks=absent),
-]
-CROSSINGS = [
-    pytest.param(crossings.crosses_any_python, id="python"),
-    pytest.param(crossings.crosses_any, id="compiled", marks=absent),
-]
 WIDTH = 60.0
 SQUARE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
 
@@ -48,8 +38,7 @@ def scenes(draw):
     return np.ascontiguousarray(somewhere()), no_polygons().added(others)
 
 
-@pytest.mark.parametrize("gaps_around", VERSIONS)
-def test_the_smallest_gap_is_the_distance(gaps_around):
+def test_the_smallest_gap_is_the_distance():
     apart = [0]
 
     @repeatable(150)
@@ -67,7 +56,7 @@ def test_the_smallest_gap_is_the_distance(gaps_around):
             if expected[number] < 7.999:
                 assert min(near) == pytest.approx(expected[number], abs=1e-9)
             assert all(gap <= 8.0 for gap in near)
-        for number, own in ((gaps.GROUND, expected[-3:-2]), (gaps.END, expected[-2:])):
+        for number, own in ((GROUND, expected[-3:-2]), (END, expected[-2:])):
             near = [gap.gap for gap in found if gap.other == number]
             assert min(near, default=8.0) == pytest.approx(min(8.0, *own, math.inf), abs=1e-9)
 
@@ -75,9 +64,8 @@ def test_the_smallest_gap_is_the_distance(gaps_around):
     assert apart[0] > 100
 
 
-@pytest.mark.parametrize("gaps_around", VERSIONS)
 @pytest.mark.parametrize("reach", [0.3, 1.0, 4.0])
-def test_no_gap_is_wider_or_deeper_than_the_reach(gaps_around, reach):
+def test_no_gap_is_wider_or_deeper_than_the_reach(reach):
     deepest = 0.0
 
     @repeatable(60)
@@ -94,8 +82,7 @@ def test_no_gap_is_wider_or_deeper_than_the_reach(gaps_around, reach):
     assert deepest < -0.15
 
 
-@pytest.mark.parametrize("gaps_around", VERSIONS)
-def test_both_ends_of_flush_faces_are_seen_from_both_sides(gaps_around):
+def test_both_ends_of_flush_faces_are_seen_from_both_sides():
     """Of bricks that lie exactly over each other no end is left to rounding."""
     below, above = at(SQUARE, 4.0, 1.0), at(SQUARE, 4.0, 3.25)
     around = no_polygons().added([below])
@@ -105,18 +92,16 @@ def test_both_ends_of_flush_faces_are_seen_from_both_sides(gaps_around):
 
 
 def test_what_may_stand_out_over_the_ends_has_its_gaps_there():
-    """Only the compiled settling asks for that; the twins of settling are compared."""
     corners = at(SQUARE, 57.9, 9.0)
     edges = polygon_edges(corners)
-    found = gaps.gaps_python(corners, edges, no_polygons(), WIDTH, 0.5, 0.0, beyond=0.25)
+    found = gaps_around(corners, edges, no_polygons(), WIDTH, 0.5, 0.0, beyond=0.25)
     assert [gap[:3] for gap in found] == 2 * [pytest.approx((0.35, -1.0, 0.0))]
     corners = at(SQUARE, -0.1, 9.0)
-    found = gaps.gaps_python(corners, edges, no_polygons(), WIDTH, 0.5, 0.0, beyond=0.25)
+    found = gaps_around(corners, edges, no_polygons(), WIDTH, 0.5, 0.0, beyond=0.25)
     assert [gap[:3] for gap in found] == 2 * [pytest.approx((0.15, 1.0, 0.0))]
 
 
-@pytest.mark.parametrize("gaps_around", VERSIONS)
-def test_a_small_shift_along_the_normal_closes_a_gap(gaps_around):
+def test_a_small_shift_along_the_normal_closes_a_gap():
     @repeatable(60)
     @given(scenes())
     def check(scene):
@@ -138,19 +123,7 @@ def test_a_small_shift_along_the_normal_closes_a_gap(gaps_around):
     check()
 
 
-@absent
-@repeatable(200)
-@given(scenes(), st.sampled_from([0.1, 1.0, 4.0, 30.0]), st.sampled_from([0.0, 0.3, 2.0]))
-def test_both_versions_agree(scene, reach, corner):
-    corners, around = scene
-    args = corners, polygon_edges(corners), around, WIDTH, reach, corner
-    assert gaps.gaps_around(*args) == gaps.gaps_python(*args)
-    pair = corners, around
-    assert crossings.crosses_any(*pair) == crossings.crosses_any_python(*pair)
-
-
-@pytest.mark.parametrize("crosses_any", CROSSINGS)
-def test_no_overlap_is_missed_and_what_is_apart_does_not_cross(crosses_any):
+def test_no_overlap_is_missed_and_what_is_apart_does_not_cross():
     """What only touches may count either way: settled outlines keep a clearance."""
     seen = set()
 
@@ -169,8 +142,7 @@ def test_no_overlap_is_missed_and_what_is_apart_does_not_cross(crosses_any):
     assert seen == {True, False}
 
 
-@pytest.mark.parametrize("crosses_any", CROSSINGS)
-def test_what_lies_inside_crosses(crosses_any):
+def test_what_lies_inside_crosses():
     inner = no_polygons().added([SQUARE])
     outer = 3.0 * SQUARE - 2.0
     assert crosses_any(outer, inner)
@@ -181,8 +153,7 @@ def test_what_lies_inside_crosses(crosses_any):
     assert crosses_any(bar, inner)
 
 
-@pytest.mark.parametrize("crosses_any", CROSSINGS)
-def test_what_lies_inside_crosses_at_whatever_height(crosses_any):
+def test_what_lies_inside_crosses_at_whatever_height():
     """Also where corners of both are at one height, as those of bricks are."""
     inside = 0
 
@@ -205,8 +176,7 @@ def test_what_lies_inside_crosses_at_whatever_height(crosses_any):
     assert inside > 100
 
 
-@pytest.mark.parametrize("gaps_around", VERSIONS)
-def test_of_the_edges_around_a_corner_inside_only_the_nearest_counts(gaps_around):
+def test_of_the_edges_around_a_corner_inside_only_the_nearest_counts():
     sliver = np.array([[0.0, 4.0], [20.0, 4.0], [20.0, 6.0], [0.0, 6.0]])
     around = no_polygons().added([sliver])
     wedge = np.array([[10.0, 5.7], [12.0, 9.0], [8.0, 9.0]])
@@ -214,8 +184,7 @@ def test_of_the_edges_around_a_corner_inside_only_the_nearest_counts(gaps_around
     assert [(gap.gap, gap.normal_y) for gap in found if gap.gap < 0] == [(pytest.approx(-0.3), 1.0)]
 
 
-@pytest.mark.parametrize("gaps_around", VERSIONS)
-def test_bricks_meet_with_their_faces_at_their_corners(gaps_around):
+def test_bricks_meet_with_their_faces_at_their_corners():
     around = no_polygons().added([SQUARE + 1.0])
     above = at(SQUARE, 2.99, 3.02)
     found = gaps_around(above, polygon_edges(above), around, WIDTH, 0.5, 0.3)
@@ -231,9 +200,8 @@ def test_bricks_meet_with_their_faces_at_their_corners(gaps_around):
     assert all(gap.gap == gap.away for gap in found)
 
 
-@pytest.mark.parametrize("gaps_around", VERSIONS)
 @pytest.mark.parametrize(("side", "x"), [(1.0, 3.1), (-1.0, -1.1)])
-def test_of_the_faces_that_part_two_corners_the_best_is_taken(gaps_around, side, x):
+def test_of_the_faces_that_part_two_corners_the_best_is_taken(side, x):
     """On whichever side: the faces come in the order of the corners, not of merit."""
     around = no_polygons().added([at(SQUARE, 10.0, 1.0)])
     beside = at(SQUARE, 9.0 + x, 3.02)
@@ -241,9 +209,8 @@ def test_of_the_faces_that_part_two_corners_the_best_is_taken(gaps_around, side,
     assert {(round(gap.gap, 9), gap.normal_x, gap.normal_y) for gap in found} == {(0.1, side, 0.0)}
 
 
-@pytest.mark.parametrize("gaps_around", VERSIONS)
 @pytest.mark.parametrize("tilted", [-1.0, 1.0])
-def test_a_face_that_an_edge_at_the_corner_runs_through_parts_nothing(gaps_around, tilted):
+def test_a_face_that_an_edge_at_the_corner_runs_through_parts_nothing(tilted):
     """A stone on its corner beside that of a brick lies over it: its own slope parts them best."""
     around = no_polygons().added([at(SQUARE, 10.0, 1.0)])
     x = 12.1 if tilted > 0.0 else 9.9
@@ -254,8 +221,7 @@ def test_a_face_that_an_edge_at_the_corner_runs_through_parts_nothing(gaps_aroun
     assert all(abs(gap.normal_x) < 0.5 for gap in found)
 
 
-@pytest.mark.parametrize("gaps_around", VERSIONS)
-def test_edges_without_length_change_nothing(gaps_around):
+def test_edges_without_length_change_nothing():
     doubled = np.repeat(SQUARE, [1, 2, 1, 3], axis=0)
     with np.errstate(invalid="ignore"):
         around = no_polygons().added([doubled + 1.0])
@@ -267,8 +233,7 @@ def test_edges_without_length_change_nothing(gaps_around):
         assert set(found) == set(plain)
 
 
-@pytest.mark.parametrize("gaps_around", VERSIONS)
-def test_a_corner_on_an_edge_touches_it(gaps_around):
+def test_a_corner_on_an_edge_touches_it():
     # Rounding may put it on either side.
     corners = np.array([[1.0, 0.0], [0.1, 0.7], [-0.2, -0.4]])
     for share in np.linspace(0.01, 0.99, 99):
@@ -279,8 +244,7 @@ def test_a_corner_on_an_edge_touches_it(gaps_around):
         assert min(gap.gap for gap in found) == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize("gaps_around", VERSIONS)
-def test_a_notch_has_no_region_behind_it(gaps_around):
+def test_a_notch_has_no_region_behind_it():
     bent = np.array([[-9.0, 0.0], [0.0, -4.0], [9.0, 0.0], [9.0, 1.0], [0.0, -3.0], [-9.0, 1.0]])
     below = np.array([[0.0, -4.5], [-4.0, -9.0], [4.0, -9.0]])
     around = no_polygons().added([at(bent, 20.0, 20.0)])
@@ -291,8 +255,7 @@ def test_a_notch_has_no_region_behind_it(gaps_around):
     assert {gap[1:5] for gap in found} == {(0.0, -1.0, 20.0, 15.5)}
 
 
-@pytest.mark.parametrize("gaps_around", VERSIONS)
-def test_corners_in_one_point_meet_along_the_line_between_their_edges(gaps_around):
+def test_corners_in_one_point_meet_along_the_line_between_their_edges():
     around = no_polygons().added([SQUARE + 5.0])
     corners = SQUARE + 7.0 + 1e-12
     found = gaps_around(corners, polygon_edges(corners), around, WIDTH, 1.0, 0.0)

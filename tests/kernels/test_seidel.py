@@ -1,4 +1,4 @@
-"""Small linear programs: both versions against scipy's."""
+"""Small linear programs against scipy's."""
 
 import numpy as np
 import pytest
@@ -6,21 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from drystone.kernels import seidel as module
-from drystone.kernels.backend import compiled
+from drystone.kernels.seidel import solve
 from tests.strategies import repeatable
-
-absent = pytest.mark.skipif(compiled("seidel") is None, reason="kernels are not compiled here")
-
-
-def plain(rows, gain, most):
-    return module.solve_python([tuple(row) for row in rows.tolist()], gain.tolist(), most.tolist())
-
-
-VERSIONS = [
-    pytest.param(plain, id="python"),
-    pytest.param(module.solve, id="compiled", marks=absent),
-]
 
 
 @st.composite
@@ -44,8 +31,7 @@ def programs(draw):
     return np.ascontiguousarray(rows), gain, rng.uniform(0.0, 3.0, 3) * rng.integers(0, 2, 3) + 0.1
 
 
-@pytest.mark.parametrize("solve", VERSIONS)
-def test_gains_what_scipy_gains(solve):
+def test_gains_what_scipy_gains():
     seen = set()
 
     @repeatable(300)
@@ -69,15 +55,7 @@ def test_gains_what_scipy_gains(solve):
     assert seen == {True, False}
 
 
-@absent
-@repeatable(300)
-@given(programs())
-def test_both_versions_agree(program):
-    assert module.solve(*program) == plain(*program)
-
-
-@pytest.mark.parametrize("solve", VERSIONS)
-def test_where_nothing_is_gained_nothing_moves(solve):
+def test_where_nothing_is_gained_nothing_moves():
     down, box = np.array([0.0, -1.0, 0.0]), np.full(3, 5.0)
     assert solve(np.zeros((0, 4)), down, box) == (0.0, -5.0, 0.0)
     assert solve(np.zeros((0, 4)), np.array([1e-13, -1.0, -1e-13]), box) == (0.0, -5.0, 0.0)
@@ -92,8 +70,7 @@ def test_where_nothing_is_gained_nothing_moves(solve):
         assert solve(both, down, box) == pytest.approx((2.0 * sign, -1.0, sign), abs=1e-12)
 
 
-@pytest.mark.parametrize("solve", VERSIONS)
-def test_rows_without_coefficients_only_say_whether_there_is_a_solution(solve):
+def test_rows_without_coefficients_only_say_whether_there_is_a_solution():
     gain, box = np.array([1.0, 1.0, 1.0]), np.ones(3)
     assert solve(np.array([[0.0, 0.0, 0.0, 0.0]]), gain, box) == (1.0, 1.0, 1.0)
     assert solve(np.array([[0.0, 0.0, 0.0, -1.0]]), gain, box) is None
@@ -101,6 +78,6 @@ def test_rows_without_coefficients_only_say_whether_there_is_a_solution(solve):
 
 def test_arrays_of_other_shapes_are_refused():
     with pytest.raises(ValueError, match="three numbers"):
-        module.solve(np.zeros((2, 3)), np.zeros(3), np.zeros(3))
+        solve(np.zeros((2, 3)), np.zeros(3), np.zeros(3))
     with pytest.raises(ValueError, match="three numbers"):
-        module.solve(np.zeros((2, 4)), np.zeros(2), np.zeros(3))
+        solve(np.zeros((2, 4)), np.zeros(2), np.zeros(3))

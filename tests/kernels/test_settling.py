@@ -7,37 +7,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels import settling as module
-from drystone.kernels.backend import compiled
-from drystone.kernels.firmness import Friction, rest_margin_python
+from drystone.kernels.firmness import rest_margin
 from drystone.kernels.polygons import (
     mirrored_polygon,
     no_polygons,
     polygon_edges,
 )
-from drystone.kernels.settling import Status
-from drystone.kernels.settling_python import settle_python
+from drystone.kernels.settling import Status, settle
 from tests.kernels.heaps import WIDTH, drops, rules
 from tests.naive.settling import overlap_area, placed
 from tests.polygons import centred
 from tests.strategies import repeatable
-
-absent = pytest.mark.skipif(compiled("settling") is None, reason="kernels are not compiled here")
-VERSIONS = [
-    pytest.param(settle_python, id="python"),
-    pytest.param(module.settle, id="compiled", marks=absent),
-]
-
-
-def rest_margin_twin(corners, centroid, around, width, mu, tolerance):
-    friction = Friction(mu, tolerance, 0.3)
-    return rest_margin_python(corners, polygon_edges(corners), centroid, around, width, friction)
-
-
-MARGINS = [
-    pytest.param(rest_margin_twin, id="python"),
-    pytest.param(module.rest_margin, id="compiled", marks=absent),
-]
 
 
 def box(width, height):
@@ -53,14 +33,13 @@ BRICK = box(20.0, 10.0)
 SLIVER = box(60.0, 2.0)
 
 
-def let_go(settle, outline, pose, others=(), width=200.0, **changes):
+def let_go(outline, pose, others=(), width=200.0, **changes):
     around = no_polygons().added(list(others))
     return settle(outline, polygon_edges(outline), pose, around, width, rules(15.0, **changes))
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_a_brick_falls_flat_on_the_ground(settle):
-    found = let_go(settle, BRICK, (50.0, 12.0, 0.1), lean=0.0)
+def test_a_brick_falls_flat_on_the_ground():
+    found = let_go(BRICK, (50.0, 12.0, 0.1), lean=0.0)
     assert found.status == Status.RESTS
     assert (found.y, found.angle) == pytest.approx((5.01, 0.0), abs=1e-6)
     assert found.gap == pytest.approx(0.01, abs=1e-6)
@@ -69,95 +48,88 @@ def test_a_brick_falls_flat_on_the_ground(settle):
     assert found.margin == pytest.approx(min(2.0, 0.58) / 0.58, abs=1e-2)
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_it_does_not_move_aside_without_a_reason(settle):
-    found = let_go(settle, BRICK, (50.0, 30.0, 0.0), lean=0.0)
+def test_it_does_not_move_aside_without_a_reason():
+    found = let_go(BRICK, (50.0, 30.0, 0.0), lean=0.0)
     assert (found.x, found.angle) == (50.0, 0.0)
     # Steps grow from .6 to 1.2 on the way.
     assert 20 <= found.steps <= 28
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_leaning_gravity_closes_the_joint_beside_it(settle):
+def test_leaning_gravity_closes_the_joint_beside_it():
     left = at(BRICK, 40.0, 5.01)
-    found = let_go(settle, BRICK, (62.0, 12.0, 0.05), [left])
+    found = let_go(BRICK, (62.0, 12.0, 0.05), [left])
     assert found.status == Status.RESTS
     assert found[1:4] == pytest.approx((60.01, 5.01, 0.0), abs=1e-3)
-    assert let_go(settle, BRICK, (62.0, 12.0, 0.0), [left], lean=0.0).x == 62.0
+    assert let_go(BRICK, (62.0, 12.0, 0.0), [left], lean=0.0).x == 62.0
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_ends_of_the_wall_block_but_carry_nothing(settle):
-    found = let_go(settle, BRICK, (12.0, 12.0, 0.0))
+def test_ends_of_the_wall_block_but_carry_nothing():
+    found = let_go(BRICK, (12.0, 12.0, 0.0))
     assert found.status == Status.RESTS
     assert found.x == pytest.approx(10.01, abs=1e-6)
     assert found.touching == 2
     # Held by the two ends alone it would not rest.
-    wedged = let_go(settle, BRICK, (10.01, 30.0, 0.0), width=20.02, steps=1, lean=0.0)
+    wedged = let_go(BRICK, (10.01, 30.0, 0.0), width=20.02, steps=1, lean=0.0)
     assert wedged.status == Status.UNFINISHED
     assert wedged.touching == 0
     # A ladder against an end slides however steep it is, since it cannot push off.
     ladder = box(40.0, 1.0)
     angle = math.radians(80.0)
     x, y = (float(-placed(ladder, (0.0, 0.0, angle))[:, k].min() + 0.01) for k in (0, 1))
-    assert let_go(settle, ladder, (x, y, angle), steps=1, stop=0.0).margin == -1.0
+    assert let_go(ladder, (x, y, angle), steps=1, stop=0.0).margin == -1.0
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_statuses(settle):
+def test_statuses():
     low = at(BRICK, 50.0, 5.01)
     # Gone too far aside, or turned too far.
-    assert let_go(settle, BRICK, (61.0, 20.0, 0.0), [low], turn=0.3).status == Status.FAR
-    assert let_go(settle, BRICK, (120.0, 20.0, 0.3), turn=0.1).status == Status.FAR
-    assert let_go(settle, BRICK, (120.0, 6.0, 0.0), shift=0.5).status == Status.FAR
+    assert let_go(BRICK, (61.0, 20.0, 0.0), [low], turn=0.3).status == Status.FAR
+    assert let_go(BRICK, (120.0, 20.0, 0.3), turn=0.1).status == Status.FAR
+    assert let_go(BRICK, (120.0, 6.0, 0.0), shift=0.5).status == Status.FAR
     # Not there yet.
-    far_above = let_go(settle, BRICK, (50.0, 150.0, 0.0), steps=5)
+    far_above = let_go(BRICK, (50.0, 150.0, 0.0), steps=5)
     assert (far_above.status, far_above.steps) == (Status.UNFINISHED, 5)
     # On a corner with nothing beside it, it may not turn.
     tip = np.array([[50.0, 20.0], [40.0, 0.0], [60.0, 0.0]])
-    found = let_go(settle, BRICK, (52.0, 30.0, 0.0), [tip], turns=False, lean=0.0)
+    found = let_go(BRICK, (52.0, 30.0, 0.0), [tip], turns=False, lean=0.0)
     assert (found.status, found.margin, found.touching) == (Status.FALLS, -1.0, 1)
     # Over another, and only a little.
-    assert let_go(settle, BRICK, (55.0, 12.0, 0.0), [low]).status == Status.OVERLAPS
-    assert let_go(settle, BRICK, (50.0, 5.0, 0.0), [low]).status == Status.OVERLAPS
-    found = let_go(settle, BRICK, (52.0, 14.7, 0.0), [low], lean=0.0)
+    assert let_go(BRICK, (55.0, 12.0, 0.0), [low]).status == Status.OVERLAPS
+    assert let_go(BRICK, (50.0, 5.0, 0.0), [low]).status == Status.OVERLAPS
+    found = let_go(BRICK, (52.0, 14.7, 0.0), [low], lean=0.0)
     assert found.status == Status.RESTS
     assert found[1:4] == pytest.approx((52.0, 15.02, 0.0), abs=1e-6)
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_a_bar_across_another_overlaps_although_no_corner_is_near(settle):
+def test_a_bar_across_another_overlaps_although_no_corner_is_near():
     lying, standing = box(60.0, 2.0), at(box(2.0, 60.0), 50.0, 31.0)
-    found = let_go(settle, lying, (50.0, 31.0, 0.0), [standing], lean=0.0)
+    found = let_go(lying, (50.0, 31.0, 0.0), [standing], lean=0.0)
     assert found.status == Status.OVERLAPS
-    inside = let_go(settle, box(4.0, 4.0), (50.0, 50.0, 0.0), [at(box(60.0, 60.0), 50.0, 50.0)])
+    inside = let_go(box(4.0, 4.0), (50.0, 50.0, 0.0), [at(box(60.0, 60.0), 50.0, 50.0)])
     assert inside.status == Status.OVERLAPS
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_it_stops_where_it_rests_firmly_enough(settle):
+def test_it_stops_where_it_rests_firmly_enough():
     slope = np.array([[0.0, 0.0], [100.0, 0.0], [0.0, 30.0]])
     down = math.atan2(-30.0, 100.0)
     x, y = 40.0, 18.0 + 5.03 / math.cos(down)
-    freely = let_go(settle, BRICK, (x, y, down), [slope], lean=0.0)
+    freely = let_go(BRICK, (x, y, down), [slope], lean=0.0)
     assert freely.status == Status.FAR
-    stopped = let_go(settle, BRICK, (x, y, down), [slope], lean=0.0, stop=0.0)
+    stopped = let_go(BRICK, (x, y, down), [slope], lean=0.0, stop=0.0)
     assert (stopped.status, stopped.steps) == (Status.RESTS, 0)
     # What friction leaves when the slope is taken off it.
     left = math.tan(math.atan(0.58) - math.atan(0.3)) / 0.58
     assert stopped.margin == pytest.approx(left, abs=1e-9)
     for stop, status in ((left - 1e-6, Status.RESTS), (left + 1e-6, Status.FAR)):
-        assert let_go(settle, BRICK, (x, y, down), [slope], lean=0.0, stop=stop).status == status
+        assert let_go(BRICK, (x, y, down), [slope], lean=0.0, stop=stop).status == status
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_what_sticks_rolls_about_its_supporting_corner(settle):
+def test_what_sticks_rolls_about_its_supporting_corner():
     low = at(BRICK, 50.0, 5.01)
     corner = np.array([60.0, 10.01])
     start = (61.0, 15.0101, 0.0)
     for sticks in (True, False):
         found = let_go(
-            settle, BRICK, start, [low], lean=0.0, sticks=sticks, turn=0.3, clearance=1e-4,
+            BRICK, start, [low], lean=0.0, sticks=sticks, turn=0.3, clearance=1e-4,
             corner=1e-3,
         )  # fmt: skip
         assert found.status == Status.FAR
@@ -167,16 +139,13 @@ def test_what_sticks_rolls_about_its_supporting_corner(settle):
         assert (slid < 0.3) == sticks
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_of_two_supports_the_one_nearer_to_the_centroid_sticks(settle):
+def test_of_two_supports_the_one_nearer_to_the_centroid_sticks():
     # An arm on the left lies higher up: rolling about the one moves the other aside.
     arm = np.array([[-6, -5], [10, -5], [10, 5], [-10, 5], [-10, 3], [-6, 3]], dtype=np.float64)
     stone = centred(arm)
     x, y = stone[1] - arm[1]
     supports = [at(box(4.0, 5.0), 46.0 + x, 12.49 + y), at(box(2.0, 4.0), 41.0 + x, 20.99 + y)]
-    found = let_go(
-        settle, stone, (50.0, 20.0, 0.0), supports, lean=0.0, sticks=True, steps=1, corner=0.01
-    )
+    found = let_go(stone, (50.0, 20.0, 0.0), supports, lean=0.0, sticks=True, steps=1, corner=0.01)
     assert found.angle < -0.01
     # Where the stone stood on them, before and after.
     for away, sticks in ((at(stone, 4.0, 0.0)[0], True), (at(stone, 2.0, 0.0)[4], False)):
@@ -184,15 +153,13 @@ def test_of_two_supports_the_one_nearer_to_the_centroid_sticks(settle):
         assert (abs(moved - (50.0 + away[0])) < 0.02) == sticks
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_without_turns_the_angle_stays(settle):
+def test_without_turns_the_angle_stays():
     tip = np.array([[50.0, 20.0], [40.0, 0.0], [60.0, 0.0]])
-    found = let_go(settle, BRICK, (52.0, 30.0, 0.2), [tip], turns=False, shift=100.0)
+    found = let_go(BRICK, (52.0, 30.0, 0.2), [tip], turns=False, shift=100.0)
     assert found.angle == 0.2
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_nothing_passes_a_sliver(settle):
+def test_nothing_passes_a_sliver():
     # It lies on two piers; what falls on it stays above, with its heaviest steps.
     piers = [at(box(6.0, 20.0), 22.0, 10.01), at(box(6.0, 20.0), 78.0, 10.01)]
     shelf = at(SLIVER, 50.0, 21.03)
@@ -202,15 +169,14 @@ def test_nothing_passes_a_sliver(settle):
             for x in (35.0, 50.0, 62.0):
                 pose = (x, 50.0, turn)
                 found = let_go(
-                    settle, outline, pose, [*piers, shelf], near=3.0, far=4.0, turn=9.0, lean=0.0
+                    outline, pose, [*piers, shelf], near=3.0, far=4.0, turn=9.0, lean=0.0
                 )
                 corners = placed(outline, found[1:4])
                 assert corners[:, 1].min() > 22.0 or found.status == Status.FAR
                 assert overlap_area(corners, no_polygons().added([*piers, shelf])) == 0.0
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_nothing_leaves_a_ring_of_slivers(settle):
+def test_nothing_leaves_a_ring_of_slivers():
     ring = [
         placed(box(26.0, 1.0), (50.0 + 20.0 * math.cos(a), 60.0 + 20.0 * math.sin(a), a + 1.57))
         for a in np.arange(6) * math.pi / 3.0
@@ -218,56 +184,44 @@ def test_nothing_leaves_a_ring_of_slivers(settle):
     pentagon = 6.0 * np.array([[math.cos(a), math.sin(a)] for a in np.arange(5) * 1.2566])
     for x, turn, lean in ((50.0, 0.0, 0.0), (45.0, 0.4, 0.3), (55.0, 1.0, 1.0), (50.0, 0.2, 3.0)):
         found = let_go(
-            settle, pentagon, (x, 60.0, turn), ring, near=2.0, far=3.0, turn=9.0, lean=lean,
+            pentagon, (x, 60.0, turn), ring, near=2.0, far=3.0, turn=9.0, lean=lean,
             shift=90.0,
         )  # fmt: skip
         assert found.status in (Status.RESTS, Status.FALLS)
         assert math.dist(found[1:3], (50.0, 60.0)) < 20.0
 
 
-@pytest.mark.parametrize("margin_of", MARGINS)
-def test_margins_are_those_of_statics(margin_of):
+def test_margins_are_those_of_statics():
     tall = box(10.0, 40.0)
     ground = no_polygons()
     # A pillar tips, a slab slides.
-    assert margin_of(at(tall, 50.0, 20.0), (50.0, 20.0), ground, 200.0, 0.58, 0.1) == (
+    assert rest_margin(at(tall, 50.0, 20.0), (50.0, 20.0), ground, 200.0, 0.58, 0.1) == (
         pytest.approx(0.25 / 0.58)
     )
     slab = at(box(40.0, 10.0), 50.0, 5.0)
-    assert margin_of(slab, (50.0, 5.0), ground, 200.0, 0.58, 0.1) == pytest.approx(1.0)
+    assert rest_margin(slab, (50.0, 5.0), ground, 200.0, 0.58, 0.1) == pytest.approx(1.0)
     # Held by a stone on either side it can only rise.
     sides = ground.added([at(box(10.0, 10.0), 24.95, 5.0), at(box(10.0, 10.0), 75.05, 5.0)])
-    assert margin_of(slab, (50.0, 5.0), sides, 200.0, 0.58, 0.1) > 1.0
-    assert margin_of(at(slab, 0.0, 0.2), (50.0, 5.2), ground, 200.0, 0.58, 0.1) == -1.0
+    assert rest_margin(slab, (50.0, 5.0), sides, 200.0, 0.58, 0.1) > 1.0
+    assert rest_margin(at(slab, 0.0, 0.2), (50.0, 5.2), ground, 200.0, 0.58, 0.1) == -1.0
     # Corners that pass each other carry nothing although faces would part them.
     low = ground.added([at(box(10.0, 10.0), 24.8, 5.0), at(box(10.0, 10.0), 74.0, 5.0)])
     over = at(slab, 0.0, 10.05)
-    assert margin_of(over, (50.0, 15.05), low, 200.0, 0.58, 0.1) == -1.0
-    assert margin_of(at(over, -0.18, 0.0), (49.82, 15.05), low, 200.0, 0.58, 0.1) > 0.0
+    assert rest_margin(over, (50.0, 15.05), low, 200.0, 0.58, 0.1) == -1.0
+    assert rest_margin(at(over, -0.18, 0.0), (49.82, 15.05), low, 200.0, 0.58, 0.1) > 0.0
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_corners_further_apart_than_contacts_do_not_stop_it(settle):
+def test_corners_further_apart_than_contacts_do_not_stop_it():
     # The faces are within the tolerance of .1, the corners are not.
     low = [at(box(10.0, 10.0), 24.92, 5.0), at(box(10.0, 10.0), 75.08, 5.0)]
     for y, steps in ((15.09, 1), (15.05, 0)):
         slab = (50.0, y, 0.0)
         x = 0.0 if steps else 0.06
         near = [at(low[0], x, 0.0), at(low[1], -x, 0.0)]
-        assert let_go(settle, box(40.0, 10.0), slab, near, stop=0.0, steps=1).steps == steps
+        assert let_go(box(40.0, 10.0), slab, near, stop=0.0, steps=1).steps == steps
 
 
-@absent
-@repeatable(10)
-@given(st.integers(0, 2**32 - 1))
-def test_margins_of_both_versions_agree(seed):
-    for drop, found in drops(seed, 12):
-        corners = placed(drop.outline, found[1:4])
-        args = corners, found[1:3], drop.around, WIDTH, 0.58, 0.1
-        assert module.rest_margin(*args) == rest_margin_twin(*args)
-
-
-@repeatable(15 if compiled("settling") else 2)
+@repeatable(15)
 @given(st.integers(0, 2**32 - 1))
 def test_mirrored_scenes_settle_to_mirror_images(seed):
     for drop, found in drops(seed, 10):
@@ -286,8 +240,7 @@ def test_mirrored_scenes_settle_to_mirror_images(seed):
         assert mirrored == pytest.approx(found[1:4], abs=1e-6 * size)
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_mirror_images_of_exact_coordinates_give_the_same_bits(settle):
+def test_mirror_images_of_exact_coordinates_give_the_same_bits():
     """Mirrored twice, coordinates that are multiples of 1/64 are what they were."""
     low = [at(BRICK, 40.25, 5.5), at(BRICK, 70.5, 7.0)]
     around = no_polygons().added(low)
@@ -300,21 +253,14 @@ def test_mirror_images_of_exact_coordinates_give_the_same_bits(settle):
     assert settle(turned, polygon_edges(turned), args[2], twice, 200.0, rules(15.0)) == once
 
 
-@pytest.mark.parametrize("settle", VERSIONS)
-def test_what_is_not_a_number_does_not_rest(settle):
+def test_what_is_not_a_number_does_not_rest():
     for pose in ((math.nan, 9.0, 0.0), (50.0, math.nan, 0.0), (50.0, 9.0, math.nan)):
-        assert let_go(settle, BRICK, pose).status != Status.RESTS
+        assert let_go(BRICK, pose).status != Status.RESTS
 
 
-@pytest.mark.parametrize(
-    "fast", [pytest.param(True, id="compiled", marks=absent), pytest.param(False, id="python")]
-)
 @pytest.mark.parametrize("mu", [0.0, -0.5, math.nan])
-def test_without_friction_there_is_no_margin(fast, mu, monkeypatch):
-    if not fast:
-        monkeypatch.setattr(module, "_fast", None)
-        monkeypatch.setattr(module, "_firm", None)
+def test_without_friction_there_is_no_margin(mu):
     with pytest.raises(ValueError, match="mu must be positive"):
-        module.rest_margin(at(BRICK, 50.0, 5.02), (50.0, 5.02), no_polygons(), 200.0, mu, 0.1)
+        rest_margin(at(BRICK, 50.0, 5.02), (50.0, 5.02), no_polygons(), 200.0, mu, 0.1)
     with pytest.raises(ValueError, match="mu must be positive"):
-        let_go(module.settle, BRICK, (50.0, 9.0, 0.0), mu=mu)
+        let_go(BRICK, (50.0, 9.0, 0.0), mu=mu)

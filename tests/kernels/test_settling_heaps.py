@@ -8,11 +8,8 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels import settling as module
-from drystone.kernels.backend import compiled
-from drystone.kernels.polygons import polygon_edges
-from drystone.kernels.settling import Status, rest_margin
-from drystone.kernels.settling_python import settle_python
+from drystone.kernels.firmness import rest_margin
+from drystone.kernels.settling import Settling, Status
 from tests.kernels.heaps import WIDTH, Drop, drops
 from tests.naive.settling import (
     best_nearby,
@@ -25,8 +22,8 @@ from tests.naive.settling import (
 from tests.strategies import repeatable
 
 STONES = 25
-EXAMPLES = 40 if compiled("settling") else 3
-"""A thousand stones; without compiled kernels fewer."""
+EXAMPLES = 40
+"""A thousand stones."""
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -53,7 +50,7 @@ def test_settled_stones_lie_over_nothing_and_rest(seed):
     assert rested >= 3
 
 
-def agrees_with_forces(drop: Drop, found: module.Settling) -> None:
+def agrees_with_forces(drop: Drop, found: Settling) -> None:
     """Forces at the contacts carry the weight of what rests, and of nothing else."""
     corners = placed(drop.outline, found[1:4])
     sure, doubtful = contacts(corners, drop.around, drop.rules.tolerance)
@@ -66,7 +63,7 @@ def agrees_with_forces(drop: Drop, found: module.Settling) -> None:
         assert left > 0.5e-6
 
 
-@repeatable(6 if compiled("settling") else 1)
+@repeatable(6)
 @given(seeds)
 def test_no_small_motion_goes_down_from_where_nothing_is_gained(seed):
     for drop, found in drops(seed, 8):
@@ -80,7 +77,7 @@ def test_no_small_motion_goes_down_from_where_nothing_is_gained(seed):
         assert down <= 1e-6 * size, (drop, found)
 
 
-@repeatable(6 if compiled("settling") else 2)
+@repeatable(6)
 @given(seeds)
 def test_steps_pass_through_nothing(seed):
     for drop, _ in drops(seed, STONES):
@@ -134,23 +131,6 @@ def test_steps_that_are_far_too_long_end_nowhere_else(seed, times):
         found = drop._replace(rules=rules).settled()
         assert found.status != Status.OVERLAPS
         assert overlap_area(placed(drop.outline, found[1:4]), drop.around) == 0.0
-
-
-@pytest.mark.skipif(compiled("settling") is None, reason="kernels are not compiled here")
-@repeatable(4)
-@given(seeds)
-def test_both_versions_agree(seed):
-    for drop, found in drops(seed, 14):
-        edges = polygon_edges(drop.outline)
-        twin = settle_python(drop.outline, edges, drop.pose, drop.around, WIDTH, drop.rules)
-        assert found == twin
-        assert all(type(a) is type(b) for a, b in zip(found, twin, strict=True))
-        # Let go in an overlap, and on others with next to no clearance.
-        for deep, changes in ((0.2, {}), (40.0, {}), (0.0, {"clearance": 1e-7, "corner": 1e-5})):
-            pose = (drop.pose[0], max(found.y - deep, 0.5), found.angle)
-            rules = drop.rules._replace(steps=40, **changes)
-            args = drop.outline, edges, pose, drop.around, WIDTH, rules
-            assert module.settle(*args) == settle_python(*args)
 
 
 def test_where_it_stands_counts_turns_in_radians():

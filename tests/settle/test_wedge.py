@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.kernels.crevice import crevice
+from drystone.kernels.firmness import rest_margin
 from drystone.kernels.polygons import (
     Points,
     Polygons,
@@ -17,7 +18,6 @@ from drystone.kernels.polygons import (
     mirrored_polygon,
     no_polygons,
 )
-from drystone.kernels.settling import rest_margin
 from drystone.settle.wedge import (
     WedgeLimits,
     _holds,

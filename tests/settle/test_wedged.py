@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from drystone.kernels.firmness import rest_margin
 from drystone.kernels.polygons import (
     GRID,
     Points,
@@ -12,7 +13,6 @@ from drystone.kernels.polygons import (
     mirrored_polygon,
     no_polygons,
 )
-from drystone.kernels.settling import rest_margin
 from drystone.model.placement import Side
 from drystone.settle.rest import Scene, Turned
 from drystone.settle.settings import SettleSettings

@@ -1,20 +1,58 @@
-"""Which kernels run: compiled ones where they were built, otherwise those in NumPy.
+"""Which kernels run: compiled ones where they were built, otherwise the same in Python.
 
-Both give the same results, bit by bit; the environment variable ``DRYSTONE_KERNELS`` chooses:
-``auto`` (the default), ``numpy``, or ``compiled``, which fails when they were not built.
+A kernel is one source that Cython compiles in place; Python takes what is compiled first.  A few
+are written in Cython and, for where that is not compiled, in NumPy.  Both ways give the same
+results, bit by bit; the environment variable ``DRYSTONE_KERNELS`` chooses: ``auto`` (the default),
+``python`` (``numpy`` in older scripts), or ``compiled``, which fails when they were not built.
 """
 
 import os
+import sys
 from importlib import import_module
+from importlib.machinery import SOURCE_SUFFIXES, FileFinder, SourceFileLoader
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
 VARIABLE = "DRYSTONE_KERNELS"
-CHOICES = ("auto", "numpy", "compiled")
+CHOICES = ("auto", "python", "compiled", "numpy")
+FOLDER = Path(__file__).parent
+
+
+def choice() -> str:
+    """Return what the environment chooses, by its present name.
+
+    Raises
+    ------
+    ImportError
+        When that is unknown.
+    """
+    chosen = os.environ.get(VARIABLE) or "auto"
+    if chosen not in CHOICES:
+        raise ImportError(f"{VARIABLE} is {chosen!r}; it must be one of {', '.join(CHOICES)}")
+    return "python" if chosen == "numpy" else chosen
+
+
+def take_sources(folder: str) -> None:
+    """Let Python import sources of a folder where they are asked for, even if compiled."""
+    if os.environ.get(VARIABLE) in ("python", "numpy"):
+        sys.path_importer_cache[folder] = FileFinder(folder, (SourceFileLoader, SOURCE_SUFFIXES))
+
+
+def require_nothing_compiled() -> None:
+    """Refuse to run a kernel in Python where compiled ones were asked for.
+
+    Raises
+    ------
+    ImportError
+        When they were.
+    """
+    if choice() == "compiled":
+        raise ImportError(f"{VARIABLE} is 'compiled', and kernels were not compiled here")
 
 
 def compiled(name: str) -> ModuleType | None:
-    """Return a compiled kernel module; None when the one in NumPy is to be used.
+    """Return a kernel that is written in Cython; None when the one in NumPy is to be used.
 
     Parameters
     ----------
@@ -26,15 +64,13 @@ def compiled(name: str) -> ModuleType | None:
     ImportError
         When compiled kernels are asked for and were not built, or the choice is unknown.
     """
-    choice = os.environ.get(VARIABLE) or "auto"
-    if choice not in CHOICES:
-        raise ImportError(f"{VARIABLE} is {choice!r}; it must be one of {', '.join(CHOICES)}")
-    if choice == "numpy":
+    chosen = choice()
+    if chosen == "python":
         return None
     try:
         return import_module(f"drystone.kernels.compiled.{name}")
     except ImportError:
-        if choice == "compiled":
+        if chosen == "compiled":
             raise
         return None
 
@@ -42,23 +78,36 @@ def compiled(name: str) -> ModuleType | None:
 def fault() -> str | None:
     """Say what is wrong with the choice that the environment makes; None when nothing is."""
     try:
-        for name in kernel_names():
-            compiled(name)
+        missing = missing_kernels() if choice() == "compiled" else []
     except ImportError as error:
         return str(error)
-    return None
+    return f"{', '.join(missing)}: not compiled here" if missing else None
 
 
 def kernel_names() -> list[str]:
     """Return the names of all kernels that can be compiled, as they are in the package."""
-    folder = Path(__file__).parent / "compiled"
-    return sorted(path.stem for path in folder.glob("*.pyx"))
+    sources = [
+        *FOLDER.rglob("*.pyx"),
+        *(path for path in FOLDER.rglob("*.py") if b"import cython\n" in path.read_bytes()),
+    ]
+    return sorted(".".join(path.relative_to(FOLDER).with_suffix("").parts) for path in sources)
+
+
+def missing_kernels() -> list[str]:
+    """Return the names of those that do not run compiled."""
+    if choice() == "python":
+        return kernel_names()
+    return [name for name in kernel_names() if not _is_compiled(name)]
+
+
+def _is_compiled(name: str) -> bool:
+    spec = find_spec(f"drystone.kernels.{name}")
+    return spec is not None and not (spec.origin or "").endswith(tuple(SOURCE_SUFFIXES))
 
 
 def describe() -> str:
-    """Say which kernels run: ``"compiled"``, ``"NumPy"``, or ``"compiled, NumPy: ..."``."""
-    names = kernel_names()
-    missing = [name for name in names if compiled(name) is None]
-    if len(missing) == len(names):
-        return "NumPy"
-    return "compiled" if not missing else f"compiled, NumPy: {', '.join(missing)}"
+    """Say which kernels run: ``"compiled"``, ``"Python"``, or ``"compiled, Python: ..."``."""
+    missing = missing_kernels()
+    if len(missing) == len(kernel_names()):
+        return "Python"
+    return "compiled" if not missing else f"compiled, Python: {', '.join(missing)}"

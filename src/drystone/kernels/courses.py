@@ -191,7 +191,7 @@ def anneal_python(
     return best.draft.done(), best.cost
 
 
-def laid_again(  # noqa: PLR0913 - the wall, its stones and how
+def laid_again(
     poses: Poses,
     draft: Draft,
     now: Built,

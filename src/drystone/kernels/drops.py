@@ -4,23 +4,97 @@ The stone comes straight down until it touches.  What that costs is estimated fr
 alone; the best few places are worth settling exactly.
 """
 
-import math
-from collections.abc import Sequence
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
-from drystone.kernels.drop_costs import Dropped, DropTerms
-from drystone.kernels.profiles import EDGE, Floats, HeightProfile, StoneProfiles
+from drystone.kernels import profiles
+from drystone.kernels.profiles import Floats, HeightProfile, StoneProfiles
 
-__all__ = ["DropTerms", "Wanted", "drops", "drops_numpy", "shown", "touching"]
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
 
-_fast = compiled("drops")
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import (
+        doubles,
+        doubles_out,
+        flags,
+        longs,
+        longs_out,
+    )
+else:
+    from drystone.kernels.lists import doubles, doubles_out, flags, longs, longs_out
 
-CLOSE = 1e-9
-"""Who rounds costs may need drops that cost so much more than the limit."""
+Lengths = NDArray[np.int64]
+
+# Who rounds costs may need drops that cost so much more than the limit.
+CLOSE = cython.declare(cython.double, 1e-9)
+
+# Columns on which a stone is closer than this, in widths of a column, carry it.
+TOUCHING = cython.declare(cython.double, 1.5)
+
+# Cost of the joint of a stone on the ground, or with no joint below.
+NO_JOINT = cython.declare(cython.double, 0.5)
+
+# The same of a stone at an end of the wall: that of a top that slopes neither in nor out.
+END = cython.declare(cython.double, 1.0)
+
+# The last stage of `look_around`.
+STAGES = cython.declare(cython.int, 3)
+
+EDGE = cython.declare(cython.double, profiles.EDGE)
+INFINITY = cython.declare(cython.double, np.inf)
+
+
+class DropTerms(NamedTuple):
+    """What a drop costs; lengths in source px.
+
+    Parameters
+    ----------
+    cell_px : float
+        Width of a column: a px of the working resolution.
+    width_px, height_px : float
+        Of the wall.
+    slack_px : float
+        How far a stone may stand out over the wall's height: settling may sink it.
+    clearance_px : float
+        How far it is lifted from where it touches.
+    narrowest_px : float
+        Width of the narrowest stone: nearer to an end of the wall there are no joints.
+    mean_height_px, mean_area_px : float
+        Of the stones: the units of the costs.
+    height, void, gap, slot, headroom, step, joint : float
+        Weights of the costs of :func:`drystone.kernels.drops.drops`.
+    unbalanced : float
+        Weight of how far the centroid is beside what carries the stone, in widths of the stone.
+    rest_width_px, rest_height_px : int arrays
+        What the stones that are left cannot fill of a free width and of a free height, all in
+        working px; not negative.
+    """
+
+    cell_px: float
+    width_px: float
+    height_px: float
+    slack_px: float
+    clearance_px: float
+    narrowest_px: float
+    mean_height_px: float
+    mean_area_px: float
+    height: float
+    void: float
+    gap: float
+    slot: float
+    headroom: float
+    step: float
+    joint: float
+    unbalanced: float
+    rest_width_px: Lengths
+    rest_height_px: Lengths
 
 
 class Wanted(NamedTuple):
@@ -77,7 +151,7 @@ def drops(
         The cheapest first, then the cheapest of those that are far enough from it, and so on; of
         equal costs the lower one, then the one further left.  No rows when there is no place.
     limit : float
-        Drops that cost more than this, by more than `CLOSE`, may be missing; infinite when all are
+        Drops that cost more than this, by more than 1e-9, may be missing; infinite when all are
         there.
 
     Notes
@@ -104,10 +178,10 @@ def drops(
         raise ValueError(f"what is said of each stone is there for {sorted(known)} stones")
     if wanted.each < 1:
         raise ValueError(f"{wanted.each} of a group")
-    kernel = drops_numpy if _fast is None else _fast.drops
     numbers = _numbers(len(profile.tops), stones, terms, wanted)
-    few = max(0, wanted.spots), max(0, wanted.cheapest), wanted.each
-    rows, taken, limit = kernel(profile, stones, terms, constants, numbers, few)
+    most = min(max(0, wanted.spots), int(numbers[:, 0].max(initial=0)))
+    few = max(0, wanted.cheapest), wanted.each
+    rows, taken, limit = _dropped(profile, stones, terms, constants, numbers, most, few)
     return [mine[:size] for mine, size in zip(rows, taken.tolist(), strict=True)], limit
 
 
@@ -119,102 +193,15 @@ def _numbers(
     It may be with its left end on the first columns, so many; every x is on a column edge.
     """
     room = terms.width_px - (stones.boxes[:, 2] - stones.boxes[:, 0])
-    last = np.minimum(np.floor(room / terms.cell_px + EDGE), columns - np.diff(stones.first))
-    apart = np.ceil(wanted.apart_px / terms.cell_px - EDGE)
+    last = np.minimum(
+        np.floor(room / terms.cell_px + profiles.EDGE), columns - np.diff(stones.first)
+    )
+    apart = np.ceil(wanted.apart_px / terms.cell_px - profiles.EDGE)
     numbers = np.empty((len(stones.boxes), 3), np.int64)
     numbers[:, 0] = np.maximum(last + 1.0, 0.0)
     numbers[:, 1] = np.minimum(np.maximum(apart, 1.0), max(1, columns))
     numbers[:, 2] = wanted.groups
     return numbers
-
-
-def drops_numpy(
-    profile: HeightProfile,
-    stones: StoneProfiles,
-    terms: DropTerms,
-    constants: Floats,
-    numbers: NDArray[np.int64],
-    wanted: tuple[int, int, int],
-) -> tuple[Floats, NDArray[np.intp], float]:
-    """Return what :func:`drops` returns, by NumPy.
-
-    Parameters
-    ----------
-    profile, stones, terms, constants
-        As for :func:`drops`.
-    numbers : (k, 3) int64 array
-        On how many columns a stone's left end may be, how many its places are apart, its group.
-    wanted : (int, int, int)
-        Places of each stone, how many of the cheapest, and how many of those of a group.
-
-    Returns
-    -------
-    rows : (k, m, 4) float array
-        The places of each stone in its first rows.
-    taken : (k,) int array
-        How many there are.
-    limit : float
-        As for :func:`drops`.
-    """
-    most = min(wanted[0], int(numbers[:, 0].max(initial=0)))
-    rows, taken = np.zeros((len(numbers), most, 4)), np.zeros(len(numbers), np.intp)
-    boxes, cheapest = shown(profile), Cheapest(*wanted[1:])
-    # What is cheap by itself first: it limits how dear the others may be.
-    for at in np.argsort(constants, kind="stable").tolist():
-        places, apart, group = numbers[at].tolist()
-        if places <= 0:
-            continue
-        bottoms = stones.bottoms[stones.first[at] : stones.first[at + 1]]
-        lift = touching(profile.tops, bottoms, places)
-        drop = Dropped(profile.tops, bottoms, stones.boxes[at].tolist(), terms, lift)
-        lean = drop.lean()
-        cost = drop.cost(float(constants[at]), boxes) + terms.unbalanced * np.abs(lean)
-        cost = np.where(drop.top > terms.height_px + terms.slack_px, np.inf, cost)
-        cost = np.where(cost > cheapest.limit + CLOSE, np.inf, cost)
-        for row, (place, price) in enumerate(_cheapest(cost, lift, apart, most)):
-            y = lift[place] + terms.clearance_px
-            rows[at, row] = place * terms.cell_px, y, price, lean[place]
-            taken[at] = row + 1
-        cheapest.keep(rows[at, : taken[at], 2].tolist(), group)
-    return rows, taken, cheapest.limit
-
-
-class Cheapest:
-    """The costs of the cheapest drops so far, only so many of a group.
-
-    Parameters
-    ----------
-    most : int
-        How many; none when 0.
-    each : int
-        How many of a group.
-    """
-
-    def __init__(self, most: int, each: int) -> None:
-        self.limit = math.inf
-        self._most = most
-        self._each = each
-        self._kept: list[tuple[float, int]] = []
-
-    def keep(self, costs: Sequence[float], group: int) -> None:
-        """Take in the drops of a stone; the limit of what is still asked for may fall."""
-        if not self._most:
-            return
-        every = sorted([*self._kept, *((cost, group) for cost in costs)])
-        mine = [one for one in every if one[1] == group][self._each :]
-        for one in mine:
-            every.remove(one)
-        self._kept = every[: self._most]
-        if len(self._kept) == self._most:
-            self.limit = self._kept[-1][0]
-
-
-def touching(tops: Floats, bottoms: Floats, places: int) -> Floats:
-    """Return y of the centroid where a stone touches first, for each of the first columns."""
-    lift = np.full(places, -np.inf)
-    for k, bottom in enumerate(bottoms.tolist()):
-        lift = np.maximum(lift, tops[k : k + places] - bottom)
-    return lift
 
 
 def shown(profile: HeightProfile) -> Floats:
@@ -232,16 +219,568 @@ def shown(profile: HeightProfile) -> Floats:
     return np.asarray(profile.boxes[owners])
 
 
-def _cheapest(cost: Floats, lift: Floats, apart: int, count: int) -> list[tuple[int, float]]:
-    """Return the cheapest places that are so many columns apart, with their costs."""
-    cost = cost.copy()
-    chosen: list[tuple[int, float]] = []
-    while len(chosen) < count:
-        least = float(cost.min())
-        if least == np.inf:
+@cython.cclass
+class Terms:
+    """The numbers of a :class:`DropTerms`, and weights of lengths and areas."""
+
+    cell: cython.double
+    width: cython.double
+    height: cython.double
+    slack: cython.double
+    clearance: cython.double
+    narrowest: cython.double
+    mean_area: cython.double
+    gap: cython.double
+    joint: cython.double
+    unbalanced: cython.double
+    of_height: cython.double
+    of_void: cython.double
+    of_slot: cython.double
+    of_headroom: cython.double
+    of_step: cython.double
+    rising: cython.bint
+    """Whether no stage of `look_around` makes a place cheaper."""
+
+
+@cython.cclass
+class Wall:
+    """What stones are dropped on."""
+
+    tops: cython.p_double
+    columns: cython.Py_ssize_t
+    boxes: cython.p_double
+    """Left, bottom, right and top of each polygon that owns columns."""
+    shown: cython.Py_ssize_t
+    higher: cython.p_longlong
+    """The next column to the right that is higher, for each column."""
+    sums: cython.p_double
+    """The sum of the first k columns from each on, k = 0, 1, ..."""
+    rest_width: cython.p_longlong
+    rest_height: cython.p_longlong
+    longest_width: cython.Py_ssize_t
+    longest_height: cython.Py_ssize_t
+
+
+@cython.cclass
+class Places:
+    """A stone, and the places where it was dropped."""
+
+    bottoms: cython.p_double
+    first: cython.Py_ssize_t
+    columns: cython.Py_ssize_t
+    left: cython.double
+    bottom: cython.double
+    right: cython.double
+    top: cython.double
+    count: cython.Py_ssize_t
+    lift: cython.p_double
+    lean: cython.p_double
+    stage: cython.p_uchar
+    """How far `look_around` has come at each place."""
+    cost: cython.p_double
+    """The sum of the costs that are known so far; infinite where it cannot go."""
+
+
+@cython.cclass
+class Kept:
+    """The cheapest drops of all stones so far, only so many of a group."""
+
+    cost: cython.p_double
+    group: cython.p_longlong
+    count: cython.Py_ssize_t
+    most: cython.Py_ssize_t
+    each: cython.Py_ssize_t
+    limit: cython.double
+    """Drops that cost more, by more than CLOSE, are not asked for."""
+
+
+@cython.cfunc
+def terms_of(terms: DropTerms) -> Terms:
+    """Read the numbers of a :class:`DropTerms`."""
+    read: Terms = Terms()
+    read.cell, read.width, read.height = terms.cell_px, terms.width_px, terms.height_px
+    read.slack, read.clearance = terms.slack_px, terms.clearance_px
+    read.narrowest, read.mean_area = terms.narrowest_px, terms.mean_area_px
+    read.gap, read.joint, read.unbalanced = terms.gap, terms.joint, terms.unbalanced
+    read.of_height = terms.height / terms.mean_height_px
+    read.of_step = terms.step / terms.mean_height_px
+    read.of_void = terms.void / terms.mean_area_px
+    read.of_slot = terms.slot / terms.mean_area_px
+    read.of_headroom = terms.headroom / terms.mean_area_px
+    least: cython.double = min(read.gap, read.of_slot, read.of_step, read.joint, read.unbalanced)
+    read.rising = read.mean_area > 0.0 and least >= 0.0
+    return read
+
+
+def _dropped(profile, stones, terms, constants, numbers, most, few):
+    """Drop all stones; return their places in rows, how many there are, and the limit.
+
+    Parameters
+    ----------
+    profile, stones, terms, constants
+        As for :func:`drops`.
+    numbers : (k, 3) int64 array
+        On how many columns a stone's left end may be, how many its places are apart, its group.
+    most : int
+        Rows of a stone.
+    few : (int, int)
+        How many of the cheapest are wanted, and how many of those of a group.
+    """
+    size: cython.Py_ssize_t = len(constants)
+    columns: cython.Py_ssize_t = len(profile.tops)
+    widest: cython.Py_ssize_t = 1
+    at: cython.Py_ssize_t
+    turn: cython.Py_ssize_t
+    number: cython.p_longlong = longs(numbers)
+    first: cython.p_longlong = longs(stones.first)
+    for at in range(size):
+        if number[3 * at] > 0:
+            widest = max(widest, first[at + 1] - first[at])
+    room = max(1, columns)
+    tops = np.ascontiguousarray(profile.tops)
+    boxes = np.ascontiguousarray(shown(profile))
+    rest_width = np.ascontiguousarray(terms.rest_width_px)
+    rest_height = np.ascontiguousarray(terms.rest_height_px)
+    constants = np.ascontiguousarray(constants)
+    # What is cheap by itself first: it limits how dear the others may be.
+    order_of = np.argsort(constants, kind="stable").astype(np.int64)
+    rows, taken = np.empty((size, most, 4)), np.zeros(size, np.int64)
+    out: cython.p_double = doubles_out(rows)
+    ends: cython.p_longlong = longs_out(taken)
+    order: cython.p_longlong = longs(order_of)
+    constant: cython.p_double = doubles(constants)
+    extents: cython.p_double = doubles(stones.boxes)
+    space = np.empty((3 + widest, room))
+    more_space, stages = np.empty(room, np.int64), np.empty(room, np.uint8)
+    costs, groups = np.empty(max(1, few[0])), np.empty(max(1, few[0]), np.int64)
+    wall: Wall = Wall()
+    wall.tops, wall.columns = doubles(tops), columns
+    wall.boxes, wall.shown = doubles(boxes), len(boxes)
+    wall.higher = longs(more_space)
+    wall.rest_width, wall.longest_width = longs(rest_width), len(rest_width) - 1
+    wall.rest_height, wall.longest_height = longs(rest_height), len(rest_height) - 1
+    wall.sums = doubles(space[3:])
+    weights: Terms = terms_of(terms)
+    found: Places = Places()
+    found.lift, found.lean = doubles(space[0]), doubles(space[1])
+    found.cost, found.stage = doubles(space[2]), flags(stages)
+    found.bottoms = doubles(stones.bottoms)
+    kept: Kept = Kept()
+    kept.cost, kept.group, kept.count = doubles(costs), longs(groups), 0
+    kept.most, kept.each, kept.limit = few[0], few[1], INFINITY
+    rows_each: cython.Py_ssize_t = most
+    with cython.nogil:
+        rise(wall)
+        add_up(wall, widest)
+        for turn in range(size):
+            at = order[turn]
+            found.count = number[3 * at]
+            if found.count <= 0:
+                continue
+            found.first, found.columns = first[at], first[at + 1] - first[at]
+            found.left, found.bottom = extents[4 * at], extents[4 * at + 1]
+            found.right, found.top = extents[4 * at + 2], extents[4 * at + 3]
+            lay_down(wall, weights, constant[at], found)
+            ends[at] = take(
+                wall, weights, number[3 * at + 1], kept.limit + CLOSE, found,
+                out, 4 * rows_each * at, rows_each,
+            )  # fmt: skip
+            keep(kept, out, 4 * rows_each * at, ends[at], number[3 * at + 2])
+    return rows, taken, kept.limit
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def keep(
+    kept: Kept,
+    rows: cython.p_double,
+    start: cython.Py_ssize_t,
+    count: cython.Py_ssize_t,
+    group: cython.longlong,
+) -> cython.void:
+    """Take in the drops of a stone where they are among the cheapest; the limit may fall."""
+    row: cython.Py_ssize_t
+    at: cython.Py_ssize_t
+    of_group: cython.Py_ssize_t
+    dearest: cython.Py_ssize_t
+    dearest_of_group: cython.Py_ssize_t
+    out: cython.Py_ssize_t
+    if kept.most <= 0:
+        return
+    for row in range(start, start + 4 * count, 4):
+        of_group, dearest, dearest_of_group = 0, 0, 0
+        for at in range(kept.count):
+            if kept.cost[at] > kept.cost[dearest]:
+                dearest = at
+            if kept.group[at] == group:
+                if not of_group or kept.cost[at] > kept.cost[dearest_of_group]:
+                    dearest_of_group = at
+                of_group += 1
+        if of_group < kept.each and kept.count < kept.most:
+            out = kept.count
+            kept.count += 1
+        else:
+            out = dearest if of_group < kept.each else dearest_of_group
+            if rows[row + 2] >= kept.cost[out]:
+                continue
+        kept.cost[out], kept.group[out] = rows[row + 2], group
+    if kept.count == kept.most:
+        kept.limit = kept.cost[0]
+        for at in range(1, kept.count):
+            kept.limit = max(kept.limit, kept.cost[at])
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def take(
+    wall: Wall,
+    terms: Terms,
+    apart: cython.Py_ssize_t,
+    limit: cython.double,
+    found: Places,
+    out: cython.p_double,
+    start: cython.Py_ssize_t,
+    most: cython.Py_ssize_t,
+) -> cython.Py_ssize_t:
+    """Write the cheapest places that are so many columns apart; return how many there are."""
+    taken: cython.Py_ssize_t = 0
+    at: cython.Py_ssize_t
+    near: cython.Py_ssize_t
+    if not terms.rising:
+        for at in range(found.count):
+            if found.cost[at] < INFINITY:
+                look_around(wall, terms, found, at, STAGES)
+    while taken < most:
+        at = cheapest(wall, terms, limit, found)
+        if at < 0:
             break
-        equal = np.flatnonzero(cost == least)
-        best = int(equal[np.argmin(lift[equal])])
-        chosen.append((best, least))
-        cost[max(0, best - apart + 1) : best + apart] = np.inf
-    return chosen
+        near = start + 4 * taken
+        out[near] = at * terms.cell
+        out[near + 1] = found.lift[at] + terms.clearance
+        out[near + 2] = found.cost[at]
+        out[near + 3] = found.lean[at]
+        taken += 1
+        for near in range(max(0, at - apart + 1), min(found.count, at + apart)):
+            found.cost[near] = INFINITY
+    return taken
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def cheapest(wall: Wall, terms: Terms, limit: cython.double, found: Places) -> cython.Py_ssize_t:
+    """Return the place of the least cost; of equal ones the lower, then the first.
+
+    -1 when it costs more than the limit.  Places that are dearer already than that, or than
+    another one at last, are left as they are: they only become dearer.
+    """
+    at: cython.Py_ssize_t
+    best: cython.Py_ssize_t
+    stage: cython.int
+    for stage in range(1, STAGES + 1):
+        # What costs least so far does not cost much more at last.
+        best = least(found)
+        if not found.cost[best] <= limit or found.cost[best] == INFINITY:
+            return -1
+        look_around(wall, terms, found, best, STAGES)
+        limit = min(limit, found.cost[best])
+        for at in range(found.count):
+            if found.cost[at] <= limit and found.stage[at] < stage:
+                look_around(wall, terms, found, at, stage)
+                if stage == STAGES:
+                    limit = min(limit, found.cost[at])
+    best = least(found)
+    return best if found.cost[best] <= limit else -1
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def least(found: Places) -> cython.Py_ssize_t:
+    """Return the place that costs least so far; of equal ones the lower, then the first."""
+    at: cython.Py_ssize_t
+    best: cython.Py_ssize_t = 0
+    cost: cython.p_double = found.cost
+    lift: cython.p_double = found.lift
+    lowest: cython.double = cost[0]
+    for at in range(1, found.count):
+        if cost[at] <= lowest and (cost[at] < lowest or lift[at] < lift[best]):
+            best, lowest = at, cost[at]
+    return best
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def rise(wall: Wall) -> cython.void:
+    """Find the next higher column to the right of each; past the last where there is none."""
+    at: cython.Py_ssize_t
+    further: cython.Py_ssize_t
+    for at in range(wall.columns - 1, -1, -1):
+        further = at + 1
+        while further < wall.columns and wall.tops[further] <= wall.tops[at]:
+            further = wall.higher[further]
+        wall.higher[at] = further
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def add_up(wall: Wall, widest: cython.Py_ssize_t) -> cython.void:
+    """Sum up as many columns as may be under a stone, but for its last one."""
+    at: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    row: cython.Py_ssize_t
+    columns: cython.Py_ssize_t = wall.columns
+    tops: cython.p_double = wall.tops
+    sums: cython.p_double = wall.sums
+    for at in range(columns):
+        sums[at] = 0.0
+    for k in range(widest - 1):
+        row = k * columns
+        for at in range(columns - k):
+            sums[row + columns + at] = sums[row + at] + tops[at + k]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def lay_down(wall: Wall, terms: Terms, constant: cython.double, found: Places) -> cython.void:
+    """Drop the stone everywhere: what that costs without a look around."""
+    before: cython.Py_ssize_t = found.columns - 1
+    count: cython.Py_ssize_t = found.count
+    at: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    free: cython.Py_ssize_t
+    hollow: cython.double = 0.0
+    cell: cython.double = terms.cell
+    width: cython.double = found.right - found.left
+    last: cython.double = width - before * cell
+    last_bottom: cython.double = found.bottoms[found.first + before]
+    high: cython.double = terms.height
+    highest: cython.double = terms.height + terms.slack
+    wide: cython.double = cell * width
+    top: cython.double = found.top
+    most: cython.double = wall.longest_height
+    of_height: cython.double = terms.of_height
+    of_void: cython.double = terms.of_void
+    of_headroom: cython.double = terms.of_headroom
+    y: cython.double
+    void: cython.double
+    price: cython.double
+    lift: cython.p_double = found.lift
+    cost: cython.p_double = found.cost
+    tops: cython.p_double = wall.tops
+    under: cython.p_double = wall.sums
+    row: cython.Py_ssize_t = before * wall.columns
+    for k in range(found.first, found.first + before):
+        hollow += found.bottoms[k]
+    land(found, tops)
+    for at in range(count):
+        y = lift[at]
+        void = cell * ((y * before + hollow) - under[row + at])
+        void = void + last * ((y + last_bottom) - tops[before + at])
+        free = cython.cast(cython.Py_ssize_t, min(max((high - (y + top)) / cell + EDGE, 0.0), most))
+        price = constant + of_height * y
+        price = price + of_void * void
+        price = price + of_headroom * (wall.rest_height[free] * wide)
+        cost[at] = INFINITY if y + top > highest else price
+        found.stage[at] = 0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def land(found: Places, tops: cython.p_double) -> cython.void:
+    """Find where the stone touches at all places: four of its columns at a time."""
+    at: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    j: cython.Py_ssize_t = 0
+    count: cython.Py_ssize_t = found.count
+    one: cython.double
+    two: cython.double
+    three: cython.double
+    four: cython.double
+    high: cython.double
+    bottoms: cython.p_double = found.bottoms
+    lift: cython.p_double = found.lift
+    for at in range(count):
+        lift[at] = -INFINITY
+    while j + 4 <= found.columns:
+        k = found.first + j
+        one, two, three, four = bottoms[k], bottoms[k + 1], bottoms[k + 2], bottoms[k + 3]
+        for at in range(count):
+            high = max(lift[at], tops[at + j] - one)
+            high = max(high, tops[at + j + 1] - two)
+            high = max(high, tops[at + j + 2] - three)
+            lift[at] = max(high, tops[at + j + 3] - four)
+        j += 4
+    while j < found.columns:
+        one = bottoms[found.first + j]
+        for at in range(count):
+            lift[at] = max(lift[at], tops[at + j] - one)
+        j += 1
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def look_around(
+    wall: Wall, terms: Terms, found: Places, at: cython.Py_ssize_t, stage: cython.int
+) -> cython.void:
+    """Add further costs of a place, up to a stage.
+
+    The first is that of what is free beside the stone, then that of the left neighbour, then
+    those of joints and of what carries it.
+    """
+    lift: cython.double = found.lift[at]
+    left: cython.double = at * terms.cell
+    right: cython.double = left + (found.right - found.left)
+    bottom: cython.double = lift + found.bottom
+    top: cython.double = lift + found.top
+    cost: cython.double = found.cost[at]
+    if found.stage[at] < 1 and stage >= 1:
+        cost = with_room(cost, wall, terms, bottom, top, at, at + found.columns)
+    if found.stage[at] < 2 and stage >= 2:
+        cost = cost + terms.of_step * step(wall, left, bottom, right, top)
+    if found.stage[at] < STAGES and stage >= STAGES:
+        found.lean[at] = leaning(wall, terms, found, at)
+        cost = cost + terms.joint * joint(wall, terms, left, bottom, right, top)
+        cost = cost + terms.unbalanced * abs(found.lean[at])
+    found.cost[at] = cost
+    found.stage[at] = stage
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def with_room(
+    cost: cython.double,
+    wall: Wall,
+    terms: Terms,
+    bottom: cython.double,
+    top: cython.double,
+    at: cython.Py_ssize_t,
+    end: cython.Py_ssize_t,
+) -> cython.double:
+    """Add the costs of what is free on the left of a stone and on its right."""
+    area: cython.double = 0.0
+    middle: cython.double = (bottom + top) / 2.0
+    foot: cython.double = bottom + terms.cell
+    full: cython.double = terms.mean_area / terms.cell
+    to_left: cython.Py_ssize_t = at - 1
+    to_right: cython.Py_ssize_t = end
+    free: cython.Py_ssize_t
+    while to_left >= 0 and wall.tops[to_left] < middle and area < full:
+        area += top - max(wall.tops[to_left], bottom)
+        to_left -= 1
+    cost = cost + terms.gap * min(1.0, area * terms.cell / terms.mean_area)
+    while to_right < wall.columns and wall.tops[to_right] <= foot:
+        to_right = wall.higher[to_right]
+    free = min(to_right - end, wall.longest_width)
+    return cost + terms.of_slot * (wall.rest_width[free] * (terms.cell * (top - bottom)))
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def step(
+    wall: Wall,
+    left: cython.double,
+    bottom: cython.double,
+    right: cython.double,
+    top: cython.double,
+) -> cython.double:
+    """Return how far the top is from level with the left neighbour's (Eq. 6)."""
+    boxes: cython.p_double = wall.boxes
+    k: cython.Py_ssize_t
+    nearest: cython.Py_ssize_t = -1
+    shared: cython.double
+    smaller: cython.double
+    for k in range(0, 4 * wall.shown, 4):
+        if not 2.0 * boxes[k + 2] <= left + right:
+            continue
+        if nearest >= 0 and boxes[k + 2] < boxes[nearest + 2]:
+            continue
+        shared = min(boxes[k + 3], top) - max(boxes[k + 1], bottom)
+        smaller = min(boxes[k + 3] - boxes[k + 1], top - bottom)
+        if not 2.0 * shared >= smaller:
+            continue
+        if nearest < 0 or boxes[k + 2] > boxes[nearest + 2] or boxes[k + 3] > boxes[nearest + 3]:
+            nearest = k
+    return 0.0 if nearest < 0 else abs(top - boxes[nearest + 3])
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def joint(
+    wall: Wall,
+    terms: Terms,
+    left: cython.double,
+    bottom: cython.double,
+    right: cython.double,
+    top: cython.double,
+) -> cython.double:
+    """Return 1 - IWR (Eq. 9)."""
+    boxes: cython.p_double = wall.boxes
+    middle: cython.double = (bottom + top) / 2.0
+    ratios: cython.double = 0.0
+    least_one: cython.double = INFINITY
+    least_two: cython.double = INFINITY
+    away: cython.double
+    rise_: cython.double
+    distance: cython.double
+    k: cython.Py_ssize_t
+    one: cython.Py_ssize_t = -1
+    two: cython.Py_ssize_t = -1
+    if min(left, terms.width - right) < terms.narrowest:
+        return END
+    if bottom < terms.cell / 2.0:
+        return NO_JOINT
+    for k in range(0, 4 * wall.shown, 4):
+        if boxes[k + 3] > middle:
+            continue
+        rise_ = boxes[k + 3] - bottom
+        away = boxes[k + 2] - left
+        distance = away * away + rise_ * rise_
+        if boxes[k + 2] < terms.width - terms.narrowest and distance < least_one:
+            one, least_one = k, distance
+        away = boxes[k] - right
+        distance = away * away + rise_ * rise_
+        if boxes[k] > terms.narrowest and distance < least_two:
+            two, least_two = k, distance
+    if one < 0 and two < 0:
+        return NO_JOINT
+    if one >= 0:
+        ratios = min(1.0, abs(boxes[one + 2] - left) / (boxes[one + 2] - boxes[one]))
+    if two >= 0:
+        ratios += min(1.0, abs(boxes[two] - right) / (boxes[two + 2] - boxes[two]))
+    return 1.0 - ratios / (2.0 if one >= 0 and two >= 0 else 1.0)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def leaning(wall: Wall, terms: Terms, found: Places, at: cython.Py_ssize_t) -> cython.double:
+    """Return how far the centroid is right of what carries the stone, in widths."""
+    bottoms: cython.p_double = found.bottoms
+    tops: cython.p_double = wall.tops
+    first: cython.Py_ssize_t = found.first
+    start: cython.Py_ssize_t = 0
+    end: cython.Py_ssize_t = found.columns - 1
+    lift: cython.double = found.lift[at]
+    width: cython.double = found.right - found.left
+    limit: cython.double = TOUCHING * terms.cell
+    left: cython.double
+    right: cython.double
+    # One column at least touches.
+    while start < end and (lift + bottoms[first + start]) - tops[at + start] >= limit:
+        start += 1
+    while end > start and (lift + bottoms[first + end]) - tops[at + end] >= limit:
+        end -= 1
+    left = -found.left - start * terms.cell
+    right = -found.left - min(width, (end + 1) * terms.cell)
+    return (min(0.0, left) + max(0.0, right)) / width

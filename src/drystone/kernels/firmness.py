@@ -5,114 +5,181 @@ friction leaves; the polygon rests when no such motion goes down, and it is as f
 lean until one does.
 """
 
-import math
-from collections.abc import Sequence
-from typing import NamedTuple
+from __future__ import annotations
 
-from drystone.kernels.gaps import END, Gap, gaps_python
-from drystone.kernels.polygons import Points, Polygons
-from drystone.kernels.seidel import Row, order_of, solve2_python, solve_python
+import numpy as np
 
-GAINED = 1e-6
-FASTEST = 1e3
-FIRMEST = 10.0
+from drystone.kernels.polygons import Points, Polygons, polygon_edges
 
-HOLDS_DOWN = -0.1
-"""A contact whose normal goes down further holds a stone down: where upright faces do not grip, it
-does not count either."""
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
 
+if cython.compiled:
+    from cython.cimports.drystone.kernels.gaps import Stone, find_gaps, heap_of, stone_of
+    from cython.cimports.drystone.kernels.memory import doubles, more_doubles, new_doubles, release
+    from cython.cimports.drystone.kernels.seidel import solve2, solve3
+    from cython.cimports.libc.math import sqrt
+else:
+    from math import sqrt
 
-class Friction(NamedTuple):
-    """What counts in the rest test.
+    from drystone.kernels.gaps import Stone, find_gaps, heap_of, stone_of
+    from drystone.kernels.lists import doubles, more_doubles, new_doubles, release
+    from drystone.kernels.seidel import solve2, solve3
 
-    Parameters
-    ----------
-    mu : float
-        Coefficient of friction.
-    tolerance : float
-        Gaps up to this one touch.
-    corner : float
-        Two corners nearer than this meet with a face.
-    steep : float
-        Contacts whose normal goes up by less than this have no friction, and those whose normal
-        goes down by more than .1 do not count; -1: all count.  A stone that is held by friction on
-        upright faces, or by what it is hooked under, stands only if it was pressed in before.
-    """
+END = cython.declare(cython.int, -2)
+GAINED = cython.declare(cython.double, 1e-6)
+FASTEST = cython.declare(cython.double, 1e3)
+FIRMEST = cython.declare(cython.double, 10.0)
 
-    mu: float
-    tolerance: float
-    corner: float
-    steep: float = -1.0
+# A contact whose normal goes down further holds a stone down: where upright faces do not grip, it
+# does not count either.
+HOLDS_DOWN = cython.declare(cython.double, -0.1)
 
 
-def rest_margin_python(
+def rest_margin(
     corners: Points,
-    edges: Points,
     centroid: tuple[float, float],
     around: Polygons,
     width: float,
-    friction: Friction,
+    mu: float,
+    tolerance: float,
+    corner: float = 0.3,
+    steep: float = -1.0,
 ) -> float:
-    """Twin of :func:`drystone.kernels.settling.rest_margin`, given the edges too."""
-    gaps = gaps_python(corners, edges, around, width, friction.tolerance, friction.corner)
-    arm = arm_of(corners, *centroid)
-    return firmness_python(gaps, centroid, arm, friction)
-
-
-def arm_of(corners: Points, x: float, y: float) -> float:
-    """Return the distance of the furthest corner from a point."""
-    dx, dy = corners[:, 0] - x, corners[:, 1] - y
-    return math.sqrt((dx * dx + dy * dy).max())
-
-
-def firmness_python(
-    gaps: Sequence[Gap], centroid: tuple[float, float], arm: float, friction: Friction
-) -> float:
-    """Return how far gravity may lean, over mu, until a polygon moves; -1 when it does not rest.
+    """Return how far gravity may lean, over mu, until a placed polygon moves.
 
     Parameters
     ----------
-    gaps : list of Gap
-        Those that touch count; the ends of the wall carry nothing.
+    corners : (n, 2) float array
+        Where it is.
     centroid : (float, float)
-        Where its weight is.
-    arm : float
-        Turns are ways of a corner so far out.
-    friction : Friction
-        What counts.
+        Its centre of mass.
+    around : Polygons
+        Rigid neighbours.
+    width : float
+        Of the wall; its ends carry nothing.
+    mu : float
+        Coefficient of friction, positive: margins are shares of it.
+    tolerance : float
+        Gaps up to this one touch.
+    corner, steep : float
+        See :class:`drystone.kernels.settling.Rules`.
+
+    Returns
+    -------
+    margin : float
+        -1 when it does not rest; 10 or more counts as 10.
+
+    Raises
+    ------
+    ValueError
+        When mu is not positive.
     """
-    rows = _cones(gaps, centroid, arm, friction)
-    if len(rows) < 4:
+    require_friction(mu)
+    corners = np.ascontiguousarray(corners, np.float64)
+    stone: Stone = stone_of(corners, polygon_edges(corners))
+    x: cython.double = centroid[0]
+    y: cython.double = centroid[1]
+    find_gaps(stone, heap_of(around, width), tolerance, corner)
+    arm: cython.double = arm_of(doubles(corners), stone.count, x, y)
+    return firmness(stone, x, y, arm, mu, tolerance, steep, Work())
+
+
+def require_friction(mu: float) -> None:
+    """Refuse a coefficient of friction that margins cannot be shares of."""
+    if not mu > 0.0:
+        raise ValueError(f"mu must be positive, not {mu}")
+
+
+@cython.cclass
+class Work:
+    """Room for the rows of linear programs, which grows."""
+
+    def __init__(self) -> None:
+        self.room = 32
+        self.rows = new_doubles(4 * self.room)
+        self.scratch = new_doubles(3 * (self.room + 2))
+
+    def __dealloc__(self) -> None:
+        release(self.rows)
+        release(self.scratch)
+
+
+def enough_rows(work, count):
+    """Make room for so many rows of a linear program."""
+    if count > work.room:
+        work.room = 2 * count
+        work.rows = more_doubles(work.rows, 4 * work.room)
+        work.scratch = more_doubles(work.scratch, 3 * (work.room + 2))
+    return 0
+
+
+def arm_of(corners, count, x, y):
+    """Return the distance of the furthest corner from a point."""
+    dx: cython.double
+    dy: cython.double
+    most: cython.double = 0.0
+    i: cython.Py_ssize_t
+    for i in range(count):
+        dx, dy = corners[2 * i] - x, corners[2 * i + 1] - y
+        dx = dx * dx + dy * dy
+        # What is not a number stays.
+        if dx > most or dx != dx:
+            most = dx
+    return sqrt(most)
+
+
+def firmness(stone, x, y, arm, mu, tolerance, steep, work):
+    """Return how far gravity may lean, over mu, until a stone moves; -1 when it does not rest.
+
+    Gaps that touch count, but the ends of the wall carry nothing.  Turns are ways of a corner as
+    far out as the arm.  Contacts whose normal goes up by less than `steep` have no friction, and
+    those whose normal goes down by more than .1 do not count; with -1 all count.  A stone that is
+    held by friction on upright faces, or by what it is hooked under, stands only if it was
+    pressed in before.
+    """
+    gain: cython.double[3] = [0.0, -1.0, 0.0]
+    most: cython.double[3] = [1.0, 1.0, 1.0]
+    found: cython.double[3] = [0.0, 0.0, 0.0]
+    gx: cython.double
+    gy: cython.double
+    least: cython.double = FIRMEST
+    grip: cython.double
+    gaps: cython.p_double = stone.gaps
+    rows: cython.p_double
+    scratch: cython.p_double
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    count: cython.Py_ssize_t = 0
+    sign: cython.int
+    enough_rows(work, 2 * stone.found + 2)
+    rows, scratch = work.rows, work.scratch
+    for k in range(0, 7 * stone.found, 7):
+        if gaps[k + 5] > tolerance or gaps[k + 6] == END:
+            continue
+        if steep >= 0.0 and gaps[k + 2] < HOLDS_DOWN:
+            continue
+        grip = mu if gaps[k + 2] >= steep else 0.0
+        for sign in range(-1, 2, 2):
+            gx = gaps[k + 1] + sign * grip * gaps[k + 2]
+            gy = gaps[k + 2] - sign * grip * gaps[k + 1]
+            i = 4 * count
+            rows[i], rows[i + 1], rows[i + 3] = -gx, -gy, 0.0
+            rows[i + 2] = -((gaps[k + 3] - x) * gy - (gaps[k + 4] - y) * gx) / arm
+            count += 1
+    if count < 4:
         return -1.0
-    found = solve_python(rows, (0.0, -1.0, 0.0), (1.0, 1.0, 1.0))
-    if found is None or found[1] < -GAINED:
+    if not solve3(rows, count, gain, most, scratch, found) or found[1] < -GAINED:
         return -1.0
     # With a speed of 1 aside: by how much must it rise at least?
-    least = FIRMEST
-    order = order_of(len(rows))
-    for sign in (-1, 1):
-        rows2 = [(rows[i][1], rows[i][2], -sign * rows[i][0]) for i in order]
-        best = solve2_python(rows2, (-1.0, 0.0), (FASTEST, FASTEST))
-        if best is not None:
-            least = min(least, best[0] / friction.mu)
+    gain[0], gain[1] = -1.0, 0.0
+    most[0] = most[1] = FASTEST
+    for sign in range(-1, 2, 2):
+        for i in range(count):
+            scratch[3 * i], scratch[3 * i + 1] = rows[4 * i + 1], rows[4 * i + 2]
+            scratch[3 * i + 2] = -sign * rows[4 * i]
+        if solve2(scratch, count, gain, most, found):
+            least = min(least, found[0] / mu)
     return max(least, 0.0)
-
-
-def _cones(
-    gaps: Sequence[Gap], centroid: tuple[float, float], arm: float, friction: Friction
-) -> list[Row]:
-    """Return two rows for each contact, the edges of its cone of friction."""
-    x, y = centroid
-    rows = []
-    for _, nx, ny, px, py, away, other in gaps:
-        if away > friction.tolerance or other == END:
-            continue
-        if friction.steep >= 0.0 and ny < HOLDS_DOWN:
-            continue
-        mu = friction.mu if ny >= friction.steep else 0.0
-        for sign in (-1, 1):
-            gx = nx + sign * mu * ny
-            gy = ny - sign * mu * nx
-            turning = (px - x) * gy - (py - y) * gx
-            rows.append((-gx, -gy, -turning / arm, 0.0))
-    return rows

@@ -6,26 +6,45 @@ minus the gap makes the two touch.  Where two corners are near each other the fa
 them best gives the normal, so that bricks meet with their faces.
 """
 
-import math
-from collections.abc import Iterator
+from __future__ import annotations
+
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from drystone.kernels.backend import compiled
-from drystone.kernels.crossings import contains
 from drystone.kernels.polygons import Points, Polygons
-from drystone.kernels.rings import Ints, Ring
+
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import (
+        doubles,
+        ints,
+        more_doubles,
+        more_ints,
+        new_doubles,
+        new_ints,
+        release,
+    )
+    from cython.cimports.libc.math import sqrt
+else:
+    from math import sqrt
+
+    from drystone.kernels.lists import (
+        doubles,
+        ints,
+        more_doubles,
+        more_ints,
+        new_doubles,
+        new_ints,
+        release,
+    )
 
 GROUND, END = -1, -2
-SAME = 1e-9
-INTO = 0.03
 
-Flags = NDArray[np.bool_]
-Keyed = tuple[int, int, int, int, float, float, float, float, float, float]
-
-_fast = compiled("gaps")
+SAME = cython.declare(cython.double, 1e-9)
+INTO = cython.declare(cython.double, 0.03)
 
 
 class Gap(NamedTuple):
@@ -55,7 +74,13 @@ class Gap(NamedTuple):
 
 
 def gaps_around(
-    corners: Points, edges: Points, around: Polygons, width: float, reach: float, corner: float
+    corners: Points,
+    edges: Points,
+    around: Polygons,
+    width: float,
+    reach: float,
+    corner: float,
+    beyond: float = 0.0,
 ) -> list[Gap]:
     """List the gaps of a polygon to what is near: others, the ground, the ends of the wall.
 
@@ -74,217 +99,502 @@ def gaps_around(
         Largest gap, and largest depth.
     corner : float
         Two corners nearer than this meet with a face.
+    beyond : float
+        How far the polygon may stand out over the ends of the wall.
 
     Examples
     --------
+    >>> import numpy as np
     >>> from drystone.kernels.polygons import no_polygons, polygon_edges
     >>> flat = np.array([[4.0, 1.0], [6.0, 1.0], [6.0, 2.0], [4.0, 2.0]])
     >>> [gap.gap for gap in gaps_around(flat, polygon_edges(flat), no_polygons(), 10.0, 1.5, 0.3)]
     [1.0, 1.0]
     """
-    if _fast is None:
-        return gaps_python(corners, edges, around, width, reach, corner)
-    rows = _fast.gaps_around(
-        corners, edges, around.corners, around.first, around.boxes, around.edges, width, reach,
-        corner,
-    )  # fmt: skip
-    return [Gap(d, nx, ny, x, y, away, int(k)) for d, nx, ny, x, y, away, k in rows.tolist()]
+    stone: Stone = stone_of(corners, edges)
+    heap: Heap = heap_of(around, width)
+    heap.beyond = beyond
+    find_gaps(stone, heap, reach, corner)
+    found = [stone.gaps[i] for i in range(7 * stone.found)]
+    rows = zip(*[iter(found)] * 7, strict=True)
+    return [Gap(d, nx, ny, x, y, away, int(k)) for d, nx, ny, x, y, away, k in rows]
 
 
-def gaps_python(
-    corners: Points,
-    edges: Points,
-    around: Polygons,
-    width: float,
-    reach: float,
-    corner: float,
-    beyond: float = 0.0,
-) -> list[Gap]:
-    """Twin of :func:`gaps_around`."""
-    body = Ring.of(corners, edges)
-    left, low = corners.min(axis=0).tolist()
-    right, high = corners.max(axis=0).tolist()
-    box = around.boxes
-    apart = (left > box[:, 2] + reach) | (right < box[:, 0] - reach)
-    apart |= (low > box[:, 3] + reach) | (high < box[:, 1] - reach)
-    near = np.flatnonzero(~apart)
-    found: list[Keyed] = []
-    if len(near):
-        rings, owner = Ring.several(around, near)
-        windows = _windows((left, low, right, high), box[near], reach)
-        ways = Way(body, rings, 0, reach, corner), Way(rings, body, 1, reach, corner)
-        in_window, meets = _points_in(body, windows), _edges_in(rings, windows)
-        own = np.arange(len(owner))
-        found += ways[0].gaps(in_window[:, owner] & meets[own, owner], owner)
-        in_window, meets = _points_in(rings, windows), _edges_in(body, windows)
-        found += ways[1].gaps(in_window[own, owner][:, None] & meets[:, owner].T, owner)
-        found.sort()
-    gaps = [Gap(d, nx, ny, x, y, away, int(near[k])) for k, _, _, _, d, nx, ny, x, y, away in found]
-    gaps += _to_the_site(corners.tolist(), width, reach, beyond)
-    return gaps
+def crosses_any(corners: Points, around: Polygons) -> bool:
+    """Say whether edges of a polygon cross those of others, or one lies in another.
 
-
-def _windows(box: tuple[float, float, float, float], boxes: Points, reach: float) -> Points:
-    """Return where two boxes, grown by the reach, meet: left, bottom, right and top."""
-    return np.stack(
-        [
-            np.maximum(boxes[:, 0], box[0]) - reach,
-            np.maximum(boxes[:, 1], box[1]) - reach,
-            np.minimum(boxes[:, 2], box[2]) + reach,
-            np.minimum(boxes[:, 3], box[3]) + reach,
-        ]
-    )
-
-
-def _points_in(ring: Ring, windows: Points) -> Flags:
-    """Say which corners lie in which windows."""
-    x, y = ring.corners[:, :1], ring.corners[:, 1:]
-    inside = (x >= windows[0]) & (x <= windows[2])
-    return np.asarray(inside & (y >= windows[1]) & (y <= windows[3]))
-
-
-def _edges_in(ring: Ring, windows: Points) -> Flags:
-    """Say the boxes of which edges meet which windows."""
-    most, least = np.maximum(ring.corners, ring.ends), np.minimum(ring.corners, ring.ends)
-    meets = (most[:, :1] >= windows[0]) & (least[:, :1] <= windows[2])
-    return np.asarray(meets & (most[:, 1:] >= windows[1]) & (least[:, 1:] <= windows[3]))
-
-
-class Way(NamedTuple):
-    """Corners on one side, edges on the other.
+    Quick, for outlines that keep a clearance: no overlap is missed, and outlines that only touch
+    may count.  Where they may touch, ask :mod:`drystone.model.overlap`.
 
     Parameters
     ----------
-    a, b : Ring
-        Whose corners, and whose edges.
-    turn : int
-        0 when the corners are those of the moving polygon, else 1.
-    reach, corner : float
-        See :func:`gaps_around`.
+    corners : (n, 2) float array
+        Of the polygon.
+    around : Polygons
+        The others.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from drystone.kernels.polygons import no_polygons
+    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
+    >>> crosses_any(square + 1.0, no_polygons().added([square]))
+    True
     """
+    stone: Stone = stone_of(corners, corners)
+    return bool(crosses(stone, heap_of(around, 0.0)))
 
-    a: Ring
-    b: Ring
-    turn: int
-    reach: float
-    corner: float
 
-    def gaps(self, pairs: Flags, owner: Ints) -> list[Keyed]:
-        """List the gaps of some pairs of a corner and an edge, each with its place in the list."""
-        a, b = self.a, self.b
-        dx = a.corners[:, :1] - b.corners[:, 0]
-        dy = a.corners[:, 1:] - b.corners[:, 1]
-        ux, uy = b.edges[:, 0], b.edges[:, 1]
-        s = dx * uy - dy * ux
-        t = dx * ux + dy * uy
-        pairs = pairs & (-self.reach <= s) & (s <= self.reach) & (t <= b.edges[:, 2])
-        facing = t >= 0.0
-        rows = list(self._facing(np.nonzero(pairs & facing & (s >= -SAME)), s, owner))
-        rows += self._corners(np.nonzero(pairs & (t < 0.0)), s, owner)
-        # Whether what lies on an edge is inside, rounding says.
-        on = {(row[0], row[2]) for row in rows if row[-1] <= SAME}
-        inside = self._inside(np.nonzero(pairs & facing & (s < -SAME)), s, owner)
-        return rows + [row for row in inside if (row[0], row[2]) not in on]
+@cython.cclass
+class Body:
+    """A polygon: so many corners from the first one on, their edges, and the box around them."""
 
-    def _keyed(
-        self, i: int, e: int, place: int, owner: Ints, gap: list[float], point: Points
-    ) -> Keyed:
-        """Give a gap (its size, normal out of b, and distance) its place in the list."""
-        sign = -1.0 if self.turn else 1.0
-        x, y = point.tolist()
-        who = int(owner[i if self.turn else e])
-        own = int(self.a.number[i])
-        d, nx, ny, away = gap
-        return who, self.turn, own, place, d, sign * nx, sign * ny, x, y, away
 
-    def _facing(self, at: tuple[Ints, ...], s: Points, owner: Ints) -> Iterator[Keyed]:
-        """List corners in front of an edge."""
-        i, e = at
-        sign = -1.0 if self.turn else 1.0
-        yield from zip(
-            (owner[i] if self.turn else owner[e]).tolist(),
-            [self.turn] * len(i),
-            self.a.number[i].tolist(),
-            self.b.number[e].tolist(),
-            s[i, e].tolist(),
-            (sign * self.b.edges[e, 1]).tolist(),
-            (-sign * self.b.edges[e, 0]).tolist(),
-            self.a.corners[i, 0].tolist(),
-            self.a.corners[i, 1].tolist(),
-            s[i, e].tolist(),
-            strict=True,
-        )
+@cython.cclass
+class Heap(Body):
+    """Polygons, one of which at a time is the body, and the wall that they stand in."""
 
-    def _inside(self, at: tuple[Ints, ...], s: Points, owner: Ints) -> Iterator[Keyed]:
-        """List corners inside a polygon, each with the nearest edge."""
-        nearest: dict[tuple[int, int], int] = {}
-        for i, e in zip(at[0].tolist(), at[1].tolist(), strict=True):
-            key = i, int(self.b.first[e])
-            if key not in nearest or s[i, e] > s[i, nearest[key]]:
-                nearest[key] = e
-        for (i, _), e in nearest.items():
-            if contains(self.b.polygon(e), *self.a.corners[i].tolist()):
-                ux, uy, _ = self.b.edges[e].tolist()
-                gap = [float(s[i, e]), uy, -ux, float(s[i, e])]
-                corner = self.a.corners[i]
-                yield self._keyed(i, e, int(self.b.size[e]), owner, gap, corner)
 
-    def _corners(self, at: tuple[Ints, ...], s: Points, owner: Ints) -> Iterator[Keyed]:
-        """List corners that lie in the region of a corner."""
-        i, e = at
-        b, p = self.b, self.b.before[e]
-        away = self.a.corners[i] - b.corners[p]
-        ahead = away[:, 0] * b.edges[p, 0] + away[:, 1] * b.edges[p, 1] > b.edges[p, 2]
-        i, e, p, away = i[ahead], e[ahead], p[ahead], away[ahead]
-        side = away[:, 0] * b.edges[p, 1] - away[:, 1] * b.edges[p, 0]
-        apart = self.a.corners[i] - b.corners[e]
-        d = np.sqrt(apart[:, 0] * apart[:, 0] + apart[:, 1] * apart[:, 1])
-        outside = (d <= self.reach) & ~((s[i, e] < 0.0) & (side < 0.0))
-        for k in np.flatnonzero(outside).tolist():
-            gap = self._between(int(i[k]), int(e[k]), float(d[k]), apart[k].tolist())
-            if gap is not None:
-                # Either way the force acts on the moving polygon's corner.
-                corner = b.corners[e[k]] if self.turn else self.a.corners[i[k]]
-                yield self._keyed(int(i[k]), int(e[k]), int(b.number[e[k]]), owner, gap, corner)
+@cython.cclass
+class Stone(Body):
+    """A polygon that moves, and the gaps that were found around it, seven numbers each."""
 
-    def _between(self, i: int, e: int, d: float, apart: list[float]) -> list[float] | None:
-        """Return the gap of two corners, with its normal."""
-        dx, dy = apart
-        if d < self.corner and (face := self._face(i, e, dx, dy)) is not None:
-            return [*face, d]
-        if d > SAME:
-            return [d, dx / d, dy / d, d]
-        own, before = self.b.edges[[e, self.b.before[e]]].tolist()
-        nx, ny = own[1] + before[1], -own[0] - before[0]
-        length = math.sqrt(nx * nx + ny * ny)
-        return [0.0, nx / length, ny / length, 0.0] if length > SAME else None
+    def __init__(self) -> None:
+        self.room = 64
+        self.gaps = new_doubles(7 * self.room)
+        self.near_room = 64
+        self.near = new_ints(self.near_room)
 
-    def _face(self, i: int, e: int, dx: float, dy: float) -> list[float] | None:
-        """Return the gap along the normal of the face that parts two corners best."""
-        a, b = self.a.edges, self.b.edges
-        ends = a[self.a.before[i]], a[i], b[self.b.before[e]], b[e]
-        after = [tuple(edge[:2].tolist()) for edge in ends]
-        normals = [(y, -x) for x, y in after[2:]] + [(-y, x) for x, y in after[:2]]
-        best, face = -SAME, None
-        for mx, my in normals:
-            along = [x * mx + y * my for x, y in after]
-            # The two edges at either corner must not run through the face.
-            if not (-along[0] >= -INTO and along[1] >= -INTO):
+    def __dealloc__(self) -> None:
+        release(self.gaps)
+        release(self.near)
+
+
+def heap_of(around, width):
+    """Return polygons, which have to outlive it."""
+    heap: Heap = Heap()
+    heap.corners, heap.edges = doubles(around.corners), doubles(around.edges)
+    heap.size, heap.starts, heap.boxes = len(around), ints(around.first), doubles(around.boxes)
+    heap.width, heap.beyond = width, 0.0
+    return heap
+
+
+def stone_of(corners, edges):
+    """Return a polygon without gaps; its arrays have to outlive it."""
+    stone: Stone = Stone()
+    stone.corners, stone.edges = doubles(corners), doubles(edges)
+    stone.first, stone.count, stone.found = 0, len(corners), 0
+    measure(stone)
+    return stone
+
+
+def measure(body):
+    """Fill in the box of a body."""
+    i: cython.Py_ssize_t
+    x: cython.double
+    y: cython.double
+    body.left = body.right = body.corners[0]
+    body.low = body.high = body.corners[1]
+    for i in range(1, body.count):
+        x, y = body.corners[2 * i], body.corners[2 * i + 1]
+        body.left = min(body.left, x)
+        body.right = max(body.right, x)
+        body.low = min(body.low, y)
+        body.high = max(body.high, y)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def select(heap: Heap, i: cython.Py_ssize_t) -> cython.void:
+    """Make one polygon of a heap its body."""
+    heap.first = heap.starts[i]
+    heap.count = heap.starts[i + 1] - heap.first
+    heap.left, heap.low = heap.boxes[4 * i], heap.boxes[4 * i + 1]
+    heap.right, heap.high = heap.boxes[4 * i + 2], heap.boxes[4 * i + 3]
+
+
+def find_gaps(stone, heap, reach, corner):
+    """List the gaps of a stone to a heap, the ground and the ends of the wall."""
+    i: cython.Py_ssize_t
+    x: cython.double
+    y: cython.double
+    room: cython.double
+    stone.found = 0
+    for i in range(heap.size):
+        if stone.left > heap.boxes[4 * i + 2] + reach or stone.right < heap.boxes[4 * i] - reach:
+            continue
+        if stone.low > heap.boxes[4 * i + 3] + reach or stone.high < heap.boxes[4 * i + 1] - reach:
+            continue
+        select(heap, i)
+        one_way(stone, heap, stone, reach, corner, 1.0, i)
+        one_way(heap, stone, stone, reach, corner, -1.0, i)
+    if stone.low < reach:
+        for i in range(stone.count):
+            x, y = stone.corners[2 * i], stone.corners[2 * i + 1]
+            if y < reach:
+                keep(stone, y, 0.0, 1.0, x, y, y, -1)
+    if stone.left + heap.beyond < reach:
+        for i in range(stone.count):
+            x, y = stone.corners[2 * i], stone.corners[2 * i + 1]
+            room = x + heap.beyond
+            if room < reach:
+                keep(stone, room, 1.0, 0.0, x, y, room, -2)
+    if heap.width - stone.right + heap.beyond < reach:
+        for i in range(stone.count):
+            x, y = stone.corners[2 * i], stone.corners[2 * i + 1]
+            room = heap.width - x + heap.beyond
+            if room < reach:
+                keep(stone, room, -1.0, 0.0, x, y, room, -2)
+    return 0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def keep(
+    stone: Stone,
+    gap: cython.double,
+    nx: cython.double,
+    ny: cython.double,
+    x: cython.double,
+    y: cython.double,
+    away: cython.double,
+    other: cython.double,
+) -> cython.int:
+    """Add a gap to the list."""
+    k: cython.Py_ssize_t = 7 * stone.found
+    if stone.found == stone.room:
+        stone.gaps = more_doubles(stone.gaps, 2 * k)
+        stone.room *= 2
+    stone.gaps[k], stone.gaps[k + 1], stone.gaps[k + 2] = gap, nx, ny
+    stone.gaps[k + 3], stone.gaps[k + 4] = x, y
+    stone.gaps[k + 5], stone.gaps[k + 6] = away, other
+    stone.found += 1
+    return 0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def room_for(stone: Stone, count: cython.Py_ssize_t) -> cython.int:
+    """Make room for the numbers of edges that are near."""
+    if count > stone.near_room:
+        stone.near = more_ints(stone.near, 2 * count)
+        stone.near_room = 2 * count
+    return 0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def one_way(
+    a: Body,
+    b: Body,
+    out: Stone,
+    reach: cython.double,
+    corner: cython.double,
+    sign: cython.double,
+    other: cython.double,
+) -> cython.int:
+    """List the gaps of the corners of one polygon to the edges and corners of another."""
+    left: cython.double = max(a.left, b.left) - reach
+    low: cython.double = max(a.low, b.low) - reach
+    right: cython.double = min(a.right, b.right) + reach
+    high: cython.double = min(a.high, b.high) + reach
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    e: cython.Py_ssize_t
+    near: cython.Py_ssize_t = 0
+    nearest: cython.Py_ssize_t = 0
+    ca: cython.p_double = a.corners
+    cb: cython.p_double = b.corners
+    edges: cython.p_double = b.edges
+    vx: cython.double
+    vy: cython.double
+    dx: cython.double
+    dy: cython.double
+    s: cython.double
+    t: cython.double
+    deep: cython.double
+    inside: cython.int
+    if left > right or low > high:
+        return 0
+    room_for(out, b.count)
+    for i in range(b.count):
+        if meets(b, i, left, low, right, high):
+            out.near[near] = b.first + i
+            near += 1
+    if not near:
+        return 0
+    for i in range(a.first, a.first + a.count):
+        vx, vy = ca[2 * i], ca[2 * i + 1]
+        if vx < left or vx > right or vy < low or vy > high:
+            continue
+        inside, deep = -1, 0.0
+        for j in range(near):
+            e = out.near[j]
+            dx, dy = vx - cb[2 * e], vy - cb[2 * e + 1]
+            # The outward normal of an edge along u is (u_y, -u_x); edges without length have none.
+            s = dx * edges[3 * e + 1] - dy * edges[3 * e]
+            if not (-reach <= s <= reach):
                 continue
-            if not (-along[2] <= INTO and along[3] <= INTO):
+            t = dx * edges[3 * e] + dy * edges[3 * e + 1]
+            if t > edges[3 * e + 2]:
                 continue
-            s = dx * mx + dy * my
-            if s > best:
-                best, face = s, [s, mx, my]
-        return face
+            if t < 0.0:
+                if at_corner(a, b, i, e, reach, corner, sign, other, out):
+                    inside = 3
+                continue
+            if s >= -SAME:
+                keep(out, s, sign * edges[3 * e + 1], -sign * edges[3 * e], vx, vy, s, other)
+                if s <= SAME:
+                    inside = 3
+                continue
+            # Inside (1), or only behind (0)?  Of the edges it is inside of, the nearest counts (2),
+            # unless it lies on one (3), where rounding says whether it is inside.
+            if inside < 0:
+                inside = contains(b, vx, vy)
+            if inside == 1 or (inside == 2 and s > deep):
+                deep, nearest, inside = s, e, 2
+        if inside == 2:
+            dx, dy = sign * edges[3 * nearest + 1], -sign * edges[3 * nearest]
+            keep(out, deep, dx, dy, vx, vy, deep, other)
+    return 0
 
 
-def _to_the_site(
-    corners: list[list[float]], width: float, reach: float, beyond: float
-) -> list[Gap]:
-    """List the gaps of corners to the ground and the ends of the wall."""
-    gaps = [Gap(y, 0.0, 1.0, x, y, y, GROUND) for x, y in corners if y < reach]
-    near = [(x + beyond, x, y) for x, y in corners]
-    gaps += [Gap(d, 1.0, 0.0, x, y, d, END) for d, x, y in near if d < reach]
-    far = [(width - x + beyond, x, y) for x, y in corners]
-    return gaps + [Gap(d, -1.0, 0.0, x, y, d, END) for d, x, y in far if d < reach]
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def at_corner(
+    a: Body,
+    b: Body,
+    i: cython.Py_ssize_t,
+    e: cython.Py_ssize_t,
+    reach: cython.double,
+    corner: cython.double,
+    sign: cython.double,
+    other: cython.double,
+    out: Stone,
+) -> cython.int:
+    """List the gap of a corner before an edge's start to that start, if it lies in its region.
+
+    Returns whether it is the same point.
+    """
+    vx: cython.double = a.corners[2 * i]
+    vy: cython.double = a.corners[2 * i + 1]
+    dx: cython.double = vx - b.corners[2 * e]
+    dy: cython.double = vy - b.corners[2 * e + 1]
+    p: cython.Py_ssize_t = edge_before(b, e)
+    edges: cython.p_double = b.edges
+    face: cython.double[2] = [0.0, 0.0]
+    s: cython.double
+    sp: cython.double
+    d: cython.double
+    nx: cython.double
+    ny: cython.double
+    # Is it beyond the end of the edge before as well?
+    ex: cython.double = vx - b.corners[2 * p]
+    ey: cython.double = vy - b.corners[2 * p + 1]
+    if not ex * edges[3 * p] + ey * edges[3 * p + 1] > edges[3 * p + 2]:
+        return False
+    s = dx * edges[3 * e + 1] - dy * edges[3 * e]
+    sp = ex * edges[3 * p + 1] - ey * edges[3 * p]
+    d = sqrt(dx * dx + dy * dy)
+    if d > reach or (s < 0.0 and sp < 0.0):
+        return False
+    if sign < 0.0:
+        # Either way the force acts on the moving polygon's corner.
+        vx, vy = b.corners[2 * e], b.corners[2 * e + 1]
+    if d < corner and face_between(a, b, i, e, face):
+        nx, ny = face[0], face[1]
+        keep(out, dx * nx + dy * ny, sign * nx, sign * ny, vx, vy, d, other)
+    elif d > SAME:
+        keep(out, d, sign * (dx / d), sign * (dy / d), vx, vy, d, other)
+    else:
+        nx = edges[3 * e + 1] + edges[3 * p + 1]
+        ny = -edges[3 * e] - edges[3 * p]
+        s = sqrt(nx * nx + ny * ny)
+        if s > SAME:
+            keep(out, 0.0, sign * (nx / s), sign * (ny / s), vx, vy, 0.0, other)
+    return d <= SAME
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def edge_before(b: Body, e: cython.Py_ssize_t) -> cython.Py_ssize_t:
+    """Return the edge before one, past those without length."""
+    i: cython.Py_ssize_t
+    p: cython.Py_ssize_t = e
+    for i in range(b.count):  # noqa: B007 - typed
+        p = p - 1 if p > b.first else b.first + b.count - 1
+        if b.edges[3 * p + 2] > 0.0:
+            break
+    return p
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def face_between(
+    a: Body, b: Body, i: cython.Py_ssize_t, e: cython.Py_ssize_t, face: cython.p_double
+) -> cython.bint:
+    """Find the face that parts two corners best: its normal, out of b; False when none does."""
+    before_a: cython.Py_ssize_t = edge_before(a, i)
+    before_b: cython.Py_ssize_t = edge_before(b, e)
+    dx: cython.double = a.corners[2 * i] - b.corners[2 * e]
+    dy: cython.double = a.corners[2 * i + 1] - b.corners[2 * e + 1]
+    mx: cython.double
+    my: cython.double
+    s: cython.double
+    best: cython.double = -SAME
+    k: cython.int
+    p: cython.Py_ssize_t
+    for k in range(4):
+        if k < 2:
+            p = before_b if k == 0 else e
+            mx, my = b.edges[3 * p + 1], -b.edges[3 * p]
+        else:
+            p = before_a if k == 2 else i
+            mx, my = -a.edges[3 * p + 1], a.edges[3 * p]
+        # The two edges at either corner must not run through the face.
+        if not (-along(a, before_a, mx, my) >= -INTO and along(a, i, mx, my) >= -INTO):
+            continue
+        if not (-along(b, before_b, mx, my) <= INTO and along(b, e, mx, my) <= INTO):
+            continue
+        s = dx * mx + dy * my
+        if s > best:
+            best, face[0], face[1] = s, mx, my
+    return best > -SAME
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def along(a: Body, e: cython.Py_ssize_t, mx: cython.double, my: cython.double) -> cython.double:
+    """Return the share of an edge's direction that runs along a normal."""
+    return a.edges[3 * e] * mx + a.edges[3 * e + 1] * my
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def contains(body: Body, x: cython.double, y: cython.double) -> cython.bint:
+    """Say whether a point lies in a polygon (even-odd rule)."""
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t = body.first + body.count - 1
+    ax: cython.double
+    ay: cython.double
+    bx: cython.double
+    by: cython.double
+    inside: cython.bint = False
+    for i in range(body.first, body.first + body.count):
+        ax, ay = body.corners[2 * i], body.corners[2 * i + 1]
+        bx, by = body.corners[2 * j], body.corners[2 * j + 1]
+        if (ay > y) != (by > y) and x < (bx - ax) * (y - ay) / (by - ay) + ax:
+            inside = not inside
+        j = i
+    return inside
+
+
+def crosses(stone, heap):
+    """Say whether a stone lies over any polygon of a heap."""
+    i: cython.Py_ssize_t
+    for i in range(heap.size):
+        select(heap, i)
+        if over(stone, heap):
+            return True
+    return False
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def over(a: Stone, b: Body) -> cython.int:
+    """Say whether edges of two polygons cross, or one lies in the other."""
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    e: cython.Py_ssize_t
+    f: cython.Py_ssize_t
+    near: cython.Py_ssize_t = 0
+    last: cython.Py_ssize_t = b.first + b.count - 1
+    if a.left > b.right or a.right < b.left or a.low > b.high or a.high < b.low:
+        return False
+    left: cython.double = max(a.left, b.left)
+    low: cython.double = max(a.low, b.low)
+    right: cython.double = min(a.right, b.right)
+    high: cython.double = min(a.high, b.high)
+    room_for(a, b.count)
+    for i in range(b.count):
+        if meets(b, i, left, low, right, high):
+            a.near[near] = b.first + i
+            near += 1
+    for i in range(a.count):
+        if not meets(a, i, left, low, right, high):
+            continue
+        j = i + 1 if i + 1 < a.count else 0
+        for k in range(near):
+            e = a.near[k]
+            f = e + 1 if e < last else b.first
+            if cut(a.corners, i, j, b.corners, e, f):
+                return True
+    if contains(b, a.corners[0], a.corners[1]):
+        return True
+    return contains(a, b.corners[2 * b.first], b.corners[2 * b.first + 1])
+
+
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def meets(
+    body: Body,
+    i: cython.Py_ssize_t,
+    left: cython.double,
+    low: cython.double,
+    right: cython.double,
+    high: cython.double,
+) -> cython.bint:
+    """Say whether the box of an edge meets another box."""
+    e: cython.Py_ssize_t = 2 * (body.first + i)
+    f: cython.Py_ssize_t = e + 2 if i + 1 < body.count else 2 * body.first
+    corners: cython.p_double = body.corners
+    if max(corners[e], corners[f]) < left or min(corners[e], corners[f]) > right:
+        return False
+    e, f = e + 1, f + 1
+    return not (max(corners[e], corners[f]) < low or min(corners[e], corners[f]) > high)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def cut(
+    one: cython.p_double,
+    a: cython.Py_ssize_t,
+    b: cython.Py_ssize_t,
+    two: cython.p_double,
+    c: cython.Py_ssize_t,
+    d: cython.Py_ssize_t,
+) -> cython.bint:
+    """Say whether two segments cross: from a to b of one polygon, from c to d of another."""
+    if (side(one, a, b, two, c) > 0.0) == (side(one, a, b, two, d) > 0.0):
+        return False
+    return (side(two, c, d, one, a) > 0.0) != (side(two, c, d, one, b) > 0.0)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def side(
+    one: cython.p_double,
+    a: cython.Py_ssize_t,
+    b: cython.Py_ssize_t,
+    two: cython.p_double,
+    c: cython.Py_ssize_t,
+) -> cython.double:
+    """Return twice the area of a triangle, positive when it is counter-clockwise."""
+    x: cython.double = one[2 * a]
+    y: cython.double = one[2 * a + 1]
+    return (one[2 * b] - x) * (two[2 * c + 1] - y) - (one[2 * b + 1] - y) * (two[2 * c] - x)

@@ -5,30 +5,35 @@ the optimum so far fulfils the next row nothing happens; otherwise the new optim
 row, which leaves a program in one unknown fewer.
 """
 
-from collections.abc import Sequence
-from functools import lru_cache
+from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
 
-Floats = NDArray[np.float64]
-Row = tuple[float, float, float, float]
-"""The coefficients of the unknowns, and what their sum may be at most."""
-Row2 = tuple[float, float, float]
-Solution = tuple[float, float, float]
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import doubles
+else:
+    from drystone.kernels.lists import doubles
 
-ENOUGH = 1e-11
-FLAT = 1e-11
-PARALLEL = 1e-13
-EMPTY = 1e-9
-NOTHING = 1e-12
+ENOUGH = cython.declare(cython.double, 1e-11)
+FLAT = cython.declare(cython.double, 1e-11)
+PARALLEL = cython.declare(cython.double, 1e-13)
+EMPTY = cython.declare(cython.double, 1e-9)
+NOTHING = cython.declare(cython.double, 1e-12)
 
-_fast = compiled("seidel")
+# Of a linear congruential generator of 64 bits.
+FACTOR = cython.declare(cython.ulonglong, 6364136223846793005)
+STEP = cython.declare(cython.ulonglong, 1442695040888963407)
 
 
-def solve(rows: Floats, gain: Floats, most: Floats) -> Solution | None:
+def solve(
+    rows: NDArray[np.float64], gain: NDArray[np.float64], most: NDArray[np.float64]
+) -> tuple[float, float, float] | None:
     """Maximise a gain.
 
     Parameters
@@ -52,140 +57,146 @@ def solve(rows: Floats, gain: Floats, most: Floats) -> Solution | None:
     """
     if rows.ndim != 2 or rows.shape[1] != 4 or len(gain) != 3 or len(most) != 3:
         raise ValueError("rows are (n, 4), gain and most have three numbers")
-    if _fast is None:
-        packed: list[Row] = [(a, b, c, d) for a, b, c, d in rows.tolist()]
-        return solve_python(packed, gain.tolist(), most.tolist())
-    found: Solution | None = _fast.solve(
-        np.ascontiguousarray(rows), np.ascontiguousarray(gain), np.ascontiguousarray(most)
+    shuffled = np.array(rows, np.float64, order="C")
+    scratch = np.empty(3 * len(rows) + 6)
+    gain, most = np.ascontiguousarray(gain), np.ascontiguousarray(most)
+    x: cython.double[3] = [0.0, 0.0, 0.0]
+    found: cython.bint = solve3(
+        doubles(shuffled), len(rows), doubles(gain), doubles(most), doubles(scratch), x
     )
-    return found
+    return (x[0], x[1], x[2]) if found else None
 
 
-def solve_python(
-    rows: Sequence[Row], gain: Sequence[float], most: Sequence[float]
-) -> Solution | None:
-    """Twin of :func:`solve`, for lists."""
-    x = [_outermost(g, m) for g, m in zip(gain, most, strict=True)]
-    taken: list[Row] = []
-    for i in order_of(len(rows)):
-        row = rows[i]
-        if not row[0] * x[0] + row[1] * x[1] + row[2] * x[2] <= row[3] + ENOUGH:
-            # The optimum lies on this row: one unknown fewer, by what the row says of it.
-            e = _largest(row)
-            if abs(row[e]) < FLAT:
-                if row[3] < -EMPTY:
-                    return None
-            elif not _on_row(row, e, taken, (gain, most), x):
-                return None
-        taken.append(row)
-    return x[0], x[1], x[2]
+def solve3(rows, count, gain, most, scratch, x):
+    """Maximise gain . x over rows (a, b) with a . x <= b, and |x| <= most.
 
-
-@lru_cache(maxsize=1024)
-def order_of(count: int) -> tuple[int, ...]:
-    """Return the order in which rows are taken: shuffled, and always alike."""
-    order = list(range(count))
-    state = 88172645463325252
+    The rows, of four numbers, are shuffled; the scratch has room for three numbers of each and
+    six more.
+    """
+    state: cython.ulonglong = 88172645463325252
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    e: cython.Py_ssize_t
+    f: cython.Py_ssize_t
+    g: cython.Py_ssize_t
+    kf: cython.double
+    kg: cython.double
+    b0: cython.double
+    gain2: cython.double[2] = [0.0, 0.0]
+    most2: cython.double[2] = [0.0, 0.0]
+    y: cython.double[2] = [0.0, 0.0]
     for i in range(count - 1, 0, -1):
-        state = (state * 6364136223846793005 + 1442695040888963407) & (2**64 - 1)
+        state = state * FACTOR + STEP
+        if not cython.compiled:
+            state &= 2**64 - 1
         j = (state >> 33) % (i + 1)
-        order[i], order[j] = order[j], order[i]
-    return tuple(order)
+        for k in range(4):
+            b0 = rows[4 * i + k]
+            rows[4 * i + k] = rows[4 * j + k]
+            rows[4 * j + k] = b0
+    for j in range(3):
+        x[j] = outermost(gain[j], most[j])
+    for i in range(count):
+        k = 4 * i
+        if rows[k] * x[0] + rows[k + 1] * x[1] + rows[k + 2] * x[2] <= rows[k + 3] + ENOUGH:
+            continue
+        # The optimum lies on this row: one unknown fewer, by what the row says of it.
+        e = 0
+        for j in range(1, 3):
+            if abs(rows[k + j]) > abs(rows[k + e]):
+                e = j
+        if abs(rows[k + e]) < FLAT:
+            if rows[k + 3] < -EMPTY:
+                return False
+            continue
+        f, g = (e + 1) % 3, (e + 2) % 3
+        kf, kg = -rows[k + f] / rows[k + e], -rows[k + g] / rows[k + e]
+        b0 = rows[k + 3] / rows[k + e]
+        scratch[0], scratch[1], scratch[2] = kf, kg, most[e] - b0
+        scratch[3], scratch[4], scratch[5] = -kf, -kg, most[e] + b0
+        for j in range(i):
+            k = 4 * j
+            scratch[3 * j + 6] = rows[k + f] + rows[k + e] * kf
+            scratch[3 * j + 7] = rows[k + g] + rows[k + e] * kg
+            scratch[3 * j + 8] = rows[k + 3] - rows[k + e] * b0
+        gain2[0], gain2[1] = gain[f] + gain[e] * kf, gain[g] + gain[e] * kg
+        most2[0], most2[1] = most[f], most[g]
+        if not solve2(scratch, i + 2, gain2, most2, y):
+            return False
+        x[f], x[g] = y[0], y[1]
+        x[e] = b0 + kf * y[0] + kg * y[1]
+    return True
 
 
-def _outermost(gain: float, most: float) -> float:
+def solve2(rows, count, gain, most, x):
+    """Maximise gain . x over rows (a, b) with a . x <= b, and |x| <= most, in two unknowns."""
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    e: cython.Py_ssize_t
+    f: cython.Py_ssize_t
+    k: cython.double
+    b0: cython.double
+    z: cython.double
+    between: cython.double[2] = [0.0, 0.0]
+    for j in range(2):
+        x[j] = outermost(gain[j], most[j])
+    for i in range(count):
+        if rows[3 * i] * x[0] + rows[3 * i + 1] * x[1] <= rows[3 * i + 2] + ENOUGH:
+            continue
+        e = 0 if abs(rows[3 * i]) > abs(rows[3 * i + 1]) else 1
+        f = 1 - e
+        if abs(rows[3 * i + e]) < FLAT:
+            if rows[3 * i + 2] < -EMPTY:
+                return False
+            continue
+        k, b0 = -rows[3 * i + f] / rows[3 * i + e], rows[3 * i + 2] / rows[3 * i + e]
+        between[0], between[1] = -most[f], most[f]
+        if not (cut(k, most[e] - b0, between) and cut(-k, most[e] + b0, between)):
+            return False
+        for j in range(0, 3 * i, 3):
+            if not cut(rows[j + f] + rows[j + e] * k, rows[j + 2] - rows[j + e] * b0, between):
+                return False
+        if between[0] > between[1]:
+            if between[0] > between[1] + EMPTY:
+                return False
+            between[0] = between[1] = (between[0] + between[1]) / 2.0
+        z = gain[f] + gain[e] * k
+        # Where nothing is gained the smallest move is made.
+        if z > NOTHING:
+            z = between[1]
+        elif z < -NOTHING or between[0] > 0.0:
+            z = between[0]
+        else:
+            z = between[1] if between[1] < 0.0 else 0.0
+        x[f] = z
+        x[e] = b0 + k * z
+    return True
+
+
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def outermost(gain: cython.double, most: cython.double) -> cython.double:
     """Return the best value in [-most, most]."""
     if gain > NOTHING:
         return most
     return -most if gain < -NOTHING else 0.0
 
 
-def _largest(row: Row) -> int:
-    """Return which unknown has the largest coefficient."""
-    e = 0
-    for j in (1, 2):
-        if abs(row[j]) > abs(row[e]):
-            e = j
-    return e
-
-
-def _on_row(
-    row: Row,
-    e: int,
-    taken: Sequence[Row],
-    aim: tuple[Sequence[float], Sequence[float]],
-    x: list[float],
-) -> bool:
-    """Find the optimum on a row, given those taken so far; False when there is none."""
-    gain, most = aim
-    f, g = (e + 1) % 3, (e + 2) % 3
-    kf, kg, b0 = -row[f] / row[e], -row[g] / row[e], row[3] / row[e]
-    rows2 = [(kf, kg, most[e] - b0), (-kf, -kg, most[e] + b0)]
-    rows2 += [(r[f] + r[e] * kf, r[g] + r[e] * kg, r[3] - r[e] * b0) for r in taken]
-    gain2 = gain[f] + gain[e] * kf, gain[g] + gain[e] * kg
-    found = solve2_python(rows2, gain2, (most[f], most[g]))
-    if found is None:
-        return False
-    x[f], x[g] = found
-    x[e] = b0 + kf * found[0] + kg * found[1]
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def cut(a: cython.double, b: cython.double, between: cython.p_double) -> cython.bint:
+    """Narrow an interval by a x <= b; False when no x fulfils that."""
+    v: cython.double
+    if abs(a) < PARALLEL:
+        return b >= -EMPTY
+    v = b / a
+    if a > 0.0:
+        between[1] = min(between[1], v)
+    elif v > between[0]:
+        between[0] = v
     return True
-
-
-def solve2_python(
-    rows: Sequence[Row2], gain: tuple[float, float], most: tuple[float, float]
-) -> tuple[float, float] | None:
-    """Maximise the gain of two unknowns; rows are taken in their order."""
-    x = [_outermost(gain[0], most[0]), _outermost(gain[1], most[1])]
-    for i, (a0, a1, b) in enumerate(rows):
-        if a0 * x[0] + a1 * x[1] <= b + ENOUGH:
-            continue
-        e = 0 if abs(a0) > abs(a1) else 1
-        f = 1 - e
-        own, far = (a0, a1) if e == 0 else (a1, a0)
-        if abs(own) < FLAT:
-            if b < -EMPTY:
-                return None
-            continue
-        k, b0 = -far / own, b / own
-        between = _interval(rows, i, e, (k, b0), most)
-        if between is None:
-            return None
-        z = _best(gain[f] + gain[e] * k, *between)
-        x[f], x[e] = z, b0 + k * z
-    return x[0], x[1]
-
-
-def _interval(
-    rows: Sequence[Row2], count: int, e: int, line: tuple[float, float], most: tuple[float, float]
-) -> tuple[float, float] | None:
-    """Return where the first rows leave the unknown that is not e, on a line; None: nowhere."""
-    f, (k, b0) = 1 - e, line
-    lo, hi = -most[f], most[f]
-    cuts = [(k, most[e] - b0), (-k, most[e] + b0)]
-    cuts += [(row[f] + row[e] * k, row[2] - row[e] * b0) for row in rows[:count]]
-    for a, b in cuts:
-        if abs(a) < PARALLEL:
-            if not b >= -EMPTY:
-                return None
-            continue
-        v = b / a
-        if a > 0.0:
-            hi = min(hi, v)
-        else:
-            lo = max(lo, v)
-    if lo > hi:
-        if lo > hi + EMPTY:
-            return None
-        lo = hi = (lo + hi) / 2.0
-    return lo, hi
-
-
-def _best(gain: float, lo: float, hi: float) -> float:
-    """Return the best value between two; where nothing is gained, the smallest."""
-    if gain > NOTHING:
-        return hi
-    if gain < -NOTHING:
-        return lo
-    if lo > 0.0:
-        return lo
-    return hi if hi < 0.0 else 0.0

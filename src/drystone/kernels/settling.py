@@ -14,18 +14,98 @@ corner, that parts the convex pieces there; what turns and notches add to that s
 a depth, or as edges that cross, since a whole stone is larger than a step.
 """
 
-import numpy as np
+from __future__ import annotations
 
-from drystone.kernels.backend import compiled
-from drystone.kernels.firmness import Friction, rest_margin_python
-from drystone.kernels.polygons import Points, Polygons, polygon_edges
-from drystone.kernels.settling_python import settle_python
+from drystone.kernels.firmness import require_friction
+from drystone.kernels.polygons import Points, Polygons
 from drystone.kernels.settling_types import Rules, Settling, Status
 
-__all__ = ["Rules", "Settling", "Status", "rest_margin", "settle"]
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
 
-_fast = compiled("settling")
-_firm = compiled("firmness")
+if cython.compiled:
+    from cython.cimports.drystone.kernels.firmness import Work, arm_of, enough_rows, firmness
+    from cython.cimports.drystone.kernels.gaps import (
+        Heap,
+        Stone,
+        crosses,
+        find_gaps,
+        heap_of,
+        measure,
+    )
+    from cython.cimports.drystone.kernels.memory import doubles, new_doubles, release
+    from cython.cimports.drystone.kernels.seidel import solve3
+    from cython.cimports.libc.math import cos, isfinite, sin
+else:
+    from math import cos, isfinite, sin
+
+    from drystone.kernels.firmness import Work, arm_of, enough_rows, firmness
+    from drystone.kernels.gaps import Heap, Stone, crosses, find_gaps, heap_of, measure
+    from drystone.kernels.lists import doubles, new_doubles, release
+    from drystone.kernels.seidel import solve3
+
+__all__ = ["Rules", "Settling", "Status", "settle"]
+
+RESTS = cython.declare(cython.int, 0)
+FALLS = cython.declare(cython.int, 1)
+OVERLAPS = cython.declare(cython.int, 2)
+FAR = cython.declare(cython.int, 3)
+UNFINISHED = cython.declare(cython.int, 4)
+
+END = cython.declare(cython.int, -2)
+FARTHEST = cython.declare(cython.double, 1e300)
+
+# Gaps up to so many radii are constraints of a step; it moves no corner further.
+SPREAD = cython.declare(cython.double, 2.5)
+
+# Settling ends when the radius has shrunk to this share of the first one.
+SMALLEST = cython.declare(cython.double, 1e-6)
+
+# A contact with a normal steeper than this supports.
+UPWARD = cython.declare(cython.double, 0.3)
+
+
+@cython.cclass
+class Way:
+    """What is let go, and by which rules."""
+
+    corners: cython.p_double
+    edges: cython.p_double
+    count: cython.Py_ssize_t
+    arm: cython.double
+    lean: cython.double
+    stop: cython.double
+    mu: cython.double
+    clearance: cython.double
+    tolerance: cython.double
+    corner: cython.double
+    near: cython.double
+    far: cython.double
+    most_turn: cython.double
+    most_shift: cython.double
+    gain: cython.double
+    overlap: cython.double
+    steep: cython.double
+    beyond: cython.double
+    sticks: cython.bint
+    turns: cython.bint
+    steps: cython.Py_ssize_t
+
+
+@cython.cclass
+class State(Stone):
+    """A pose, and what is around the stone there; the turn in radians."""
+
+    x: cython.double
+    y: cython.double
+    turn: cython.double
+    least: cython.double
+
+    def __dealloc__(self) -> None:
+        release(self.corners)
+        release(self.edges)
 
 
 def settle(
@@ -58,69 +138,251 @@ def settle(
     ValueError
         When mu is not positive.
     """
-    _require_friction(rules.mu)
-    if _fast is None:
-        return settle_python(outline, edges, pose, around, width, rules)
-    numbers = np.array(rules[:14], np.float64)
-    found = _fast.settle(
-        outline, edges, *pose, around.corners, around.first, around.boxes, around.edges, width,
-        numbers, rules.sticks, rules.turns, rules.steps,
-    )  # fmt: skip
-    return Settling(Status(found[0]), *found[1:])
+    require_friction(rules.mu)
+    way: Way = Way()
+    way.corners, way.edges, way.count = doubles(outline), doubles(edges), len(outline)
+    way.arm = arm_of(way.corners, way.count, 0.0, 0.0)
+    (
+        way.lean, way.stop, way.mu, way.clearance, way.tolerance, way.corner, way.near, way.far,
+        way.most_turn, way.most_shift, way.gain, way.overlap, way.steep, way.beyond, way.sticks,
+        way.turns, way.steps,
+    ) = rules  # fmt: skip
+    heap: Heap = heap_of(around, width)
+    heap.beyond = way.beyond
+    here: State = state_of(way)
+    there: State = state_of(way)
+    here.x, here.y, here.turn = pose
+    work: Work = Work()
+    made: cython.Py_ssize_t[1] = [0]
+    status: cython.int = OVERLAPS
+    margin: cython.double = -1.0
+    touching: cython.Py_ssize_t = 0
+    k: cython.Py_ssize_t
+    with cython.nogil:
+        look(here, way, heap)
+        if here.least >= -way.overlap and isfinite(way.arm + here.x + here.y + here.turn):
+            status = descend(way, heap, here, there, work, made)
+            if status != FAR:
+                if not here.least >= 0.5 * way.clearance or crosses(here, heap):
+                    status = OVERLAPS
+                else:
+                    # Whatever stopped it: does the stone rest?
+                    margin = margin_of(way, here, work)
+                    for k in range(0, 7 * here.found, 7):
+                        if here.gaps[k + 5] <= way.tolerance and here.gaps[k + 6] != END:
+                            touching += 1
+                    if margin >= 0.0:
+                        status = RESTS
+    return Settling(
+        Status(status), here.x, here.y, here.turn, here.least, margin, made[0], touching
+    )
 
 
-def rest_margin(  # noqa: PLR0913, PLR0917 - as many facts as it takes
-    corners: Points,
-    centroid: tuple[float, float],
-    around: Polygons,
-    width: float,
-    mu: float,
-    tolerance: float,
-    corner: float = 0.3,
-    steep: float = -1.0,
-) -> float:
-    """Return how far gravity may lean, over mu, until a placed polygon moves.
+@cython.cfunc
+def state_of(way: Way) -> State:
+    """Return a state with memory of its own, nowhere yet."""
+    state: State = State()
+    state.first, state.count = 0, way.count
+    state.corners = new_doubles(2 * way.count)
+    state.edges = new_doubles(3 * way.count)
+    return state
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        Where it is.
-    centroid : (float, float)
-        Its centre of mass.
-    around : Polygons
-        Rigid neighbours.
-    width : float
-        Of the wall; its ends carry nothing.
-    mu : float
-        Coefficient of friction, positive: margins are shares of it.
-    tolerance : float
-        Gaps up to this one touch.
-    corner, steep : float
-        See :class:`Rules`.
 
-    Returns
-    -------
-    margin : float
-        -1 when it does not rest; 10 or more counts as 10.
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def look(state: State, way: Way, heap: Heap) -> cython.int:
+    """Turn and move the outline to the pose of a state, and find the gaps there."""
+    c: cython.double = cos(state.turn)
+    s: cython.double = sin(state.turn)
+    x: cython.double
+    y: cython.double
+    i: cython.Py_ssize_t
+    for i in range(way.count):
+        x, y = way.corners[2 * i], way.corners[2 * i + 1]
+        state.corners[2 * i] = c * x - s * y + state.x
+        state.corners[2 * i + 1] = s * x + c * y + state.y
+        x, y = way.edges[3 * i], way.edges[3 * i + 1]
+        state.edges[3 * i], state.edges[3 * i + 1] = c * x - s * y, s * x + c * y
+        state.edges[3 * i + 2] = way.edges[3 * i + 2]
+    measure(state)
+    find_gaps(state, heap, SPREAD * way.far + way.corner, way.corner)
+    state.least = FARTHEST
+    for i in range(0, 7 * state.found, 7):
+        state.least = min(state.least, state.gaps[i])
+    return 0
 
-    Raises
-    ------
-    ValueError
-        When mu is not positive.
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def exchange(a: State, b: State) -> cython.void:
+    """Let each state be the other."""
+    a.corners, b.corners = b.corners, a.corners
+    a.edges, b.edges = b.edges, a.edges
+    a.gaps, b.gaps = b.gaps, a.gaps
+    a.found, b.found = b.found, a.found
+    a.room, b.room = b.room, a.room
+    a.left, a.low, b.left, b.low = b.left, b.low, a.left, a.low
+    a.right, a.high, b.right, b.high = b.right, b.high, a.right, a.high
+    a.x, a.y, b.x, b.y = b.x, b.y, a.x, a.y
+    a.turn, a.least, b.turn, b.least = b.turn, b.least, a.turn, a.least
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-2.0)
+def margin_of(way: Way, here: State, work: Work) -> cython.double:
+    """Return how firmly a stone rests."""
+    return firmness(here, here.x, here.y, way.arm, way.mu, way.tolerance, way.steep, work)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def descend(
+    way: Way,
+    heap: Heap,
+    here: State,
+    there: State,
+    work: Work,
+    made: cython.pointer[cython.Py_ssize_t],
+) -> cython.int:
+    """Go down step by step until nothing is gained; say why it stopped."""
+    start_x: cython.double = here.x
+    start_turn: cython.double = here.turn
+    radius: cython.double = way.near
+    half: cython.double = 0.5 * way.clearance
+    gained: cython.double
+    better: cython.bint
+    move: cython.double[3] = [0.0, 0.0, 0.0]
+    while made[0] < way.steps:
+        if way.stop >= 0.0 and here.least >= half and margin_of(way, here, work) >= way.stop:
+            return RESTS
+        made[0] += 1
+        better = False
+        if best_move(here, way, radius, work, move):
+            gained = -way.lean * move[0] - move[1]
+            if here.least >= half and not gained > way.gain:
+                return FALLS
+            better = tried(way, heap, here, there, work, move, radius, gained)
+        if not better:
+            radius *= 0.5
+            if radius < SMALLEST * way.near:
+                return FALLS
+            continue
+        exchange(here, there)
+        if abs(here.turn - start_turn) > way.most_turn:
+            return FAR
+        if abs(here.x - start_x) > way.most_shift:
+            return FAR
+        if max(abs(move[0]), abs(move[1]), abs(move[2])) > 0.9 * radius:
+            radius = min(way.far, 1.6 * radius)
+    return UNFINISHED
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def tried(
+    way: Way,
+    heap: Heap,
+    here: State,
+    there: State,
+    work: Work,
+    move: cython.p_double,
+    radius: cython.double,
+    gained: cython.double,
+) -> cython.int:
+    """Make a move; False when it leads nowhere."""
+    half: cython.double = 0.5 * way.clearance
+    small: cython.double
+    back: cython.double[3] = [0.0, 0.0, 0.0]
+    there.x, there.y = here.x + move[0], here.y + move[1]
+    there.turn = here.turn + move[2] / way.arm
+    look(there, way, heap)
+    if here.least < half:
+        # It was let go in an overlap: whatever brings it apart is welcome.
+        return there.least >= half or there.least > here.least
+    if there.least < half:
+        # Turns are not straight: what came too near is brought apart, at the least cost.
+        small = 4.0 * (way.clearance - there.least)
+        if not small <= radius:
+            return False
+        if not best_move(there, way, small, work, back):
+            return False
+        there.x, there.y = there.x + back[0], there.y + back[1]
+        there.turn = there.turn + back[2] / way.arm
+        look(there, way, heap)
+        gained = gained - way.lean * back[0] - back[1]
+        if not (there.least >= half and gained > way.gain):
+            return False
+    return not crosses(there, heap)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def best_move(
+    state: State, way: Way, radius: cython.double, work: Work, move: cython.p_double
+) -> cython.int:
+    """Find the move within a radius that goes down most while all gaps, linearised, stay open.
+
+    The turn is given as the way of the furthest corner.
     """
-    _require_friction(mu)
-    edges = polygon_edges(corners)
-    if _firm is None:
-        friction = Friction(mu, tolerance, corner, steep)
-        return rest_margin_python(corners, edges, centroid, around, width, friction)
-    return float(
-        _firm.rest_margin(
-            corners, edges, *centroid, around.corners, around.first, around.boxes, around.edges,
-            width, mu, tolerance, corner, steep,
-        )
-    )  # fmt: skip
+    gain: cython.double[3] = [-way.lean, -1.0, 0.0]
+    most: cython.double[3] = [radius, radius, radius if way.turns else 0.0]
+    gaps: cython.p_double = state.gaps
+    rows: cython.p_double
+    reach: cython.double = SPREAD * radius + way.clearance
+    room: cython.double
+    lift: cython.double
+    nx: cython.double
+    ny: cython.double
+    k: cython.Py_ssize_t
+    i: cython.Py_ssize_t
+    pivot: cython.Py_ssize_t
+    attempt: cython.int
+    sign: cython.int
+    enough_rows(work, state.found + 2)
+    rows = work.rows
+    for attempt in range(2):
+        i, pivot = 0, -1
+        for k in range(0, 7 * state.found, 7):
+            if gaps[k] > reach:
+                continue
+            room = gaps[k] - way.clearance
+            lift = 0.0
+            if room < 0.0:
+                # First it is brought apart, by half a radius at most; then at least not nearer.
+                lift = min(0.0, room + 0.5 * radius) if attempt == 0 else room
+            nx, ny = gaps[k + 1], gaps[k + 2]
+            rows[i], rows[i + 1] = -nx, -ny
+            rows[i + 2] = -turning(state, k, nx, ny) / way.arm
+            rows[i + 3] = room - lift
+            i += 4
+            if gaps[k + 5] <= way.tolerance and gaps[k + 6] != END and ny > UPWARD:
+                if pivot < 0 or abs(gaps[k + 3] - state.x) < abs(gaps[pivot + 3] - state.x):
+                    pivot = k
+        if way.sticks and pivot >= 0:
+            # The supporting point nearest to the centroid does not slide.
+            for sign in range(1, -2, -2):
+                nx, ny = sign * gaps[pivot + 2], sign * -gaps[pivot + 1]
+                rows[i], rows[i + 1] = nx, ny
+                rows[i + 2] = turning(state, pivot, nx, ny) / way.arm
+                rows[i + 3] = 0.2 * way.clearance
+                i += 4
+        if solve3(rows, i // 4, gain, most, work.scratch, move):
+            return True
+    return False
 
 
-def _require_friction(mu: float) -> None:
-    if not mu > 0.0:
-        raise ValueError(f"mu must be positive, not {mu}")
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def turning(
+    state: State, k: cython.Py_ssize_t, nx: cython.double, ny: cython.double
+) -> cython.double:
+    """Return how fast a turn about the centroid moves the point of a gap along a direction."""
+    return (state.gaps[k + 3] - state.x) * ny - (state.gaps[k + 4] - state.y) * nx

@@ -9,7 +9,7 @@ from operator import itemgetter
 
 import numpy as np
 
-from drystone.kernels.crossings import crosses_any
+from drystone.kernels.gaps import crosses_any
 from drystone.kernels.polygons import Points, on_grid
 from drystone.model.placement import Placement, Settled, Side
 from drystone.model.pose import PosedStone

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from drystone.kernels.crossings import crosses_any
+from drystone.kernels.gaps import crosses_any
 from drystone.model.landscape import Landscape
 from drystone.model.outlines import Outlines
 from drystone.model.placement import Placement, Wedge

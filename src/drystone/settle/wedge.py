@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.kernels.crevice import Crevice, between, crevice, slabs
+from drystone.kernels.firmness import rest_margin
 from drystone.kernels.polygons import (
     Points,
     Polygons,
@@ -17,7 +18,6 @@ from drystone.kernels.polygons import (
     mirrored_polygon,
     on_grid,
 )
-from drystone.kernels.settling import rest_margin
 from drystone.model.wedge_shape import ROUNDING, open_sides
 from drystone.settle.wedge_spans import (
     Slabs,

@@ -1,0 +1,13 @@
+from drystone.kernels.gaps cimport Stone
+
+cdef class Work:
+    cdef double *rows
+    cdef double *scratch
+    cdef Py_ssize_t room
+
+
+cdef int enough_rows(Work work, Py_ssize_t count) except -1 nogil
+cdef double arm_of(const double *corners, Py_ssize_t count, double x, double y) noexcept nogil
+cdef double firmness(
+    Stone stone, double x, double y, double arm, double mu, double tolerance, double steep, Work work
+) except -2.0 nogil

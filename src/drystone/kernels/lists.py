@@ -1,0 +1,49 @@
+"""Memory of kernels that are not compiled: lists to read from, and views of arrays to write into.
+
+Python reads a list faster than an array.  What is compiled has pointers of the same names
+(``memory.pyx``).
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.kernels.backend import require_nothing_compiled
+
+require_nothing_compiled()
+
+
+def doubles(array: NDArray[Any]) -> list[Any]:
+    """Return the numbers of an array, one after the other, to be read."""
+    numbers: list[Any] = np.ravel(array).tolist()
+    return numbers
+
+
+ints = longs = flags = doubles
+
+
+def doubles_out(array: NDArray[Any]) -> memoryview:
+    """Return the numbers of an array, one after the other, to be written."""
+    return array.reshape(-1).data
+
+
+ints_out = longs_out = flags_out = doubles_out
+
+
+def new_doubles(count: int) -> list[Any]:
+    """Return room for so many numbers."""
+    return [0] * count
+
+
+def more_doubles(numbers: list[Any], count: int) -> list[Any]:
+    """Return more room, with the same numbers."""
+    return numbers + [0] * (count - len(numbers))
+
+
+new_ints = new_doubles
+more_ints = more_doubles
+
+
+def release(_numbers: list[Any]) -> None:
+    """Leave it to Python."""

@@ -1,0 +1,17 @@
+"""Memory of compiled kernels: numbers of arrays by pointer, and rows that grow."""
+
+cdef double *doubles(object array) except? NULL
+cdef int *ints(object array) except? NULL
+cdef long long *longs(object array) except? NULL
+cdef unsigned char *flags(object array) except? NULL
+
+cdef double *doubles_out(object array) except? NULL
+cdef int *ints_out(object array) except? NULL
+cdef long long *longs_out(object array) except? NULL
+cdef unsigned char *flags_out(object array) except? NULL
+
+cdef double *new_doubles(Py_ssize_t count) except? NULL nogil
+cdef int *new_ints(Py_ssize_t count) except? NULL nogil
+cdef double *more_doubles(double *at, Py_ssize_t count) except? NULL nogil
+cdef int *more_ints(int *at, Py_ssize_t count) except? NULL nogil
+cdef void release(void *at) noexcept nogil

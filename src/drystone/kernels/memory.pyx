@@ -1,0 +1,91 @@
+# cython: language_level=3
+"""Memory of compiled kernels; :mod:`drystone.kernels.lists` is what it is without a compiler.
+
+A pointer is valid as long as its array: whoever asks for one keeps the array.
+"""
+
+from cpython.buffer cimport (
+    PyBUF_C_CONTIGUOUS,
+    PyBUF_FORMAT,
+    PyBUF_WRITABLE,
+    PyBuffer_Release,
+    PyObject_GetBuffer,
+)
+from libc.stdlib cimport free, realloc
+
+
+cdef void *start(object array, const char *kinds, Py_ssize_t size, int access) except? NULL:
+    """Return where the numbers of an array begin; TypeError when they are of another kind."""
+    cdef Py_buffer view
+    cdef void *at
+    cdef Py_ssize_t i = 0
+    PyObject_GetBuffer(array, &view, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT | access)
+    at = view.buf
+    while kinds[i] != 0 and kinds[i] != view.format[0]:
+        i += 1
+    if kinds[i] == 0 or view.itemsize != size:
+        found = (<bytes>view.format).decode()
+        PyBuffer_Release(&view)
+        raise TypeError(f"a kernel got numbers of kind {found!r}, not {kinds.decode()!r}")
+    PyBuffer_Release(&view)
+    return at
+
+
+cdef double *doubles(object array) except? NULL:
+    return <double *>start(array, b"d", 8, 0)
+
+
+cdef int *ints(object array) except? NULL:
+    return <int *>start(array, b"il", 4, 0)
+
+
+cdef long long *longs(object array) except? NULL:
+    return <long long *>start(array, b"lq", 8, 0)
+
+
+cdef unsigned char *flags(object array) except? NULL:
+    return <unsigned char *>start(array, b"?B", 1, 0)
+
+
+cdef double *doubles_out(object array) except? NULL:
+    return <double *>start(array, b"d", 8, PyBUF_WRITABLE)
+
+
+cdef int *ints_out(object array) except? NULL:
+    return <int *>start(array, b"il", 4, PyBUF_WRITABLE)
+
+
+cdef long long *longs_out(object array) except? NULL:
+    return <long long *>start(array, b"lq", 8, PyBUF_WRITABLE)
+
+
+cdef unsigned char *flags_out(object array) except? NULL:
+    return <unsigned char *>start(array, b"?B", 1, PyBUF_WRITABLE)
+
+
+cdef double *new_doubles(Py_ssize_t count) except? NULL nogil:
+    return <double *>resized(NULL, count * sizeof(double))
+
+
+cdef int *new_ints(Py_ssize_t count) except? NULL nogil:
+    return <int *>resized(NULL, count * sizeof(int))
+
+
+cdef double *more_doubles(double *at, Py_ssize_t count) except? NULL nogil:
+    return <double *>resized(at, count * sizeof(double))
+
+
+cdef int *more_ints(int *at, Py_ssize_t count) except? NULL nogil:
+    return <int *>resized(at, count * sizeof(int))
+
+
+cdef void *resized(void *at, Py_ssize_t size) except? NULL nogil:
+    cdef void *more = realloc(at, size)
+    if more == NULL:
+        with gil:
+            raise MemoryError
+    return more
+
+
+cdef void release(void *at) noexcept nogil:
+    free(at)
