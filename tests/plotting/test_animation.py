@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from drystone.errors import PlanError
 from drystone.plotting import animation, mechanism_frames, save_mechanism_animation
 from drystone.plotting.animation import FRAME_MS, LONGER_SIDE_PX
 from drystone.statics.contacts.blocks import model_from_labels
@@ -95,9 +96,9 @@ def test_an_animation_is_whole_or_as_it_was(tmp_path, monkeypatch):
     path = tmp_path / "fall.gif"
     path.write_bytes(b"good")
     monkeypatch.setattr(os, "replace", full)
-    with pytest.raises(OSError, match="No space left") as caught:
+    with pytest.raises(PlanError, match="No space left") as caught:
         save_mechanism_animation(path, TALL, rocking(), None, frames=2)
-    assert caught.value.filename == str(path)
+    assert caught.value.where == str(path)
     assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [(path.name, b"good")]
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from drystone.cli.checked import PICTURE, Checked
+from drystone.errors import PlanError
 from drystone.plotting.failures import FailureView, plot_failures
 from drystone.plotting.files import save
 from drystone.plotting.mechanism import motion_of
@@ -58,9 +59,9 @@ def draw_failures(checked: Checked, folder: Path) -> Drawn | None:
     replaced = " (in place of that of an earlier check)" if path.exists() else ""
     try:
         save(plot_failures(views), path)
-    except OSError as error:
+    except PlanError as error:
         # The check is done, and plans may lie where nothing can be written.
-        return Drawn(None, f"not written: {path}: {error.strerror}; give a place with --picture")
+        return Drawn(None, f"not written: {path}: {error.what} Give a place with --picture.")
     return Drawn(str(path), f"{path}{replaced}")
 
 

@@ -4,10 +4,10 @@ from pathlib import Path
 from typing import Any
 
 from drystone.cli.output import make_folder, number, refuse_file
-from drystone.io.atomic import refuse_existing
 from drystone.io.plan_folder import write_plan_folder
 from drystone.io.plan_names import WRITTEN
 from drystone.search.plan_result import PlanResult
+from drystone.whole_files import refuse_existing
 
 FOLDER, PICTURE = "pareto", "pareto.png"
 FIGURES = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 3}

@@ -19,9 +19,9 @@ from drystone.errors import UsageError
 from drystone.export.lettering import one_line
 from drystone.export.overlays import DIRECTIONS, failed_outlines, says, thrust
 from drystone.export.settings import ExportSettings
-from drystone.io.atomic import write_atomically
 from drystone.kernels.polygons import Points
 from drystone.statics.model import Direction
+from drystone.whole_files import write_whole
 
 NAME = "wall.dxf"
 APPLICATION = "DRYSTONE"
@@ -77,7 +77,7 @@ def write(assembly: Assembly, folder: Path, settings: ExportSettings) -> tuple[P
             doc.write(text)
             data = text.getvalue().encode(doc.output_encoding)
     path = folder / NAME
-    write_atomically(path, data)
+    write_whole(path, data)
     return (path,)
 
 

@@ -6,8 +6,8 @@ from drystone.assembly.parts import Assembly
 from drystone.errors import UsageError
 from drystone.export.film import Film, durations_ms, palette
 from drystone.export.settings import ExportSettings
-from drystone.io.atomic import write_atomically
 from drystone.plotting.gif import gif_bytes
+from drystone.whole_files import write_whole
 
 NAME = "build.gif"
 
@@ -31,5 +31,5 @@ def write(assembly: Assembly, folder: Path, settings: ExportSettings) -> tuple[P
     """Write a frame a step and one of the finished wall, which stays; the film loops."""
     frames = tuple(Film(assembly, settings.film_px).frames())
     path = folder / NAME
-    write_atomically(path, gif_bytes(frames, palette(), durations_ms(assembly, settings)))
+    write_whole(path, gif_bytes(frames, palette(), durations_ms(assembly, settings)))
     return (path,)

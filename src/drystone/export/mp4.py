@@ -17,7 +17,7 @@ from drystone.assembly.parts import Assembly
 from drystone.errors import UsageError
 from drystone.export.film import Film, durations_ms
 from drystone.export.settings import ExportSettings
-from drystone.io.atomic import write_atomically
+from drystone.whole_files import write_whole
 
 NAME = "build.mp4"
 
@@ -70,7 +70,7 @@ def write(assembly: Assembly, folder: Path, settings: ExportSettings) -> tuple[P
         else:
             _by_opencv(writer, shots, made)
         path = folder / NAME
-        write_atomically(path, made.read_bytes())
+        write_whole(path, made.read_bytes())
     return (path,)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from drystone.io.atomic import write_atomically
+from drystone.whole_files import write_whole
 
 LINE = 320
 """Characters; a matrix of 16 numbers with all digits is shorter."""
@@ -32,7 +32,7 @@ def put(folder: Path, name: str, data: str | bytes) -> Path:
     """
     path = folder / name
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_atomically(path, data.encode() if isinstance(data, str) else data)
+    write_whole(path, data.encode() if isinstance(data, str) else data)
     return path
 
 

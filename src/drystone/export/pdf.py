@@ -15,7 +15,7 @@ from drystone.export.sheet_page import Page
 from drystone.export.sheet_photo import read_photo
 from drystone.export.sheet_rows import Rows
 from drystone.export.sheet_wall import first_page, plan_sha256
-from drystone.io.atomic import write_atomically
+from drystone.whole_files import write_whole
 
 NAME = "build-sheet.pdf"
 
@@ -39,7 +39,7 @@ def write(assembly: Assembly, folder: Path, settings: ExportSettings) -> tuple[P
         E189 when the photograph of the stones cannot be used.
     """
     path = folder / NAME
-    write_atomically(path, sheet_bytes(sheet(assembly, settings)))
+    write_whole(path, sheet_bytes(sheet(assembly, settings)))
     return (path,)
 
 

@@ -16,7 +16,7 @@ from drystone.assembly.parts import Assembly, Part
 from drystone.errors import UsageError
 from drystone.export.lettering import font
 from drystone.export.settings import ExportSettings
-from drystone.io.atomic import write_atomically
+from drystone.whole_files import write_whole
 
 FOLDER = "projector"
 
@@ -189,5 +189,5 @@ def _save(picture: Image.Image, folder: Path, step: int) -> Path:
     path = folder / FOLDER / f"step_{step:03d}.png"
     with BytesIO() as file:
         picture.save(file, format="PNG")
-        write_atomically(path, file.getvalue())
+        write_whole(path, file.getvalue())
     return path

@@ -13,11 +13,11 @@ from drystone.assembly.parts import Assembly, Part
 from drystone.export.lettering import one_line
 from drystone.export.overlays import DIRECTIONS, Arrow, failed_outlines, says, thrust
 from drystone.export.settings import ExportSettings
-from drystone.io.atomic import write_atomically
 from drystone.kernels.polygons import Points
 from drystone.model.plan import StoneStep
 from drystone.plotting.palette import GREY, OUTLINE_COLOUR, PLAIN_COLOUR, WEDGE_COLOUR
 from drystone.statics.model import Direction
+from drystone.whole_files import write_whole
 
 NAME = "wall.svg"
 
@@ -37,7 +37,7 @@ def write(assembly: Assembly, folder: Path, settings: ExportSettings) -> tuple[P
     """Write the drawing; contacts, forces and mechanisms are layers that are not shown at first."""
     sheet = _Sheet(assembly, settings.title)
     path = folder / NAME
-    write_atomically(path, sheet.bytes())
+    write_whole(path, sheet.bytes())
     return (path,)
 
 

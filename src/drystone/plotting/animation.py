@@ -97,8 +97,8 @@ def save_mechanism_animation(
     ------
     ValueError
         When the path ends otherwise, and as :func:`mechanism_frames` does.
-    OSError
-        When the file cannot be written; an existing one is as it was.
+    PlanError
+        E206 when the file cannot be written; an existing one is as it was.
     """
     if Path(path).suffix.lower() != ".gif":
         raise ValueError(f"{path}: animations end in .gif")

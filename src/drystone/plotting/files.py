@@ -45,8 +45,8 @@ def save(figure: Figure | SubFigure, path: str | Path, dpi: float = DPI) -> None
     ------
     ValueError
         When the ending is another one.
-    OSError
-        When the file cannot be written; an existing one is as it was.
+    PlanError
+        E206 when the file cannot be written; an existing one is as it was.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in _UNDATED:

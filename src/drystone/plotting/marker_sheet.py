@@ -70,8 +70,8 @@ def write_marker_sheets(sheets: MarkerSheets, path: str | Path) -> None:
     ------
     UsageError
         E174: they do not fit on the page, or the family has no such markers; E305 without OpenCV.
-    OSError
-        When the file cannot be written; an existing one is as it was.
+    PlanError
+        E206 when the file cannot be written; an existing one is as it was.
     """
     undated = {"CreationDate": None, "Producer": None, "Creator": None}
     with BytesIO() as file:

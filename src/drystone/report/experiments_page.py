@@ -7,8 +7,8 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from drystone.io.atomic import write_atomically
 from drystone.report.experiments_words import about, heading, lead, made_rows, part, shown
+from drystone.whole_files import write_whole
 
 PAGE = "index.html"
 TEMPLATE = "experiments.html"
@@ -205,5 +205,5 @@ def _write(path: Path, **content: object) -> Path:
         lstrip_blocks=True,
     )
     text = environment.get_template(TEMPLATE).render(**content)
-    write_atomically(path, text.encode("utf-8", "replace"))
+    write_whole(path, text.encode("utf-8", "replace"))
     return path

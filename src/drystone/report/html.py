@@ -3,7 +3,6 @@
 import base64
 from pathlib import Path
 
-from drystone.io.atomic import write_atomically
 from drystone.plotting.files import MECHANISMS, PICTURE
 from drystone.report import content
 from drystone.report.embedding import (
@@ -14,6 +13,7 @@ from drystone.report.embedding import (
     viewer_style,
 )
 from drystone.report.viewer_data import View
+from drystone.whole_files import write_whole
 
 
 def write_report(path: str | Path, view: View, *, pictures: str | Path | None = None) -> Path:
@@ -62,7 +62,7 @@ def write_report(path: str | Path, view: View, *, pictures: str | Path | None = 
             digits=1 if view["unit"] == "px" else 3,
         )
     )
-    write_atomically(path, text.encode("utf-8", "replace"))
+    write_whole(path, text.encode("utf-8", "replace"))
     return path
 
 

@@ -4,11 +4,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from drystone.assembly.read import read_assembly
-from drystone.io.atomic import write_atomically
 from drystone.report.embedding import viewer_frame, viewer_page
 from drystone.report.from_result import view_of_result
 from drystone.report.viewer_data import View, view_of_assembly
 from drystone.search.plan_result import PlanResult
+from drystone.whole_files import write_whole
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Shown:
     def write(self, path: str | Path) -> Path:
         """Write the viewer as one HTML file that needs no network and no other file."""
         path = Path(path)
-        write_atomically(path, viewer_page(self.data).encode("utf-8", "replace"))
+        write_whole(path, viewer_page(self.data).encode("utf-8", "replace"))
         return path
 
 

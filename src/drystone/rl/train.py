@@ -18,7 +18,6 @@ import numpy as np
 from numpy.random import Generator
 
 from drystone.errors import DrystoneError, ExitCode, UsageError
-from drystone.io.atomic import refuse_existing
 from drystone.planner.workshop import Workshop
 from drystone.rl.draw import DrawSettings, draw_wall
 from drystone.rl.episode import Episode, prepared
@@ -34,6 +33,7 @@ from drystone.rl.rollouts import (
 from drystone.selection.policies.learned import FEATURES, ValueModel
 from drystone.selection.policies.simple import Lowest
 from drystone.selection.policy import Offer
+from drystone.whole_files import refuse_existing
 
 TRAINED_ON = ("brick", "fourier", "polygon")
 """Kinds of stones; rubble is held out."""

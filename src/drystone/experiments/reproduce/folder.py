@@ -10,8 +10,8 @@ from drystone.experiments.reproduce.files import files_of, write_picture, write_
 from drystone.experiments.reproduce.item import Item, Output
 from drystone.experiments.reproduce.request import Request
 from drystone.experiments.runs.store import RunStore
-from drystone.io.atomic import write_atomically
 from drystone.report.experiments_page import PAGE, Miss, write_item_page, write_page
+from drystone.whole_files import write_whole
 
 MARK = "reproduce.json"
 MARK_SCHEMA = "drystone-reproduce/1"
@@ -109,7 +109,7 @@ class ReportFolder:
         }
         write_item_page(self.page(name), record)
         text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
-        write_atomically(folder / f"{name}.json", text.encode())
+        write_whole(folder / f"{name}.json", text.encode())
         self.forget_miss(name)
         return record
 
@@ -145,7 +145,7 @@ class ReportFolder:
 
     def _write_misses(self, misses: Mapping[str, Mapping[str, str]]) -> None:
         text = json.dumps({"schema": MARK_SCHEMA, "misses": misses}, ensure_ascii=False, indent=1)
-        write_atomically(self.path / MARK, text.encode())
+        write_whole(self.path / MARK, text.encode())
 
 
 def _read(path: Path, schema: str) -> dict[str, Any] | None:
