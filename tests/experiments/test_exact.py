@@ -6,11 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from drystone.drawing import wall_outlines
 from drystone.experiments import exact, exact_walls
 from drystone.experiments.exact_walls import BuiltWall, Target, built_walls, one_pass, targets
 from drystone.experiments.table import BenchSettings
 from drystone.generate.rubble import RubbleSettings, rubble_stones
-from drystone.plotting import wall_outlines
 from drystone.search.plan_wall import plan_wall
 from tests.verify.exact_examples import exact_example
 

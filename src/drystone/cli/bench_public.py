@@ -9,6 +9,7 @@ from pathlib import Path
 
 from drystone.cli.output import make_folder, say
 from drystone.cli.settings import read_toml
+from drystone.drawing.files import save
 from drystone.errors import UsageError
 from drystone.experiments.public.bench import PublicSettings, run_public
 from drystone.experiments.public.history import Medians, drawn_history, history_table, medians_of
@@ -16,7 +17,6 @@ from drystone.experiments.public.methods import flat_changes
 from drystone.experiments.public.store import BenchStore, Stamp
 from drystone.experiments.runs.changes import Changes
 from drystone.experiments.table import Table
-from drystone.plotting.files import save
 
 DEFAULT_METHODS = ("paper", "random")
 

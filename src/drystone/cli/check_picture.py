@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from drystone.cli.checked import PICTURE, Checked
+from drystone.drawing.files import save
+from drystone.drawing.outlines import Loop
+from drystone.drawing.pictures.failures import FailureView, plot_failures
+from drystone.drawing.pictures.mechanism import motion_of
 from drystone.errors import PlanError
-from drystone.plotting.failures import FailureView, plot_failures
-from drystone.plotting.files import save
-from drystone.plotting.mechanism import motion_of
-from drystone.plotting.outlines import Loop
 from drystone.statics.limit import lateral_resistance
 from drystone.verify.outlines import common_areas
 from drystone.verify.pieces import piece_id

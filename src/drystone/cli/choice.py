@@ -42,7 +42,7 @@ def write_choice(result: PlanResult, folder: Path) -> None:
         write_plan_folder(one, place)
     clear_choice(folder, len(walls) + 1)
     # Drawing loads matplotlib, which takes as long as a small plan.
-    from drystone.plotting import plot_choice, save  # noqa: PLC0415
+    from drystone.drawing import plot_choice, save  # noqa: PLC0415
 
     figure = plot_choice([one.wall for one in walls], [_figures(one) for one in walls])
     save(figure, folder / PICTURE)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
 
+from drystone.drawing.files import save
 from drystone.experiments.table import BenchSettings, Cell, Table
 from drystone.experiments.time_tables import (
     PUBLISHED,
@@ -29,7 +30,6 @@ from drystone.experiments.timed_walls import (
 from drystone.io.published import published_file
 from drystone.io.read_stones import read_stones
 from drystone.planner.settings import PlannerSettings, method_settings
-from drystone.plotting.files import save
 from drystone.selection.sampling import Sampling
 
 SOURCE_PX = (560, 160)

@@ -7,6 +7,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from drystone.drawing.report.embedding import HERE
 from drystone.report.experiments_words import about, heading, lead, made_rows, part, shown
 from drystone.whole_files import write_whole
 
@@ -198,7 +199,7 @@ def _table(table: Mapping[str, Any], prefix: str) -> ShownTable:
 
 def _write(path: Path, **content: object) -> Path:
     environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
+        loader=FileSystemLoader([Path(__file__).parent, HERE]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

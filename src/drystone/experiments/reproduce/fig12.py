@@ -6,13 +6,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from drystone.drawing.pictures.stones import plot_labels
 from drystone.experiments.reproduce.base import PR, PaperWall
 from drystone.experiments.reproduce.item import Context, Item, Output, Picture
 from drystone.experiments.table import Cell, Table
 from drystone.kernels.boundary import EMPTY, touching_edges
 from drystone.model.wall import Labels, Wall
 from drystone.plotting.interfaces import plot_blocks, plot_boundary_edges
-from drystone.plotting.stones import plot_labels
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 

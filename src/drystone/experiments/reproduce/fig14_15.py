@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from statistics import median
 
+from drystone.drawing.pictures.mechanism import plot_mechanism
 from drystone.experiments.reproduce import summary
 from drystone.experiments.reproduce.base import PR, PaperWall
 from drystone.experiments.reproduce.drawn import titled_wall
@@ -11,7 +12,6 @@ from drystone.experiments.reproduce.trials import BASE, Trials, run_trials, seed
 from drystone.experiments.table import Cell, Table
 from drystone.model.wall import Labels
 from drystone.plotting.groups import group_panels
-from drystone.plotting.mechanism import plot_mechanism
 from drystone.plotting.wall_grid import plot_walls
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.failing.mechanism import describe_mechanism

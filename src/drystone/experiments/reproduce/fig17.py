@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
+from drystone.drawing.pictures.joints import plot_joint_paths
 from drystone.experiments.reproduce.base import PR, PaperWall
 from drystone.experiments.reproduce.item import Context, Item, Output, Picture
 from drystone.experiments.table import Cell, Table
@@ -16,7 +17,6 @@ from drystone.metrics.joints import PAD_LEFT, PAD_TOP, joint_mask
 from drystone.metrics.paths import JointPath, horizontal_paths, vertical_paths
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
-from drystone.plotting.joints import plot_joint_paths
 
 ACROSS, UPRIGHT = 3, 7
 """How many paths Fig. 17 draws."""

@@ -7,6 +7,8 @@ from statistics import fmean
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from drystone.drawing.palette import OUTLINE_COLOUR
+from drystone.drawing.pictures.wall import plot_wall
 from drystone.experiments.reproduce.base import IR, LIU_5, PaperWall
 from drystone.experiments.reproduce.drawn import in_words
 from drystone.experiments.reproduce.item import Context, Item, Output, Picture
@@ -15,9 +17,7 @@ from drystone.experiments.reproduce.trials import BASE, Trials, all_specs, run_t
 from drystone.experiments.table import Cell, Table
 from drystone.model.placement import Wedge
 from drystone.model.wall import Wall
-from drystone.plotting.palette import OUTLINE_COLOUR
 from drystone.plotting.sheet import Panel, sheet_of
-from drystone.plotting.wall import plot_wall
 from drystone.plotting.wall_grid import wall_aspect
 
 SHOWN = 3

@@ -9,9 +9,9 @@ from typing import Any
 
 from PIL import Image
 
+from drystone.drawing.files import save
 from drystone.experiments.reproduce.item import Output, Picture
 from drystone.experiments.table import Cell, Table
-from drystone.plotting.files import save
 from drystone.whole_files import write_whole
 
 TIMES = "_times"

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 
 from drystone.clusters import cluster_stones
+from drystone.drawing.pictures.stones import plot_stones
 from drystone.experiments.reproduce.drawn import titled_wall
 from drystone.experiments.reproduce.item import Context, Picture
 from drystone.experiments.reproduce.table2_rows import FiveWall
 from drystone.plotting.masonry import masonry_panel
 from drystone.plotting.sheet import EMPTY, Panel, sheet_of
-from drystone.plotting.stones import plot_stones
 from drystone.plotting.wall_grid import wall_aspect, wall_panel
 from drystone.poses import PoseBook
 
