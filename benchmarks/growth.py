@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
 
+from drystone.drawing.files import save
 from drystone.io.published import published_file
 from drystone.io.read_stones import read_stones
 from drystone.planner.settings import PlannerSettings, method_settings
-from drystone.plotting.files import save
 from drystone.selection.sampling import Sampling
 from drystone_lab.table import BenchSettings, Cell, Table
 from drystone_lab.time_tables import (

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import drystone as ds
-from drystone.plotting.mechanism import plot_mechanism
+from drystone.drawing.pictures.mechanism import plot_mechanism
 
 # %%
 # A wall of four courses of bricks, 24 x 12 px each, in running bond. 0 is where nothing is, every

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import drystone as ds
-from drystone.plotting.stones import plot_labels
+from drystone.drawing.pictures.stones import plot_labels
 
 
 def bricks(shift_px: int) -> np.ndarray:

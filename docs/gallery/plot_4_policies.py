@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import drystone as ds
-from drystone.plotting.wall import plot_wall
+from drystone.drawing.pictures.wall import plot_wall
 
 rubble = ds.generate.RubbleSettings(
     count=16, width_px=160, height_px=64, courses=4

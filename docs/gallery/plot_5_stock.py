@@ -9,8 +9,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import drystone as ds
-from drystone.plotting.stones import plot_stones
-from drystone.plotting.wall import plot_wall
+from drystone.drawing.pictures.stones import plot_stones
+from drystone.drawing.pictures.wall import plot_wall
 
 # %%
 # Stones for a wall of 150 x 50 px, and a wall of less than half that area to build.

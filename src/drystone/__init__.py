@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from drystone import generate as generate
-    from drystone.assembly.read import read_assembly as read_assembly
     from drystone.contacts.blocks import model_from_labels as model_from_labels
     from drystone.contacts.given import model_from_json as model_from_json
+    from drystone.drawing.assembly.read import read_assembly as read_assembly
+    from drystone.drawing.report.notebook import view as view
     from drystone.errors import DrystoneError as DrystoneError
     from drystone.io.plan_folder import write_plan_folder as write_plan_folder
     from drystone.io.plan_json import read_plan as read_plan
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from drystone.planner.planner import Planner as Planner
     from drystone.planner.settings import PlannerSettings as PlannerSettings
     from drystone.planner.settings import method_settings as method_settings
-    from drystone.report.notebook import view as view
     from drystone.search.plan_result import PlanResult as PlanResult
     from drystone.search.plan_result import result_of as result_of
     from drystone.search.plan_wall import plan_wall as plan_wall
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 # Names are loaded on first use: `drystone --help` must not wait for NumPy and SciPy.
 _HOMES = {
-    "read_assembly": "drystone.assembly.read",
+    "read_assembly": "drystone.drawing.assembly.read",
     "DrystoneError": "drystone.errors",
     "read_plan": "drystone.io.plan_json",
     "write_plan": "drystone.io.plan_json",
@@ -57,7 +57,7 @@ _HOMES = {
     "Site": "drystone.model.site",
     "Stone": "drystone.model.stone",
     "StoneSet": "drystone.model.stone",
-    "view": "drystone.report.notebook",
+    "view": "drystone.drawing.report.notebook",
     "PlanResult": "drystone.search.plan_result",
     "result_of": "drystone.search.plan_result",
     "plan_wall": "drystone.search.plan_wall",

@@ -1,10 +1,12 @@
-"""Files that are either whole or not there."""
+"""Files that are either whole or not there, and none that is replaced unasked."""
 
 import os
 import re
 import uuid
 from contextlib import suppress
 from pathlib import Path
+
+from drystone.errors import UsageError, not_written
 
 PART = re.compile(r"\..+\.[0-9a-f]{32}\.part")
 """Names of files that are being written."""
@@ -25,8 +27,8 @@ def write_whole(path: Path, data: bytes) -> None:
 
     Raises
     ------
-    OSError
-        Of the system, with the path: a full disk names no file by itself.
+    PlanError
+        E206: the folder is missing, full or not writable.
     """
     part = path.with_name(f".{path.name}.{uuid.uuid4().hex}.part")
     try:
@@ -39,7 +41,9 @@ def write_whole(path: Path, data: bytes) -> None:
         with suppress(OSError):
             part.unlink()
         if isinstance(error, OSError):
-            raise OSError(error.errno, error.strerror or str(error), str(path)) from error
+            raise not_written(
+                OSError(error.errno, error.strerror or str(error), str(path))
+            ) from error
         raise
 
 
@@ -48,3 +52,27 @@ def remove_parts(folder: Path) -> None:
     for part in folder.glob(".*.part"):
         if PART.fullmatch(part.name):
             part.unlink(missing_ok=True)
+
+
+def refuse_existing(path: Path, *, overwrite: bool) -> None:
+    """Refuse to write where a folder is, or a file that is not to be replaced.
+
+    Raises
+    ------
+    UsageError
+        E129.
+    """
+    if path.is_dir():
+        raise UsageError(
+            "E129",
+            "is a folder, not a file.",
+            where=str(path),
+            cure="Give the name of a file, in the folder for example.",
+        )
+    if path.exists() and not overwrite:
+        raise UsageError(
+            "E129",
+            "exists already.",
+            where=str(path),
+            cure="Choose another with -o, or add --overwrite to replace it.",
+        )

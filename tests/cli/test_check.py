@@ -1,6 +1,7 @@
 """`drystone check` in the engine, and its pictures of what fails."""
 
 import json
+import os
 import sys
 from collections.abc import Callable
 from functools import partial
@@ -274,12 +275,12 @@ def test_a_folder_that_takes_no_picture(
         raise PermissionError(13, "Permission denied")
 
     change(plan_copy, push)
-    monkeypatch.setattr(check_picture, "save", refuse)
+    monkeypatch.setattr(os, "replace", refuse)
     ran = run("check", plan_copy)
     assert ran.code == 5
     assert "E221" in ran.out
     assert "picture  not written: " in ran.out
-    assert "Permission denied; give a place with --picture" in ran.out
+    assert "(Permission denied). Give a place with --picture." in ran.out
     report = run("check", plan_copy, "--json").json()
     assert report["picture"] is None
 

@@ -12,10 +12,10 @@ from xml.etree import ElementTree as ET
 import ezdxf
 import pytest
 
-from drystone.export.formats import FORMATS
-from drystone.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS
+from drystone.drawing.export.settings import ExportSettings
 from tests.cli.conftest import WALL, Run
-from tests.export.robot_plans import assembly, write_plan_folder
+from tests.drawing.export.robot_plans import assembly, write_plan_folder
 
 QUICK = ("poses", "compas", "moveit", "urdf", "obj", "glb", "stl", "csv", "geojson")
 """Formats that need no drawing."""

@@ -3,8 +3,8 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from drystone.drawing.palette import rgb
 from drystone.plotting.bench_history import LINES, history_panels, plot_history
-from drystone.plotting.palette import rgb
 
 
 def test_versions_without_a_value_have_no_point():

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from drystone.drawing.files import save
 from drystone.planner.profile import StepTime
-from drystone.plotting.files import save
 from drystone.plotting.growth import (
     LINES,
     PART_COLOURS,

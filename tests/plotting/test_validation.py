@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from drystone.plotting.files import save
+from drystone.drawing.files import save
 from drystone.plotting.validation import COLOURS, MARKERS, Prediction, plot_predictions
 
 POINTS = [

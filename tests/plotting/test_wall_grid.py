@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drystone.plotting import plot_wall, save
+from drystone.drawing import plot_wall, save
+from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
 from drystone.plotting.masonry import masonry_panel, plot_masonry
-from drystone.plotting.palette import PLAIN_COLOUR, cluster_colour
 from drystone.plotting.sheet import sheet_of
 from drystone.plotting.wall_grid import plot_walls, wall_aspect
-from tests.plotting.examples import CLUSTERS, WEDGE, wall
+from tests.drawing.examples import CLUSTERS, WEDGE, wall
 
 
 def test_every_wall_is_drawn_whole_under_its_title(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 from drystone.errors import PlanError
 from drystone.report.experiments_page import LONG, Miss, write_item_page, write_page
 from drystone.report.experiments_words import duration, heading, shown
-from tests.report.test_report import Page
+from tests.drawing.report.test_report import Page
 
 ORDER = ("fig5", "fig13", "table2")
 

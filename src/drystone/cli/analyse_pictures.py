@@ -47,7 +47,7 @@ def _others(folder: Path) -> list[Path]:
 
 def draw(paths: list[Path], wall: Modelled, loads: Loads, ends: Sequence[LimitResult]) -> None:
     """Draw the contacts, and forces, mechanism and its motion for both ends, left first."""
-    from drystone.plotting import plot_contacts, save  # noqa: PLC0415 - slow import
+    from drystone.drawing import plot_contacts, save  # noqa: PLC0415 - slow import
 
     contacts, *others = paths
     save(plot_contacts(wall.shapes, wall.model).figure, contacts)
@@ -57,9 +57,9 @@ def draw(paths: list[Path], wall: Modelled, loads: Loads, ends: Sequence[LimitRe
 
 def draw_friction(folder: Path, model: RigidBlockModel, loads: Loads) -> tuple[AtFriction, ...]:
     """Analyse the wall at usual coefficients of friction, and draw that."""
-    from drystone.plotting import save  # noqa: PLC0415 - slow import
-    from drystone.plotting.friction import plot_friction  # noqa: PLC0415
-    from drystone.report.content import TILTING  # noqa: PLC0415
+    from drystone.drawing import save  # noqa: PLC0415 - slow import
+    from drystone.drawing.pictures.friction import plot_friction  # noqa: PLC0415
+    from drystone.drawing.report.content import TILTING  # noqa: PLC0415
 
     curve = friction_curve(model, loads)
     axes = plot_friction(curve, model.mu, slides_at_mu=loads.name == TILTING)
@@ -68,7 +68,7 @@ def draw_friction(folder: Path, model: RigidBlockModel, loads: Loads) -> tuple[A
 
 
 def _draw_direction(files: list[Path], wall: Modelled, loads: Loads, result: LimitResult) -> None:
-    from drystone.plotting import (  # noqa: PLC0415 - slow import
+    from drystone.drawing import (  # noqa: PLC0415 - slow import
         plot_forces,
         plot_mechanism,
         save,

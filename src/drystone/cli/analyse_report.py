@@ -4,14 +4,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
-from drystone.assembly.read import scaled
 from drystone.cli.card import Card
 from drystone.cli.modelling import Modelled, Shapes
+from drystone.drawing.assembly.read import scaled
+from drystone.drawing.outlines import Loop, wall_regions
+from drystone.drawing.report import content, write_report
+from drystone.drawing.report.view_statics import scaled_resistance
+from drystone.drawing.report.viewer_data import view_of_wall
 from drystone.kernels.polygons import area_and_centroid
-from drystone.plotting.outlines import Loop, wall_regions
-from drystone.report import content, write_report
-from drystone.report.view_statics import scaled_resistance
-from drystone.report.viewer_data import view_of_wall
 from drystone.statics.friction_curve import AtFriction
 from drystone.statics.model import RigidBlockModel
 

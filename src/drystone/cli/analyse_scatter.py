@@ -157,7 +157,7 @@ def scatter_of(
             wall.model, settings, seed=arguments.seed, executor=executor, on_sample=on_sample
         )
     if folder is not None:
-        from drystone.plotting import plot_scatter, save  # noqa: PLC0415 - slow import
+        from drystone.drawing import plot_scatter, save  # noqa: PLC0415 - slow import
 
         save(plot_scatter(found).figure, folder / "scatter.png")
     return ScatterCard(found, unit)

@@ -5,9 +5,9 @@ from collections.abc import Iterator, Sequence
 from io import StringIO
 from pathlib import Path
 
-from drystone.io.atomic import write_atomically
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult
+from drystone.whole_files import write_whole
 
 CONTACTS, BLOCKS = "contacts.csv", "blocks.csv"
 NAMES = (CONTACTS, BLOCKS)
@@ -90,4 +90,4 @@ def block_rows(
 def _write(path: Path, rows: Iterator[list[Cell]]) -> None:
     text = StringIO()
     csv.writer(text, lineterminator="\n").writerows(rows)
-    write_atomically(path, text.getvalue().encode())
+    write_whole(path, text.getvalue().encode())

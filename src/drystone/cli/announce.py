@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
+from drystone.drawing.export.formats import FORMATS
 from drystone.errors import Notice
-from drystone.export.formats import FORMATS
 from drystone.model.stone import StoneSet
 from drystone.model.stone_size import median_sides, sides_px
 from drystone.search.plan_result import PlanResult
@@ -61,9 +61,9 @@ def write_film(result: PlanResult, folder: Path) -> None:
         (folder / "build.gif").unlink(missing_ok=True)
         return
     # What draws is loaded when it draws.
-    from drystone.assembly.read import read_assembly  # noqa: PLC0415
-    from drystone.export import gif  # noqa: PLC0415
-    from drystone.export.settings import ExportSettings  # noqa: PLC0415
+    from drystone.drawing.assembly.read import read_assembly  # noqa: PLC0415
+    from drystone.drawing.export import gif  # noqa: PLC0415
+    from drystone.drawing.export.settings import ExportSettings  # noqa: PLC0415
 
     gif.write(read_assembly(folder), folder, ExportSettings())
 

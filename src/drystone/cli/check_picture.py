@@ -5,10 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from drystone.cli.checked import PICTURE, Checked
-from drystone.plotting.failures import FailureView, plot_failures
-from drystone.plotting.files import save
-from drystone.plotting.mechanism import motion_of
-from drystone.plotting.outlines import Loop
+from drystone.drawing.files import save
+from drystone.drawing.outlines import Loop
+from drystone.drawing.pictures.failures import FailureView, plot_failures
+from drystone.drawing.pictures.mechanism import motion_of
+from drystone.errors import PlanError
 from drystone.statics.limit import lateral_resistance
 from drystone.verify.outlines import common_areas
 from drystone.verify.pieces import piece_id
@@ -58,9 +59,9 @@ def draw_failures(checked: Checked, folder: Path) -> Drawn | None:
     replaced = " (in place of that of an earlier check)" if path.exists() else ""
     try:
         save(plot_failures(views), path)
-    except OSError as error:
+    except PlanError as error:
         # The check is done, and plans may lie where nothing can be written.
-        return Drawn(None, f"not written: {path}: {error.strerror}; give a place with --picture")
+        return Drawn(None, f"not written: {path}: {error.what} Give a place with --picture.")
     return Drawn(str(path), f"{path}{replaced}")
 
 

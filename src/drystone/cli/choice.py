@@ -4,10 +4,10 @@ from pathlib import Path
 from typing import Any
 
 from drystone.cli.output import make_folder, number, refuse_file
-from drystone.io.atomic import refuse_existing
 from drystone.io.plan_folder import write_plan_folder
 from drystone.io.plan_names import WRITTEN
 from drystone.search.plan_result import PlanResult
+from drystone.whole_files import refuse_existing
 
 FOLDER, PICTURE = "pareto", "pareto.png"
 FIGURES = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 3}
@@ -42,7 +42,7 @@ def write_choice(result: PlanResult, folder: Path) -> None:
         write_plan_folder(one, place)
     clear_choice(folder, len(walls) + 1)
     # Drawing loads matplotlib, which takes as long as a small plan.
-    from drystone.plotting import plot_choice, save  # noqa: PLC0415
+    from drystone.drawing import plot_choice, save  # noqa: PLC0415
 
     figure = plot_choice([one.wall for one in walls], [_figures(one) for one in walls])
     save(figure, folder / PICTURE)

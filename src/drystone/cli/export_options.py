@@ -4,7 +4,7 @@ import argparse
 
 from drystone.cli.numbers import positive
 from drystone.cli.scale import add_scale
-from drystone.export.formats import FORMATS
+from drystone.drawing.export.formats import FORMATS
 
 
 def add_export(command: argparse.ArgumentParser) -> None:

@@ -10,8 +10,8 @@ from tempfile import TemporaryFile
 from typing import Any
 
 from drystone.errors import PlanError, UsageError
-from drystone.io.atomic import refuse_existing
 from drystone.io.folder_lock import has_files, locked
+from drystone.whole_files import refuse_existing
 
 _PICTURES = (".png", ".pdf", ".svg")
 

@@ -233,8 +233,8 @@ def write_result(
     """Write plan.json, settings.toml, wall.png, the pictures and the report."""
     write_plan_folder(result, folder)
     # Drawing loads matplotlib, which takes as long as a small plan.
-    from drystone.plotting import write_pictures  # noqa: PLC0415
-    from drystone.report import view_of_result, write_report  # noqa: PLC0415
+    from drystone.drawing import write_pictures  # noqa: PLC0415
+    from drystone.drawing.report import view_of_result, write_report  # noqa: PLC0415
 
     write_pictures(folder, result.wall, result.clusters, resistance=result.resistance)
     view = view_of_result(result, photo=photo, notices=(*stones.notices, *result.notices))

@@ -4,9 +4,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from drystone.io.atomic import write_atomically
 from drystone.model.wall import Wall
 from drystone.statics.model import RigidBlockModel
+from drystone.whole_files import write_whole
 
 BLOCKS = "blocks.json"
 """Name of the file beside a plan whose geometry is exact."""
@@ -27,7 +27,7 @@ def write_blocks(wall: Wall, model: RigidBlockModel, folder: Path) -> Path | Non
     path = folder / BLOCKS
     if wall.outlines is None:
         return None
-    write_atomically(path, (json.dumps(blocks_to_json(wall, model), indent=1) + "\n").encode())
+    write_whole(path, (json.dumps(blocks_to_json(wall, model), indent=1) + "\n").encode())
     return path
 
 

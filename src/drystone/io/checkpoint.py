@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import PlanError
-from drystone.io.atomic import write_atomically
 from drystone.io.plain_data import as_json, from_plain
 from drystone.planner.search_settings import SearchSettings
 from drystone.search.operators import OPERATORS
 from drystone.search.packed import Packed
 from drystone.search.standing import Chains, Standing
+from drystone.whole_files import write_whole
 
 CHECKPOINT = "checkpoint.json"
 SCHEMA = "drystone-checkpoint/1"
@@ -60,7 +60,7 @@ def write_checkpoint(checkpoint: Checkpoint, folder: Path) -> None:
         }
     )
     text = f'{{"sha256": "{_digest(data)}",\n"data": {data}}}\n'
-    write_atomically(folder / CHECKPOINT, text.encode())
+    write_whole(folder / CHECKPOINT, text.encode())
 
 
 def read_checkpoint(

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import UsageError
-from drystone.io.atomic import refuse_existing, write_atomically
 from drystone.io.photo_sidecar import LABELS, SIDECAR, read_sidecar
+from drystone.whole_files import refuse_existing, write_whole
 
 NAMES = ("photo.jpg", "photo.png")
 """Beside a plan; it shows the whole source image, at any resolution."""
@@ -89,7 +89,7 @@ def place_photo(photo: Path | None, folder: Path) -> tuple[Path | None, Mapping[
             old.unlink()
     if copy is None or not put:
         return copy, {}
-    write_atomically(copy, data)
+    write_whole(copy, data)
     return copy, {RECORD: {"name": copy.name, "sha256": hashlib.sha256(data).hexdigest()}}
 
 

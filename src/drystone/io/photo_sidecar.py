@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import InputError
-from drystone.io.atomic import write_atomically
+from drystone.whole_files import write_whole
 
 SCHEMA = "drystone-photo/1"
 SIDECAR = "stones.json"
@@ -51,7 +51,7 @@ def write_sidecar(sidecar: PhotoSidecar, folder: Path) -> Path:
         **sidecar.details,
     }
     path = folder / SIDECAR
-    write_atomically(path, (json.dumps(data, indent=1, ensure_ascii=False) + "\n").encode())
+    write_whole(path, (json.dumps(data, indent=1, ensure_ascii=False) + "\n").encode())
     return path
 
 

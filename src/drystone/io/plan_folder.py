@@ -8,13 +8,13 @@ from typing import Any
 import tomli_w
 
 from drystone.errors import PlanError, UsageError
-from drystone.io.atomic import write_atomically
 from drystone.io.blocks_json import BLOCKS, write_blocks
 from drystone.io.photo_beside import RECORD, place_photo
 from drystone.io.plan_json import write_plan
 from drystone.io.plan_names import WRITTEN
 from drystone.io.wall_image import write_wall_image
 from drystone.search.plan_result import PlanResult
+from drystone.whole_files import write_whole
 
 
 def write_plan_folder(result: PlanResult, folder: str | Path) -> Path:
@@ -60,7 +60,7 @@ def write_plan_folder(result: PlanResult, folder: str | Path) -> Path:
     replaces = (folder / "plan.json").exists()
     write_plan(result.plan, folder / "plan.json")
     settings = tomli_w.dumps(dict(result.plan.settings))
-    write_atomically(folder / "settings.toml", settings.encode())
+    write_whole(folder / "settings.toml", settings.encode())
     written = {write_wall_image(result.wall.labels, folder)}
     if (blocks := write_blocks(result.wall, result.model, folder)) is not None:
         written.add(blocks)

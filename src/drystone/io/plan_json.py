@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from drystone.errors import PlanError
-from drystone.io.atomic import write_atomically
 from drystone.io.plan_schema import parse_plan, validate_plan
 from drystone.model.plan import SCHEMA, Plan, PlanMetrics, Point, StoneStep, WedgeStep
+from drystone.whole_files import write_whole
 
 _INDEX_NAMES = ("SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC")
 _METRIC_NAMES = tuple(PlanMetrics.__dataclass_fields__)
@@ -35,7 +35,7 @@ def write_plan(plan: Plan, path: str | Path) -> None:
         written.
     """
     text = json.dumps(plan_to_json(plan), ensure_ascii=False, allow_nan=False, indent=1)
-    write_atomically(Path(path), f"{text}\n".encode())
+    write_whole(Path(path), f"{text}\n".encode())
 
 
 def read_plan(path: str | Path) -> Plan:

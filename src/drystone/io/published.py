@@ -8,8 +8,8 @@ from hashlib import sha256
 from pathlib import Path
 
 from drystone.errors import InputError
-from drystone.io.atomic import write_atomically
 from drystone.io.published_sets import LICENCE, NOTICE, RAW, SETS, PublishedFile, PublishedSet
+from drystone.whole_files import write_whole
 
 VARIABLE = "DRYSTONE_DATA"
 """Environment variable that names a folder of published data."""
@@ -158,7 +158,7 @@ def _hash_of(path: Path, _size: int, _mtime_ns: int) -> str:
 def _write_notice(folder: Path) -> None:
     """Write the licence beside the files, as it asks for."""
     if not (folder / NOTICE).exists():
-        write_atomically(folder / NOTICE, LICENCE.encode())
+        write_whole(folder / NOTICE, LICENCE.encode())
 
 
 def _download(file: PublishedFile, path: Path, url: str) -> None:

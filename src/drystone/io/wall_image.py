@@ -8,7 +8,6 @@ import tifffile
 from PIL import Image
 
 from drystone.errors import InputError, LabelImageError, UsageError
-from drystone.io.atomic import write_atomically
 from drystone.io.census import take_census
 from drystone.io.checks import (
     check_background,
@@ -21,6 +20,7 @@ from drystone.io.file_bytes import file_bytes
 from drystone.io.images import decode
 from drystone.io.labels import IdImage, to_ids
 from drystone.model.wall import Labels
+from drystone.whole_files import write_whole
 
 _MAX_ID_16_BIT = 65535
 _CURE = "Set those pixels to 0, or use --background {0} (background={0} in Python)"
@@ -76,7 +76,7 @@ def write_labels(labels: Labels, path: str | Path) -> None:
             where=str(path),
             cure="Choose another ending.",
         )
-    write_atomically(path, buffer.getvalue())
+    write_whole(path, buffer.getvalue())
 
 
 def read_wall_image(

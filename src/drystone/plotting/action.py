@@ -10,13 +10,13 @@ from matplotlib.colors import to_rgba
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
+from drystone.drawing.canvas import draw_block, draw_ground, fit_axes
+from drystone.drawing.outlines import label_regions
+from drystone.drawing.palette import GREY, OUTLINE_COLOUR
 from drystone.kernels.raster import Mask
 from drystone.model.landscape import Box, view_box
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
-from drystone.plotting.canvas import draw_block, draw_ground, fit_axes
-from drystone.plotting.outlines import label_regions
-from drystone.plotting.palette import GREY, OUTLINE_COLOUR
 
 Mark = Literal["box", "rays", "begun", "neighbour", "joints", "slope"]
 """What the indices SF, LFR, GDS, NHR, IWR and IS measure, in this order."""

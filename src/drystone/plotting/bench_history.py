@@ -6,7 +6,7 @@ from math import ceil
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from drystone.plotting.palette import CLUSTER_COLOURS, OUTLINE_COLOUR
+from drystone.drawing.palette import CLUSTER_COLOURS, OUTLINE_COLOUR
 
 LINES = (
     (CLUSTER_COLOURS[0], "o"), ("#8b0000", "s"), (CLUSTER_COLOURS[12], "^"),

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from drystone.plotting.palette import OUTLINE_COLOUR, WEDGE_COLOUR, cluster_colour
+from drystone.drawing.palette import OUTLINE_COLOUR, WEDGE_COLOUR, cluster_colour
 
 SQUARE_IN = (4.6, 4.0)
 COUNTS_IN = (5.6, 3.6)

@@ -6,12 +6,12 @@ from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from drystone.drawing.canvas import draw_block, draw_ground, fit_axes
+from drystone.drawing.outlines import label_regions
+from drystone.drawing.palette import GREY
+from drystone.drawing.pictures.contacts import JOINT, NORMAL, plot_contacts
+from drystone.drawing.scene import PALE, legend_below
 from drystone.model.wall import Labels
-from drystone.plotting.canvas import draw_block, draw_ground, fit_axes
-from drystone.plotting.contacts import JOINT, NORMAL, plot_contacts
-from drystone.plotting.outlines import label_regions
-from drystone.plotting.palette import GREY
-from drystone.plotting.scene import PALE, legend_below
 from drystone.statics.model import RigidBlockModel
 
 CENTRE = "#0072b2"

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 from matplotlib.axes import Axes
 
+from drystone.drawing.canvas import draw_block, draw_ground, fit_axes
+from drystone.drawing.outlines import label_regions
+from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
 from drystone.model.wall import Labels
-from drystone.plotting.canvas import draw_block, draw_ground, fit_axes
-from drystone.plotting.outlines import label_regions
-from drystone.plotting.palette import PLAIN_COLOUR, cluster_colour
 from drystone.plotting.sheet import Panel
 from drystone.plotting.wall_grid import wall_aspect
 

@@ -8,7 +8,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from drystone.plotting.palette import CLUSTER_COLOURS, GREY, OUTLINE_COLOUR
+from drystone.drawing.palette import CLUSTER_COLOURS, GREY, OUTLINE_COLOUR
 
 PANEL_IN = (3.9, 2.8)
 COLUMNS = 2

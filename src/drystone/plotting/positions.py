@@ -9,13 +9,13 @@ from matplotlib.colors import to_rgba
 from matplotlib.patches import Patch, Rectangle
 from numpy.typing import NDArray
 
+from drystone.drawing.canvas import draw_block, draw_ground, fit_axes
+from drystone.drawing.outlines import label_regions
+from drystone.drawing.palette import GREY, OUTLINE_COLOUR
 from drystone.kernels.lowering import Positions
 from drystone.kernels.raster import Mask
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Labels
-from drystone.plotting.canvas import draw_block, draw_ground, fit_axes
-from drystone.plotting.outlines import label_regions
-from drystone.plotting.palette import GREY, OUTLINE_COLOUR
 
 BUILT = "#dedad2"
 OPACITY = 0.85

@@ -8,11 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch, Rectangle
 from matplotlib.patheffects import withStroke
 
+from drystone.drawing.canvas import draw_block, fit_axes
+from drystone.drawing.outlines import Loop, label_regions
+from drystone.drawing.palette import GREY, OUTLINE_COLOUR, WEDGE_COLOUR
 from drystone.model.placement import Wedge
 from drystone.model.wall import Labels
-from drystone.plotting.canvas import draw_block, fit_axes
-from drystone.plotting.outlines import Loop, label_regions
-from drystone.plotting.palette import GREY, OUTLINE_COLOUR, WEDGE_COLOUR
 from drystone.stabilise.support import Pose, Support
 
 BUILT, STONE, GHOST = "#e4e0d8", "#9ecae1", "#0072b2"

@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from drystone.drawing.pictures.wall import plot_wall
 from drystone.model.wall import Wall
 from drystone.plotting.sheet import Panel, sheet_of
-from drystone.plotting.wall import plot_wall
 
 TitledWall = tuple[str, Wall, Mapping[int, int] | None]
 """What is written above a wall, the wall, and the cluster of each of its stones by id."""
@@ -32,7 +32,7 @@ def plot_walls(walls: Sequence[TitledWall], columns: int) -> Figure:
     -------
     Figure
         An axes a wall, in their order, each in its own scale; px or m as in
-        :func:`drystone.plotting.plot_wall`.
+        :func:`drystone.drawing.plot_wall`.
 
     Raises
     ------

@@ -7,8 +7,9 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from drystone.io.atomic import write_atomically
+from drystone.drawing.report.embedding import HERE
 from drystone.report.experiments_words import about, heading, lead, made_rows, part, shown
+from drystone.whole_files import write_whole
 
 PAGE = "index.html"
 TEMPLATE = "experiments.html"
@@ -198,12 +199,12 @@ def _table(table: Mapping[str, Any], prefix: str) -> ShownTable:
 
 def _write(path: Path, **content: object) -> Path:
     environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
+        loader=FileSystemLoader([Path(__file__).parent, HERE]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
     text = environment.get_template(TEMPLATE).render(**content)
-    write_atomically(path, text.encode("utf-8", "replace"))
+    write_whole(path, text.encode("utf-8", "replace"))
     return path

@@ -110,7 +110,7 @@ class PlanResult:
 
     def _repr_html_(self) -> str:
         # By name, as the package itself loads its rooms: the report lies above the search.
-        return str(import_module("drystone.report.notebook").frame_of_result(self))
+        return str(import_module("drystone.drawing.report.notebook").frame_of_result(self))
 
 
 def finish(

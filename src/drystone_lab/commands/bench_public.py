@@ -9,8 +9,8 @@ from pathlib import Path
 
 from drystone.cli.output import make_folder, say
 from drystone.cli.settings import read_toml
+from drystone.drawing.files import save
 from drystone.errors import UsageError
-from drystone.plotting.files import save
 from drystone_lab.public.bench import PublicSettings, run_public
 from drystone_lab.public.history import Medians, drawn_history, history_table, medians_of
 from drystone_lab.public.methods import flat_changes

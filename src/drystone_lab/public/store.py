@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import DrystoneError, InputError, UsageError, not_written
-from drystone.io.atomic import write_atomically
+from drystone.whole_files import write_whole
 from drystone_lab.public.results import SHAKE, Result
 from drystone_lab.public.suites import SUITE_VERSION
 from drystone_lab.runs.outcome import Outcome
@@ -184,10 +184,10 @@ class BenchStore:
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(COLUMNS)
         writer.writerows(astuple(run) for run in runs)
-        write_atomically(self.folder / CSV, text.getvalue().encode())
+        write_whole(self.folder / CSV, text.getvalue().encode())
         if find_spec("pyarrow") is None:
             return (self.folder / CSV,)
-        write_atomically(self.folder / PARQUET, _parquet(runs))
+        write_whole(self.folder / PARQUET, _parquet(runs))
         return (self.folder / CSV, self.folder / PARQUET)
 
     @contextmanager

@@ -7,10 +7,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from drystone.contacts.blocks import model_from_labels
+from drystone.drawing.pictures.stones import plot_labels
 from drystone.kernels.boundary import EMPTY, touching_edges
 from drystone.model.wall import Labels, Wall
 from drystone.plotting.interfaces import plot_blocks, plot_boundary_edges
-from drystone.plotting.stones import plot_labels
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone_lab.reproduce.base import PR, PaperWall
 from drystone_lab.reproduce.item import Context, Item, Output, Picture

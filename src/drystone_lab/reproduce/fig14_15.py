@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from statistics import median
 
 from drystone.contacts.blocks import model_from_labels
+from drystone.drawing.pictures.mechanism import plot_mechanism
 from drystone.model.wall import Labels
 from drystone.plotting.groups import group_panels
-from drystone.plotting.mechanism import plot_mechanism
 from drystone.plotting.wall_grid import plot_walls
 from drystone.statics.failing.mechanism import describe_mechanism
 from drystone.statics.flow.nonassociative import NonassociativeResult, nonassociative_resistance

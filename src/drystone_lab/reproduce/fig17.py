@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
+from drystone.drawing.pictures.joints import plot_joint_paths
 from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
 from drystone.metrics.arrangement import SHORTEST, mean_excess
@@ -13,7 +14,6 @@ from drystone.metrics.joints import PAD_LEFT, PAD_TOP, joint_mask
 from drystone.metrics.paths import JointPath, horizontal_paths, vertical_paths
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
-from drystone.plotting.joints import plot_joint_paths
 from drystone_lab.reproduce.base import PR, PaperWall
 from drystone_lab.reproduce.item import Context, Item, Output, Picture
 from drystone_lab.table import Cell, Table

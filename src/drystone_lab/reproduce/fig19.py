@@ -7,11 +7,11 @@ from statistics import fmean
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from drystone.drawing.palette import OUTLINE_COLOUR
+from drystone.drawing.pictures.wall import plot_wall
 from drystone.model.placement import Wedge
 from drystone.model.wall import Wall
-from drystone.plotting.palette import OUTLINE_COLOUR
 from drystone.plotting.sheet import Panel, sheet_of
-from drystone.plotting.wall import plot_wall
 from drystone.plotting.wall_grid import wall_aspect
 from drystone_lab.reproduce.base import IR, LIU_5, PaperWall
 from drystone_lab.reproduce.drawn import in_words

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from scipy.cluster.hierarchy import ward
 
 from drystone.clusters import ClusterSettings, cluster_stones, stone_features
+from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.plotting.features import COUNTS_IN, plot_counts, plot_features
-from drystone.plotting.stones import plot_stones
 from drystone.poses import PoseBook
 from drystone_lab.reproduce.base import MASONS, PR, PaperWall
 from drystone_lab.reproduce.item import Context, Item, Output, Picture

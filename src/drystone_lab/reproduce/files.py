@@ -9,8 +9,8 @@ from typing import Any
 
 from PIL import PngImagePlugin
 
-from drystone.io.atomic import write_atomically
-from drystone.plotting.files import save
+from drystone.drawing.files import save
+from drystone.whole_files import write_whole
 from drystone_lab.reproduce.item import Output, Picture
 from drystone_lab.table import Cell, Table
 
@@ -90,7 +90,7 @@ def _write_table(folder: Path, name: str, table: Table) -> dict[str, Any]:
         if any(isinstance(cell, float) and not math.isfinite(cell) for cell in row):
             raise ValueError(f"{name}: a number of {row} is not finite; None says there is none")
     file = f"{name}.csv"
-    write_atomically(folder / file, csv_text(table).encode())
+    write_whole(folder / file, csv_text(table).encode())
     return {
         "name": name, "file": file, "title": table.title, "columns": list(table.columns),
         "rows": [list(row) for row in table.rows], "notes": list(table.notes),

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import DrystoneError, UsageError
-from drystone.io.atomic import write_atomically
 from drystone.io.folder_lock import has_files
 from drystone.report.experiments_page import PAGE, Miss, write_item_page, write_page
+from drystone.whole_files import write_whole
 from drystone_lab.reproduce.files import files_of, write_picture, write_tables
 from drystone_lab.reproduce.item import Item, Output
 from drystone_lab.reproduce.request import Request
@@ -110,7 +110,7 @@ class ReportFolder:
         }
         write_item_page(self.page(name), record)
         text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=1)
-        write_atomically(folder / f"{name}.json", text.encode())
+        write_whole(folder / f"{name}.json", text.encode())
         self.forget_miss(name)
         return record
 
@@ -146,7 +146,7 @@ class ReportFolder:
 
     def _write_misses(self, misses: Mapping[str, Mapping[str, str]]) -> None:
         text = json.dumps({"schema": MARK_SCHEMA, "misses": misses}, ensure_ascii=False, indent=1)
-        write_atomically(self.path / MARK, text.encode())
+        write_whole(self.path / MARK, text.encode())
 
 
 def _read(path: Path, schema: str) -> dict[str, Any] | None:

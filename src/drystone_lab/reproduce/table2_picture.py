@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 
 from drystone.clusters import cluster_stones
+from drystone.drawing.pictures.stones import plot_stones
 from drystone.plotting.masonry import masonry_panel
 from drystone.plotting.sheet import EMPTY, Panel, sheet_of
-from drystone.plotting.stones import plot_stones
 from drystone.plotting.wall_grid import wall_aspect, wall_panel
 from drystone.poses import PoseBook
 from drystone_lab.reproduce.drawn import titled_wall

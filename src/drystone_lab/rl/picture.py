@@ -7,7 +7,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from drystone.plotting.wall import plot_wall
+from drystone.drawing.pictures.wall import plot_wall
 from drystone_lab.rl.episode import Episode
 
 SIZE_IN = (8.0, 4.0)

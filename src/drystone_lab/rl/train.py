@@ -18,11 +18,11 @@ import numpy as np
 from numpy.random import Generator
 
 from drystone.errors import DrystoneError, ExitCode, UsageError
-from drystone.io.atomic import refuse_existing
 from drystone.planner.workshop import Workshop
 from drystone.selection.policies.learned import FEATURES, ValueModel
 from drystone.selection.policies.simple import Lowest
 from drystone.selection.policy import Offer
+from drystone.whole_files import refuse_existing
 from drystone_lab.rl.draw import DrawSettings, draw_wall
 from drystone_lab.rl.episode import Episode, prepared
 from drystone_lab.rl.rollouts import (

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import InputError
-from drystone.io.atomic import write_atomically
+from drystone.whole_files import write_whole
 from drystone_lab.runs.outcome import FIGURES, Outcome
 
 
@@ -47,7 +47,7 @@ class RunStore:
         self.folder.mkdir(parents=True, exist_ok=True)
         data = {"figures": outcome.figures, "plan": outcome.plan, "times": outcome.times}
         text = json.dumps(data, ensure_ascii=False, allow_nan=False)
-        write_atomically(self._path(outcome.key), text.encode())
+        write_whole(self._path(outcome.key), text.encode())
 
     def _path(self, key: str) -> Path:
         return self.folder / f"{key}.json"

@@ -1,10 +1,10 @@
 import json
+import os
 from pathlib import Path
 
 import pytest
 
 from drystone.errors import DrystoneError
-from drystone.io import atomic
 from drystone_lab.runs.outcome import Outcome, execute
 from drystone_lab.runs.store import RunStore
 from tests.lab.runs.bricks import run
@@ -34,7 +34,7 @@ def test_files_are_whole_or_not_there(
         raise OSError(28, "No space left on device")
 
     store = RunStore(tmp_path)
-    monkeypatch.setattr(atomic.os, "replace", full)
+    monkeypatch.setattr(os, "replace", full)
     with pytest.raises(DrystoneError, match="No space left") as caught:
         store.put(outcome)
     assert caught.value.code == "E206"

@@ -125,8 +125,8 @@ def _pictures(report: CraftReport, folder: Path) -> dict[str, Path]:
 
 
 def _draw(report: CraftReport, pictures: Mapping[str, Path]) -> None:
-    from drystone.plotting.craft import plot_craft, plot_finding  # noqa: PLC0415 - slow import
-    from drystone.plotting.files import save  # noqa: PLC0415
+    from drystone.drawing.files import save  # noqa: PLC0415
+    from drystone.drawing.pictures.craft import plot_craft, plot_finding  # noqa: PLC0415 - slow import
 
     save(plot_craft(report), pictures["craft"], dpi=SHEET_DPI)
     for name in report.findings:

@@ -7,14 +7,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from statistics import median
 
-from drystone.assembly.parts import Assembly
-from drystone.assembly.read import read_assembly
 from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.output import make_folder, prepare_files, print_json
 from drystone.cli.scale import planned_picture_px, refuse_outside, scale_notice
+from drystone.drawing.assembly.parts import Assembly
+from drystone.drawing.assembly.read import read_assembly
+from drystone.drawing.export.formats import FORMATS
+from drystone.drawing.export.settings import ExportSettings
 from drystone.errors import ExitCode, Notice, UsageError
-from drystone.export.formats import FORMATS
-from drystone.export.settings import ExportSettings
 
 _PROJECTOR = re.compile(r"(\d+)x(\d+)@(\d+(?:\.\d*)?)")
 

@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 
 from drystone.cli.output import prepare_files, print_json
+from drystone.drawing.pictures.marker_sheet import MarkerSheets, write_marker_sheets
 from drystone.errors import ExitCode, UsageError
 from drystone.photo.layout import FIRST_SHEET, ON_A_SHEET, parse_size_m
-from drystone.plotting.marker_sheet import MarkerSheets, write_marker_sheets
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:

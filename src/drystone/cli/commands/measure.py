@@ -115,10 +115,10 @@ def _reduced(size_px: tuple[float, float], factor: float) -> tuple[float, float]
 
 
 def _draw(labels: Labels, width_px: float | None, arguments: argparse.Namespace) -> None:
+    from drystone.drawing import plot_joint_paths, save  # noqa: PLC0415 - slow import
     from drystone.metrics.frame import frame_wall  # noqa: PLC0415
     from drystone.metrics.joints import joint_mask  # noqa: PLC0415
     from drystone.metrics.paths import horizontal_paths, vertical_paths  # noqa: PLC0415
-    from drystone.plotting import plot_joint_paths, save  # noqa: PLC0415 - slow import
 
     pictures = [Path(arguments.output) / f"paths_{name}.png" for name in ("F_AV", "F_AH")]
     refuse_inputs(files_of_wall(Path(arguments.wall_path)), pictures)

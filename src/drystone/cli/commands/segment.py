@@ -13,7 +13,6 @@ from drystone.cli.inputs import refuse_inputs
 from drystone.cli.output import prepare_folder, print_json, print_table
 from drystone.cli.scale import Ruled, refuse_outside
 from drystone.errors import ExitCode, Notice, UsageError
-from drystone.io.atomic import write_atomically
 from drystone.io.photo_file import Photo, read_photo
 from drystone.io.photo_sidecar import LABELS, SIDECAR, PhotoSidecar, write_sidecar
 from drystone.model.stone_size import StoneSize, median_sides, sizes_of
@@ -22,6 +21,7 @@ from drystone.photo.segment_doubts import Doubt, doubts_of, notices_of, ruler_do
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
 from drystone.photo.segment_settings import SegmentSettings
 from drystone.photo.view import apply
+from drystone.whole_files import write_whole
 
 PHOTO, PREVIEW = "photo.jpg", "preview.png"
 WRITTEN = (LABELS, PHOTO, SIDECAR, PREVIEW)
@@ -91,8 +91,8 @@ def _moved(result: SegmentedPhoto, scale: Ruled) -> tuple[tuple[float, float], t
 
 def _write(folder: Path, photo: Photo, result: SegmentedPhoto, doubts: tuple[Doubt, ...]) -> None:
     """Write stones.png, photo.jpg, stones.json and preview.png."""
-    from drystone.plotting.files import save  # noqa: PLC0415 - matplotlib is slow
-    from drystone.plotting.photo import plot_photo  # noqa: PLC0415
+    from drystone.drawing.files import save  # noqa: PLC0415 - matplotlib is slow
+    from drystone.drawing.pictures.photo import plot_photo  # noqa: PLC0415
 
     _save_image(Image.fromarray(result.found.labels), folder / LABELS, "PNG")
     _save_image(Image.fromarray(result.picture), folder / PHOTO, "JPEG", quality=QUALITY)
@@ -107,7 +107,7 @@ def _write(folder: Path, photo: Photo, result: SegmentedPhoto, doubts: tuple[Dou
 def _save_image(image: Image.Image, path: Path, kind: str, **settings: Any) -> None:
     file = io.BytesIO()
     image.save(file, kind, **settings)
-    write_atomically(path, file.getvalue())
+    write_whole(path, file.getvalue())
 
 
 def _marked(doubts: tuple[Doubt, ...]) -> tuple[tuple[int, ...], tuple[tuple[float, float], ...]]:

@@ -31,7 +31,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     sides = {stone.id: sides_px(stone.mask) for stone in stones}
     largest = max(stones, key=lambda stone: stone.area_px)
     if picture is not None:
-        from drystone.plotting import plot_stones, save  # noqa: PLC0415 - matplotlib is slow
+        from drystone.drawing import plot_stones, save  # noqa: PLC0415 - matplotlib is slow
 
         save(plot_stones(stones, clusters).figure, picture)
     median = median_sides(sides.values())

@@ -1,0 +1,184 @@
+"""What a robot does with a part: where it holds it and how it comes to its place."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from drystone.drawing.assembly.frames import DOWN, Matrix, Pose3d, Vector
+from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.kernels.polygons import Points
+from drystone.model.overlap import common_parts
+
+CLEARANCE_M = 0.05
+"""How far above everything else a part is when it begins to be lowered."""
+
+_APART_M = 1e-9
+"""What a part rests on is not in its way."""
+
+INWARD: Vector = (0.0, 1.0, 0.0)
+"""How a wedge is pushed in, in W: from the front, where nothing is in the way."""
+
+
+@dataclass(frozen=True)
+class Approach:
+    """A straight move of a part to its place, without a turn.
+
+    Parameters
+    ----------
+    direction : (float, float, float)
+        Unit vector, in the frame of the pose that it leads to.
+    stand_off_m : float
+        Length of the move.
+    start : (float, float, float)
+        Where the origin of the part is when the move begins, metres.
+    """
+
+    direction: Vector
+    stand_off_m: float
+    start: Vector
+
+
+@dataclass(frozen=True)
+class Grasp:
+    """Two parallel jaws across the least width of a part.
+
+    Parameters
+    ----------
+    width_m : float
+        Between the jaws, metres.
+    direction_part : (float, float, float)
+        Unit vector across the jaws, in S.
+    direction_wall : (float, float, float)
+        The same when the part stands at its place, in W.
+    direction_photo : (float, float, float) or None
+        The same when the stone lies in the photo, in P; None for a wedge.
+    """
+
+    width_m: float
+    direction_part: Vector
+    direction_wall: Vector
+    direction_photo: Vector | None
+
+
+def grasp(assembly: Assembly, part: Part) -> Grasp:
+    """Return how to hold a part; E131 without a scale."""
+    place, pick = assembly.place_pose(part), assembly.pick_pose(part)
+    width_m, across_deg = part.grip
+    across = math.radians(across_deg)
+    own = np.array([math.cos(across), 0.0, math.sin(across)])
+    return Grasp(
+        width_m,
+        _vector(own),
+        _vector(place.rotation @ own),
+        None if pick is None else _vector(pick.rotation @ own),
+    )
+
+
+def place_approach(assembly: Assembly, part: Part) -> Approach:
+    """Return how a part comes to its place.
+
+    A stone comes from above: it is lowered from where its lowest point is CLEARANCE_M above the
+    highest point of what was built before.  A wedge goes in from the front.
+    """
+    pose = assembly.place_pose(part)
+    if part.kind == "wedge":
+        return _approach(pose, INWARD, assembly.thickness + CLEARANCE_M)
+    top = max((float(other.corners[:, 1].max()) for other in before(assembly, part)), default=0.0)
+    lowest = float(part.corners[:, 1].min())
+    return _approach(pose, DOWN, max(top - lowest, 0.0) + CLEARANCE_M)
+
+
+def pick_approach(assembly: Assembly, part: Part) -> Approach | None:
+    """Return how a tool comes to a stone in the photo: from above all others; None for a wedge."""
+    pose = assembly.pick_pose(part)
+    return None if pose is None else _approach(pose, DOWN, assembly.thickness + CLEARANCE_M)
+
+
+def pick_to_place(assembly: Assembly, part: Part) -> Matrix | None:
+    """Return the (4, 4) transform that moves a stone from the photo (P) to its place (W).
+
+    None for a wedge, which is in no photo.
+    """
+    pick = assembly.pick_pose(part)
+    if pick is None:
+        return None
+    matrix = assembly.place_pose(part).matrix @ inverse(pick.matrix)
+    return np.asarray(matrix) + 0.0
+
+
+def inverse(matrix: Matrix) -> Matrix:
+    """Return the inverse of a rigid (4, 4) transform.
+
+    Examples
+    --------
+    >>> inverse(np.array([[0., -1, 0, 5], [1, 0, 0, 6], [0, 0, 1, 7], [0, 0, 0, 1]]))[:3, 3]
+    array([-6.,  5., -7.])
+    """
+    back = np.eye(4)
+    back[:3, :3] = matrix[:3, :3].T
+    back[:3, 3] = -matrix[:3, :3].T @ matrix[:3, 3]
+    return back
+
+
+def before(assembly: Assembly, part: Part) -> tuple[Part, ...]:
+    """Return the parts that stand before this one is placed, in order."""
+    return tuple(other for other in assembly.parts if other.step < part.step)
+
+
+def touched_when_placed(assembly: Assembly, part: Part) -> tuple[int, ...]:
+    """Return the ids that a part meets when it is placed, ascending; 0 is the ground."""
+    there = {0} | {other.id for other in before(assembly, part)}
+    return tuple(found for found in assembly.neighbours(part.id) if found in there)
+
+
+def wedges_after(assembly: Assembly, part: Part) -> tuple[Part, ...]:
+    """Return the wedges that are pushed in under a stone right after it, in order."""
+    return tuple(wedge for wedge in assembly.wedges if wedge.under == part.id)
+
+
+def blocked_m(assembly: Assembly, part: Part) -> float:
+    """Return how much of a stone's way down is taken by stones that stand already.
+
+    Returns
+    -------
+    width_m : float
+        The longest horizontal piece of what is in the way; 0.0 when it is free.  With
+        ``reach = "above"`` stones were lowered along this way and then settled, which moves them
+        by a fraction of a px; with ``reach = "any"`` they may have come from the side.
+    """
+    lift = place_approach(assembly, part).stand_off_m
+    way = swept(part.corners + np.array([0.0, _APART_M]), lift)
+    others = [shapely.Polygon(other.corners) for other in before(assembly, part)]
+    widest = 0.0
+    for other in others:
+        for piece in common_parts(way, other):
+            left, _, right, _ = piece.bounds
+            widest = max(widest, right - left)
+    return widest
+
+
+def swept(low: Points, lift: float) -> shapely.Geometry:
+    """Return what an outline passes when it is lifted straight up.
+
+    Examples
+    --------
+    >>> swept(np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 1.0]]), 3.0).area
+    7.0
+    """
+    high = low + np.array([0.0, lift])
+    following = np.roll(np.arange(len(low)), -1)
+    sides = np.stack([low, low[following], high[following], high], axis=1)
+    whole = [shapely.Polygon(low), shapely.Polygon(high), *shapely.polygons(sides)]
+    return shapely.union_all([shape for shape in whole if shape.area > 0.0])
+
+
+def _approach(pose: Pose3d, direction: Vector, length_m: float) -> Approach:
+    start = np.array([pose.x_m, pose.y_m, pose.z_m]) - length_m * np.array(direction)
+    return Approach(direction, length_m, _vector(start))
+
+
+def _vector(values: Matrix) -> Vector:
+    x, y, z = (float(value) + 0.0 for value in values)
+    return x, y, z

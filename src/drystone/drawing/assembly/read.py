@@ -1,0 +1,186 @@
+"""From the files of a plan to its assembly."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import shapely
+
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json, polygons_from_json
+from drystone.drawing.assembly.parts import DENSITY_KG_M3, Assembly, Part
+from drystone.drawing.outlines import label_regions
+from drystone.errors import InputError, PlanError, UsageError
+from drystone.io.photo_beside import photo_beside
+from drystone.io.walls import GivenWall, read_wall
+from drystone.kernels.polygons import Points, area_and_centroid
+from drystone.model.plan import Plan, StoneStep
+from drystone.model.steps import first_fault
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+
+
+def read_assembly(
+    path: str | Path,
+    *,
+    px_per_m: float | None = None,
+    thickness_m: float | None = None,
+    density_kg_m3: float = DENSITY_KG_M3,
+) -> Assembly:
+    """Read a plan with the files beside it.
+
+    Parameters
+    ----------
+    path : str or Path
+        plan.json, or its folder.  Outlines are those of blocks.json; of a plan on pixels they
+        follow the pixels of the wall image.
+    px_per_m : float, optional
+        Scale of a plan that has none.
+    thickness_m : float, optional
+        Of the wall.
+    density_kg_m3 : float
+        Of the stones.
+
+    Raises
+    ------
+    InputError
+        E133 when files are missing or do not belong together; E132 for what is no plan.
+    PlanError
+        E213, E214 for ids or an order of steps that cannot be.
+    UsageError
+        E131 for another scale than the plan's, or a thickness without a scale.
+    """
+    path = Path(path)
+    folder = path if path.is_dir() else path.parent
+    plan, polygons, model = _read(path)
+    scale = _scale(plan, px_per_m, path)
+    unit: Literal["px", "m"] = "px" if scale is None else "m"
+    factor = 1.0 / scale if scale is not None and plan.length_unit == "px" else 1.0
+    model = scaled(model, factor)
+    parts = tuple(
+        _part(step, polygons[step.stone if isinstance(step, StoneStep) else step.id], factor)
+        for step in plan.steps
+    )
+    if thickness_m is not None and unit == "px":
+        raise UsageError(
+            "E131",
+            "a thickness is in metres, and this plan has no scale.",
+            where="--thickness",
+            cure="Add --px-per-m or --ruler.",
+        )
+    return Assembly(
+        plan,
+        parts,
+        model,
+        lateral_resistance(model, mechanism=True),
+        unit,
+        scale,
+        _usual_thickness(parts) if thickness_m is None else thickness_m,
+        density_kg_m3,
+        photo_beside(folder),
+    )
+
+
+def scaled(model: RigidBlockModel, factor: float) -> RigidBlockModel:
+    """Return a model in another unit of length; friction and what carries what stay."""
+    return RigidBlockModel(
+        tuple(
+            replace(
+                block,
+                area=block.area * factor**2,
+                centroid=(block.centroid[0] * factor, block.centroid[1] * factor),
+            )
+            for block in model.blocks
+        ),
+        tuple(replace(face, points=face.points * factor) for face in model.interfaces),
+        model.mu,
+    )
+
+
+def outer_loop(loops: Sequence[Points]) -> Points:
+    """Return the outline of the largest piece of a stone's pixels, without its holes.
+
+    A pit that meets the outside at a corner of a pixel is a hole too: an outline with it would
+    touch itself, and bound no solid.
+
+    Parameters
+    ----------
+    loops : sequence of (n, 2) float array
+        Outlines and holes, not closed; holes are clockwise.
+    """
+    largest = max(loops, key=lambda loop: area_and_centroid(loop)[0])
+    polygon = shapely.Polygon(largest)
+    if polygon.is_valid:
+        return largest
+    pieces = shapely.get_parts(shapely.make_valid(polygon))
+    whole = shapely.Polygon(max(pieces, key=lambda piece: float(piece.area)).exterior)
+    return np.array(shapely.orient_polygons(whole).exterior.coords)[:-1]
+
+
+def _read(path: Path) -> tuple[Plan, Mapping[int, Points], RigidBlockModel]:
+    # Pictures are not even looked at: what would be said of them is not about plans.
+    wall = read_wall(path) if path.is_dir() or path.suffix.lower() == ".json" else None
+    if wall is None or wall.plan is None:
+        raise InputError(
+            "E132", "this is no plan.", where=str(path),
+            cure="Give the plan.json of a plan, or its folder.",
+        )  # fmt: skip
+    _refuse_disorder(wall.plan, path)
+    return wall.plan, *_shapes(wall, wall.plan)
+
+
+def _refuse_disorder(plan: Plan, path: Path) -> None:
+    """Refuse steps that nobody can build by: what is made of them goes by their numbers."""
+    fault = first_fault(plan)
+    if fault is not None:
+        raise PlanError(
+            fault.code,
+            fault.message,
+            where=f"{path}, step {fault.step}",
+            cure="Give the plan as it was written; `drystone check` lists everything.",
+        )
+
+
+def _scale(plan: Plan, px_per_m: float | None, path: Path) -> float | None:
+    if px_per_m is None or plan.px_per_m is None:
+        return px_per_m or plan.px_per_m
+    if abs(px_per_m / plan.px_per_m - 1.0) > 1e-9:
+        raise UsageError(
+            "E131",
+            f"the plan is one of {plan.px_per_m:g} px a metre, not {px_per_m:g}.",
+            where=str(path),
+            cure="Leave the scale out, or plan again with another one.",
+        )
+    return plan.px_per_m
+
+
+def _shapes(wall: GivenWall, plan: Plan) -> tuple[Mapping[int, Points], RigidBlockModel]:
+    """Return outlines by id and the block model, in the plan's unit."""
+    if wall.blocks is not None:
+        closed = polygons_from_json(wall.blocks)
+        return {i: _open(corners) for i, corners in closed.items()}, model_from_json(wall.blocks)
+    assert wall.labels is not None  # noqa: S101 - a plan without blocks has an image
+    per_px = 1.0 / (plan.working_scale * (plan.px_per_m or 1.0))
+    loops = {region.id: region.loops for region in label_regions(wall.labels)}
+    outer = {i: outer_loop(found) * per_px for i, found in loops.items()}
+    return outer, scaled(model_from_labels(wall.labels, wall.mu).model, per_px)
+
+
+def _open(corners: Points) -> Points:
+    return corners[:-1] if (corners[0] == corners[-1]).all() else corners
+
+
+def _part(step: StoneStep | object, corners: Points, factor: float) -> Part:
+    outline = np.asarray(corners * factor)
+    outline.flags.writeable = False
+    if isinstance(step, StoneStep):
+        return Part(step, outline, (step.centroid[0] * factor, step.centroid[1] * factor))
+    _, x, y = area_and_centroid(outline)
+    return Part(step, outline, (x, y))  # type: ignore[arg-type]
+
+
+def _usual_thickness(parts: tuple[Part, ...]) -> float:
+    sides = [float(np.sqrt(part.area)) for part in parts if part.kind == "stone"]
+    return float(np.median(sides)) if sides else 1.0

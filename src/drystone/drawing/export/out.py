@@ -1,0 +1,111 @@
+"""Files on the way out: whole or not there, equal for equal assemblies."""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from drystone.whole_files import write_whole
+
+LINE = 320
+"""Characters; a matrix of 16 numbers with all digits is shorter."""
+
+
+def put(folder: Path, name: str, data: str | bytes) -> Path:
+    """Write one file, with the folders it lies in.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the export.
+    name : str
+        Relative to it, with ``/`` between folders.
+    data : str or bytes
+        Text is written as UTF-8.
+
+    Raises
+    ------
+    PlanError
+        E206 when it cannot be written.
+    """
+    path = folder / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_whole(path, data.encode() if isinstance(data, str) else data)
+    return path
+
+
+def json_text(value: Any, depth: int = 0) -> str:
+    """Return JSON on few lines: what holds nothing but numbers and words is not broken up.
+
+    Floats have all digits; a list of rows, such as a matrix, counts as plain.  What is longer
+    than 320 characters is broken up all the same.
+
+    Raises
+    ------
+    ValueError
+        For NaN and infinities, which JSON does not have.
+
+    Examples
+    --------
+    >>> print(json_text({"a": {"x": -0.0, "y": 1.5}, "m": [[1, 0], [0, 1]]}))
+    {
+     "a": {"x": 0.0, "y": 1.5},
+     "m": [[1, 0], [0, 1]]
+    }
+    """
+    value = _plain(value)
+    line = json.dumps(value, ensure_ascii=False, allow_nan=False)
+    if not value or not isinstance(value, dict | list):
+        return line
+    if _height(value) <= _on_one_line(value) and len(line) <= LINE:
+        return line
+    margin = " " * (depth + 1)
+    if isinstance(value, dict):
+        parts = [f"{json.dumps(key, ensure_ascii=False)}: {json_text(item, depth + 1)}"
+                 for key, item in value.items()]  # fmt: skip
+        opening, closing = "{", "}"
+    else:
+        parts = [json_text(item, depth + 1) for item in value]
+        opening, closing = "[", "]"
+    inside = ",\n".join(margin + part for part in parts)
+    return f"{opening}\n{inside}\n{' ' * depth}{closing}"
+
+
+def number(value: float) -> str:
+    """Write a number for text formats: all digits, a point always, no minus before zero.
+
+    YAML 1.1 takes ``1e-05`` for a word; with a point before the e it is a number everywhere.
+
+    Examples
+    --------
+    >>> number(-0.0), number(1e-5), number(0.25)
+    ('0.0', '1.0e-05', '0.25')
+    """
+    text = repr(float(value) + 0.0)
+    head, e, tail = text.partition("e")
+    return text if not e or "." in head else f"{head}.0e{tail}"
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray | np.generic):
+        return _plain(value.tolist())
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [_plain(item) for item in value]
+    return value + 0.0 if isinstance(value, float) else value
+
+
+def _height(value: Any) -> int:
+    if isinstance(value, dict):
+        return 1 + max(map(_height, value.values()), default=0)
+    if isinstance(value, list):
+        return 1 + max(map(_height, value), default=0)
+    return 0
+
+
+def _on_one_line(value: Any) -> int:
+    # A list of rows of numbers is a matrix, and stays on one line.
+    return 2 if isinstance(value, list) and all(isinstance(item, list) for item in value) else 1

@@ -1,0 +1,195 @@
+"""Parts as solids: outlines extruded through the wall, as triangles, with mass and inertia."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, Rgb, cluster_colour, rgb
+from drystone.errors import InputError
+from drystone.kernels.polygons import Points, area_and_centroid
+
+Corners = NDArray[np.float64]
+Triangles = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A closed surface.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float array
+        Metres.
+    triangles : (m, 3) int array
+        Indices of vertices, counter-clockwise as seen from outside.
+    """
+
+    vertices: Corners
+    triangles: Triangles
+
+    @property
+    def normals(self) -> Corners:
+        """(m, 3) unit vectors out of the triangles."""
+        first, second, third = (self.vertices[self.triangles[:, i]] for i in range(3))
+        across = np.cross(second - first, third - first)
+        return np.asarray(across / np.linalg.norm(across, axis=1)[:, None]) + 0.0
+
+
+@dataclass(frozen=True)
+class Inertia:
+    """Mass of a part and how it is spread.
+
+    Parameters
+    ----------
+    mass_kg : float
+        Of a solid of one density.
+    centre : (float, float, float)
+        Of mass, in S, metres.
+    tensor : (3, 3) float array
+        About the centre along the axes of S, kg m2.
+    """
+
+    mass_kg: float
+    centre: tuple[float, float, float]
+    tensor: NDArray[np.float64]
+
+
+def solid_in_wall(assembly: Assembly, part: Part) -> Solid:
+    """Return a part where it stands in the wall (frame W), between y = 0 and the thickness."""
+    return extruded(part.corners, 0.0, _thickness_m(assembly), part.name)
+
+
+def solid_of_part(assembly: Assembly, part: Part) -> Solid:
+    """Return a part in its own frame (S), half of it before y = 0."""
+    half = _thickness_m(assembly) / 2.0
+    return extruded(part.own_corners, -half, half, part.name)
+
+
+def require_solids(assembly: Assembly) -> None:
+    """Raise E131 without a scale, E180 when an outline bounds no solid."""
+    for part in assembly.parts:
+        solid_in_wall(assembly, part)
+
+
+def extruded(outline: Points, front: float, back: float, name: str = "outline") -> Solid:
+    """Return a prism along Y.
+
+    Parameters
+    ----------
+    outline : (n, 2) float array
+        Counter-clockwise in x and z, not closed, without crossings.
+    front, back : float
+        Where it begins and ends, y.
+    name : str
+        For the message.
+
+    Raises
+    ------
+    InputError
+        E180 when the outline crosses or touches itself, or has no area.
+
+    Examples
+    --------
+    >>> box = extruded(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]), 0.0, 3.0)
+    >>> box.vertices.shape, box.triangles.shape
+    ((8, 3), (12, 3))
+    """
+    face = triangulated(outline, name)
+    count = len(outline)
+    x, z = outline.T
+    vertices = np.concatenate([np.column_stack([x, np.full(count, y), z]) for y in (front, back)])
+    here = np.arange(count)
+    there = np.roll(here, -1)
+    sides = [(here, here + count, there + count), (here, there + count, there)]
+    triangles = np.concatenate(
+        [face, face[:, ::-1] + count, *(np.column_stack(side) for side in sides)]
+    )
+    return Solid(vertices, triangles)
+
+
+def triangulated(outline: Points, name: str = "outline") -> Triangles:
+    """Return (n - 2, 3) indices of the corners of triangles that fill an outline.
+
+    They are counter-clockwise like the outline.
+
+    Raises
+    ------
+    InputError
+        E180 when it crosses or touches itself, or has no area.
+    """
+    polygon = shapely.Polygon(outline)
+    place = {corner: index for index, corner in enumerate(map(tuple, outline.tolist()))}
+    whole = polygon.is_valid and polygon.area > 0.0 and len(place) == len(outline)
+    pieces = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon)) if whole else ()
+    if len(pieces) != len(outline) - 2:
+        raise InputError(
+            "E180",
+            f"the outline of {name} crosses or touches itself, so it bounds no solid.",
+            where=name,
+            cure="Plan with exact geometry, whose outlines are simple, or clean the wall image.",
+        )
+    corners = shapely.get_coordinates(shapely.orient_polygons(pieces)).reshape(-1, 4, 2)[:, :3]
+    flat = [place[(x, z)] for x, z in corners.reshape(-1, 2).tolist()]
+    return np.array(flat, dtype=np.int64).reshape(-1, 3)
+
+
+def inertia(assembly: Assembly, part: Part) -> Inertia:
+    """Return mass, centre and inertia of a part, exact for its prism.
+
+    The centre is that of the outline; of a plan on pixels it is a fraction of a px from the
+    origin of S, which is the plan's centroid.
+    """
+    thickness = _thickness_m(assembly)
+    area, x, z = area_and_centroid(part.own_corners)
+    mass = assembly.mass_kg(part)
+    xx, zz, xz = second_moments(part.own_corners - np.array([x, z])) * (mass / area)
+    yy = mass * thickness**2 / 12.0
+    tensor = np.array([[zz + yy, 0.0, -xz], [0.0, xx + zz, 0.0], [-xz, 0.0, xx + yy]])
+    return Inertia(mass, (x, 0.0, z), tensor + 0.0)
+
+
+def second_moments(outline: Points) -> NDArray[np.float64]:
+    """Return the integrals of x^2, z^2 and x z over the inside of an outline, about the origin.
+
+    Examples
+    --------
+    >>> second_moments(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 3.0], [0.0, 3.0]]))
+    array([ 8., 18.,  9.])
+    """
+    x, z = outline.T
+    u, v = np.roll(outline, -1, axis=0).T
+    cross = x * v - u * z
+    return np.array(
+        [
+            np.sum(cross * (x * x + x * u + u * u)) / 12.0,
+            np.sum(cross * (z * z + z * v + v * v)) / 12.0,
+            np.sum(cross * (x * v + 2.0 * x * z + 2.0 * u * v + u * z)) / 24.0,
+        ]
+    )
+
+
+def material(part: Part) -> str:
+    """Return the name of a part's material: cluster_3, stone or wedge."""
+    if part.kind == "wedge":
+        return "wedge"
+    return "stone" if part.cluster is None else f"cluster_{part.cluster}"
+
+
+def colour(part: Part) -> Rgb:
+    """Return the colour of a part's material, sRGB."""
+    if part.kind == "wedge":
+        return rgb(WEDGE_COLOUR)
+    return rgb(PLAIN_COLOUR if part.cluster is None else cluster_colour(part.cluster))
+
+
+def materials(assembly: Assembly) -> dict[str, Rgb]:
+    """Return the materials of an assembly with their colours, by name in the order of use."""
+    return {material(part): colour(part) for part in assembly.parts}
+
+
+def _thickness_m(assembly: Assembly) -> float:
+    assembly.require_scale("a solid")
+    return assembly.thickness

@@ -1,0 +1,95 @@
+"""urdf/: the wall as a URDF, a link a part at its place, with mesh, mass and inertia.
+
+Links have the frame S of their part; fixed joints to the link ``wall``, whose frame is W, hold
+them at their places.  Meshes are binary STL in metres, named relative to the URDF.
+"""
+
+import math
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import numpy as np
+
+from drystone.drawing.assembly.frames import Pose3d
+from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.export.meshes_stl import stl_bytes
+from drystone.drawing.export.out import number, put
+from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.solids import (
+    Inertia,
+    colour,
+    inertia,
+    material,
+    require_solids,
+    solid_of_part,
+)
+
+FILE = "urdf/wall.urdf"
+
+BASE = "wall"
+"""Name of the link whose frame is W."""
+
+
+def files(assembly: Assembly, settings: ExportSettings) -> tuple[str, ...]:  # noqa: ARG001
+    """Return the names that will be written; E131 without a scale, E180 without a solid."""
+    require_solids(assembly)
+    return FILE, *(f"urdf/{_mesh(part)}" for part in assembly.parts)
+
+
+def write(assembly: Assembly, folder: Path, settings: ExportSettings) -> tuple[Path, ...]:  # noqa: ARG001
+    """Write the description and a mesh a part."""
+    text = ET.tostring(robot(assembly), encoding="unicode")
+    meshes = (
+        put(folder, f"urdf/{_mesh(part)}",
+            stl_bytes(solid_of_part(assembly, part), f"{part.name}, frame S"))
+        for part in assembly.parts
+    )  # fmt: skip
+    return put(folder, FILE, f'<?xml version="1.0"?>\n{text}\n'), *meshes
+
+
+def robot(assembly: Assembly) -> ET.Element:
+    """Return the description as an XML element; E131 without a scale."""
+    root = ET.Element("robot", name="drystone_wall")
+    ET.SubElement(root, "link", name=BASE)
+    for part in assembly.parts:
+        _link(root, assembly, part)
+        _joint(root, part, assembly.place_pose(part))
+    ET.indent(root, " ")
+    return root
+
+
+def _link(root: ET.Element, assembly: Assembly, part: Part) -> None:
+    link = ET.SubElement(root, "link", name=part.name)
+    _inertial(link, inertia(assembly, part))
+    for name in ("visual", "collision"):
+        body = ET.SubElement(link, name)
+        ET.SubElement(ET.SubElement(body, "geometry"), "mesh", filename=_mesh(part))
+        if name == "visual":
+            paint = ET.SubElement(body, "material", name=material(part))
+            ET.SubElement(paint, "color", rgba=_row(*colour(part), 1.0))
+
+
+def _inertial(link: ET.Element, found: Inertia) -> None:
+    inertial = ET.SubElement(link, "inertial")
+    ET.SubElement(inertial, "origin", xyz=_row(*found.centre), rpy=_row(0.0, 0.0, 0.0))
+    ET.SubElement(inertial, "mass", value=number(found.mass_kg))
+    names = np.array([["ixx", "ixy", "ixz"], ["", "iyy", "iyz"], ["", "", "izz"]])
+    upper = [(str(names[i, j]), number(found.tensor[i, j])) for i in range(3) for j in range(i, 3)]
+    ET.SubElement(inertial, "inertia", dict(upper))
+
+
+def _joint(root: ET.Element, part: Part, pose: Pose3d) -> None:
+    joint = ET.SubElement(root, "joint", name=f"place_{part.name}", type="fixed")
+    ET.SubElement(joint, "parent", link=BASE)
+    ET.SubElement(joint, "child", link=part.name)
+    # Parts are turned about Y only, which is the pitch.
+    turn = _row(0.0, -math.radians(part.angle_deg), 0.0)
+    ET.SubElement(joint, "origin", xyz=_row(pose.x_m, pose.y_m, pose.z_m), rpy=turn)
+
+
+def _mesh(part: Part) -> str:
+    return f"meshes/{part.name}.stl"
+
+
+def _row(*values: float) -> str:
+    return " ".join(map(number, values))

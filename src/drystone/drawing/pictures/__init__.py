@@ -1,0 +1,1 @@
+"""Pictures with axes, drawn by Matplotlib: ``plot_x(thing, ax=None) -> Axes``."""

@@ -1,0 +1,111 @@
+"""The contacts of a rigid block model: interfaces, their ends and normals (Pic-to-Ri)."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from drystone.drawing.outlines import Loop, wall_regions
+from drystone.drawing.scene import legend_below, pale_wall, wall_size
+from drystone.model.wall import Labels
+from drystone.statics.failing.kinematics import ContactKind
+from drystone.statics.model import Interface, RigidBlockModel
+
+Floats = NDArray[np.float64]
+
+JOINT, NORMAL, POINT = "#0072b2", "#d55e00", "#8b0000"
+
+KIND_COLOURS: dict[ContactKind, str] = {
+    "closed": JOINT,
+    "opening": "#e69f00",
+    "sliding": "#cc79a7",
+    "opening and sliding": "#000000",
+}
+"""Okabe and Ito's colours, apart for colour-blind readers."""
+
+NORMAL_SHARE = 0.03
+"""Length of a normal over the height of the wall, at most; that of a short interface is half as
+long as the interface, but no less than a third of this."""
+
+
+def plot_contacts(
+    wall: Labels | Mapping[int, Loop],
+    model: RigidBlockModel,
+    ax: Axes | None = None,
+    *,
+    kinds: Sequence[ContactKind] | None = None,
+) -> Axes:
+    """Draw where blocks touch: interfaces as lines with their end points and normals.
+
+    Parameters
+    ----------
+    wall : (h, w) integer array, or mapping of int to (n, 2) float array
+        Label image, row 0 at the top, or polygons by id.
+    model : RigidBlockModel
+        Of this wall.
+    ax : Axes, optional
+        Where to draw; None makes a figure.
+    kinds : sequence of {"closed", "opening", "sliding", "opening and sliding"}, optional
+        What a mechanism does at every contact point
+        (:attr:`drystone.statics.failing.mechanism.Failure.contact_kinds`); colours the points.
+
+    Returns
+    -------
+    ax : Axes
+        In px of the label image or the unit of the polygons, y up from the ground of the model.
+
+    Raises
+    ------
+    ValueError
+        When the model has a block that the wall does not have, or the kinds are not its.
+    """
+    if kinds is not None and len(kinds) != model.contact_count:
+        raise ValueError(f"{len(kinds)} kinds for {model.contact_count} contact points")
+    regions = wall_regions(wall)
+    ax, size = pale_wall(regions, model, ax), wall_size(regions)
+    lines = [interface.points for interface in model.interfaces if len(interface.points) > 1]
+    normals = [_normal(interface, NORMAL_SHARE * size) for interface in model.interfaces]
+    handles = [
+        _draw_lines(ax, lines, JOINT, 1.3, "interface"),
+        _draw_lines(ax, normals, NORMAL, 0.8, "normal"),
+    ]
+    points = np.concatenate([np.empty((0, 2)), *(i.points for i in model.interfaces)])
+    counts = np.array([len(interface.points) for interface in model.interfaces], np.int64)
+    alone = np.repeat(counts == 1, counts)
+    if kinds is None:
+        handles.append(_draw_dots(ax, points[~alone], JOINT, 2.4, "end of an interface"))
+        handles.append(_draw_dots(ax, points[alone], POINT, 4.0, "contact at a point"))
+    else:
+        told = np.array(kinds, str)
+        for kind, colour in KIND_COLOURS.items():
+            handles.append(_draw_dots(ax, points[told == kind], colour, 3.6, kind))
+    legend_below(ax, handles)
+    return ax
+
+
+def _normal(interface: Interface, longest: float) -> Floats:
+    """Return the normal as a line from the middle of the interface into its block."""
+    middle = interface.points.mean(axis=0)
+    length = min(longest, max(0.5 * interface.length, longest / 3.0))
+    return np.array([middle, middle + length * np.array(interface.normal)])
+
+
+def _draw_lines(ax: Axes, lines: Sequence[Floats], colour: str, width: float, label: str) -> Line2D:
+    drawn = LineCollection(lines, colors=colour, linewidths=width, gid=f"{label}s", zorder=3)
+    ax.add_collection(drawn, autolim=False)
+    return Line2D([], [], color=colour, linewidth=width, label=label)
+
+
+def _draw_dots(ax: Axes, points: Floats, colour: str, size: float, label: str) -> Line2D:
+    style: dict[str, Any] = {
+        "color": colour,
+        "marker": "o",
+        "markersize": size,
+        "markeredgewidth": 0.0,
+    }
+    ax.plot(*points.T, linestyle="none", gid=label, zorder=4, **style)
+    return Line2D([], [], linestyle="none", label=label, **style)

@@ -1,0 +1,230 @@
+"""The forces between blocks: the thrust that carries a wall."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import floor, log10
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from drystone.drawing.outlines import Loop, wall_regions
+from drystone.drawing.scene import legend_below, pale_wall, points_down, wall_size
+from drystone.model.wall import Labels
+from drystone.statics.model import GROUND, Interface, RigidBlockModel
+
+Floats = NDArray[np.float64]
+
+RESULTANT, NETWORK = "#8b0000", "#56b4e9"
+
+LONGEST_SHARE = 0.22
+"""Length of the largest resultant over the height of the wall."""
+
+WIDEST_PT = 9.0
+"""Width of the line of thrust that carries the largest resultant."""
+
+RESULTANT_PT = 1.2
+
+LEAST_SHARE = 1e-6
+"""Smaller resultants over the largest one are none."""
+
+VISIBLE_SHARE = 0.01
+"""The points of action of smaller resultants are not marked: dots would look like forces."""
+
+
+@dataclass(frozen=True, eq=False)
+class Resultant:
+    """What an interface carries.
+
+    Parameters
+    ----------
+    interface : Interface
+        Which one.
+    point : (2,) float array
+        Where the line of the force crosses that of the interface, wall frame.
+    force : (2,) float array
+        On the block that the normal points into, to the right and up, weights of the model.
+    """
+
+    interface: Interface
+    point: Floats
+    force: Floats
+
+    @property
+    def size(self) -> float:
+        """Length of the force."""
+        return float(np.hypot(*self.force))
+
+
+def resultants(model: RigidBlockModel, forces: Floats) -> tuple[Resultant, ...]:
+    """Add up the forces at the contact points of every interface.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Interfaces with one or two points.
+    forces : (m, 2) float array
+        Normal and tangential force at every contact point as
+        :attr:`drystone.statics.result.LimitResult.forces` has them.
+
+    Returns
+    -------
+    tuple of Resultant
+        Of the interfaces that carry anything.
+
+    Raises
+    ------
+    ValueError
+        When there are more or fewer forces than contact points.
+
+    Examples
+    --------
+    >>> from drystone.contacts.given import model_from_json
+    >>> block = model_from_json({"blocks_xywh": [[0, 0, 4, 1]]})
+    >>> resultants(block, np.array([[1.0, 0.0], [3.0, 0.0]]))[0].point.tolist()
+    [3.0, 0.0]
+    """
+    if len(forces) != model.contact_count:
+        raise ValueError(f"{len(forces)} forces for {model.contact_count} contact points")
+    ends = np.cumsum([0, *(len(interface.points) for interface in model.interfaces)])
+    found = [
+        _resultant(interface, forces[start:end])
+        for interface, start, end in zip(model.interfaces, ends[:-1], ends[1:], strict=True)
+    ]
+    least = LEAST_SHARE * max((one.size for one in found), default=0.0)
+    return tuple(one for one in found if one.size > least)
+
+
+def _resultant(interface: Interface, forces: Floats) -> Resultant:
+    x, y = interface.normal
+    vectors = forces @ np.array([[x, y], [y, -x]])
+    total = vectors.sum(axis=0)
+    first, along = interface.points[0], interface.points[-1] - interface.points[0]
+    arms = interface.points - first
+    moment = float((arms[:, 0] * vectors[:, 1] - arms[:, 1] * vectors[:, 0]).sum())
+    across = float(along[0] * total[1] - along[1] * total[0])
+    # A force along its interface acts at no one point of it; the middle is as good as any.
+    share = moment / across if across else 0.5
+    return Resultant(interface, first + share * along, total)
+
+
+def plot_forces(
+    wall: Labels | Mapping[int, Loop],
+    model: RigidBlockModel,
+    forces: Floats,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw the thrust: the resultant of every interface, and how it runs from block to block.
+
+    A dark red line through the point of action of each resultant has its direction and, to scale,
+    its length; half of it lies on either side of the joint.  A blue line joins the points of action
+    with the centroids of the two blocks, as wide as the force is large, also to scale.
+
+    Parameters
+    ----------
+    wall : (h, w) integer array, or mapping of int to (n, 2) float array
+        Label image, row 0 at the top, or polygons by id.
+    model : RigidBlockModel
+        Of this wall.
+    forces : (m, 2) float array
+        See :func:`resultants`.
+    ax : Axes, optional
+        Where to draw; None makes a figure.
+
+    Returns
+    -------
+    ax : Axes
+        In px of the label image or the unit of the polygons, y up from the ground of the model.
+
+    Raises
+    ------
+    ValueError
+        When the forces or the wall are not those of the model.
+    """
+    acting, regions = resultants(model, forces), wall_regions(wall)
+    largest = max((one.size for one in acting), default=0.0)
+    if largest == 0.0:
+        return pale_wall(regions, model, ax)
+    per_weight = LONGEST_SHARE * wall_size(regions) / largest
+    lines = [_line(one, per_weight) for one in acting]
+    ax = pale_wall(regions, model, ax, lines)
+    paths, widths = _network(model, acting)
+    _draw_lines(ax, paths, NETWORK, WIDEST_PT * widths / largest, "thrust")
+    _draw_lines(ax, lines, RESULTANT, np.full(len(lines), RESULTANT_PT), "resultants")
+    seen = np.array([one.point for one in acting if one.size >= VISIBLE_SHARE * largest])
+    ax.plot(*seen.T, "o", color=RESULTANT, markersize=1.8, gid="points-of-action", zorder=4)
+    _draw_scale(ax, model, per_weight, largest)
+    return ax
+
+
+def _line(one: Resultant, per_weight: float) -> Floats:
+    half = 0.5 * per_weight * one.force
+    return np.array([one.point - half, one.point + half])
+
+
+def _network(model: RigidBlockModel, acting: tuple[Resultant, ...]) -> tuple[list[Floats], Floats]:
+    """Return lines from centroid to point of action to centroid, and their forces."""
+    centroid = {block.id: np.array(block.centroid) for block in model.blocks}
+    paths = []
+    for one in acting:
+        ends = [centroid[one.interface.block], one.point]
+        if one.interface.other != GROUND:
+            ends.append(centroid[one.interface.other])
+        paths.append(np.array(ends))
+    return paths, np.array([one.size for one in acting])
+
+
+def _draw_lines(ax: Axes, lines: list[Floats], colour: str, widths: Floats, gid: str) -> None:
+    drawn = LineCollection(
+        lines, colors=colour, linewidths=widths, gid=gid, capstyle="round", zorder=3
+    )
+    ax.add_collection(drawn, autolim=False)
+
+
+def _draw_scale(ax: Axes, model: RigidBlockModel, per_weight: float, largest: float) -> None:
+    """Draw a bar for a round number of mean block weights, as long and as wide as its force."""
+    weights = [block.weight for block in model.blocks if not block.fixed]
+    mean = sum(weights) / len(weights)
+    count = round_number(0.6 * largest / mean)
+    force = count * mean
+    left = ax.get_xlim()[0]
+    right = left + per_weight * force
+    below = ax.get_xaxis_transform() + points_down(ax, 9.0)
+    for colour, width, gid in (
+        (NETWORK, WIDEST_PT * force / largest, "scale-width"),
+        (RESULTANT, RESULTANT_PT, "scale-length"),
+    ):
+        ax.plot(
+            [left, right],
+            [0, 0],
+            color=colour,
+            linewidth=width,
+            transform=below,
+            clip_on=False,
+            solid_capstyle="butt",
+            gid=gid,
+        )
+    share = 100.0 * force / sum(weights)
+    text = f"{count:g} \u00d7 the mean weight of a block = {share:.2g} % of the wall's weight"
+    ax.annotate(
+        text, (right, 0.0), (6, 0), xycoords=below, textcoords="offset points", size=7, va="center"
+    )
+    handles = [
+        Line2D([], [], color=NETWORK, linewidth=4.0, label="thrust, as wide as the force"),
+        Line2D([], [], color=RESULTANT, linewidth=RESULTANT_PT, label="resultant, as long"),
+    ]
+    legend_below(ax, handles, down_pt=18.0)
+
+
+def round_number(most: float) -> float:
+    """Return the largest of 1, 2, 5, 10, 20 ... (and .5, .2 ...) that is not above `most`.
+
+    Examples
+    --------
+    >>> round_number(7.3), round_number(0.3), round_number(20.0)
+    (5.0, 0.2, 20.0)
+    """
+    power = 10.0 ** floor(log10(most))
+    return max(step * power for step in (1.0, 2.0, 5.0) if step * power <= most * (1 + 1e-12))

@@ -1,0 +1,271 @@
+"""The failure mechanism of a wall (Fig. 15)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import ListedColormap, Normalize, to_hex
+from numpy.typing import NDArray
+
+from drystone.drawing.canvas import draw_block, draw_ground, fit_axes, write_number
+from drystone.drawing.outlines import Loop, Region, regions_box, stands_on_ground, wall_regions
+from drystone.drawing.palette import GREY, OUTLINE_COLOUR
+from drystone.model.wall import Labels
+from drystone.statics.model import Direction
+from drystone.statics.result import Mechanism
+
+Floats = NDArray[np.float64]
+
+LARGEST_SHARE = 0.12
+"""Largest displacement in the picture over the height of the wall."""
+
+LARGEST_TURN = 0.35
+"""Largest angle in the picture, rad: a small stone that turns alone must not spin."""
+
+BAR_HEIGHT_IN = 2.4
+
+COLOURS = ListedColormap(colormaps["YlOrRd"](np.linspace(0.02, 0.82, 256)))
+"""From pale (still) to red: lightness falls steadily, so it reads in grey too, and its dark end is
+light enough for outlines to show."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """The blocks of a wall on their way from rest to the picture of a mechanism.
+
+    Parameters
+    ----------
+    regions : tuple of Region
+        The blocks at rest, wall frame.
+    displacement : (n, 3) float array
+        To the right, up, and the angle (rad, counter-clockwise) at the centroid of each block, as
+        large as the picture shows it.
+    """
+
+    regions: tuple[Region, ...]
+    displacement: Floats
+
+    @property
+    def share(self) -> Floats:
+        """Displacement of each centroid over the largest one."""
+        length = np.hypot(self.displacement[:, 0], self.displacement[:, 1])
+        return np.asarray(length / length.max()) if length.any() else length
+
+    def at(self, amplitude: float) -> tuple[tuple[Loop, ...], ...]:
+        """Return the loops of all blocks after a share of the motion, 0 (rest) to 1.
+
+        Each block turns about its centre of rotation by its angle, so it keeps its size, blocks
+        that move as one stay together, and a toe stays where it is.
+        """
+        return tuple(
+            tuple(_moved(loop, region, twist) for loop in region.loops)
+            for region, twist in zip(self.regions, amplitude * self.displacement, strict=True)
+        )
+
+    def centroids(self, amplitude: float) -> tuple[tuple[float, float], ...]:
+        """Return the centroids of all blocks after a share of the motion."""
+        moved = (
+            _moved(np.array([region.centroid]), region, twist)[0]
+            for region, twist in zip(self.regions, amplitude * self.displacement, strict=True)
+        )
+        return tuple((float(x), float(y)) for x, y in moved)
+
+
+def motion_of(wall: Labels | Mapping[int, Loop], mechanism: Mechanism) -> Motion:
+    """Scale a mechanism for pictures.
+
+    Parameters
+    ----------
+    wall : (h, w) integer array, or mapping of int to (n, 2) float array
+        Label image or polygons.
+    mechanism : Mechanism
+        Velocities of its blocks; those it does not name stay where they are.
+
+    Returns
+    -------
+    Motion
+        No point moves by more than `LARGEST_SHARE` of the wall's height (or of a fifth of its
+        length, if that is more), no block turns by more than `LARGEST_TURN`, and one of them does.
+
+    Raises
+    ------
+    ValueError
+        When the mechanism names a block that the wall does not have.
+    """
+    regions = wall_regions(wall)
+    velocities = _velocities(regions, mechanism)
+    x0, y0, x1, y1 = regions_box(region.loops for region in regions)
+    largest = LARGEST_SHARE * max(y1 - y0, 0.2 * (x1 - x0))
+    fastest = max((_fastest(r, v) for r, v in zip(regions, velocities, strict=True)), default=0.0)
+    turning = float(np.abs(velocities[:, 2]).max(initial=0.0))
+    if fastest == 0.0:
+        return Motion(regions, velocities)
+    factor = largest / fastest
+    return Motion(regions, velocities * min(factor, LARGEST_TURN / turning if turning else factor))
+
+
+def plot_mechanism(
+    wall: Labels | Mapping[int, Loop],
+    mechanism: Mechanism,
+    direction: Direction | None,
+    alpha: float | None = None,
+    ax: Axes | None = None,
+    *,
+    load: str = "",
+    numbers: bool = False,
+) -> Axes:
+    """Draw how a wall fails: every block moved by its velocity, coloured by displacement (Fig. 15).
+
+    Blocks turn about their centres of rotation and keep their size (see :class:`Motion`); the
+    largest displacement in the picture is some 12 % of the wall's height.  Thin grey lines show
+    the wall before.  Blocks without a velocity stay where they are.
+
+    Parameters
+    ----------
+    wall : (h, w) integer array, or mapping of int to (n, 2) float array
+        The wall whose blocks the mechanism names: a label image, row 0 at the top, or polygons by
+        id.
+    mechanism : Mechanism
+        Velocities of the blocks.
+    direction : {"left", "right"} or None
+        Where the live load points; None when the wall falls by itself.
+    alpha : float, optional
+        Load multiplier (adequacy factor), written beside the arrow.
+    ax : Axes, optional
+        Where to draw; None makes a figure.
+    load : str
+        Words for a live load that is not the tilting table's, such as "point load on 7"; they
+        are written without an arrow.
+    numbers : bool
+        Write the ids on the blocks.
+
+    Returns
+    -------
+    ax : Axes
+        In px of the label image or the unit of the polygons, y up from the ground: for a label
+        image the lower edge of its lowest stone pixel.
+
+    Raises
+    ------
+    ValueError
+        When the mechanism names a block that the wall does not have.
+    """
+    motion = motion_of(wall, mechanism)
+    moved = motion.at(1.0)
+    x0, y0, x1, y1 = regions_box((region.loops for region in motion.regions), moved)
+    pad = 0.02 * (x1 - x0)
+    depth = 0.035 * max(y1 - y0, 0.2 * (x1 - x0))
+    ax = fit_axes(ax, (x0 - pad, y0 - depth, x1 + pad, y1 + 3.5 * depth))
+    ax.set_axis_off()
+    if stands_on_ground(motion.regions):
+        draw_ground(ax, x0 - pad, x1 + pad, depth)
+    _draw_blocks(ax, motion, moved, numbers=numbers)
+    _draw_load(ax, y1 + 2 * depth, direction, _caption(direction, alpha, load), arrow=not load)
+    _draw_scale(ax)
+    return ax
+
+
+def _draw_blocks(
+    ax: Axes, motion: Motion, moved: tuple[tuple[Loop, ...], ...], *, numbers: bool
+) -> None:
+    share, centroids = motion.share, motion.centroids(1.0)
+    # The blocks that move most are drawn last: dilatancy opens joints, rounding may close some.
+    for index in np.argsort(share, kind="stable"):
+        fill, number = to_hex(COLOURS(float(share[index]))), motion.regions[index].id
+        draw_block(ax, moved[index], f"moved-{number}", fill=fill, zorder=1)
+        if numbers:
+            write_number(ax, number, centroids[index], moved[index], fill)
+            ax.texts[-1].set_gid(f"number-{number}")
+    for region in motion.regions:
+        gid = f"before-{region.id}"
+        draw_block(ax, region.loops, gid, edgecolor=GREY, linewidth=0.5, zorder=2)
+
+
+def _velocities(regions: tuple[Region, ...], mechanism: Mechanism) -> Floats:
+    """Return the velocities in the order of the regions; blocks not named stand still."""
+    known = dict(zip(mechanism.block_ids, mechanism.velocity, strict=True))
+    missing = sorted(set(known) - {region.id for region in regions})
+    if missing:
+        raise ValueError(f"the mechanism moves blocks that the wall lacks: {missing}")
+    still = np.zeros(3)
+    rows = [known.get(region.id, still) for region in regions]
+    return np.array(rows, float).reshape(-1, 3)
+
+
+def _fastest(region: Region, velocity: Floats) -> float:
+    """Return the largest velocity of a point of a block."""
+    along_x, along_y, turning = velocity
+    x, y = (np.concatenate(region.loops) - region.centroid).T
+    return float(np.hypot(along_x - turning * y, along_y + turning * x).max())
+
+
+def _moved(points: Loop, region: Region, twist: Floats) -> Loop:
+    """Move points of a block by a finite twist: a turn about the twist's centre of rotation.
+
+    With the angle a the centroid moves by V (x, y), V = [[sin a, cos a - 1], [1 - cos a, sin a]]
+    / a, which is a translation for a = 0.
+    """
+    x, y, angle = twist
+    sine_share = float(np.sinc(angle / np.pi))
+    rest_share = float(np.sinc(angle / (2 * np.pi)) * np.sin(angle / 2))  # (1 - cos a) / a
+    step = (sine_share * x - rest_share * y, rest_share * x + sine_share * y)
+    cos, sin = np.cos(angle), np.sin(angle)
+    arms = points - region.centroid
+    return np.asarray(arms @ np.array([[cos, sin], [-sin, cos]]) + region.centroid + step)
+
+
+def _caption(direction: Direction | None, alpha: float | None, load: str) -> str:
+    if direction is None:
+        return "falls under its own weight"
+    value = "" if alpha is None else rf", $\alpha$ = {alpha:.3f}"
+    return (load or rf"live load, $\alpha$ times the weight, to the {direction}") + value
+
+
+def _draw_load(
+    ax: Axes, y: float, direction: Direction | None, caption: str, *, arrow: bool
+) -> None:
+    left, right = ax.get_xlim()
+    x, half = (left + right) / 2, 0.06 * (right - left)
+    if direction is None:
+        half = 0.8 * (ax.get_ylim()[1] - y)
+    reach = {"left": (-half, 0.0), "right": (half, 0.0), None: (0.0, -half)}[direction]
+    if arrow:
+        ax.annotate(
+            "",
+            xy=(x + reach[0], y + reach[1]),
+            xytext=(x - reach[0], y - reach[1]),
+            gid="live-load" if direction else "own-weight",
+            arrowprops={
+                "arrowstyle": "-|>,head_width=.35,head_length=.7",
+                "linewidth": 2.2,
+                "color": OUTLINE_COLOUR,
+                "shrinkA": 0,
+                "shrinkB": 0,
+            },
+        )
+    # In points from the arrow, which is short over low walls.
+    ax.annotate(
+        caption,
+        (x + abs(reach[0]) if arrow else x, y),
+        (10.0 if arrow else 0.0, 0.0),
+        textcoords="offset points",
+        size=8,
+        ha="left" if arrow else "center",
+        va="center",
+    )
+
+
+def _draw_scale(ax: Axes) -> None:
+    """Draw the colours beside the axes, in a bar of the same width for walls of any shape."""
+    ax.apply_aspect()
+    inches = ax.get_window_extent().transformed(ax.figure.dpi_scale_trans.inverted())
+    height = min(0.8 * inches.height, BAR_HEIGHT_IN) / inches.height
+    place = (1.0 + 0.1 / inches.width, 0.0, 0.13 / inches.width, height)
+    scale = ScalarMappable(Normalize(0, 1), COLOURS)
+    bar = ax.figure.colorbar(scale, cax=ax.inset_axes(place))
+    bar.set_label("displacement / largest", size=7)
+    bar.ax.tick_params(labelsize=7, length=2, width=0.5)
+    bar.outline.set_linewidth(0.5)

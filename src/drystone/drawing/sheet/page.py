@@ -1,0 +1,162 @@
+"""A page of paper that is drawn on in millimetres."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Arc, FancyArrowPatch, Polygon, Rectangle
+from numpy.typing import ArrayLike, NDArray
+
+from drystone.drawing.lettering import drawable, fitted
+from drystone.drawing.palette import GREY, OUTLINE_COLOUR
+
+MM_PER_INCH = 25.4
+PT_PER_MM = 72.0 / MM_PER_INCH
+
+A4_MM = (210.0, 297.0)
+EDGE_MM = 12.0
+"""Of paper that printers do not print on, and a hole punch."""
+
+PAGE_NUMBER_MM = 30.0
+"""Room for it at the right end of the foot."""
+
+SMALL_PT, PLAIN_PT, LARGE_PT = 7.0, 8.5, 12.0
+
+
+class Page:
+    """One sheet of A4.
+
+    Parameters
+    ----------
+    landscape : bool
+        Lying.
+
+    Attributes
+    ----------
+    width, height : float
+        In mm.
+    figure : Figure
+        What is saved.
+    ax : Axes
+        The whole sheet, in mm from its lower left corner.
+    """
+
+    def __init__(self, *, landscape: bool = False) -> None:
+        self.width, self.height = A4_MM[::-1] if landscape else A4_MM
+        inches = (self.width / MM_PER_INCH, self.height / MM_PER_INCH)
+        self.figure = Figure(figsize=inches)
+        self.ax = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        self.ax.set_axis_off()
+        self.ax.set_xlim(0.0, self.width)
+        self.ax.set_ylim(0.0, self.height)
+        self.ax.set_autoscale_on(False)
+
+    @property
+    def right(self) -> float:
+        """Right end of what is printed."""
+        return self.width - EDGE_MM
+
+    @property
+    def top(self) -> float:
+        """Upper end of what is printed."""
+        return self.height - EDGE_MM
+
+    def write(self, x: float, y: float, text: str, size: float = PLAIN_PT, **style: Any) -> None:
+        """Write a line of text, its left end on the base line unless `ha` and `va` differ.
+
+        With `room`, in mm, what is wider is cut.
+        """
+        text, room = drawable(text), style.pop("room", None)
+        if room is not None:
+            text = fitted(text, size, room * PT_PER_MM, bold=style.get("weight") == "bold")
+        chosen = {"ha": "left", "va": "baseline", "color": OUTLINE_COLOUR, **style}
+        # What users call things is text, also with dollar signs in it.
+        self.ax.text(x, y, text, size=size, parse_math=False, **chosen)
+
+    def line(self, points: ArrayLike, **style: Any) -> None:
+        """Draw a line through points, (n, 2)."""
+        chosen = {"color": OUTLINE_COLOUR, "linewidth": 0.5, "solid_capstyle": "butt", **style}
+        self.ax.plot(*np.asarray(points, float).T, **chosen)
+
+    def polygon(self, points: ArrayLike, **style: Any) -> None:
+        """Draw a closed outline, (n, 2)."""
+        chosen = {
+            "facecolor": "none", "edgecolor": OUTLINE_COLOUR, "linewidth": 0.6,
+            "joinstyle": "round", **style,
+        }  # fmt: skip
+        self.ax.add_patch(Polygon(np.asarray(points, float), closed=True, **chosen))
+
+    def box(self, x: float, y: float, width: float, height: float, **style: Any) -> None:
+        """Draw a rectangle from its lower left corner."""
+        chosen = {"fill": False, "edgecolor": OUTLINE_COLOUR, "linewidth": 0.6, **style}
+        self.ax.add_patch(Rectangle((x, y), width, height, **chosen))
+
+    def arrow(self, start: Sequence[float], end: Sequence[float], **style: Any) -> None:
+        """Draw a line with a head at its end, or of another `arrowstyle`."""
+        chosen = {
+            "arrowstyle": "-|>,head_width=1.3,head_length=2.6", "color": OUTLINE_COLOUR,
+            "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 1.0, **style,
+        }  # fmt: skip
+        self.ax.add_patch(FancyArrowPatch((start[0], start[1]), (end[0], end[1]), **chosen))
+
+    def turn_arrow(
+        self, centre: Sequence[float], radius: float, angle_deg: float, colour: str
+    ) -> None:
+        """Draw an arc from straight up by an angle, counter-clockwise, with a head at its end."""
+        first, last = sorted((90.0, 90.0 + angle_deg))
+        self.ax.add_patch(
+            Arc((centre[0], centre[1]), 2 * radius, 2 * radius, theta1=first, theta2=last,
+                color=colour, linewidth=1.1, zorder=6)
+        )  # fmt: skip
+        end = np.radians(90.0 + angle_deg)
+        out = np.array([np.cos(end), np.sin(end)])
+        along = np.sign(angle_deg) * np.array([-out[1], out[0]])
+        tip = np.asarray(centre, float) + radius * out
+        # As long as an arc has room for.
+        size = min(1.8, 0.6 * radius * abs(np.radians(angle_deg)))
+        head = [tip + 0.5 * size * along, tip - 0.5 * size * along + 0.4 * size * out,
+                tip - 0.5 * size * along - 0.4 * size * out]  # fmt: skip
+        self.polygon(head, facecolor=colour, edgecolor="none", zorder=6)
+
+    def picture(
+        self, image: NDArray[np.uint8], x: float, y: float, width: float, height: float
+    ) -> None:
+        """Place an image, (h, w, 3), from its lower left corner."""
+        self.ax.imshow(
+            image, extent=(x, x + width, y, y + height), aspect="auto", interpolation="none",
+            zorder=1,
+        )  # fmt: skip
+        self.ax.set_xlim(0.0, self.width)
+        self.ax.set_ylim(0.0, self.height)
+
+    def dimension(
+        self, start: Sequence[float], end: Sequence[float], text: str, *, upright: bool = False
+    ) -> None:
+        """Draw a dimension line between two points with its length in words on it."""
+        style = "<|-|>,head_width=1.1,head_length=2.4"
+        self.arrow(start, end, arrowstyle=style, linewidth=0.45)
+        for x, y in (start, end):
+            ends = [(x - 1.5, y), (x + 1.5, y)] if upright else [(x, y - 1.5), (x, y + 1.5)]
+            self.line(ends, linewidth=0.45)
+        x, y = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
+        self.write(
+            x, y, text, SMALL_PT, ha="center", va="center", rotation=90 if upright else 0,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.2}, zorder=5,
+        )  # fmt: skip
+
+    def tick_box(self, x: float, y: float, size: float = 4.5) -> None:
+        """Draw an empty box for a tick."""
+        self.box(x, y, size, size, linewidth=0.7)
+
+    def foot(self, left: str, number: int, count: int) -> None:
+        """Write what the page belongs to and its number."""
+        self.line([(EDGE_MM, EDGE_MM - 1.5), (self.right, EDGE_MM - 1.5)], color=GREY)
+        self.write(
+            EDGE_MM, EDGE_MM - 5.0, left, SMALL_PT, color="#555555",
+            room=self.right - EDGE_MM - PAGE_NUMBER_MM,
+        )  # fmt: skip
+        self.write(
+            self.right, EDGE_MM - 5.0, f"page {number} of {count}", SMALL_PT, ha="right",
+            color="#555555",
+        )  # fmt: skip

@@ -1,0 +1,88 @@
+"""Pieces of the photograph of the stones, for a build sheet."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from drystone.drawing.assembly.parts import Assembly
+from drystone.io.photo_picture import read_photo_picture
+
+CROP_PX = 240
+"""Longer side of a piece: 200 px an inch on paper, and small files."""
+
+
+@dataclass(frozen=True, eq=False)
+class Photo:
+    """A photograph that shows all of the source image.
+
+    Parameters
+    ----------
+    image : Image
+        RGB.
+    width_px, height_px : float
+        Of the source image that it shows.
+    """
+
+    image: Image.Image
+    width_px: float
+    height_px: float
+
+    def crop(self, box: tuple[float, float, float, float]) -> NDArray[np.uint8]:
+        """Return a piece as an (h, w, 3) array.
+
+        Parameters
+        ----------
+        box : (x0, y0, x1, y1)
+            In the source image, px, y up; what lies outside the photograph is white.
+        """
+        across, down = self.image.width / self.width_px, self.image.height / self.height_px
+        x0, y0, x1, y1 = box
+        left, right = x0 * across, x1 * across
+        top, bottom = (self.height_px - y1) * down, (self.height_px - y0) * down
+        shrink = min(1.0, CROP_PX / max(right - left, bottom - top))
+        size = max(1, round((right - left) * shrink)), max(1, round((bottom - top) * shrink))
+        # An affine map, so that the piece shows the very box and not the px that it cuts.
+        step_x, step_y = (right - left) / size[0], (bottom - top) / size[1]
+        source = self.image
+        if shrink < 1.0:
+            source, left, top, step_x, step_y = _reduced(source, left, top, step_x, step_y)
+        piece = source.transform(
+            size,
+            Image.Transform.AFFINE,
+            (step_x, 0.0, left, 0.0, step_y, top),
+            resample=Image.Resampling.BILINEAR,
+            fillcolor="white",
+        )
+        return np.asarray(piece)
+
+
+def read_photo(assembly: Assembly) -> Photo | None:
+    """Read the photograph of the stones; None when there is none.
+
+    Raises
+    ------
+    InputError
+        E189 when it cannot be read, or shows something of another shape than the source image.
+    """
+    if assembly.photo is None:
+        return None
+    width, height = (float(assembly.plan.source.get(f"{side}_px") or 0) for side in
+                     ("width", "height"))  # fmt: skip
+    image = read_photo_picture(assembly.photo, (width, height))
+    return Photo(image, width, height)
+
+
+def _reduced(
+    image: Image.Image, left: float, top: float, step_x: float, step_y: float
+) -> tuple[Image.Image, float, float, float, float]:
+    """Return a photograph of about the px that are wanted: sampling it would leave px out."""
+    factor = max(1, int(min(step_x, step_y)))
+    if factor == 1:
+        return image, left, top, step_x, step_y
+    x0, y0 = max(0, int(left) - factor), max(0, int(top) - factor)
+    x1 = min(image.width, int(left + step_x * CROP_PX) + 2 * factor)
+    y1 = min(image.height, int(top + step_y * CROP_PX) + 2 * factor)
+    small = image.crop((x0, y0, x1, y1)).reduce(factor)
+    return small, (left - x0) / factor, (top - y0) / factor, step_x / factor, step_y / factor

@@ -1,0 +1,163 @@
+"""The first page of a build sheet: the wall to scale, and the title block."""
+
+import hashlib
+import json
+from dataclasses import dataclass
+
+from drystone.drawing.assembly.parts import Assembly
+from drystone.drawing.export.png import draw_parts
+from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.palette import GREY, WEDGE_COLOUR
+from drystone.drawing.sheet.page import EDGE_MM, LARGE_PT, PLAIN_PT, SMALL_PT, Page
+from drystone.io.plan_json import plan_to_json
+
+USUAL_SCALES = (1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 250.0, 500.0, 1000.0)
+
+DRAWING_MM = (297.0 - 2 * EDGE_MM - 18.0, 110.0)
+"""Room for the wall itself on the first page; beside it are dimension lines, above it words."""
+
+SCALE_MM = 60.0
+"""Room for the scale at the right end of the head."""
+
+BLOCK_MM = 33.0
+"""Height of the title block."""
+
+NOT_TO_SCALE = "NOT TO SCALE"
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How large the wall is on paper.
+
+    Parameters
+    ----------
+    denominator : float or None
+        1 to this; None when nobody knows how large the wall is.
+    mm_per_unit : float
+        Mm on paper for a unit of the assembly.
+    """
+
+    denominator: float | None
+    mm_per_unit: float
+
+    @property
+    def words(self) -> str:
+        """As it stands in a title block."""
+        return NOT_TO_SCALE if self.denominator is None else f"1:{self.denominator:g}"
+
+
+def paper_scale(assembly: Assembly, wished: float) -> Scale:
+    """Return the scale of the drawing.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        The wall.
+    wished : float
+        1 to this when it fits, or else the next usual scale.
+    """
+    width, height = assembly.size
+    if assembly.unit != "m":
+        return Scale(None, min(DRAWING_MM[0] / width, DRAWING_MM[1] / height))
+    least = 1000.0 * max(width / DRAWING_MM[0], height / DRAWING_MM[1])
+    larger = [scale for scale in USUAL_SCALES if scale > wished]
+    chosen = next((scale for scale in (wished, *larger) if scale >= least * (1 - 1e-9)), least)
+    return Scale(chosen, 1000.0 / chosen)
+
+
+def plan_sha256(assembly: Assembly) -> str:
+    """Return the SHA-256 of the plan.json that :func:`drystone.io.plan_json.write_plan` writes."""
+    text = json.dumps(plan_to_json(assembly.plan), ensure_ascii=False, allow_nan=False, indent=1)
+    return hashlib.sha256(f"{text}\n".encode()).hexdigest()
+
+
+def first_page(assembly: Assembly, settings: ExportSettings, title: str) -> Page:
+    """Draw the wall with the numbers of the steps, its dimensions and the title block."""
+    page = Page(landscape=True)
+    scale = paper_scale(assembly, settings.paper_scale)
+    width, height = (side * scale.mm_per_unit for side in assembly.size)
+    left = (page.width - width) / 2 + 5.0
+    bottom = EDGE_MM + BLOCK_MM + 24.0 + (DRAWING_MM[1] - height) / 2
+    page.write(EDGE_MM, page.top - 6.0, title, 18.0, weight="bold",
+               room=page.right - EDGE_MM - SCALE_MM)  # fmt: skip
+    page.write(
+        EDGE_MM, page.top - 12.5,
+        "Numbers are steps, in the order of building: set each stone, then push in its wedges.",
+        PLAIN_PT,
+    )  # fmt: skip
+    loud = scale.denominator is None
+    page.write(page.right, page.top - 6.0, scale.words, 14.0, ha="right", weight="bold",
+               color=WEDGE_COLOUR if loud else "black")  # fmt: skip
+    _earth(page, left, bottom, width)
+    page.box(left, bottom, width, height, edgecolor=GREY, linestyle=(0, (5, 4)), gid="frame")
+    draw_parts(page.ax, assembly, scale.mm_per_unit, (left, bottom))
+    _dimensions(page, assembly, (left, bottom), (width, height))
+    _title_block(page, assembly, settings, scale)
+    return page
+
+
+def _earth(page: Page, left: float, bottom: float, width: float) -> None:
+    """Draw the ground: a line, and strokes below it."""
+    ends = max(EDGE_MM, left - 10.0), min(page.right, left + width + 10.0)
+    page.line([(ends[0], bottom), (ends[1], bottom)], linewidth=1.2, zorder=4)
+    x = ends[0] + 3.0
+    while x <= ends[1]:
+        page.line([(x, bottom), (x - 2.5, bottom - 2.5)], color=GREY, linewidth=0.5)
+        x += 3.0
+
+
+def _dimensions(
+    page: Page, assembly: Assembly, corner: tuple[float, float], size: tuple[float, float]
+) -> None:
+    (left, bottom), (width, height) = corner, size
+    texts = [
+        f"{side:.2f} m" if assembly.unit == "m" else f"{side:.0f} px" for side in assembly.size
+    ]
+    page.dimension((left, bottom - 8.0), (left + width, bottom - 8.0), texts[0])
+    page.dimension((left - 8.0, bottom), (left - 8.0, bottom + height), texts[1], upright=True)
+
+
+def _title_block(page: Page, assembly: Assembly, settings: ExportSettings, scale: Scale) -> None:
+    plan = assembly.plan
+    stones, wedges = len(plan.stone_steps), len(plan.wedge_steps)
+    size = " \N{MULTIPLICATION SIGN} ".join(
+        f"{side:.2f}" if assembly.unit == "m" else f"{side:.0f}" for side in assembly.size
+    )
+    source = str(plan.source.get("path") or "not from a file")
+    on_paper = scale.words if scale.denominator is None else f"{scale.words} on A4"
+    rows = [
+        [("Title", settings.title or source), ("Stones", source),
+         ("Date", ""), ("Built by", "")],
+        [("Wall", f"{size} {assembly.unit}"), ("Scale", on_paper),
+         ("Stones set", f"{stones}, and {len(plan.unused)} left over"), ("Wedges", str(wedges))],
+        [("Seed", str(plan.seed)), ("Method", plan.method),
+         ("Version", f"drystone {plan.version}"), ("Plan SHA-256", plan_sha256(assembly)[:16])],
+    ]  # fmt: skip
+    wide = (page.right - EDGE_MM) / 4
+    high = BLOCK_MM / len(rows)
+    for row, cells in enumerate(rows):
+        y = EDGE_MM + BLOCK_MM - (row + 1) * high + 2.0
+        for column, (name, value) in enumerate(cells):
+            x = EDGE_MM + column * wide
+            page.box(x, y, wide, high, linewidth=0.5)
+            page.write(x + 1.5, y + high - 3.4, name, 6.5, color="#555555")
+            page.write(x + 1.5, y + 2.2, value, PLAIN_PT + 1, room=wide - 3.0)
+    _ruler(page, EDGE_MM + BLOCK_MM + 7.0, scale)
+
+
+def _ruler(page: Page, y: float, scale: Scale) -> None:
+    """Draw 100 mm, to find out whether a printer has made the page smaller."""
+    x = EDGE_MM
+    page.line([(x, y), (x + 100.0, y)], linewidth=0.8, gid="ruler")
+    for step in range(11):
+        tick = 2.5 if step % 5 == 0 else 1.4
+        page.line([(x + 10.0 * step, y), (x + 10.0 * step, y + tick)], linewidth=0.5)
+    said = "100 mm on paper: print at 100 %"
+    if scale.denominator is not None:
+        said += f"; {scale.denominator / 10:g} m of wall"
+    page.write(x + 102.0, y - 0.5, said, SMALL_PT)
+    if scale.denominator is None:
+        page.write(
+            page.right, y - 0.5, "The size of a px is not known: all lengths are in px.",
+            LARGE_PT - 2, ha="right", color=WEDGE_COLOUR,
+        )  # fmt: skip

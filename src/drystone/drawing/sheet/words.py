@@ -1,0 +1,201 @@
+"""What a build sheet says of a stone: how to turn it, where it goes, what it rests on."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.kernels.polygons import Points
+from drystone.model.plan import Point
+from drystone.statics.model import GROUND
+
+AS_IT_LIES_DEG = 2.5
+"""Nobody turns a stone by less."""
+
+STEEP = 0.5
+"""Share of a normal that is upright: what touches with more of it is below or above."""
+
+CORNER = 0.03
+"""Share of its width that a part has over another one when no more than corners of them meet."""
+
+
+def turn_words(angle_deg: float) -> str:
+    """Say how to turn a stone.
+
+    Parameters
+    ----------
+    angle_deg : float
+        Counter-clockwise, as the stone is seen; any multiple of a turn more or less.
+
+    Examples
+    --------
+    >>> turn_words(97.2), turn_words(-45.0), turn_words(359.5), turn_words(181.0)
+    ('turn left 97°', 'turn right 45°', 'as it lies', 'half round')
+    """
+    angle = shortest_turn(angle_deg)
+    if abs(angle) < AS_IT_LIES_DEG:
+        return "as it lies"
+    if abs(angle) > 180.0 - AS_IT_LIES_DEG:
+        return "half round"
+    return f"turn {'left' if angle > 0 else 'right'} {abs(angle):.0f}\N{DEGREE SIGN}"
+
+
+def shortest_turn(angle_deg: float) -> float:
+    """Return an angle in (-180, 180].
+
+    Examples
+    --------
+    >>> shortest_turn(270.0), shortest_turn(-180.0)
+    (-90.0, 180.0)
+    """
+    return 180.0 - (180.0 - angle_deg) % 360.0
+
+
+def length_words(assembly: Assembly, *lengths: float) -> str:
+    """Write lengths with their unit: cm, or px when there is no scale.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> length_words(SimpleNamespace(unit="m"), 0.1234, 1.0)
+    '12.3, 100.0 cm'
+    """
+    if assembly.unit == "m":
+        return ", ".join(f"{100 * length:.1f}" for length in lengths) + " cm"
+    return ", ".join(f"{length:.0f}" for length in lengths) + " px"
+
+
+def size_words(assembly: Assembly, width: float, height: float) -> str:
+    """Write the size of a thing: whole mm for what is cut, or px."""
+    if assembly.unit == "m":
+        return f"{1000 * width:.0f} \N{MULTIPLICATION SIGN} {1000 * height:.0f} mm"
+    return f"{width:.0f} \N{MULTIPLICATION SIGN} {height:.0f} px"
+
+
+def lowest_corner(part: Part) -> Point:
+    """Return the lowest corner of a part in the wall, the left one of several."""
+    corners = part.corners
+    low = corners[:, 1] <= corners[:, 1].min() + 0.02 * np.ptp(corners[:, 1])
+    x, y = min(corners[low].tolist())
+    return x, y
+
+
+@dataclass(frozen=True)
+class Beside:
+    """The parts that a part touches, among those that stand already; by their steps.
+
+    Parameters
+    ----------
+    on, left_of, right_of, under : tuple of int
+        Steps, ascending.  Wedges are among those that it is on, its own are not: they come after
+        it.
+    ground : bool
+        Whether it stands on the ground.
+    """
+
+    on: tuple[int, ...]
+    left_of: tuple[int, ...]
+    right_of: tuple[int, ...]
+    under: tuple[int, ...]
+    ground: bool
+
+
+def beside(assembly: Assembly, part: Part) -> Beside:
+    """Return what a part touches when it is placed.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        The wall.
+    part : Part
+        A stone or a wedge of it.
+    """
+    sums: dict[int, Points] = {}
+    for interface in assembly.model.interfaces:
+        if part.id not in (interface.block, interface.other):
+            continue
+        towards = 1.0 if interface.block == part.id else -1.0
+        other = interface.other if towards > 0 else interface.block
+        # Contacts at a point have no length, and count a little.
+        share = interface.length + 1e-6 * assembly.size[0]
+        push = towards * share * np.array(interface.normal)
+        sums[other] = sums.get(other, np.zeros(2)) + push
+    found: dict[str, list[int]] = {"on": [], "left_of": [], "right_of": [], "under": []}
+    for other, push in sums.items():
+        if other == GROUND:
+            continue
+        neighbour = assembly.part(other)
+        side = _side(push, upright=_shared_width(part, neighbour) > CORNER)
+        # Nobody sets a stone by a wedge beside it.
+        if neighbour.step < part.step and (side == "on" or neighbour.kind == "stone"):
+            found[side].append(neighbour.step)
+    ordered = {side: tuple(sorted(steps)) for side, steps in found.items()}
+    return Beside(**ordered, ground=GROUND in sums)
+
+
+def beside_words(assembly: Assembly, part: Part) -> str:
+    """Say what a stone rests on and stands beside, by the numbers of the steps.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        The wall.
+    part : Part
+        A stone or wedge.
+
+    Returns
+    -------
+    str
+        For example ``"on 3 and 5, right of 7"``.
+    """
+    around = beside(assembly, part)
+    words = []
+    wedges = {wedge.step for wedge in assembly.wedges}
+    on = _list(tuple(f"wedge {step}" if step in wedges else str(step) for step in around.on))
+    if around.ground:
+        words.append("on the ground" + (f" and on {on}" if on else ""))
+    elif on:
+        words.append(f"on {on}")
+    for name, steps in (("right of", around.right_of), ("left of", around.left_of),
+                        ("under", around.under)):  # fmt: skip
+        if steps:
+            words.append(f"{name} {_list(tuple(map(str, steps)))}")
+    return ", ".join(words)
+
+
+def wedge_words(assembly: Assembly, wedge: Part) -> str:
+    """Say where a wedge goes, and how large it is."""
+    size = np.ptp(wedge.corners, axis=0)
+    return (
+        f"wedge {wedge.step}: {size_words(assembly, *size.tolist())}, "
+        f"under its {wedge_place(assembly, wedge)}"
+    )
+
+
+def wedge_place(assembly: Assembly, wedge: Part) -> str:
+    """Say under which part of its stone a wedge is: "left end", "middle" or "right end"."""
+    stone = assembly.part(wedge.under or 0).corners[:, 0]
+    share = (wedge.centroid[0] - stone.min()) / float(np.ptp(stone))
+    if share < 1 / 3:
+        return "left end"
+    return "middle" if share <= 2 / 3 else "right end"
+
+
+def _shared_width(part: Part, other: Part) -> float:
+    """Return how much of the narrower of two parts is above or below the other one, 0 to 1."""
+    (a, b), (c, d) = ((one.corners[:, 0].min(), one.corners[:, 0].max()) for one in (part, other))
+    return float((min(b, d) - max(a, c)) / min(b - a, d - c))
+
+
+def _side(push: Points, *, upright: bool) -> str:
+    x, y = push / max(float(np.hypot(*push)), 1e-300)
+    if upright and y > STEEP:
+        return "on"
+    if upright and y < -STEEP:
+        return "under"
+    return "right_of" if x > 0 else "left_of"
+
+
+def _list(names: tuple[str, ...]) -> str:
+    *first, last = names or ("",)
+    return f"{', '.join(first)} and {last}" if first else last

@@ -1,0 +1,145 @@
+"""Parts of plans against their pixels, and against the formula of the plan's format."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+import shapely
+
+from drystone.drawing.assembly.parts import Part
+from drystone.errors import UsageError
+from drystone.model.plan import StoneStep
+from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly, source_stones
+
+
+@pytest.mark.parametrize("name", METRIC)
+def test_a_point_of_the_photo_lands_where_the_formula_of_the_plan_says(name: str) -> None:
+    wall = assembly(name)
+    unit = PX_PER_M if wall.plan.length_unit == "px" else 1.0
+    rng = np.random.default_rng(0)
+    for part in wall.stones:
+        step = part.plan_step
+        pick, place = wall.pick_pose(part), wall.place_pose(part)
+        assert isinstance(step, StoneStep)
+        assert pick is not None
+        source = np.array(step.source_centroid) + rng.uniform(-9, 9, (20, 2))
+        height_m = rng.uniform(0, THICKNESS_M, 20)
+        in_photo = np.column_stack([source / PX_PER_M, height_m, np.ones(20)])
+        in_wall = place.matrix @ np.linalg.inv(pick.matrix) @ in_photo.T
+        angle = np.radians(step.angle_deg)
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        expected = (source - step.source_centroid) @ turn.T / PX_PER_M
+        expected += np.array(step.centroid) / unit
+        assert in_wall[[0, 2]].T == pytest.approx(expected, abs=1e-9)
+        # What the camera sees is what is seen in the front, y = 0.
+        assert in_wall[1] == pytest.approx(THICKNESS_M - height_m, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", METRIC)
+def test_pixels_of_a_stone_land_inside_its_outline(name: str) -> None:
+    wall, stones = assembly(name), source_stones()
+    # The outline of a plan on pixels is that of pixels of 2 source px.
+    near_m = (0.7 if name.startswith("exact") else 2.5) / PX_PER_M
+    for part in wall.stones:
+        stone = stones.by_id(part.id)
+        pick = wall.pick_pose(part)
+        assert pick is not None
+        rows, cols = np.nonzero(stone.mask)
+        x = stone.left_px + cols + 0.5
+        y = stone.bottom_px + stone.mask.shape[0] - rows - 0.5
+        photo = np.column_stack([x / PX_PER_M, y / PX_PER_M, 0 * x, 0 * x + 1])
+        moved = wall.place_pose(part).matrix @ np.linalg.inv(pick.matrix) @ photo.T
+        outline = shapely.Polygon(part.corners)
+        points = shapely.points(moved[0], moved[2])
+        assert shapely.distance(outline, points).max() < near_m
+        assert outline.area * PX_PER_M**2 == pytest.approx(len(x), rel=0.06)
+
+
+@pytest.mark.parametrize("name", METRIC)
+def test_outlines_turned_back_lie_in_the_source_image(name: str) -> None:
+    wall = assembly(name)
+    for part in wall.stones:
+        step = part.plan_step
+        assert isinstance(step, StoneStep)
+        pick = wall.pick_pose(part)
+        assert pick is not None
+        own = np.column_stack([part.own_corners[:, 0], 0 * part.own_corners[:, 0],
+                               part.own_corners[:, 1], 1 + 0 * part.own_corners[:, 0]])  # fmt: skip
+        photo = (pick.matrix @ own.T)[:2].T * PX_PER_M
+        assert photo == pytest.approx(wall.source_corners(part), abs=1e-9)
+        again = wall.place_pose(part).matrix @ own.T
+        assert again[[0, 2]].T == pytest.approx(part.corners, abs=1e-12)
+
+
+def test_a_plan_in_px_and_one_in_metres_give_the_same_parts() -> None:
+    for name in ("exact", "raster"):
+        for one, other in zip(assembly(name).parts, assembly(f"{name}-m").parts, strict=True):
+            assert one.name == other.name
+            assert one.corners == pytest.approx(other.corners, abs=1e-9)
+            assert one.centroid == pytest.approx(other.centroid, abs=1e-9)
+            assert assembly(name).mass_kg(one) == pytest.approx(
+                assembly(f"{name}-m").mass_kg(other), rel=1e-9
+            )
+
+
+def test_the_grip_is_the_least_width_of_any_direction() -> None:
+    for part in assembly("exact").parts:
+        width, angle_deg = part.grip
+        angles = np.radians(np.append(np.arange(0.0, 180.0, 0.25), angle_deg))
+        across = np.stack([np.cos(angles), np.sin(angles)])
+        widths = np.ptp(part.own_corners @ across, axis=0)
+        assert widths[-1] == pytest.approx(width)
+        assert widths.min() >= width - 1e-12
+        assert 0.0 <= angle_deg < 180.0
+
+
+def test_neighbours_are_mutual_and_near() -> None:
+    wall = assembly("exact")
+    for part in wall.parts:
+        for other_id in wall.neighbours(part.id):
+            if other_id:
+                assert part.id in wall.neighbours(other_id)
+                gap = shapely.distance(*(shapely.Polygon(p.corners)
+                                         for p in (part, wall.part(other_id))))  # fmt: skip
+                assert gap * PX_PER_M < 0.11
+            else:
+                assert part.corners[:, 1].min() * PX_PER_M < 0.11
+
+
+def test_masses_are_area_times_thickness_times_density() -> None:
+    wall = assembly("exact")
+    for part in wall.parts:
+        area = shapely.Polygon(part.corners).area
+        assert wall.mass_kg(part) == pytest.approx(area * THICKNESS_M * 2450.0, rel=1e-12)
+
+
+def test_wedges_are_in_no_photo() -> None:
+    wall = assembly("exact")
+    (wedge,) = wall.wedges
+    assert wall.pick_pose(wedge) is None
+    assert (wedge.kind, wedge.name, wedge.angle_deg) == ("wedge", "wedge_010", 0.0)
+    assert wedge.under == 8
+    with pytest.raises(TypeError, match="wedge_010 is in no image"):
+        wall.source_corners(wedge)
+
+
+def test_without_a_scale_there_is_no_pose_and_no_mass() -> None:
+    wall = assembly("exact", None)
+    part = wall.parts[0]
+    assert wall.unit == "px"
+    assert wall.px_per_unit == 1.0
+    for ask in (wall.place_pose, wall.pick_pose, wall.mass_kg):
+        with pytest.raises(UsageError) as caught:
+            ask(part)
+        assert caught.value.code == "E131"
+        for way in ("--px-per-m", "--ruler", "markers"):
+            assert way in caught.value.cure
+
+
+def test_a_part_is_frozen() -> None:
+    part = assembly("exact").parts[0]
+    assert isinstance(part, Part)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        part.centroid = (0.0, 0.0)  # type: ignore[misc]
+    with pytest.raises(ValueError, match="read-only"):
+        part.corners[0, 0] = 1.0

@@ -1,0 +1,149 @@
+"""Plans read with the files beside them."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+from drystone.drawing.assembly.read import outer_loop, read_assembly, scaled
+from drystone.drawing.outlines import label_regions
+from drystone.errors import DrystoneError
+from drystone.statics.limit import lateral_resistance
+from tests.drawing.export.robot_plans import PX_PER_M, assembly, write_plan_folder
+
+
+def refused(code: str, path: Path, **options: float) -> DrystoneError:
+    with pytest.raises(DrystoneError) as caught:
+        read_assembly(path, **options)
+    assert caught.value.code == code
+    return caught.value
+
+
+def test_folder_and_file_are_the_same_plan(tmp_path: Path) -> None:
+    write_plan_folder("exact", tmp_path)
+    one, other = read_assembly(tmp_path), read_assembly(tmp_path / "plan.json")
+    assert one.plan == other.plan
+    assert [part.name for part in one.parts] == [part.name for part in other.parts]
+    assert one.unit == "px"
+    assert one.size == (110.0, 40.0)
+
+
+def test_areas_of_outlines_are_those_of_the_blocks() -> None:
+    for name in ("exact", "exact-m", "raster", "raster-m"):
+        wall = assembly(name)
+        areas = {block.id: block.area for block in wall.model.blocks}
+        for part in wall.parts:
+            polygon = shapely.Polygon(part.corners)
+            assert polygon.is_valid
+            assert polygon.exterior.is_ccw
+            assert polygon.area == pytest.approx(part.area, rel=1e-12)
+            assert polygon.area == pytest.approx(areas[part.id], rel=1e-9)
+            x, y = polygon.centroid.coords[0]
+            near_m = 1e-9 if name.startswith("exact") else 1.0 / PX_PER_M
+            assert part.centroid == pytest.approx((x, y), abs=near_m)
+
+
+def test_a_scale_changes_no_load_multiplier() -> None:
+    wall = assembly("exact", None)
+    other = lateral_resistance(scaled(wall.model, 1 / PX_PER_M))
+    assert other.left.alpha == pytest.approx(wall.resistance.left.alpha, abs=1e-8)
+    assert wall.resistance.left.alpha == pytest.approx(wall.plan.metrics.alpha_left, abs=1e-6)
+
+
+def test_one_scale_only(tmp_path: Path) -> None:
+    write_plan_folder("exact-m", tmp_path)
+    assert read_assembly(tmp_path, px_per_m=PX_PER_M).px_per_m == PX_PER_M
+    assert "137 px a metre, not 200" in refused("E131", tmp_path, px_per_m=200.0).what
+
+
+def test_a_thickness_needs_a_scale(tmp_path: Path) -> None:
+    write_plan_folder("raster", tmp_path)
+    refused("E131", tmp_path, thickness_m=0.3)
+    assert read_assembly(tmp_path, thickness_m=0.3, px_per_m=100.0).thickness == 0.3
+
+
+def test_files_must_be_there(tmp_path: Path) -> None:
+    write_plan_folder("exact", tmp_path)
+    (tmp_path / "blocks.json").unlink()
+    refused("E133", tmp_path)
+
+
+def renumbered(steps: list[dict[str, Any]]) -> None:
+    for number, step in enumerate(steps, 1):
+        step["step"] = number
+
+
+def twice(steps: list[dict[str, Any]]) -> None:
+    steps.append(dict(steps[-1]))
+    renumbered(steps)
+
+
+def without_its_stone(steps: list[dict[str, Any]]) -> None:
+    next(step for step in steps if step["kind"] == "wedge")["under"] = 9999
+
+
+def backwards(steps: list[dict[str, Any]]) -> None:
+    steps.reverse()
+
+
+def from_two(steps: list[dict[str, Any]]) -> None:
+    for step in steps:
+        step["step"] += 1
+
+
+@pytest.mark.parametrize(
+    ("name", "tamper", "code", "said"),
+    [
+        ("exact", twice, "E213", "was placed before"),
+        ("exact", without_its_stone, "E214", "does not follow stone 9999"),
+        ("raster", backwards, "E214", "this is step 1 of the plan"),
+        ("raster", from_two, "E214", "this is step 1 of the plan"),
+    ],
+)
+def test_steps_that_nobody_can_build_by_are_refused(
+    name: str, tamper: Callable[[Any], None], code: str, said: str, tmp_path: Path
+) -> None:
+    path = write_plan_folder(name, tmp_path) / "plan.json"
+    plan = json.loads(path.read_text("utf-8"))
+    tamper(plan["steps"])
+    path.write_text(json.dumps(plan), "utf-8")
+    error = refused(code, tmp_path)
+    assert said in error.what
+    assert "`drystone check`" in error.cure
+
+
+def test_the_usual_thickness_is_the_side_of_the_median_stone(tmp_path: Path) -> None:
+    write_plan_folder("exact", tmp_path)
+    wall = read_assembly(tmp_path)
+    sides = sorted(shapely.Polygon(part.corners).area ** 0.5 for part in wall.stones)
+    middle = len(sides) // 2
+    assert len(sides) % 2 == 0
+    assert wall.thickness == pytest.approx((sides[middle - 1] + sides[middle]) / 2)
+
+
+def test_a_pit_that_meets_the_outside_at_a_corner_is_filled() -> None:
+    labels = np.zeros((8, 9), np.uint32)
+    labels[1:7, 1:8] = 3
+    labels[1, 1] = labels[2, 2] = 0
+    ((found, *_),) = (region.loops for region in label_regions(labels))
+    assert not shapely.Polygon(found).is_valid
+    polygon = shapely.Polygon(outer_loop([found]))
+    assert polygon.is_valid
+    assert polygon.exterior.is_ccw
+    assert polygon.area == 6 * 7 - 1
+
+
+def test_holes_and_lesser_pieces_are_left_out() -> None:
+    labels = np.zeros((9, 12), np.uint32)
+    labels[1:8, 1:8] = 3
+    labels[3:5, 3:5] = 0
+    labels[4, 9:11] = 3
+    (region,) = label_regions(labels)
+    assert len(region.loops) == 3
+    found = outer_loop(region.loops)
+    assert found.tolist() in [loop.tolist() for loop in region.loops]
+    assert shapely.Polygon(found).area == 49.0

@@ -1,0 +1,69 @@
+"""Assemblies of four small plans, for exports that are read back."""
+
+import tempfile
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+import drystone as ds
+from drystone.drawing.assembly.parts import Assembly
+from drystone.drawing.assembly.read import read_assembly
+from drystone.generate import RubbleSettings, rubble_stones
+from drystone.io.blocks_json import write_blocks
+from drystone.io.wall_image import write_wall_image
+from drystone.model.wedge_shape import WedgeSettings
+from drystone.search.plan_result import PlanResult
+
+PX_PER_M = 137.0
+
+METRIC = ("exact", "raster", "exact-m", "raster-m")
+"""All of them are in metres: two plans say so, two are told afterwards."""
+
+THICKNESS_M = 0.21
+
+
+@cache
+def assembly(name: str, px_per_m: float | None = PX_PER_M) -> Assembly:
+    """Return one of METRIC; without a scale those of plans in px are in px."""
+    told = None if name.endswith("-m") else px_per_m
+    metric = name.endswith("-m") or told is not None
+    with tempfile.TemporaryDirectory() as folder:
+        write_plan_folder(name, Path(folder))
+        return read_assembly(
+            folder, px_per_m=told, thickness_m=THICKNESS_M if metric else None, density_kg_m3=2450.0
+        )
+
+
+def write_plan_folder(name: str, folder: Path) -> Path:
+    """Write the plan of one of METRIC with the files beside it."""
+    made = _planned(name)
+    ds.write_plan(made.plan, folder / "plan.json")
+    write_blocks(made.wall, made.model, folder)
+    write_wall_image(made.wall.labels, folder)
+    return folder
+
+
+@cache
+def source_stones() -> ds.StoneSet:
+    """Return the stones of all of them."""
+    rubble = RubbleSettings(count=9, width_px=110.0, height_px=40.0, courses=2, tilt_deg=14.0)
+    return rubble_stones(rubble, np.random.default_rng(4))
+
+
+@cache
+def _planned(name: str) -> PlanResult:
+    settings = ds.method_settings("best" if name.startswith("exact") else "paper")
+    # So small that it decides nothing: in px and in metres the wedge is the same.
+    small = WedgeSettings(thickness=0.01, thickness_mm=1.5)
+    settings = replace(settings, search=replace(settings.search, budget=1), wedge=small)
+    return ds.plan_wall(
+        source_stones(),
+        110.0,
+        40.0,
+        seed=35 if name.startswith("exact") else 3,  # each with a wedge
+        settings=settings,
+        scale=1.0 if name.startswith("exact") else 0.5,
+        px_per_m=PX_PER_M if name.endswith("-m") else None,
+    )

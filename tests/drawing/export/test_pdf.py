@@ -1,0 +1,203 @@
+"""build-sheet.pdf, read back with PDFium: words, pages, and lengths measured on them."""
+
+import hashlib
+from dataclasses import replace
+
+import numpy as np
+import pypdfium2
+import pytest
+from PIL import Image
+
+from drystone.drawing.export import pdf
+from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.sheet.lists import drawn_factor, in_photo_order
+from drystone.drawing.sheet.rows import Rows
+from drystone.drawing.sheet.wall import DRAWING_MM, Scale, paper_scale
+from drystone.errors import InputError
+from drystone.io.plan_json import write_plan
+from tests.drawing.export.drawn_walls import assembly, photo_colour, photograph
+
+STONE = (0xCF, 0xC8, 0xBB)
+DPI = 150
+PX_PER_MM = DPI / 25.4
+
+
+@pytest.fixture(scope="module")
+def wall(tmp_path_factory):
+    """Twelve stones and a wedge, 1.2 m x .45 m, with a photograph."""
+    made = assembly(columns=4, rows=3)
+    return replace(made, photo=photograph(made, tmp_path_factory.mktemp("photo") / "photo.png"))
+
+
+@pytest.fixture(scope="module")
+def path(wall, tmp_path_factory):
+    settings = ExportSettings(title="Wall $4, $5")
+    (written,) = pdf.write(wall, tmp_path_factory.mktemp("pdf"), settings)
+    assert pdf.files(wall, settings) == (written.name,)
+    return written
+
+
+@pytest.fixture(scope="module")
+def words(path):
+    with pypdfium2.PdfDocument(path) as document:
+        return [page.get_textpage().get_text_range() for page in document]
+
+
+def rendered(path, page, dpi=DPI):
+    with pypdfium2.PdfDocument(path) as document:
+        return np.asarray(document[page].render(scale=dpi / 72).to_pil().convert("RGB"), np.int16)
+
+
+@pytest.fixture(scope="module")
+def first_page(path):
+    return rendered(path, 0)
+
+
+def box_of(image, colour, off=3):
+    rows, columns = np.nonzero(np.abs(image - np.array(colour)).max(axis=2) <= off)
+    return np.ptp(columns) + 1, np.ptp(rows) + 1
+
+
+def test_pages_are_a4_and_the_first_one_lies(path) -> None:
+    with pypdfium2.PdfDocument(path) as document:
+        sizes = [tuple(side * 25.4 / 72 for side in page.get_size()) for page in document]
+    assert sizes[0] == pytest.approx((297.0, 210.0), abs=0.1)
+    # Two pages of 9 lines, and one with the fetch list and the wedge.
+    assert sizes[1:] == [pytest.approx((210.0, 297.0), abs=0.1)] * 3
+
+
+def test_the_wall_is_drawn_one_to_ten(wall, first_page) -> None:
+    """The fill of the stones, which reach the frame, is as wide as the wall."""
+    width, height = box_of(first_page, STONE)
+    assert width / PX_PER_MM == pytest.approx(wall.size[0] * 1000 / 10, abs=0.5)
+    assert height / PX_PER_MM == pytest.approx(wall.size[1] * 1000 / 10, abs=0.5)
+
+
+def test_the_ruler_is_100_mm_long(first_page) -> None:
+    dark = (first_page.max(axis=2) < 140)[:, : first_page.shape[1] // 2]
+    # Not the lines of the title block and the ground, which are longer.
+    lengths = {int(run) for row in dark for run in runs(row)}
+    assert any(abs(length / PX_PER_MM - 100.0) < 0.5 for length in lengths)
+
+
+def runs(lit):
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], lit.astype(int), [0]])))
+    return edges[1::2] - edges[::2]
+
+
+@pytest.mark.parametrize(("columns", "wished", "drawn"), [
+    (4, 10.0, 10.0), (4, 5.0, 5.0), (9, 10.0, 20.0), (10, 8.0, 20.0), (20, 10.0, 25.0),
+    (30, 10.0, 50.0), (4, 33.0, 33.0),
+])  # fmt: skip
+def test_the_next_usual_scale_is_taken_where_the_wall_does_not_fit(columns, wished, drawn) -> None:
+    wall = assembly(columns=columns, rows=1)
+    scale = paper_scale(wall, wished)
+    assert scale.denominator == drawn
+    assert scale.mm_per_unit == pytest.approx(1000.0 / drawn)
+    assert wall.size[0] * scale.mm_per_unit <= DRAWING_MM[0]
+
+
+def test_every_stone_is_said_with_what_to_do(wall, words) -> None:
+    lines = "\n".join(words[1:3])
+    for part in wall.stones:
+        assert f"stone {part.id}" in lines
+    for said in ("turn left 97°", "turn right 45°", "half round", "as it lies",
+                 "wedge 2: 150 \N{MULTIPLICATION SIGN} 30 mm, under",
+                 "on the ground, right of 1"):  # fmt: skip
+        assert said in lines
+    # Centroid of the third stone: in the middle of a bevelled brick of 30 cm x 15 cm.
+    assert "75.0 cm" in lines
+    steps = {word for page in words[1:3] for word in page.split()}
+    assert {str(part.step) for part in wall.stones} <= steps
+
+
+def test_the_title_block_says_what_the_plan_is(wall, words, tmp_path) -> None:
+    write_plan(wall.plan, tmp_path / "plan.json")
+    sha256 = hashlib.sha256((tmp_path / "plan.json").read_bytes()).hexdigest()
+    for said in ("Wall $4, $5", "stones.png", "1.20 \N{MULTIPLICATION SIGN} 0.45 m", "1:10",
+                 "drystone 0.1.0", sha256[:16], "12, and 2 left over", "page 1 of 4"):  # fmt: skip
+        assert said in words[0]
+
+
+def test_the_fetch_list_is_sorted_as_the_stones_lie(wall, words) -> None:
+    # They lie in rows of four from the top left, in the order of their steps.
+    assert [part.step for part in in_photo_order(wall)] == [1, *range(3, 14)]
+    rows = [line.split() for line in words[3].splitlines()]
+    listed = [line[0] for line in rows if len(line) == 8 and line[-1] == "cm"]
+    assert listed == [str(step) for step in (1, *range(3, 14))]
+    assert "901, 902" in words[3]
+    assert "Wedges to cut" in words[3]
+
+
+def test_every_line_shows_the_photograph_of_its_stone(wall, path) -> None:
+    image = rendered(path, 1, 100)
+    column = image[:, round(31 / 25.4 * 100) : round(61 / 25.4 * 100)]
+    for part in list(wall.stones)[:9]:
+        seen = np.abs(column - np.array(photo_colour(part.step))).max(axis=2) <= 6
+        rows, _ = np.nonzero(seen)
+        assert rows.size > 800, part.name
+        place = list(wall.stones).index(part)
+        middle = (12 + 19 + 27 * (place + 0.5)) / 25.4 * 100
+        assert abs(np.median(rows) - middle) < 6
+
+
+def test_without_a_scale_nothing_is_to_scale(tmp_path) -> None:
+    wall = assembly(px_per_m=None)
+    (path,) = pdf.write(wall, tmp_path, ExportSettings())
+    with pypdfium2.PdfDocument(path) as document:
+        words = [page.get_textpage().get_text_range() for page in document]
+    assert "NOT TO SCALE" in words[0]
+    assert "180 px" in words[0]
+    assert "1:10" not in words[0]
+    assert "NOT TO SCALE" in words[-1]
+    assert not any(" cm" in page or " mm," in page for page in words[1:])
+
+
+def test_wedges_are_drawn_at_usual_scales(wall) -> None:
+    wedge = next(wall.wedges)
+    assert drawn_factor(wall, wedge) == 1 / 5  # 150 mm x 30 mm in 44 mm x 25 mm
+    small = next(assembly(px_per_m=3000.0).wedges)
+    assert drawn_factor(wall, small) == 1.0  # 10 mm x 2 mm
+
+
+def test_sixty_stones_take_seven_pages_of_lines() -> None:
+    assert Rows(assembly(columns=10, rows=6), None).per_page == 9
+
+
+def test_a_photograph_of_something_else_is_refused(wall, tmp_path) -> None:
+    other = tmp_path / "photo.png"
+    Image.new("RGB", (300, 200)).save(other)
+    with pytest.raises(InputError, match="something else") as caught:
+        pdf.write(replace(wall, photo=other), tmp_path, ExportSettings())
+    assert caught.value.code == "E189"
+    other.write_bytes(b"no picture")
+    with pytest.raises(InputError, match="cannot be read") as caught:
+        pdf.write(replace(wall, photo=other), tmp_path, ExportSettings())
+    assert caught.value.code == "E189"
+
+
+def test_equal_plans_give_equal_bytes(tmp_path) -> None:
+    wall = assembly(columns=2, rows=1)
+    first = pdf.write(wall, tmp_path, ExportSettings())[0].read_bytes()
+    assert pdf.write(wall, tmp_path, ExportSettings())[0].read_bytes() == first
+    assert b"CreationDate" not in first
+
+
+@pytest.mark.parametrize("px_per_m", [200.0, None])
+def test_no_words_of_the_first_page_lie_over_others_or_the_wall(px_per_m) -> None:
+    # As high as its frame may be, with a title that is much too long.
+    wall = assembly(columns=6, rows=5, px_per_m=px_per_m)
+    width, height = wall.size
+    scale = Scale(None, min(DRAWING_MM[0] / width, DRAWING_MM[1] / height))
+    settings = ExportSettings(title=300 * "W", paper_scale=1000.0 / scale.mm_per_unit)
+    page = pdf.sheet(wall, settings)[0]
+    frame = next(patch for patch in page.ax.patches if patch.get_gid() == "frame")
+    inside, paper = frame.get_window_extent(), page.ax.get_window_extent()
+    # Numbers of steps alone have a halo, and stand in the frame.
+    words = [text for text in page.ax.texts if text.get_text() and not text.get_path_effects()]
+    boxes = [text.get_window_extent() for text in words]
+    assert len(words) > 20
+    for text, box in zip(words, boxes, strict=True):
+        assert paper.x0 < box.x0 < box.x1 < paper.x1, text.get_text()
+        assert not box.overlaps(inside), text.get_text()
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])

@@ -1,0 +1,142 @@
+"""poses.json, read back with the JSON of the standard library and SciPy's rotations."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from scipy.spatial.transform import Rotation
+
+from drystone.drawing.export import poses
+from drystone.drawing.export.settings import ExportSettings
+from drystone.errors import UsageError
+from drystone.model.plan import StoneStep
+from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly
+
+SETTINGS = ExportSettings()
+
+
+def written(name: str, folder: Path) -> dict[str, Any]:
+    (path,) = poses.write(assembly(name), folder, SETTINGS)
+    assert path == folder / "poses.json"
+    read: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return read
+
+
+def xyz(values: dict[str, float]) -> list[float]:
+    assert list(values) == ["x", "y", "z"]
+    return list(values.values())
+
+
+@pytest.mark.parametrize("name", METRIC)
+def test_pick_and_place_follow_the_formula_of_the_plan(name: str, tmp_path: Path) -> None:
+    read, plan = written(name, tmp_path), assembly(name).plan
+    unit = PX_PER_M if plan.length_unit == "px" else 1.0
+    assert len(read["parts"]) == len(plan.steps)
+    for part, step in zip(read["parts"], plan.steps, strict=True):
+        assert (part["step"], part["kind"]) == (step.step, step.kind)
+        if not isinstance(step, StoneStep):
+            assert part["pick"] is part["pick_to_place"] is None
+            continue
+        angle = np.radians(step.angle_deg)
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        p = np.array(step.source_centroid) + np.array([7.0, -3.0])
+        q = turn @ (p - step.source_centroid) / PX_PER_M + np.array(step.centroid) / unit
+        photo = np.array([*(p / PX_PER_M), 0.03, 1.0])
+        moved = np.array(part["place"]["matrix"]) @ np.linalg.inv(part["pick"]["matrix"]) @ photo
+        assert moved == pytest.approx([q[0], THICKNESS_M - 0.03, q[1], 1.0], abs=1e-9)
+        assert np.array(part["pick_to_place"]) @ photo == pytest.approx(moved, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", METRIC)
+def test_matrix_and_named_quaternion_say_the_same(name: str, tmp_path: Path) -> None:
+    for part in written(name, tmp_path)["parts"]:
+        assert part["flipped"] is False
+        for pose in filter(None, (part["place"], part["pick"])):
+            turn = pose["quaternion"]
+            assert list(turn) == ["x", "y", "z", "w"]
+            matrix = np.array(pose["matrix"])
+            assert matrix.shape == (4, 4)
+            expected = Rotation.from_quat(list(turn.values())).as_matrix()
+            assert matrix[:3, :3] == pytest.approx(expected, abs=1e-14)
+            assert np.linalg.det(matrix) == pytest.approx(1.0, abs=1e-12)
+            assert matrix[:3, 3].tolist() == xyz(pose["point"])
+
+
+def test_approaches_end_at_their_poses(tmp_path: Path) -> None:
+    read = written("exact", tmp_path)
+    assert read["clearance_m"] == 0.05
+    for part in read["parts"]:
+        for pose in filter(None, (part["place"], part["pick"])):
+            way = pose["approach"]
+            end = np.array(xyz(way["start"])) + way["stand_off_m"] * np.array(xyz(way["direction"]))
+            assert end == pytest.approx(xyz(pose["point"]), abs=1e-12)
+            assert way["stand_off_m"] >= 0.05
+        assert part["place"]["approach"]["blocked_m"] * PX_PER_M < 1.0
+
+
+def test_grasps_masses_and_sizes(tmp_path: Path) -> None:
+    read, wall = written("exact", tmp_path), assembly("exact")
+    assert read["density_kg_m3"] == 2450.0
+    assert read["thickness_m"] == THICKNESS_M
+    for found, part in zip(read["parts"], wall.parts, strict=True):
+        area = shapely.Polygon(part.corners).area
+        assert found["mass_kg"] == pytest.approx(area * THICKNESS_M * 2450.0, rel=1e-9)
+        held = found["grasp"]
+        in_wall = np.array(xyz(held["direction_wall"]))
+        assert np.ptp(part.corners @ in_wall[[0, 2]]) == pytest.approx(held["width_m"])
+        turn = np.array(found["place"]["matrix"])[:3, :3]
+        assert turn @ xyz(held["direction_part"]) == pytest.approx(in_wall, abs=1e-12)
+        if found["pick"]:
+            turn = np.array(found["pick"]["matrix"])[:3, :3]
+            photo = turn @ xyz(held["direction_part"])
+            assert photo == pytest.approx(xyz(held["direction_photo"]), abs=1e-12)
+        assert found["size_m"]["y"] == held["thickness_m"] == THICKNESS_M
+        assert held["width_m"] <= min(found["size_m"]["x"], found["size_m"]["z"]) + 1e-12
+
+
+def test_the_order_of_work_can_be_followed(tmp_path: Path) -> None:
+    read = written("exact", tmp_path)
+    there = {0}
+    names = [part["name"] for part in read["parts"]]
+    for part in read["parts"]:
+        assert part["neighbours"]
+        assert set(part["neighbours"]) <= there
+        there.add(part["id"])
+        for index, wedge in enumerate(part["wedges_after"], part["step"]):
+            assert names[index] == wedge
+            assert read["parts"][index]["under"] == part["id"]
+        waits = bool(part["wedges_after"])
+        assert (part["alpha"]["left"] is None) == (part["alpha"]["right"] is None) == waits
+    assert [part["wedges_after"] for part in read["parts"] if part["wedges_after"]] == [
+        ["wedge_010"]
+    ]
+
+
+def test_frames_units_and_provenance_are_said(tmp_path: Path) -> None:
+    read, plan = written("raster-m", tmp_path), assembly("raster-m").plan
+    assert read["schema"] == "drystone-poses/1"
+    assert read["units"]["length"] == "m"
+    assert read["px_per_m"] == PX_PER_M
+    assert {"W", "P", "S", "pick and place", "approach", "grasp"} <= set(read["frames"])
+    assert read["source"] == {"path": plan.source["path"], "sha256": plan.source["sha256"]}
+    assert read["wall"]["width_m"] == pytest.approx(110 / PX_PER_M)
+    assert read["unused"] == list(plan.unused)
+
+
+def test_equal_runs_give_equal_bytes(tmp_path: Path) -> None:
+    (one,) = poses.write(assembly("exact"), tmp_path / "a", SETTINGS)
+    (other,) = poses.write(assembly("exact"), tmp_path / "b", SETTINGS)
+    assert one.read_bytes() == other.read_bytes()
+    assert b"-0.0," not in one.read_bytes()
+
+
+def test_no_poses_without_a_scale(tmp_path: Path) -> None:
+    with pytest.raises(UsageError) as caught:
+        poses.files(assembly("raster", None), SETTINGS)
+    assert caught.value.code == "E131"
+    with pytest.raises(UsageError, match="E131"):
+        poses.write(assembly("raster", None), tmp_path, SETTINGS)
+    assert not list(tmp_path.iterdir())

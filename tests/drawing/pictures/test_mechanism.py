@@ -1,0 +1,213 @@
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.colors import to_hex
+
+from drystone.drawing import plot_mechanism
+from drystone.drawing.outlines import label_regions
+from drystone.drawing.palette import relative_luminance
+from drystone.drawing.pictures.mechanism import COLOURS, LARGEST_SHARE, LARGEST_TURN, motion_of
+from drystone.statics.result import Mechanism
+from tests.drawing import examples
+from tests.drawing.pictures.test_stones import patches
+from tests.strategies import repeatable
+
+L_CORNERS = np.array([[0, 8], [12, 8], [12, 12], [6, 12], [6, 16], [0, 16], [0, 8]], float)
+
+
+def labels():
+    return examples.wall().labels
+
+
+def vertices(ax, gid):
+    return patches(ax)[gid].get_path().vertices
+
+
+def slide(velocity):
+    """Let only the L-shaped stone 12 move."""
+    return Mechanism((12,), np.array([velocity], float))
+
+
+def moves(ax, blocks):
+    return np.concatenate(
+        [vertices(ax, f"moved-{i}") - vertices(ax, f"before-{i}") for i in blocks]
+    )
+
+
+def test_a_sliding_block_moves_by_the_largest_share_of_the_height():
+    ax = plot_mechanism(labels(), slide((-1, 0, 0)), "left", 0.4)
+    # The wall of the example is 16 px high.
+    np.testing.assert_allclose(vertices(ax, "moved-12"), L_CORNERS - [16 * LARGEST_SHARE, 0])
+    np.testing.assert_allclose(vertices(ax, "before-12"), L_CORNERS)
+    np.testing.assert_allclose(vertices(ax, "moved-3"), vertices(ax, "before-3"))
+
+
+def test_a_block_turns_counter_clockwise_about_its_centre_and_keeps_its_size():
+    # A block that only turns: a point right of the centroid goes up, one above goes left.
+    ax = plot_mechanism(labels(), slide((0, 0, 1)), "left", 0.4)
+    arms = L_CORNERS - (5.0, 34 / 3)
+    angle = 16 * LARGEST_SHARE / np.hypot(*arms.T).max()
+    turned = (arms[:, 0] + 1j * arms[:, 1]) * np.exp(1j * angle)
+    expected = np.column_stack([5.0 + turned.real, 34 / 3 + turned.imag])
+    np.testing.assert_allclose(vertices(ax, "moved-12"), expected)
+
+
+def test_a_toe_stays_where_it_is_and_lengths_do_not_change():
+    arm = np.array([5.0, 34 / 3]) - (12.0, 8.0)  # of the centroid from the toe (12, 8)
+    about_toe = slide((arm[1], -arm[0], -1.0))
+    before, after = L_CORNERS, vertices(plot_mechanism(labels(), about_toe, "right"), "moved-12")
+    np.testing.assert_allclose(after[1], (12.0, 8.0))
+    sides = [np.hypot(*np.diff(corners, axis=0).T) for corners in (before, after)]
+    np.testing.assert_allclose(*sides)
+    assert after[5, 0] > before[5, 0]  # the top goes to the right
+
+
+def test_no_point_moves_further_than_the_largest_share():
+    ax = plot_mechanism(labels(), examples.mechanism(), "left", 0.4)
+    lengths = np.hypot(*moves(ax, [3, 5, 8, 12, 300, examples.WEDGE]).T)
+    assert 0.97 * 16 * LARGEST_SHARE < lengths.max() <= 16 * LARGEST_SHARE
+    assert 0.10 <= LARGEST_SHARE <= 0.15
+
+
+def test_a_small_block_that_turns_alone_does_not_spin():
+    wedge = Mechanism((examples.WEDGE,), np.array([[0.0, 0.0, 1.0]]))
+    moved = vertices(plot_mechanism(labels(), wedge, "left"), f"moved-{examples.WEDGE}")
+    along = moved[1] - moved[0]
+    assert np.arctan2(along[1], along[0]) == pytest.approx(LARGEST_TURN)
+
+
+def test_low_walls_move_by_a_share_of_their_length():
+    row = {
+        1: np.array([[0, 0], [50, 0], [50, 1], [0, 1]]),
+        2: np.array([[50, 0], [99, 0], [99, 1]]),
+    }
+    ax = plot_mechanism(row, Mechanism((2,), np.array([[1.0, 0.0, 0.0]])), "right")
+    assert np.hypot(*moves(ax, [2]).T).max() == pytest.approx(99 * 0.2 * LARGEST_SHARE)
+
+
+def test_colour_is_the_share_of_the_largest_displacement():
+    drawn = patches(plot_mechanism(labels(), examples.mechanism(), "left", 0.4))
+    colour = {i: to_hex(drawn[f"moved-{i}"].get_facecolor()) for i in (3, 12, 300)}
+    assert colour == {3: to_hex(COLOURS(0.0)), 12: to_hex(COLOURS(1.0)), 300: to_hex(COLOURS(0.5))}
+
+
+def test_colours_darken_steadily():
+    tones = [relative_luminance(to_hex(COLOURS(share))) for share in np.linspace(0, 1, 20)]
+    assert all(before > after for before, after in pairwise(tones))
+
+
+@pytest.mark.parametrize(("direction", "sign"), [("left", -1), ("right", 1)])
+def test_the_arrow_points_where_the_load_goes(direction, sign):
+    ax = plot_mechanism(labels(), examples.mechanism(), direction, 0.4321)
+    (arrow,) = [text for text in ax.texts if text.get_gid() == "live-load"]
+    assert np.sign(arrow.xy[0] - arrow.get_position()[0]) == sign
+    assert any(f"to the {direction}" in t.get_text() and "0.432" in t.get_text() for t in ax.texts)
+
+
+def test_an_unknown_alpha_is_left_out():
+    ax = plot_mechanism(labels(), examples.mechanism(), "left")
+    assert not any("None" in t.get_text() or "=" in t.get_text() for t in ax.texts)
+
+
+def test_everything_drawn_is_in_view():
+    ax = plot_mechanism(labels(), slide((-1, 0.5, 0.2)), "left", 0.4)
+    (x0, x1), (y0, y1) = ax.get_xlim(), ax.get_ylim()
+    points = np.concatenate([patch.get_path().vertices for patch in ax.patches[1:]])
+    assert x0 < points[:, 0].min()
+    assert points[:, 0].max() < x1
+    assert y0 < 0
+    assert points[:, 1].max() < y1
+
+
+def test_a_mechanism_without_motion_is_drawn_at_rest():
+    ax = plot_mechanism(labels(), slide((0, 0, 0)), "left", 0.4)
+    np.testing.assert_allclose(vertices(ax, "moved-12"), L_CORNERS)
+
+
+def test_a_mechanism_of_another_wall_is_refused():
+    stranger = Mechanism((12, 99), np.zeros((2, 3)))
+    with pytest.raises(ValueError, match=r"lacks: \[99\]"):
+        plot_mechanism(labels(), stranger, "left")
+
+
+def test_there_is_a_colour_bar_from_zero_to_one():
+    ax = plot_mechanism(labels(), examples.mechanism(), "left", 0.4)
+    (bar,) = ax.child_axes
+    assert bar.get_ylim() == (0, 1)
+    assert "displacement" in bar.get_ylabel()
+
+
+def test_polygons_are_drawn_like_pixels():
+    polygons = {r.id: np.concatenate(r.loops) for r in label_regions(labels())}
+    by_pixel, by_polygon = (
+        plot_mechanism(wall, examples.mechanism(), "left", 0.4) for wall in (labels(), polygons)
+    )
+    assert set(patches(by_pixel)) == set(patches(by_polygon))
+    for block in polygons:
+        gid = f"moved-{block}"
+        np.testing.assert_allclose(vertices(by_polygon, gid), vertices(by_pixel, gid))
+
+
+def test_a_wall_stands_on_its_lowest_stone_pixel():
+    below = np.pad(labels(), ((0, 7), (0, 0)))
+    ax = plot_mechanism(below, slide((-1, 0, 0)), "left", 0.4)
+    np.testing.assert_allclose(vertices(ax, "before-12"), L_CORNERS)
+    assert "ground" in patches(ax)
+
+
+def test_polygons_above_the_ground_have_none():
+    corners = np.array([[0, 3], [2, 3], [2, 4], [0, 4]])
+    ax = plot_mechanism({1: corners}, Mechanism((1,), np.array([[1.0, 0, 0]])), "right")
+    assert "ground" not in patches(ax)
+
+
+def test_a_fall_has_an_arrow_downwards_and_no_live_load():
+    ax = plot_mechanism(labels(), examples.mechanism(), None)
+    (arrow,) = [text for text in ax.texts if text.get_gid() == "own-weight"]
+    assert arrow.xy[1] < arrow.get_position()[1]
+    assert arrow.xy[0] == arrow.get_position()[0]
+    assert not any("live load" in text.get_text() for text in ax.texts)
+    assert any("own weight" in text.get_text() for text in ax.texts)
+
+
+def test_another_load_is_named_without_an_arrow():
+    ax = plot_mechanism(labels(), examples.mechanism(), "left", 0.25, load="point load on 7")
+    assert [text.get_text() for text in ax.texts] == [r"point load on 7, $\alpha$ = 0.250"]
+
+
+def test_numbers_move_with_their_blocks():
+    ax = plot_mechanism(labels(), slide((-1, 0, 0)), "left", numbers=True)
+    written = {text.get_gid(): text for text in ax.texts}
+    x, y = written["number-12"].get_position()
+    assert (x, y) == pytest.approx((5.0 - 16 * LARGEST_SHARE, 34 / 3))
+    assert written["number-12"].get_text() == "12"
+    assert not [
+        t
+        for t in plot_mechanism(labels(), slide((1, 0, 0)), "left").texts
+        if t.get_gid() and t.get_gid().startswith("number")
+    ]
+
+
+@given(
+    twist=st.tuples(*[st.floats(-1, 1)] * 3),
+    amplitude=st.floats(0, 1),
+)
+@repeatable(30)
+def test_a_motion_keeps_every_block_rigid_and_starts_with_its_velocity(twist, amplitude):
+    motion = motion_of(labels(), slide(twist))
+    place = [region.id for region in motion.regions].index(12)
+    before, after = motion.regions[place].loops[0], motion.at(amplitude)[place][0]
+    spans = [np.hypot(*(loop[:, None] - loop[None]).transpose(2, 0, 1)) for loop in (before, after)]
+    np.testing.assert_allclose(*spans, atol=1e-9)
+    early = (motion.at(1e-6)[place][0] - before) / 1e-6
+    x, y, angle = motion.displacement[place]
+    arms = before - motion.regions[place].centroid
+    linear = np.column_stack([x - angle * arms[:, 1], y + angle * arms[:, 0]])
+    np.testing.assert_allclose(early, linear, atol=1e-4)
+    np.testing.assert_allclose(motion.at(0.0)[place][0], before)
+    mean = np.array(motion.centroids(amplitude)[place])
+    gap = np.hypot(*(after - mean).T) - np.hypot(*arms.T)
+    np.testing.assert_allclose(gap, 0, atol=1e-9)

@@ -1,0 +1,144 @@
+from itertools import combinations
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from drystone.contacts.blocks import model_from_labels
+from drystone.drawing.pictures.scatter import plot_scatter
+from drystone.statics.result import LimitStatus
+from drystone.statics.scatter.scatter import scatter
+from drystone.statics.scatter.shaking import ScatterSettings
+from tests.statics.walls import coursed, stacked
+
+
+@pytest.fixture(scope="module")
+def shaken():
+    """Friction, outlines and places."""
+    settings = ScatterSettings(samples=40, mu=(0.4, 0.8), outline_noise=0.1, placement_noise=0.2)
+    return scatter(model_from_labels(coursed(3, 2, 50)).model, settings)
+
+
+@pytest.fixture(scope="module")
+def falling():
+    """Some of these fall."""
+    model = model_from_labels(stacked((20, 10, 0), (20, 10, 9))).model
+    return scatter(model, ScatterSettings(samples=40, placement_noise=1.0, mu=(0.4, 0.8)))
+
+
+def lines(panel):
+    return {line.get_gid(): line for line in panel.lines}
+
+
+def words(ax):
+    return ax.get_title(loc="left")
+
+
+def counted(panel):
+    return sum(bar.get_height() for bar in panel.patches)
+
+
+def test_histograms_count_every_wall_that_stands_and_mark_quantiles(falling):
+    ax = plot_scatter(falling)
+    alpha, value, _ = ax.child_axes
+    for panel, values, quantiles in (
+        (alpha, falling.alpha, falling.alpha_quantiles),
+        (value, falling.value, falling.value_quantiles),
+    ):
+        assert counted(panel) == len(values) < 40
+        bars = panel.patches
+        assert bars[0].get_x() == pytest.approx(values.min())
+        assert bars[-1].get_x() + bars[-1].get_width() == pytest.approx(values.max())
+        marked = [lines(panel)[f"quantile-{name}"].get_xdata()[0] for name in ("5", "50", "95")]
+        assert marked == pytest.approx(quantiles)
+        assert f"95 %: {quantiles.high:.3f}" in panel.get_title()
+    assert lines(alpha)["unshaken"].get_xdata()[0] == pytest.approx(0.2)  # about the toe
+    assert lines(value)["unshaken"].get_xdata()[0] == falling.unshaken.value
+    assert (alpha.get_xlabel(), value.get_xlabel()) == ("min alpha", "F_LR = min alpha / mu")
+
+
+def test_friction_is_drawn_against_alpha_with_the_wall_itself_and_those_that_fall(falling):
+    drawn = lines(plot_scatter(falling).child_axes[2])
+    assert drawn["walls"].get_xdata().tolist() == falling.standing_mu.tolist()
+    assert drawn["walls"].get_ydata().tolist() == falling.alpha.tolist()
+    assert drawn["unshaken-point"].get_xydata().tolist() == [
+        [0.58, min(falling.unshaken.left.alpha, falling.unshaken.right.alpha)]
+    ]
+    assert len(drawn["falling"].get_xdata()) == falling.counts[LimitStatus.UNSTABLE]
+    assert "sliding" not in drawn  # out of reach here
+    flat = model_from_labels(stacked((20, 10, 0))).model
+    slides = plot_scatter(scatter(flat, ScatterSettings(samples=5, mu=(0.4, 0.8))))
+    line = lines(slides.child_axes[2])["sliding"]
+    assert line.get_xdata().tolist() == line.get_ydata().tolist()
+
+
+def test_without_varied_friction_there_are_histograms_only():
+    model = model_from_labels(stacked((10, 20, 0))).model
+    assert len(plot_scatter(scatter(model, ScatterSettings(samples=9))).child_axes) == 2
+    smooth = scatter(model, ScatterSettings(samples=9, mu=(0.0, 0.0)))
+    assert len(plot_scatter(smooth).child_axes) == 1
+
+
+def test_words_tell_what_was_shaken_and_how_many_do_not_stand(shaken, falling):
+    said = "40 walls, shaken: friction 0.4 to 0.8, outlines by 0.1, places by 0.2"
+    assert f"{said} (lengths of the model)" in words(plot_scatter(shaken))
+    assert "All of them stand" in words(plot_scatter(shaken))
+    fallen = falling.counts[LimitStatus.UNSTABLE]
+    assert f"{fallen} of 40 ({100 * fallen / 40:.3g} %) do not stand" in words(
+        plot_scatter(falling)
+    )
+
+
+def test_solves_that_failed_are_told(shaken):
+    settings = ScatterSettings(samples=2, mu=(0.4, 0.8), mu_per_interface=True)
+    status = (LimitStatus.FAILED, LimitStatus.OPTIMAL)
+    one = type(shaken)(
+        settings, 0, shaken.unshaken, status, np.array([0.5, 0.6]), *np.array([[0.3], [0.4]])
+    )
+    assert "gave up on 1" in words(plot_scatter(one))
+    assert "for each interface" in words(plot_scatter(one))
+
+
+def test_when_no_wall_stands_the_picture_says_so():
+    model = model_from_labels(stacked((20, 10, 0), (20, 10, 19))).model
+    ax = plot_scatter(scatter(model, ScatterSettings(samples=3, mu=(0.4, 0.8))))
+    assert [text.get_text() for text in ax.child_axes[0].texts] == ["no wall stands"]
+    assert len(ax.child_axes) == 1
+    assert "3 of 3 (100 %) do not stand" in words(ax)
+    assert ax.get_legend() is None
+
+
+def all_texts(ax):
+    yield from (ax.title, ax._left_title, *ax.get_legend().get_texts())
+    for panel in ax.child_axes:
+        yield from (panel.title, panel.xaxis.label, panel.yaxis.label)
+        yield from panel.texts
+        for axis, limits in ((panel.xaxis, panel.get_xlim()), (panel.yaxis, panel.get_ylim())):
+            for place, label in zip(axis.get_ticklocs(), axis.get_ticklabels(), strict=True):
+                if limits[0] <= place <= limits[1]:
+                    yield label
+
+
+@pytest.mark.parametrize("name", ["shaken", "falling", "all equal", "small"])
+def test_no_text_overlaps_another(name, shaken, falling):
+    where = None
+    if name == "all equal":
+        model = model_from_labels(stacked((20, 10, 0))).model
+        drawn = scatter(model, ScatterSettings(samples=9))
+    else:
+        drawn = falling if name == "falling" else shaken
+    if name == "small":
+        where = Figure(figsize=(9, 3.6)).add_subplot()
+    ax = plot_scatter(drawn, where)
+    assert where in (None, ax)
+    renderer = FigureCanvasAgg(ax.figure).get_renderer()
+    ax.figure.draw(renderer)
+    boxes = [
+        (text.get_text(), text.get_window_extent(renderer))
+        for text in all_texts(ax)
+        if text.get_text() and text.get_visible()
+    ]
+    assert len(boxes) > 20
+    for (one, box), (other, second) in combinations(boxes, 2):
+        assert not box.overlaps(second), f"{one} / {other}"

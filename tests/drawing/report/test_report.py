@@ -1,0 +1,306 @@
+import base64
+import json
+import os
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from drystone.contacts.blocks import model_from_labels
+from drystone.drawing import write_pictures
+from drystone.drawing.report import view_of_result, view_of_wall, write_report
+from drystone.drawing.report.content import (
+    assumptions,
+    cards,
+    flat_settings,
+    number,
+    weaker_direction,
+)
+from drystone.drawing.report.embedding import viewer_frame, viewer_page, viewer_script, viewer_style
+from drystone.drawing.report.notebook import Shown
+from drystone.errors import Notice, PlanError
+from drystone.model.plan import PlanMetrics
+from drystone.statics.limit import lateral_resistance
+from tests.drawing import examples
+from tests.drawing.report.walls import result
+from tests.verify.exact_examples import exact_example
+
+ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
+TIMES = "\N{MULTIPLICATION SIGN}"
+VOID = {"meta", "link", "img", "input", "rect", "line", "polygon"}
+
+
+class Page(HTMLParser):
+    """Collects elements and text, and checks that elements close in order."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.elements, self.texts, self.scripts = [], [], [], []
+        self.feed(text)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] == "script":
+            self.scripts.append(data)
+        elif self.open and self.open[-1] != "style":
+            self.texts.append(data.strip())
+
+    def all(self, tag):
+        return [attrs for name, attrs in self.elements if name == tag]
+
+    @property
+    def text(self):
+        return " ".join(text for text in self.texts if text)
+
+    @property
+    def data(self):
+        return json.loads(self.scripts[0])
+
+
+def example_view(plan=None, wall=None):
+    """Return the view of the wall made by hand, or of another one, with a plan that says more."""
+    wall = examples.wall() if wall is None else wall
+    model = model_from_labels(wall.labels).model
+    found = SimpleNamespace(
+        plan=plan or examples.plan(wall),
+        wall=wall,
+        model=model,
+        resistance=lateral_resistance(model, mechanism=True),
+        seconds=3.456,
+        notices=(Notice("W112", "3 specks in <i>PR</i> were left out.", "Nothing to do."),),
+    )
+    return view_of_result(found)
+
+
+@pytest.fixture
+def pictures(tmp_path):
+    folder = tmp_path / "pictures"
+    folder.mkdir()
+    write_pictures(
+        folder, examples.wall(), examples.CLUSTERS, resistance=examples.resistance(), dpi=40
+    )
+    return folder
+
+
+@pytest.fixture
+def report(tmp_path, pictures):
+    path = write_report(tmp_path / "report.html", example_view(), pictures=pictures)
+    return path.read_text(encoding="utf-8")
+
+
+def test_every_stone_and_step_is_in_the_table(report):
+    page = Page(report)
+    steps = examples.plan().steps
+    assert [a["id"] for a in page.all("tr") if "id" in a] == [f"step-{s.step}" for s in steps]
+    for stone in (*examples.CLUSTERS, examples.UNUSED):
+        assert re.search(rf"\b{stone}\b", page.text)
+    assert f"Push wedge {examples.WEDGE} in under stone 300: 3.0 wide, 2.0 high" in page.text
+    assert "Stones left over: 40" in page.text
+
+
+def test_results_inputs_and_notices_are_said(report):
+    text = Page(report).text
+    for said in (
+        "5 of 6 stones placed with 1 wedge",
+        "no acceptable place was found five times in a row",
+        "0.672",
+        "4.25 %",
+        "Load multiplier (adequacy factor) to the left",
+        "in three walls of masons, of other stones",
+        f"44.0 {TIMES} 20.0 px",
+        "0" * 64,
+        "W112",
+        "3.46 s",
+        "upper bound",
+        "placement.rule",
+        "1 (6.0 px²)",
+    ):
+        assert said in text
+
+
+def test_what_stones_are_is_said(report):
+    text = Page(report).text
+    assert "Stones are their pixels at the working resolution" in text
+    assert "Stones touch where their pixels have edges or corners in common" in text
+    assert "contact tolerance" not in text
+
+
+def test_a_plan_on_outlines_says_so(tmp_path):
+    made = exact_example()
+    metrics = replace(made.plan.metrics, F_LR=0.71, F_LR_half=0.512, F_LR_double=None)
+    plan = replace(made.plan, metrics=metrics)
+    page = Page(
+        write_report(tmp_path / "one.html", example_view(plan, made.wall)).read_text("utf-8")
+    )
+    assert "Stones are their outlines" in page.text
+    assert "within the contact tolerance, 0.1 px of the image" in page.text
+    assert "0.512 and not defined at half and twice the contact tolerance." in page.text
+    assert "pixels have edges" not in page.text
+    for (block, corners), part in zip(made.wall.outlines.blocks, page.data["parts"], strict=True):
+        assert part["id"] == block
+        np.testing.assert_allclose(part["points"][0], corners, atol=0.0006)
+    settle = {**plan.settings["settle"], "contact_px": 0.25}
+    other = replace(plan, settings={**plan.settings, "settle": settle})
+    assert "0.25 px of the image" in assumptions(other)[-1]
+    without = {name: value for name, value in plan.settings.items() if name != "settle"}
+    assert "0.1 px of the image" in assumptions(replace(plan, settings=without))[-1]
+
+
+def test_names_are_escaped(report):
+    assert "<b>" not in report
+    assert "<script>alert" not in report
+    assert "<i>" not in report
+    page = Page(report)
+    assert "<b>PR.png" in page.text
+    assert "<script>alert(1)</script>" in page.text
+    assert "<i>PR</i>" in page.text
+    assert page.data["title"] == "Dry-stone wall from <b>PR.png"
+
+
+def test_the_file_needs_nothing_else(report, pictures):
+    page = Page(report)
+    images = page.all("img")
+    sources = [attrs["src"] for attrs in images]
+    embedded = [base64.b64decode(s.removeprefix("data:image/png;base64,")) for s in sources]
+    names = ("picture.png", "mechanism_left.png")
+    assert embedded == [(pictures / name).read_bytes() for name in names]
+    assert all(attrs["alt"] for attrs in images)
+    rest = re.sub(r'src="[^"]*"', "", report).replace("http://www.w3.org/2000/svg", "")
+    assert not re.search(r"https?:|url\((?!#)|@import", rest)
+    assert all("src" not in attrs for attrs in page.all("script"))
+    assert [a["href"] for a in page.all("link")] == ["data:,"]
+    (policy,) = (a["content"] for a in page.all("meta") if "http-equiv" in a)
+    assert policy.startswith("default-src 'none'; ")
+    assert "no picture of a mechanism to the right" in page.text
+
+
+def test_script_and_style_cannot_end_their_elements():
+    assert "</script" not in viewer_script()
+    assert "</style" not in viewer_style()
+
+
+def test_no_markup_is_made_of_data():
+    assert not re.search(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write", viewer_script())
+
+
+def test_missing_metrics_are_not_defined_and_never_zero(tmp_path):
+    missing = PlanMetrics(0.4, None, None, None, 0.1, 0.1, None, 0.3, 0.0)
+    plan = examples.plan(metrics=missing)
+    values = {card.symbol or card.name: card.value for card in cards(plan)}
+    for name in ("F_AV", "F_AH", "F_LR", f"{ALPHA} left", "Weaker direction"):
+        assert values[name] == "not defined"
+    assert values[f"{ALPHA} right"] == "0.300"
+    path = write_report(tmp_path / "report.html", example_view(plan), pictures=tmp_path)
+    page = Page(path.read_text(encoding="utf-8"))
+    assert page.texts.count("not defined") == 5
+    assert "no picture of the wall" in page.text
+
+
+def test_same_arguments_same_bytes(tmp_path, pictures):
+    first, second = (
+        write_report(tmp_path / name, example_view(), pictures=pictures).read_bytes()
+        for name in ("one.html", "two.html")
+    )
+    assert first == second
+
+
+def test_a_report_is_whole_or_as_it_was(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    path = tmp_path / "report.html"
+    path.write_bytes(b"good")
+    monkeypatch.setattr(os, "replace", full)
+    for write in (
+        lambda: write_report(path, example_view()),
+        lambda: Shown(example_view()).write(path),
+    ):
+        with pytest.raises(PlanError, match="E206"):
+            write()
+        assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [
+            (path.name, b"good")
+        ]
+
+
+def test_half_a_pair_of_characters_ends_no_report(tmp_path):
+    """Bytes of a file name that are no UTF-8 come as such, from whoever forgot them."""
+    notice = {"code": "W117", "message": "left aside: \udcdcbersicht.", "cure": ""}
+    view = {**example_view(), "notices": [notice]}
+    path = write_report(tmp_path / "report.html", view)
+    assert "?bersicht" in path.read_text("utf-8")
+    assert "?bersicht" in Shown(view).write(tmp_path / "view.html").read_text("utf-8")
+
+
+def test_lengths_in_metres_have_millimetres(tmp_path):
+    path = write_report(tmp_path / "m.html", example_view(wall=examples.wall(px_per_m=50.0)))
+    assert "<td>0.140</td><td>0.080</td>" in path.read_text(encoding="utf-8")
+
+
+def test_a_missing_index_is_a_dash(tmp_path):
+    plan = examples.plan()
+    step = replace(plan.stone_steps[0], indices={"SF": 0.9, "LLC": None})
+    text = write_report(
+        tmp_path / "one.html", example_view(replace(plan, steps=(step, *plan.steps[1:])))
+    ).read_text(encoding="utf-8")
+    cells = re.findall(r"<td>(.*?)</td>", text.split('id="step-1"')[1].split("</tr>")[0])
+    assert cells[-9:-2] == ["0.900", *["\N{EN DASH}"] * 6]
+
+
+def test_a_wall_that_was_not_planned_has_a_table_of_blocks(tmp_path):
+    labels = examples.wall().labels
+    model = model_from_labels(labels).model
+    shown = view_of_wall(labels, model, lateral_resistance(model, mechanism=True), title="found")
+    page = Page(write_report(tmp_path / "found.html", shown).read_text(encoding="utf-8"))
+    assert "Steps of construction" not in page.text
+    assert "6 stones, " in page.text
+    assert page.text.count("There is no picture of a mechanism") == 2
+
+
+def test_the_viewer_alone_is_a_page_or_a_frame():
+    shown = view_of_result(result("paper"))
+    page = Page(viewer_page(shown, {"chart": False}))
+    assert page.data == json.loads(json.dumps(shown))
+    (frame,) = Page(viewer_frame(shown)).all("iframe")
+    assert frame["srcdoc"] == viewer_page(shown)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(None, "not defined"), (float("nan"), "not defined"), (0.0, "0.000"), (-1e-9, "0.000")],
+)
+def test_numbers(value, text):
+    assert number(value) == text
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "weaker"),
+    [(0.3, 0.4, "left"), (0.4, 0.3, "right"), (0.3, 0.3, "both alike"), (None, 0.3, "not defined")],
+)
+def test_weaker_direction(left, right, weaker):
+    metrics = replace(examples.plan().metrics, alpha_left=left, alpha_right=right)
+    assert weaker_direction(metrics) == weaker
+
+
+def test_settings_are_flat_and_complete():
+    settings = {"mu": 0.58, "a": {"b": {"c": [1, None]}, "d": True}}
+    flat = dict(flat_settings(settings))
+    assert {name: json.loads(value) for name, value in flat.items()} == {
+        "mu": 0.58,
+        "a.b.c": [1, None],
+        "a.d": True,
+    }

@@ -1,0 +1,614 @@
+"""The viewer driven in a browser: everything that a reader can do with it."""
+
+import io
+import json
+import re
+import shutil
+import time
+from functools import cache
+
+import numpy as np
+import pytest
+import shapely
+from PIL import Image, ImageDraw
+
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
+from drystone.drawing.report import view_of_result, view_of_wall, write_report
+from drystone.drawing.report.embedding import json_in_html, viewer_page, viewer_script, viewer_style
+from drystone.statics.limit import lateral_resistance
+from tests.drawing.report.walls import result
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+FLAGS = (
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync", "--no-first-run",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def browser():
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    if CHROMIUM is None:
+        pytest.skip("no chromium on this machine")
+    with playwright.sync_playwright() as driver:
+        opened = driver.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def visit(browser, tmp_path):
+    """Open HTML from disk; in the end nothing was complained about and no host was asked."""
+    contexts, heard = [], Heard()
+
+    def opened(text, **context):
+        path = tmp_path / f"page{len(contexts)}.html"
+        path.write_text(text, encoding="utf-8")
+        contexts.append(browser.new_context(**context))
+        return heard.page(contexts[-1], path)
+
+    yield opened
+    for context in contexts:
+        context.close()
+    heard.check()
+
+
+@pytest.fixture(scope="module")
+def opened_once(browser, tmp_path_factory):
+    """Open a page with a plan and a way to show it anew, which is quicker than opening it."""
+    path = tmp_path_factory.mktemp("viewer") / "plan.html"
+    text = (
+        f"<style>{viewer_style()} body {{ margin: 8px }}</style><div id=wall></div>"
+        f"<script type=module>{viewer_script()}\nconst data = {json_in_html(shown())};\n"
+        "const place = document.getElementById('wall');\n"
+        "window.again = () => { window.now?.destroy(); "
+        "window.now = mount(place, data, {pageKeys: true}); };</script>"
+    )
+    path.write_text(f"<!DOCTYPE html><html><meta charset=utf-8>{text}", encoding="utf-8")
+    heard, context = Heard(), browser.new_context()
+    yield heard.page(context, path), heard
+    context.close()
+
+
+@pytest.fixture
+def page(opened_once):
+    """Return a page with the plan of `shown`, as it is when it has just been opened."""
+    found, heard = opened_once
+    found.evaluate("document.activeElement.blur(); again(); scrollTo(0, 0)")
+    yield found
+    heard.check()
+
+
+class Heard:
+    """What pages complained about and asked for."""
+
+    def __init__(self):
+        self.said, self.asked = [], []
+
+    def page(self, context, path):
+        page = context.new_page()
+        page.set_default_timeout(10_000)
+        page.on("console", lambda message: self.said.append(message.text))
+        page.on("pageerror", lambda error: self.said.append(str(error)))
+        page.on("request", lambda request: self.asked.append(request.url))
+        page.goto(path.as_uri())
+        return page
+
+    def check(self):
+        assert self.said == []
+        assert self.asked
+        assert [url for url in self.asked if not url.startswith(("file:", "data:"))] == []
+
+
+def until(condition, seconds=10.0):
+    """Wait; the page's policy forbids what Playwright would evaluate for it."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "it never came"
+        time.sleep(0.02)
+
+
+@cache
+def shown(method="paper"):
+    return view_of_result(result(method))
+
+
+@cache
+def plan_page(method="paper"):
+    return viewer_page(shown(method))
+
+
+def seen(page):
+    """Return the ids of the parts that are drawn."""
+    return page.eval_on_selector_all(
+        ".ds-part",
+        "all => all.filter(g => getComputedStyle(g).display !== 'none').map(g => +g.dataset.id)",
+    )
+
+
+def placed(step, method="paper"):
+    return [part["id"] for part in shown(method)["parts"] if part["step"] <= step]
+
+
+def status(page):
+    return page.locator(".ds-said").inner_text()
+
+
+def slider(page):
+    return page.get_by_label("Step of construction")
+
+
+def test_the_slider_goes_through_the_steps(page):
+    last = shown()["steps"]
+    assert seen(page) == placed(last)
+    slider(page).fill("3")
+    assert seen(page) == placed(3)
+    part = shown()["parts"][2]
+    assert status(page).startswith(
+        f"Step 3 of {last}: {part['words']} Load multipliers then: left "
+    )
+    assert page.locator(".ds-counter").inner_text() == f"3 / {last}"
+    slider(page).fill("0")
+    assert seen(page) == []
+    assert status(page) == "Nothing is placed yet."
+
+
+def test_buttons_step_and_stop_at_the_ends(page):
+    last = shown()["steps"]
+    for name, step in (
+        ("One step forward", last), ("One step back", last - 1), ("First step", 0),
+        ("One step back", 0), ("One step forward", 1), ("Last step", last),
+    ):  # fmt: skip
+        page.get_by_role("button", name=name, exact=True).click()
+        assert seen(page) == placed(step)
+
+
+def test_play_goes_on_by_itself_and_stops(visit):
+    page = visit(viewer_page(shown(), {"stepMs": 30}))
+    play = page.get_by_role("button", name="Play")
+    play.click()
+    last = shown()["steps"]
+    until(lambda: page.locator(".ds-counter").inner_text() == f"{last} / {last}")
+    assert play.inner_text() == "Play"
+    assert page.locator(".ds-said").get_attribute("aria-live") == "polite"
+    slider(page).fill("2")
+    slow = visit(viewer_page(shown(), {"stepMs": 100_000}))
+    slow.get_by_role("button", name="Play").click()
+    assert seen(slow) == []
+    assert slow.locator(".ds-said").get_attribute("aria-live") == "off"
+    slow.get_by_role("button", name="Pause").click()
+    assert slow.get_by_role("button", name="Play").is_visible()
+
+
+def test_keys(page):
+    last = shown()["steps"]
+    page.keyboard.press("ArrowLeft")  # nothing has the focus: the page's own key
+    assert seen(page) == placed(last - 1)
+    page.locator(".ds-stage").focus()
+    for key, step in (("Home", 0), ("ArrowRight", 1), ("ArrowRight", 2), ("End", last)):
+        page.keyboard.press(key)
+        assert seen(page) == placed(step)
+    page.keyboard.press("Home")
+    page.keyboard.press("End")
+    page.keyboard.press("ArrowDown")
+    assert page.evaluate("document.activeElement.classList.contains('ds-part')")
+    page.locator(".ds-stage").focus()
+    page.keyboard.press(" ")
+    assert page.get_by_role("button", name="Pause").is_visible()
+    page.keyboard.press(" ")
+    assert page.get_by_role("button", name="Play").is_visible()
+
+
+def test_keys_of_other_fields_are_theirs(visit):
+    page = visit(plan_page().replace('<div id="wall">', '<input id="other"><div id="wall">'))
+    last = shown()["steps"]
+    page.locator("#other").focus()
+    for key in ("ArrowLeft", "Home", " ", "x"):
+        page.keyboard.press(key)
+    assert page.locator("#other").input_value() == " x"
+    assert seen(page) == placed(last)
+    page.locator(".ds-index").focus()
+    page.keyboard.press("ArrowDown")
+    assert page.locator(".ds-index").input_value() == "SF"
+    assert seen(page) == placed(last)
+
+
+def test_a_stone_has_a_card(page):
+    part = max(shown()["parts"], key=lambda part: abs(part["angle_deg"]))
+    page.locator(f".ds-part[data-id='{part['id']}']").click()
+    assert abs(part["angle_deg"]) > 1
+    card = page.get_by_role("complementary", name="Stone card")
+    text = card.inner_text()
+    turn = f"{abs(part['angle_deg']):.1f}°"
+    x, y = (f"{value:.1f}" for value in part["centroid"])
+    for said in (
+        f"Stone {part['id']}", f"step {part['step']} of", f"cluster {part['cluster']}", turn,
+        f"{x} px from the left end, {y} px above the ground", f"left {part['alpha_left']:.3f}",
+    ):  # fmt: skip
+        assert said in text
+    assert card.get_by_role(
+        "img", name=f"Stone {part['id']}, step {part['step']}: turn it"
+    ).is_visible()
+    card.get_by_text("Indices of this step").click()
+    for name, value in part["indices"].items():
+        assert f"{name}\t{value:.3f}" in card.inner_text()
+
+
+def test_neighbours_are_links(page):
+    slider(page).fill("1")
+    card = page.locator(".ds-card")
+    first = shown()["parts"][0]
+    neighbour = next(i for i in first["neighbours"] if i)
+    step = next(p["step"] for p in shown()["parts"] if p["id"] == neighbour)
+    card.get_by_role("button", name=f"{neighbour} (step {step})", exact=True).click()
+    assert page.locator(".ds-card .ds-name").inner_text().endswith(f"Stone {neighbour}")
+    assert seen(page) == placed(step)
+    assert page.evaluate("+document.activeElement.dataset.id") == neighbour
+
+
+def test_a_wedge_says_what_it_is_under(page):
+    wedge = next(part for part in shown()["parts"] if part["kind"] == "wedge")
+    slider(page).fill(str(wedge["step"]))
+    text = page.locator(".ds-card").inner_text()
+    assert f"Wedge {wedge['id']}" in text
+    assert re.search(rf"Under\s+{wedge['under']} \(step", text)
+    assert "to find or to cut" in page.locator(".ds-card .ds-figure").text_content()
+
+
+@pytest.mark.parametrize("panel", [0, 1])
+@pytest.mark.parametrize("which", ["turned", "straight"])
+def test_the_photograph_lies_under_the_outline(visit, tmp_path, which, panel):
+    plan = result().plan
+    source = plan.source["width_px"], plan.source["height_px"]
+    picture = Image.new("RGB", (4 * source[0], 4 * source[1]), "#007000")
+    for part in shown("best")["parts"]:
+        corners = [(4 * x, 4 * (source[1] - y)) for x, y in part["source"]]
+        ImageDraw.Draw(picture).polygon(corners, fill="#c00000")
+    picture.save(tmp_path / "photo.png")
+    data = view_of_result(result(), photo=tmp_path / "photo.png")
+    # Turns of the plan are small: one stone is said to stand turned by 70 degrees more.
+    part = data["parts"][2]
+    if which == "straight":
+        part["points"] = [(np.array(part["source"]) - part["source"][0]).tolist()]
+        part["angle_deg"] = 0.0
+    else:
+        turned = shapely.affinity.rotate(shapely.Polygon(part["points"][0]), 70, origin=(0, 0))
+        part["points"] = [list(map(list, turned.exterior.coords[:-1]))]
+        part["angle_deg"] += 70.0
+    page = visit(viewer_page(data), device_scale_factor=2)
+    slider(page).fill("3")
+    figure = page.locator(".ds-card .ds-figure")
+    seen = Image.open(io.BytesIO(figure.screenshot())).convert("RGB")
+    wide = float(figure.get_attribute("viewBox").split()[2])
+    d = figure.locator(".ds-over").nth(panel).get_attribute("d")
+    corners = np.array(re.findall(r"(-?[\d.]+) (-?[\d.]+)", d), float) * seen.width / wide
+    outline = shapely.Polygon(corners)
+    colours = np.asarray(seen, int)
+    for within, red in ((outline.buffer(-6), True), (outline.buffer(6) - outline.buffer(3), False)):
+        mask = Image.new("L", seen.size)
+        pen = ImageDraw.Draw(mask)
+        pen.polygon(within.exterior.coords[:], fill=1)
+        for hole in within.interiors:
+            pen.polygon(hole.coords[:], fill=0)
+        pixels = colours[np.asarray(mask, bool)]
+        assert len(pixels) > 300
+        assert ((pixels[:, 0] > pixels[:, 1]) == red).mean() > 0.95
+
+
+def drawn_points(page):
+    """Return the corners of every part at rest and as drawn, in units of the drawing, by id."""
+    found = page.eval_on_selector_all(
+        ".ds-part",
+        """all => all.map(g => {
+          const list = g.transform.baseVal.consolidate();
+          const m = list ? list.matrix : {a: 1, b: 0, c: 0, d: 1, e: 0, f: 0};
+          const rest = g.querySelector(".ds-shape").getAttribute("d").match(/-?[\\d.]+ -?[\\d.]+/g)
+            .map(pair => pair.split(" ").map(Number));
+          const now = rest.map(([x, y]) => [m.a * x + m.c * y + m.e, m.b * x + m.d * y + m.f]);
+          return [g.dataset.id, rest, now];
+        })""",
+    )
+    return {int(part): (np.array(rest), np.array(now)) for part, rest, now in found}
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_the_mechanism_moves_stones_as_its_velocities_say(page, side):
+    page.locator(f".ds-choose-mechanism input[value={side}]").check()
+    found = shown()["mechanisms"][side]
+    x0, _, x1, y1 = shown()["box"]
+    k = 1000.0 / (x1 - x0)
+    moved = 0
+    for amplitude in (0.1, 1.0):
+        page.locator(".ds-amplitude").fill(str(amplitude))
+        drawn = drawn_points(page)
+        for part in shown()["parts"]:
+            rest, now = drawn[part["id"]]
+            velocity = found["velocity"].get(str(part["id"]))
+            if velocity is None:
+                assert (rest == now).all()
+                continue
+            # A finite turn about the centre of rotation that the velocity has.
+            vx, vy, angle = np.array(velocity) * amplitude * found["scale"]
+            centre = np.array(part["centroid"])
+            corners = np.column_stack([rest[:, 0] / k + x0, y1 - rest[:, 1] / k])
+            if abs(angle) > 1e-7:
+                pole = centre + np.array([-vy, vx]) / angle
+                turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+                expected = (corners - pole) @ turn.T + pole
+            else:
+                expected = corners + np.array([vx, vy])
+            wanted = np.column_stack([(expected[:, 0] - x0) * k, (y1 - expected[:, 1]) * k])
+            assert now == pytest.approx(wanted, abs=0.02)
+            moved += 1
+    assert moved >= 4
+    assert found["words"] in page.locator(".ds-note").inner_text()
+    page.locator(".ds-choose-mechanism input[value=none]").check()
+    assert page.locator(".ds-part[transform]").count() == 0
+
+
+def test_a_mechanism_is_animated_unless_less_motion_is_wanted(page, visit):
+    page.locator(".ds-choose-mechanism input[value=left]").check()
+    moving = next(iter(shown()["mechanisms"]["left"]["velocity"]))
+    where = f"document.querySelector('.ds-part[data-id=\"{moving}\"]').getAttribute('transform')"
+    page.get_by_role("button", name="Animate").click()
+    first = page.evaluate(where)
+    until(lambda: page.evaluate(where) != first)
+    page.get_by_role("button", name="Stop").click()
+    still = visit(plan_page(), reduced_motion="reduce")
+    still.locator(".ds-choose-mechanism input[value=left]").check()
+    assert still.get_by_role("button", name="Animate").is_disabled()
+
+
+def test_contacts_are_drawn_of_what_is_placed(page):
+    page.get_by_label("Contacts").check()
+    contacts = shown()["contacts"]
+    assert page.locator(".ds-stage .ds-joint").count() == len(contacts)
+    slider(page).fill("2")
+    there = {0, *placed(2)}
+    expected = [c for c in contacts if there.issuperset(c["between"])]
+    assert 0 < len(expected) < len(contacts)
+    assert page.locator(".ds-stage .ds-joint").count() == len(expected)
+
+
+def test_joints_show_what_they_do(page):
+    page.locator(".ds-choose-mechanism input[value=right]").check()
+    page.get_by_label("What joints do").check()
+    kinds = [kind for contact in shown()["contacts"] for kind in contact["kinds"]["right"]]
+    marks = {
+        "closed": "dot", "opening": "ring", "sliding": "triangle", "opening and sliding": "square",
+    }  # fmt: skip
+    for kind, mark in marks.items():
+        assert page.locator(f".ds-stage .ds-mark-{mark}").count() == kinds.count(kind)
+    assert "opening and sliding" in page.locator(".ds-tools .ds-legend").inner_text()
+
+
+@pytest.mark.parametrize("case", ["self", "left", "right"])
+def test_forces_have_the_direction_and_the_ratio_of_the_data(page, case):
+    page.locator(f".ds-choose-forces input[value={case}]").check()
+    lines = page.eval_on_selector_all(
+        ".ds-stage .ds-forces line",
+        "all => all.map(l => ['x1', 'y1', 'x2', 'y2'].map(n => +l.getAttribute(n)))",
+    )
+    drawn = np.array([[x2 - x1, y1 - y2] for x1, y1, x2, y2 in lines])
+    totals = []
+    for contact in shown()["contacts"]:
+        x, y = contact["normal"]
+        total = (np.array(contact["forces"][case]) @ np.array([[x, y], [y, -x]])).sum(axis=0)
+        totals.append(total)
+    largest = max(np.hypot(*total) for total in totals)
+    totals = np.array([total for total in totals if np.hypot(*total) >= 1e-6 * largest])
+    factor = np.hypot(*drawn.T).max() / largest
+    assert drawn == pytest.approx(totals * factor, abs=0.3)
+    page.locator(".ds-force-scale").fill("2")
+    wide = "l => l.getAttribute('x2') - l.getAttribute('x1')"
+    again = page.eval_on_selector(".ds-stage .ds-forces line", wide)
+    assert again == pytest.approx(2 * drawn[0, 0], abs=0.4)
+    assert f"{100 * largest:.1f} % of the wall's weight" in page.locator(".ds-tools").inner_text()
+
+
+def test_forces_and_mechanisms_are_those_of_the_finished_wall(page):
+    slider(page).fill("2")
+    page.locator(".ds-choose-forces input[value=left]").check()
+    assert seen(page) == placed(shown()["steps"])
+    slider(page).fill("2")
+    assert page.locator(".ds-stage .ds-forces line").count() == 0
+    assert "those of the finished wall" in page.locator(".ds-note").inner_text()
+
+
+def test_the_chart_marks_the_step_and_has_a_table(page):
+    chart = page.locator(".ds-chart")
+    left = page.eval_on_selector(".ds-line-left", "l => l.getAttribute('points').split(' ').length")
+    assert left == sum(part["alpha_left"] is not None for part in shown()["parts"])
+    where = page.locator(".ds-now-line").get_attribute("x1")
+    slider(page).fill("2")
+    assert float(page.locator(".ds-now-line").get_attribute("x1")) < float(where)
+    page.locator(".ds-index").select_option("LLC")
+    assert page.locator(".ds-chart .ds-line-index").count() == 1
+    assert "LLC ends at" in chart.get_attribute("aria-label")
+    page.get_by_text("The same as a table").click()
+    rows = page.locator(".ds-as-table tbody tr")
+    until(lambda: rows.count() == shown()["steps"])  # browsers say that it is open a while later
+    assert rows.nth(0).inner_text().split("\t")[2] == f"{shown()['parts'][0]['alpha_left']:.3f}"
+    box = chart.bounding_box()
+    page.mouse.click(box["x"] + box["width"] - 11, box["y"] + 40)
+    assert seen(page) == placed(shown()["steps"])
+
+
+def test_results_stand_beside_masons(page):
+    text = page.get_by_role("region", name="Results").inner_text()
+    assert "Masons: 23.8 to 33.9 % in three walls of masons, of other stones." in text
+    page.get_by_text("What it was made from, settings, assumptions").click()
+    about = page.locator(".ds-about")
+    until(lambda: "stabilise." in about.inner_text())  # as with the table of the chart
+    assert "upper bound" in about.inner_text()
+
+
+def test_light_dark_and_the_choice_between_them(visit):
+    page = visit(plan_page(), color_scheme="dark")
+    colour = "getComputedStyle(document.querySelector('.ds-view')).backgroundColor"
+    dark = page.evaluate(colour)
+    button = page.get_by_role("button", name="Theme")
+    button.click()
+    assert page.evaluate(colour) == dark
+    button.click()
+    assert button.inner_text() == "Theme: light"
+    assert page.evaluate(colour) == "rgb(255, 255, 255)" != dark
+    page.emulate_media(color_scheme="light")
+    button.click()
+    assert page.evaluate(colour) == "rgb(255, 255, 255)"
+
+
+def test_nothing_is_wider_than_a_phone(visit):
+    page = visit(plan_page(), viewport={"width": 390, "height": 844})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    card, stage = (page.locator(name).bounding_box() for name in (".ds-card", ".ds-stage"))
+    assert card["y"] > stage["y"] + stage["height"]
+    page.locator(".ds-zoom").fill("3")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert page.evaluate("document.querySelector('.ds-stage').scrollWidth") > 900
+
+
+def test_print_shows_the_whole_wall_and_no_controls(visit, tmp_path):
+    pdfium = pytest.importorskip("pypdfium2")
+    path = write_report(tmp_path / "report.html", shown())
+    page = visit(path.read_text(encoding="utf-8"))
+    slider(page).fill("2")
+    page.emulate_media(media="print")
+    assert seen(page) == placed(shown()["steps"])
+    for name in (".ds-transport", ".ds-controls", ".ds-card", ".ds-theme"):
+        assert not page.locator(name).is_visible()
+    file = tmp_path / "report.pdf"
+    page.pdf(path=file, format="A4")
+    document = pdfium.PdfDocument(file)
+    text = [sheet.get_textpage().get_text_range() for sheet in document]
+    assert "Dry-stone wall from" in text[0]
+    assert "Lateral resistance" in text[0]
+    assert any("Steps of construction" in one for one in text)
+    drawn = text[0].split("step by step")[1].split("Load multipliers")[0].split()
+    steps = {str(part["number"]) for part in shown()["parts"] if part["kind"] == "stone"}
+    assert steps <= set(drawn)  # the numbers on the stones
+    image = np.asarray(document[0].render(scale=0.5).to_pil().convert("RGB"), int)
+    assert (np.ptp(image, axis=2) > 60).mean() > 0.02  # the stones are printed in colour
+    document.close()
+
+
+def test_the_report_marks_the_step_in_its_table(visit, tmp_path):
+    page = visit(write_report(tmp_path / "r.html", shown()).read_text(encoding="utf-8"))
+    slider(page).fill("3")
+    assert page.locator(".steps tr.now").get_attribute("id") == "step-3"
+
+
+def test_without_scripts_the_report_still_says_all(visit, tmp_path):
+    text = write_report(tmp_path / "r.html", shown()).read_text(encoding="utf-8")
+    page = visit(text, java_script_enabled=False)
+    assert "There is no picture of the wall." in page.locator("main").inner_text()
+    assert page.locator(".steps tbody tr").count() == shown()["steps"]
+
+
+def test_names_of_files_do_nothing(visit, tmp_path):
+    evil = '"><img src=x onerror="window.hit=1"></script><script>window.hit=1</script>'
+    data = json.loads(json.dumps(shown()))
+    data["title"] = data["summary"] = data["forces_words"] = evil
+    data["inputs"] = [[evil, evil]]
+    data["settings"] = [[evil, evil]]
+    data["notices"] = [{"code": "W1", "message": evil, "cure": evil}]
+    for part in data["parts"]:
+        part["words"] = part["side"] = part["name"] = part["colour"] = evil
+        part["crop"] = {"data": "javascript:window.hit=1", "box": [0, 0, 1, 1]}
+    for card in data["metrics"]:
+        card["name"] = card["value"] = card["sentence"] = card["masons"] = evil
+    data["mechanisms"]["left"]["words"] = evil
+    for text in (viewer_page(data), write_report(tmp_path / "r.html", data).read_text("utf-8")):
+        page = visit(text)
+        slider(page).fill("2")
+        page.locator(".ds-choose-mechanism input[value=left]").check()
+        page.locator("summary").last.click()
+        assert evil in page.locator("body").inner_text()
+        assert page.evaluate("window.hit") is None
+        assert page.locator("img").count() == 0
+
+
+def test_two_viewers_on_a_page_do_not_mix(visit):
+    text = (
+        f"<style>{viewer_style()}</style><div id=a></div><div id=b></div>"
+        f"<script type=module>{viewer_script()}\n"
+        f"const one = {json_in_html(shown())}, two = {json_in_html(shown('best'))};\n"
+        "window.a = mount(document.getElementById('a'), one, {step: 2});\n"
+        "window.b = mount(document.getElementById('b'), two);</script>"
+    )
+    page = visit(text)
+    page.locator("#a").get_by_label("Step of construction").fill("4")
+    page.locator("#b .ds-choose-mechanism input[value=left]").check()
+    assert page.evaluate("[a.step, b.step]") == [4, shown("best")["steps"]]
+    assert page.locator("#a .ds-part[transform]").count() == 0
+    assert page.locator("#b .ds-part[transform]").count() > 0
+    ids = page.eval_on_selector_all("[id]", "all => all.map(one => one.id)")
+    assert len(ids) == len(set(ids))
+    page.locator("#b .ds-stage").focus()
+    page.keyboard.press("Home")
+    assert page.evaluate("[a.step, b.step]") == [4, 0]
+    page.evaluate("a.destroy()")
+    assert page.locator(".ds-view").count() == 1
+
+
+def test_the_frame_of_a_notebook_grows_to_its_content(visit):
+    page = visit(f"<style>p {{color: red}}</style>{result('paper')._repr_html_()}")
+    frame = page.frame_locator("iframe")
+    frame.get_by_label("Step of construction").fill("1")
+    assert frame.locator(".ds-counter").inner_text().startswith("1 /")
+    until(lambda: page.evaluate("document.querySelector('iframe').clientHeight") > 700)
+
+
+def test_a_wall_that_was_not_planned_has_no_steps(visit):
+    labels = np.zeros((40, 60), np.uint32)
+    labels[20:, 5:25], labels[20:, 25:45], labels[:20, 15:35] = 7, 9, 12
+    model = model_from_labels(labels).model
+    data = view_of_wall(labels, model, lateral_resistance(model, mechanism=True), title="found")
+    page = visit(viewer_page(data))
+    assert page.get_by_label("Step of construction").count() == 0
+    assert page.locator(".ds-chart").count() == 0
+    page.locator(".ds-stage").focus()
+    page.keyboard.press("ArrowRight")
+    assert page.locator(".ds-card .ds-name").inner_text().endswith("Stone 7")
+    # The image begins left of the wall, so x is not from the wall's end.
+    assert "x 15.0 px, 10.0 px above the ground" in page.locator(".ds-card").inner_text()
+    # Without steps, keys that go to steps are the page's.
+    page.keyboard.press("Home")
+    assert page.locator(".ds-said").inner_text() == "Stone 7."
+    page.locator(".ds-choose-mechanism input[value=right]").check()
+    assert page.locator(".ds-part[transform]").count() > 0
+
+
+@pytest.mark.parametrize("width", [390, 1200])
+def test_marks_of_joints_are_as_large_on_a_phone(visit, width):
+    model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [2, 0, 2, 1], [1, 1, 2, 1]]})
+    wall = {1: np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]])}
+    wall |= {2: wall[1] + [2, 0], 3: wall[1] + [1, 1]}
+    data = view_of_wall(wall, model, lateral_resistance(model, mechanism=True))
+    page = visit(viewer_page(data), viewport={"width": width, "height": 800})
+    page.locator(".ds-kinds-on").check()
+    high = page.locator(".ds-stage .ds-mark").first.evaluate(
+        "one => one.getBoundingClientRect().height"
+    )
+    assert 2.5 < high < 8
+
+
+def test_numbers_of_a_tall_wall_are_as_large_as_of_a_long_one(visit):
+    model = model_from_json({"blocks_xywh": [[0, 0, 1, 2], [0, 2, 1, 2]]})
+    wall = {1: np.array([[0.0, 0], [1, 0], [1, 2], [0, 2]])}
+    wall[2] = wall[1] + [0, 2]
+    page = visit(viewer_page(view_of_wall(wall, model, lateral_resistance(model))))
+    high = page.locator(".ds-number").first.evaluate("one => one.getBoundingClientRect().height")
+    assert 12 < high < 26
+
+
+def test_everything_has_a_name_for_screen_readers(page):
+    unnamed = page.evaluate(
+        """() => [...document.querySelectorAll("button, input, select, [role=img], .ds-part")]
+          .filter(e => !(e.getAttribute("aria-label") || e.textContent.trim() || e.labels?.length))
+          .map(e => e.outerHTML.slice(0, 80))"""
+    )
+    assert unnamed == []
+    tabs = page.eval_on_selector_all(".ds-part", "all => all.filter(g => g.tabIndex === 0).length")
+    assert tabs == 1

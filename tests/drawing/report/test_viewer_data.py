@@ -1,0 +1,379 @@
+"""The viewer's data against mechanics and geometry computed anew from the data alone."""
+
+import base64
+import io
+import json
+from functools import cache
+
+import numpy as np
+import pytest
+import shapely
+from PIL import Image, ImageDraw
+
+import drystone as ds
+from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
+from drystone.drawing.assembly.read import read_assembly
+from drystone.drawing.palette import cluster_colour
+from drystone.drawing.report import view_of_assembly, view_of_result, view_of_wall, write_report
+from drystone.drawing.report.content import Card
+from drystone.drawing.report.crops import LONGEST_PX, photo_crops
+from drystone.drawing.report.masons import WALLS, masons_wall, masons_words
+from drystone.drawing.report.view_parts import PATTERNS, turned
+from drystone.drawing.report.view_statics import scaled_resistance
+from drystone.io.published_sets import SETS
+from drystone.model.plan import StoneStep
+from drystone.statics.limit import lateral_resistance
+from tests.drawing.report.walls import result, sha256, written
+
+CASES = [("best", None), ("best", 100.0), ("paper", None), ("paper", 100.0)]
+
+
+@cache
+def view(method="best", px_per_m=None):
+    return view_of_result(result(method, px_per_m))
+
+
+def polygon(part):
+    return shapely.Polygon(part["points"][0], part["points"][1:])
+
+
+def unbalanced(shown, case, load):
+    """Return the largest force and moment that is left on a block, in weights of the wall."""
+    blocks = result_blocks(shown)
+    weight = sum(area for area, _ in blocks.values())
+    size = max(shown["size"])
+    worst = 0.0
+    for block, (area, centre) in blocks.items():
+        total = np.array([load * area, -area]) / weight
+        moment = 0.0
+        for contact in shown["contacts"]:
+            if block not in contact["between"]:
+                continue
+            sign = 1.0 if contact["between"][0] == block else -1.0
+            x, y = contact["normal"]
+            for point, (n, t) in zip(contact["points"], contact["forces"][case], strict=True):
+                force = sign * (n * np.array([x, y]) + t * np.array([y, -x]))
+                arm = np.array(point) - centre
+                total += force
+                moment += arm[0] * force[1] - arm[1] * force[0]
+        worst = max(worst, *np.abs(total), abs(moment) / size)
+    return worst
+
+
+def result_blocks(shown):
+    return {
+        part["id"]: (polygon(part).area, np.array(polygon(part).centroid.coords[0]))
+        for part in shown["parts"]
+    }
+
+
+@pytest.mark.parametrize("px_per_m", [None, 100.0])
+def test_forces_are_in_equilibrium_with_weight_and_load(px_per_m):
+    shown = view("best", px_per_m)
+    left, right = (shown["mechanisms"][side]["alpha"] for side in ("left", "right"))
+    for case, load in (("left", -left), ("right", right), ("self", 0.0)):
+        assert unbalanced(shown, case, load) < 2e-4
+    # The check sees a load that is not the one of the forces.
+    assert unbalanced(shown, "right", 0.9 * right) > 2e-3
+
+
+@pytest.mark.parametrize(("method", "px_per_m"), CASES)
+def test_forces_stay_within_friction(method, px_per_m):
+    shown = view(method, px_per_m)
+    for contact in shown["contacts"]:
+        assert list(contact["forces"]) == ["self", "left", "right"]
+        for forces in contact["forces"].values():
+            for n, t in forces:
+                assert n >= -1e-6
+                assert abs(t) <= shown["mu"] * n + 2e-6
+
+
+@pytest.mark.parametrize(("method", "px_per_m"), CASES)
+def test_joints_do_what_the_velocities_say(method, px_per_m):
+    shown = view(method, px_per_m)
+    centres = {part["id"]: np.array(part["centroid"]) for part in shown["parts"]}
+
+    def at(velocities, block, point):
+        if block == 0 or str(block) not in velocities:
+            return np.zeros(2)
+        x, y, turning = velocities[str(block)]
+        arm = point - centres[block]
+        return np.array([x - turning * arm[1], y + turning * arm[0]])
+
+    for side in ("left", "right"):
+        velocities = shown["mechanisms"][side]["velocity"]
+        fastest = max(np.hypot(*v[:2]) for v in velocities.values())
+        seen = set()
+        for contact in shown["contacts"]:
+            normal = np.array(contact["normal"])
+            first, second = contact["between"]
+            for place, kind in zip(contact["points"], contact["kinds"][side], strict=True):
+                point = np.array(place)
+                apart = at(velocities, first, point) - at(velocities, second, point)
+                opening, slip = apart @ normal, abs(apart @ [normal[1], -normal[0]])
+                seen.add(kind)
+                assert opening > -1e-3 * fastest
+                if kind == "closed":
+                    assert np.hypot(*apart) < 1e-3 * fastest
+                if kind in ("sliding", "opening and sliding"):
+                    assert slip > 5e-5 * fastest
+                if kind in ("closed", "sliding"):
+                    assert opening == pytest.approx(shown["mu"] * slip, abs=1e-3 * fastest)
+        assert len(seen) > 1
+
+
+@pytest.mark.parametrize(("method", "px_per_m"), CASES)
+def test_parts_are_the_steps_of_the_plan(method, px_per_m):
+    shown, plan = view(method, px_per_m), result(method, px_per_m).plan
+    assert (shown["unit"], shown["size"]) == (plan.length_unit, [plan.width, plan.height])
+    assert [part["step"] for part in shown["parts"]] == [step.step for step in plan.steps]
+    colours = {}
+    for part, step in zip(shown["parts"], plan.steps, strict=True):
+        assert polygon(part).is_valid
+        assert part["neighbours"] == sorted(set(part["neighbours"]) - {part["id"]})
+        if isinstance(step, StoneStep):
+            assert (part["id"], part["angle_deg"]) == (
+                step.stone,
+                pytest.approx(step.angle_deg, abs=6e-4),
+            )
+            assert part["colour"] == cluster_colour(step.cluster)
+            assert part["pattern"] in PATTERNS
+            assert part["indices"] == pytest.approx(step.indices, abs=6e-5)
+            colours.setdefault(part["cluster"], set()).add((part["colour"], part["pattern"]))
+            # As it lies in the image, and turned by the angle: the same stone.
+            lies = shapely.Polygon(part["source"])
+            scale = (plan.px_per_m or 1.0) ** -1
+            about = tuple(step.source_centroid)
+            stands = shapely.affinity.rotate(lies, step.angle_deg, origin=about)
+            moved = shapely.affinity.scale(stands, scale, scale, origin=(0, 0))
+            shift = np.array(step.centroid) - np.array(step.source_centroid) * scale
+            moved = shapely.affinity.translate(moved, *shift)
+            assert moved.symmetric_difference(polygon(part)).area < 0.01 * polygon(part).area
+        else:
+            assert part["words"].startswith(f"Push wedge {step.id} in under stone {step.under}:")
+            holder = next(p for p in shown["parts"] if p["id"] == step.under)
+            assert holder["wedges"] == [step.id]
+            assert (part["number"], part["under"]) == (None, step.under)
+    assert all(len(looks) == 1 for looks in colours.values())
+
+
+def test_numbers_stay_numbers_and_equal_arguments_give_equal_data():
+    text = json.dumps(view("paper"), allow_nan=False)
+    assert json.loads(text) == view_of_result(result("paper")) == view("paper")
+    assert "-0.0," not in text
+    assert len(text) < 60_000
+
+
+@pytest.mark.parametrize(("method", "px_per_m"), [("best", None), ("best", 100.0)])
+def test_a_plan_in_memory_and_its_files_show_the_same(tmp_path, method, px_per_m):
+    made = view(method, px_per_m)
+    read = view_of_assembly(read_assembly(written(tmp_path, method, px_per_m)))
+    for name in made.keys() - {"timings", "notices", "contacts", "mechanisms"}:
+        ours, theirs = (sorted(v[name]) if name == "settings" else v[name] for v in (read, made))
+        assert ours == theirs, name
+    # Coordinates of blocks.json are rounded, so the solver may end elsewhere among equals.
+    assert [c["between"] for c in read["contacts"]] == [c["between"] for c in made["contacts"]]
+    for side in ("left", "right"):
+        ours, theirs = (v["mechanisms"][side]["alpha"] for v in (read, made))
+        assert ours == pytest.approx(theirs, abs=1e-4)
+
+
+def test_a_scale_told_afterwards_makes_metres(tmp_path):
+    folder = written(tmp_path)
+    px, m = (view_of_assembly(read_assembly(folder, px_per_m=s)) for s in (None, 50.0))
+    assert (px["unit"], m["unit"], m["size"]) == ("px", "m", [2.6, 1.0])
+    assert m["parts"][0]["centroid"] == pytest.approx([v / 50 for v in px["parts"][0]["centroid"]])
+    assert m["parts"][0]["source"] == px["parts"][0]["source"]
+    assert m["contacts"][3]["forces"]["left"] == pytest.approx(
+        np.array(px["contacts"][3]["forces"]["left"]), abs=1e-4
+    )
+
+
+def test_what_is_not_planned_is_shown_too():
+    labels = np.zeros((40, 60), np.uint32)
+    labels[20:, 5:25], labels[20:, 25:45], labels[:20, 15:35] = 7, 9, 12
+    model = model_from_labels(labels).model
+    cards = [Card("F_AV", "Interlocking", "33.30 %", "higher", "words")]
+    shown = view_of_wall(
+        labels, model, lateral_resistance(model, mechanism=True),
+        title="three <b>blocks</b>", cards=cards, wedges=[12], settings={"a": {"b": 1}},
+    )  # fmt: skip
+    assert shown["steps"] == 0
+    assert shown["summary"] == f"3 stones, {model.contact_count} contact points."
+    assert [(p["id"], p["kind"], p["number"]) for p in shown["parts"]] == [
+        (7, "stone", 7), (9, "stone", 9), (12, "wedge", 12),
+    ]  # fmt: skip
+    assert shown["parts"][2]["neighbours"] == [7, 9]
+    assert shown["parts"][0]["neighbours"] == [0, 9, 12]
+    assert polygon(shown["parts"][0]).bounds == (5.0, 0.0, 25.0, 20.0)
+    assert shown["settings"] == [["a.b", "1"]]
+    said = {card["name"]: card for card in shown["metrics"]}
+    masons = "23.8 to 33.9 % in three walls of masons, of other stones"
+    assert said["Interlocking"]["masons"] == masons
+    # Blocks 20 by 20 rock when their load is above 1; friction lets them slide before.
+    assert float(said["Lateral resistance"]["value"]) == pytest.approx(1.0, abs=1e-3)
+    json.dumps(shown, allow_nan=False)
+
+
+def test_a_wall_that_falls_has_a_mechanism_without_a_load():
+    model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [1.5, 1, 4, 1]]})
+    low, high = shapely.box(0, 0, 2, 1), shapely.box(1.5, 1, 5.5, 2)
+    wall = {1: np.array(low.exterior.coords), 2: np.array(high.exterior.coords)}
+    shown = view_of_wall(wall, model, lateral_resistance(model, mechanism=True), noun="block")
+    found = shown["mechanisms"]["left"]
+    assert (found["status"], found["alpha"]) == ("unstable", None)
+    assert found["words"].startswith("It does not stand under its own weight. ")
+    assert found["velocity"]["2"][1] < 0
+    assert all(contact["forces"] == {} for contact in shown["contacts"])
+    values = {card["name"]: card["value"] for card in shown["metrics"]}
+    assert values["Lateral resistance"] == "not defined"
+
+
+@pytest.mark.parametrize(
+    ("load_case", "said", "horizontal"),
+    [
+        ("tilting table", "Horizontal load to the left", True),
+        ("tilting table, tilted by 5°", "Load along the base to the left", True),
+        ("growing with height", "Horizontal load to the left", True),
+        ("point loads (1@0.5,2:1,0)", "Live load reversed", False),
+    ],
+)
+def test_only_a_tilting_table_is_called_one(load_case, said, horizontal):
+    model = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
+    wall = {1: np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]])}
+    resistance = lateral_resistance(model, mechanism=True)
+    shown = view_of_wall(wall, model, resistance, unit="units", load_case=load_case)
+    assert shown["mechanisms"]["left"]["load"] == said
+    plain = load_case == "tilting table"
+    assert any("as on a tilting table" in one for one in shown["assumptions"]) == plain
+    assert any(load_case in one for one in shown["assumptions"])
+    assert shown["dead_load"] == ("dead load" if "tilted" in load_case else "own weight")
+    assert f"under {shown['dead_load']} alone" in shown["forces_words"]
+    cards = {card["symbol"]: card["sentence"] for card in shown["metrics"]}
+    assert ("whole wall would slide" in cards["F_LR"]) == plain
+    assert (
+        "share of the wall's weight" in cards["\N{GREEK SMALL LETTER ALPHA} left"]
+    ) == horizontal
+
+
+def test_what_is_fixed_and_what_has_its_own_friction_is_said():
+    blocks = [
+        {"id": 1, "polygon": [[0, 0], [4, 0], [4, 1], [0, 1]], "fixed": True},
+        {"id": 2, "polygon": [[0, 1], [4, 1], [4, 3], [0, 3]], "held": ["turn"]},
+        {"id": 3, "polygon": [[0, 3], [4, 3], [4, 4], [0, 4]], "density": 2.4},
+    ]
+    wall = {block["id"]: np.array(block["polygon"], float) for block in blocks}
+    plain = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
+    owned = model_from_json({"blocks": blocks, "friction": [{"between": [2, 1], "mu": 0.4}]})
+    said = view_of_wall(wall, owned, lateral_resistance(owned, mechanism=True))["assumptions"]
+    assert said[-4:-2] == ["Fixed like the ground: 1.", "Held by guides: 2 (turn)."]
+    assert "densities" in said[-2]
+    assert "of their own" in said[-1]
+    one = {1: np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]])}
+    said = view_of_wall(one, plain, lateral_resistance(plain, mechanism=True))["assumptions"]
+    assert "tilting table" in said[-1]
+
+
+def test_a_wall_that_falls_is_not_said_to_be_pushed(tmp_path):
+    model = model_from_json({"blocks_xywh": [[0, 0, 2, 1], [1.5, 1, 4, 1]]})
+    wall = {1: np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]])}
+    wall[2] = wall[1] * [2, 1] + [1.5, 1]
+    resistance = lateral_resistance(model, mechanism=True)
+    view = view_of_wall(wall, model, resistance, noun="block", unit="units")
+    Image.new("RGB", (2, 2)).save(tmp_path / "mechanism_left.png")
+    path = write_report(tmp_path / "report.html", view, pictures=tmp_path)
+    page = path.read_text(encoding="utf-8")
+    assert "Horizontal load" not in page.split("<script", 1)[0]
+    assert "in units; 0 is the ground" in page
+    assert "<td>block</td>" in page
+
+
+def test_a_scaled_analysis_is_that_of_the_scaled_wall():
+    def analysed(scale):
+        blocks = [[0, 0, 6, 1], [2, 1, 1, 2], [2, 3, 1, 2]]
+        given = {"blocks_xywh": [[v * scale for v in block] for block in blocks]}
+        return lateral_resistance(model_from_json(given), mechanism=True)
+
+    known, found = analysed(0.01), scaled_resistance(analysed(1.0), 0.01)
+    assert found.right.alpha == pytest.approx(known.right.alpha)
+    assert found.right.forces == pytest.approx(known.right.forces, abs=1e-9)
+    ours, theirs = found.right.mechanism.velocity, known.right.mechanism.velocity
+    factor = np.abs(theirs).max() / np.abs(ours).max()
+    assert ours * factor == pytest.approx(theirs, rel=1e-6, abs=1e-6)
+
+
+def test_masons_walls_are_known_by_the_hash_of_their_stones(data_dir):
+    for wall in WALLS:
+        found = masons_wall(sha256(data_dir / "almeida" / f"{wall.name}.png"))
+        assert found == wall
+    assert masons_wall("0" * 64) is None
+
+
+def test_the_same_stones_are_said_to_be_so():
+    known = {file.name: file.sha256 for file in SETS["almeida"].files}
+    sha = known["almeida/PR.png"]
+    assert masons_words("F_AV", sha) == "29.5 % in the mason's own wall of these stones (PR)"
+    assert masons_words("F_AH", sha) == "1.50 % in the mason's own wall of these stones (PR)"
+    assert masons_words("F_LR", sha) is None
+
+
+@pytest.mark.parametrize("shrink", [1, 2])
+def test_crops_show_their_stone(tmp_path, shrink):
+    picture = Image.new("RGB", (400, 300), "#305030")
+    pen = ImageDraw.Draw(picture)
+    pen.rectangle((40, 60, 119, 99), fill="#e0e0e0")
+    pen.rectangle((300, 200, 399, 299), fill="#c02020")
+    path = tmp_path / "photo.jpg"
+    picture.resize((400 // shrink, 300 // shrink)).save(path, quality=95)
+    squares = {
+        5: np.array([[40, 200], [120, 200], [120, 240], [40, 240.0]]),
+        9: np.array([[300, 0], [400, 0], [400, 100], [300, 100.0]]),
+        11: np.array([[500, 0], [600, 0], [600, 100.0]]),
+    }
+    crops = photo_crops(path, (400.0, 300.0), squares)
+    assert sorted(crops) == [5, 9]
+    for stone, colour in ((5, (224, 224, 224)), (9, (192, 32, 32))):
+        data = crops[stone]["data"].removeprefix("data:image/jpeg;base64,")
+        image = Image.open(io.BytesIO(base64.b64decode(data)))
+        assert max(image.size) <= LONGEST_PX
+        middle = image.getpixel((image.width // 2, image.height // 2))
+        assert middle == pytest.approx(colour, abs=12)
+        x0, y0, x1, y1 = crops[stone]["box"]
+        low, high = squares[stone].min(axis=0), squares[stone].max(axis=0)
+        assert x0 <= low[0] < high[0] <= x1
+        assert y0 <= low[1] < high[1] <= y1
+        # Where the box says that the stone ends, the picture changes.
+        across = (low[0] - x0) / (x1 - x0) * image.width
+        if across > 4:
+            row = image.height // 2
+            assert image.getpixel((int(across) - 3, row)) == pytest.approx((48, 80, 48), abs=30)
+            assert image.getpixel((int(across) + 4, row)) == pytest.approx(colour, abs=30)
+
+
+def test_a_plan_with_a_photo_has_a_crop_for_every_stone(tmp_path):
+    source = result().plan.source
+    Image.new("RGB", (source["width_px"], source["height_px"])).save(tmp_path / "photo.jpg")
+    shown = view_of_result(result(), photo=tmp_path / "photo.jpg")
+    assert all(part["crop"]["data"].startswith("data:image/jpeg") for part in shown["parts"])
+    assert all(part["crop"] is None for part in view()["parts"])
+
+
+@pytest.mark.parametrize(
+    ("angle_deg", "said"),
+    [
+        (0.0, "not turned"),
+        (90.0, "turned 90.0° counter-clockwise"),
+        (-179.0, "turned 179.0° clockwise"),
+        (360.0, "not turned"),
+    ],
+)
+def test_turns_are_said_the_short_way(angle_deg, said):
+    assert turned(angle_deg) == said
+
+
+def test_a_result_shows_itself_in_a_notebook():
+    shown = result()._repr_html_()
+    assert shown.startswith('<iframe title="Dry-stone wall from ')
+    assert "\n" not in shown
+    assert ds.view(result())._repr_html_() == shown

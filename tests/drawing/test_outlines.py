@@ -1,0 +1,134 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from scipy import ndimage
+
+from drystone.drawing.outlines import (
+    label_regions,
+    pixel_loops,
+    polygon_regions,
+    stands_on_ground,
+    wall_outlines,
+    wall_regions,
+)
+from drystone.model.placement import Placement
+from drystone.model.pose import PosedStone
+from drystone.model.site import Site
+from drystone.model.stone import Stone
+from drystone.model.wall import Wall
+from tests.drawing import examples
+from tests.naive import plotting as naive
+from tests.verify.exact_examples import GAP_PX, exact_example
+
+masks = hnp.arrays(bool, st.tuples(st.integers(1, 7), st.integers(1, 7)))
+
+
+@given(masks)
+def test_loops_fill_exactly_the_mask(mask):
+    loops = pixel_loops(mask)
+    np.testing.assert_array_equal(naive.covered(loops, mask.shape), mask)
+    assert sum(naive.signed_area(loop) for loop in loops) == np.count_nonzero(mask)
+
+
+@given(masks)
+def test_every_corner_is_a_corner_and_pixels_that_touch_at_one_are_apart(mask):
+    loops = pixel_loops(mask)
+    pieces = ndimage.label(mask)[1]
+    assert sum(naive.signed_area(loop) > 0 for loop in loops) == pieces
+    for loop in loops:
+        steps = np.roll(loop, -1, axis=0) - loop
+        assert ((steps == 0).sum(axis=1) == 1).all()
+        assert ((steps == 0) != np.roll(steps == 0, 1, axis=0)).all()
+
+
+def test_loop_of_an_l_is_not_mirrored():
+    mask = np.array([[1, 0], [1, 1]], bool)
+    (loop,) = pixel_loops(mask)
+    expected = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]
+    assert loop.tolist() == expected
+
+
+def test_holes_are_clockwise():
+    mask = np.ones((3, 3), bool)
+    mask[1, 1] = False
+    assert sorted(naive.signed_area(loop) for loop in pixel_loops(mask)) == [-1, 9]
+
+
+@given(hnp.arrays(np.uint32, (5, 6), elements=st.sampled_from([0, 1, 300, 70_000, 2**32 - 1])))
+def test_regions_are_the_labels(labels):
+    regions = label_regions(labels)
+    assert [region.id for region in regions] == [int(i) for i in np.unique(labels) if i]
+    for region in regions:
+        mask = labels == region.id
+        rows, cols = np.nonzero(mask)
+        np.testing.assert_array_equal(naive.covered(region.loops, labels.shape), mask)
+        assert region.area_px == rows.size
+        assert region.centroid == pytest.approx((cols.mean() + 0.5, 5 - rows.mean() - 0.5))
+
+
+@pytest.mark.parametrize("px_per_m", [None, 200.0])
+def test_wall_outlines_are_in_the_units_of_the_plan(px_per_m):
+    wall = examples.wall(px_per_m)
+    outlines = wall_outlines(wall)
+    units = wall.site.units_per_px
+    assert list(outlines) == [3, 5, 8, 12, 300, examples.WEDGE]
+    # Outlines stay within half a pixel of the pixels' own corners.
+    np.testing.assert_allclose(outlines[3].min(axis=0), (0, 0), atol=0.51 * units)
+    np.testing.assert_allclose(outlines[3].max(axis=0), (14 * units, 8 * units), atol=0.51 * units)
+    box = np.array([[20, 6], [23, 6], [23, 8], [20, 8]]) * units
+    np.testing.assert_allclose(outlines[examples.WEDGE], box)
+
+
+def test_wall_outlines_turn_counter_clockwise_and_scale():
+    long = Stone(9, np.ones((2, 8), bool))
+    lean = np.array([[1, 1, 1], [0, 0, 1]], bool)
+    for stone, angle, size in ((long, 90.0, (2, 8)), (Stone(4, lean), 180.0, (3, 2))):
+        height, width = size[1] // 2 + 1, size[0] // 2 + 1
+        mask = np.ones((height, width), bool)
+        posed = PosedStone(stone, angle, 0.5, mask, (width / 2, height / 2))
+        wall = Wall.empty(Site(10, 10, scale=0.5)).add(Placement(posed, 10 - height, 3))
+        outline = wall_outlines(wall)[stone.id]
+        assert np.ptp(outline, axis=0) == pytest.approx(size, abs=0.05)
+    # The lone pixel of `lean` is at the lower right; half a turn takes it to the upper left.
+    top = outline[outline[:, 1] > outline[:, 1].max() - 0.1]
+    assert top[:, 0].max() < outline[:, 0].mean()
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e6])
+def test_regions_of_polygons_have_their_centroid_and_area(offset):
+    corners = np.array([[0, 0], [3, 0], [3, 1], [1, 1], [1, 3], [0, 3]], float) + offset
+    for polygon in (corners, corners[::-1], np.vstack([corners, corners[:1]])):
+        (region,) = polygon_regions({9: polygon})
+        assert region.id == 9
+        assert region.area_px == pytest.approx(5.0)
+        # Two rectangles: 3 x 1 and 1 x 2.
+        assert np.array(region.centroid) - offset == pytest.approx((1.1, 1.1))
+        assert len(region.loops[0]) == 6
+        assert naive.signed_area(region.loops[0] - offset) == pytest.approx(5.0)
+
+
+def test_regions_of_a_wall_stand_on_its_lowest_stone():
+    labels = np.array([[0, 5], [3, 5], [0, 0], [0, 0]], np.uint32)
+    regions = wall_regions(labels)
+    assert [region.centroid for region in regions] == [(0.5, 0.5), (1.5, 1.0)]
+    assert stands_on_ground(regions)
+    assert wall_regions(np.zeros((3, 3), np.uint32)) == ()
+    polygons = {5: np.array([[0, 2], [1, 2], [1, 3.0]]), 3: np.array([[4, 2], [5, 2], [5, 3.0]])}
+    assert [region.id for region in wall_regions(polygons)] == [3, 5]
+    assert not stands_on_ground(wall_regions(polygons))
+
+
+@pytest.mark.parametrize("unit", [1.0, 1 / 200.0])
+def test_stones_that_settled_stand_on_the_ground(unit):
+    """They hang .01 source px above it."""
+    wall = exact_example().wall
+    outlines = {block: loop * unit for block, loop in wall.outlines.blocks}
+    lowest = min(loop[:, 1].min() for loop in outlines.values())
+    assert lowest == pytest.approx(GAP_PX * unit, rel=1e-4)
+    assert stands_on_ground(wall_regions(outlines))
+    lifted = {block: loop + np.array([0, unit]) for block, loop in outlines.items()}
+    assert not stands_on_ground(wall_regions(lifted))
+    sunk = {block: loop - np.array([0, unit]) for block, loop in outlines.items()}
+    assert not stands_on_ground(wall_regions(sunk))

@@ -1,0 +1,92 @@
+"""The colours are checked against published models of colour vision, not against themselves."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from drystone.drawing.palette import (
+    CLUSTER_COLOURS,
+    PLAIN_COLOUR,
+    WEDGE_COLOUR,
+    cluster_colour,
+    relative_luminance,
+    rgb,
+    text_colour,
+)
+
+# Machado, Oliveira and Fernandes 2009, full severity, on linear RGB.
+VISION = {
+    "normal": np.eye(3),
+    "protan": np.array(
+        [
+            [0.152286, 1.052583, -0.204868],
+            [0.114503, 0.786281, 0.099216],
+            [-0.003882, -0.048116, 1.051998],
+        ]
+    ),
+    "deutan": np.array(
+        [
+            [0.367322, 0.860646, -0.227968],
+            [0.280085, 0.672501, 0.047413],
+            [-0.011820, 0.042940, 0.968881],
+        ]
+    ),
+    "tritan": np.array(
+        [
+            [1.255528, -0.076749, -0.178779],
+            [-0.078411, 0.930809, 0.147602],
+            [0.004733, 0.691367, 0.303900],
+        ]
+    ),
+}
+XYZ = np.array(
+    [
+        [0.4124564, 0.3575761, 0.1804375],
+        [0.2126729, 0.7151522, 0.0721750],
+        [0.0193339, 0.1191920, 0.9503041],
+    ]
+)
+
+
+def _lab(colour, vision):
+    part = np.array(rgb(colour))
+    linear = np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)
+    seen = np.clip(VISION[vision] @ linear, 0, 1)
+    ratio = XYZ @ seen / XYZ.sum(axis=1)
+    root = np.where(ratio > 216 / 24389, np.cbrt(ratio), (24389 / 27 * ratio + 16) / 116)
+    x, y, z = root
+    return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])
+
+
+@pytest.mark.parametrize("vision", VISION)
+def test_clusters_and_wedges_stay_apart_for_every_kind_of_vision(vision):
+    colours = (*CLUSTER_COLOURS, WEDGE_COLOUR)
+    gaps = [
+        np.linalg.norm(_lab(one, vision) - _lab(other, vision))
+        for one, other in combinations(colours, 2)
+    ]
+    assert len(CLUSTER_COLOURS) == 16
+    assert min(gaps) > 16
+
+
+def test_second_tone_follows_after_sixteen_clusters():
+    colours = [cluster_colour(number) for number in range(1, 33)]
+    assert len(set(colours)) == 32
+    for light, dark in zip(colours[:16], colours[16:], strict=True):
+        assert relative_luminance(dark) < relative_luminance(light)
+    assert cluster_colour(33) == cluster_colour(1)
+
+
+def test_clusters_are_numbered_from_one():
+    with pytest.raises(ValueError, match="from 1, not 0"):
+        cluster_colour(0)
+
+
+@pytest.mark.parametrize("colour", [*map(cluster_colour, range(1, 33)), WEDGE_COLOUR, PLAIN_COLOUR])
+def test_numbers_are_readable_on_every_colour(colour):
+    # WCAG 2 level AA asks for 4.5.
+    light, dark = sorted(
+        (relative_luminance(colour), relative_luminance(text_colour(colour))), reverse=True
+    )
+    assert (light + 0.05) / (dark + 0.05) >= 4.5
