@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from drystone.planner.profile import StepTime
-from drystone.plotting.growth import Claim, Series, plot_growth, step_time_panels
 from drystone.selection.sampling import Sampling
+from drystone_lab.pictures.growth import Claim, Series, plot_growth, step_time_panels
 from drystone_lab.table import Cell, Table
 from drystone_lab.timed_walls import (
     COLUMNS,

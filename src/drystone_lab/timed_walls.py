@@ -13,7 +13,7 @@ from drystone.model.stone import StoneSet
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Part, StepTime
 from drystone.planner.settings import PlannerSettings
-from drystone.plotting.growth import PowerLaw
+from drystone_lab.pictures.growth import PowerLaw
 from drystone_lab.table import Cell
 
 PARTS: tuple[Part, ...] = ("placement", "stabilisation", "contacts", "limit analysis", "indices")

@@ -9,8 +9,8 @@ from benchmarks import growth
 from drystone.model.site import Site
 from drystone.planner.profile import StepTime
 from drystone.planner.settings import method_settings
-from drystone.plotting.growth import PowerLaw
 from drystone_lab import timed_walls
+from drystone_lab.pictures.growth import PowerLaw
 from drystone_lab.table import BenchSettings
 from drystone_lab.time_tables import pixels_table, steps_table
 from drystone_lab.timed_walls import Planned, fitted, planned, rubble_task

@@ -37,8 +37,8 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, Item] | None" = None
     names = _names(arguments)
     folder = Path(arguments.output)
     make_folder(folder)
-    from drystone.report.experiments_page import PAGE  # noqa: PLC0415
     from drystone_lab.reproduce.driver import reproduce  # noqa: PLC0415 - see above
+    from drystone_lab.reproduce.page import PAGE  # noqa: PLC0415
     from drystone_lab.runs.workers import work_of  # noqa: PLC0415
 
     done = []

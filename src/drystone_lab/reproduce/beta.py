@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from drystone.plotting.groups import group_panels
+from drystone_lab.pictures.groups import group_panels
 from drystone_lab.reproduce import summary, wins
 from drystone_lab.reproduce.base import MASONS, PaperWall
 from drystone_lab.reproduce.item import Context, Item, Output, Picture

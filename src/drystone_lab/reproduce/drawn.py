@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from drystone.plotting.wall_grid import TitledWall
+from drystone_lab.pictures.wall_grid import TitledWall
 from drystone_lab.reproduce.item import Context
 from drystone_lab.reproduce.trials import Trials
 
@@ -10,7 +10,7 @@ WRITTEN = {"F_SF": ".3f", "F_AV": ".1f", "F_AH": ".2f", "F_LR": ".2f"}
 
 
 def titled_wall(context: Context, trials: Trials, title: str, which: int = 0) -> TitledWall:
-    """Return one wall of some trials for :func:`drystone.plotting.wall_grid.plot_walls`.
+    """Return one wall of some trials for :func:`drystone_lab.pictures.wall_grid.plot_walls`.
 
     Parameters
     ----------

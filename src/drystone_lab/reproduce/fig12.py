@@ -10,8 +10,8 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.drawing.pictures.stones import plot_labels
 from drystone.kernels.boundary import EMPTY, touching_edges
 from drystone.model.wall import Labels, Wall
-from drystone.plotting.interfaces import plot_blocks, plot_boundary_edges
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
+from drystone_lab.pictures.interfaces import plot_blocks, plot_boundary_edges
 from drystone_lab.reproduce.base import PR, PaperWall
 from drystone_lab.reproduce.item import Context, Item, Output, Picture
 from drystone_lab.table import Cell, Table

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
-from drystone.plotting.masonry import masonry_panel
-from drystone.plotting.sheet import sheet_of
+from drystone_lab.pictures.masonry import masonry_panel
+from drystone_lab.pictures.sheet import sheet_of
 from drystone_lab.reproduce.base import MASONS
 from drystone_lab.reproduce.item import Context, Item, Output, Picture
 from drystone_lab.reproduce.masons_wall import (

@@ -6,13 +6,13 @@ from statistics import median
 from drystone.contacts.blocks import model_from_labels
 from drystone.drawing.pictures.mechanism import plot_mechanism
 from drystone.model.wall import Labels
-from drystone.plotting.groups import group_panels
-from drystone.plotting.wall_grid import plot_walls
 from drystone.statics.failing.mechanism import describe_mechanism
 from drystone.statics.flow.nonassociative import NonassociativeResult, nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus
+from drystone_lab.pictures.groups import group_panels
+from drystone_lab.pictures.wall_grid import plot_walls
 from drystone_lab.reproduce import summary
 from drystone_lab.reproduce.base import PR, PaperWall
 from drystone_lab.reproduce.drawn import titled_wall

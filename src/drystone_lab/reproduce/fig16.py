@@ -4,8 +4,8 @@ from collections import Counter
 from collections.abc import Sequence
 from statistics import median
 
-from drystone.plotting.groups import group_panels
-from drystone.plotting.wall_grid import plot_walls
+from drystone_lab.pictures.groups import group_panels
+from drystone_lab.pictures.wall_grid import plot_walls
 from drystone_lab.reproduce import summary
 from drystone_lab.reproduce.base import PR, PaperWall
 from drystone_lab.reproduce.drawn import titled_wall

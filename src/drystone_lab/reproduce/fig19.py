@@ -11,8 +11,8 @@ from drystone.drawing.palette import OUTLINE_COLOUR
 from drystone.drawing.pictures.wall import plot_wall
 from drystone.model.placement import Wedge
 from drystone.model.wall import Wall
-from drystone.plotting.sheet import Panel, sheet_of
-from drystone.plotting.wall_grid import wall_aspect
+from drystone_lab.pictures.sheet import Panel, sheet_of
+from drystone_lab.pictures.wall_grid import wall_aspect
 from drystone_lab.reproduce.base import IR, LIU_5, PaperWall
 from drystone_lab.reproduce.drawn import in_words
 from drystone_lab.reproduce.item import Context, Item, Output, Picture

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from statistics import median
 
-from drystone.plotting.groups import plot_two_figures
+from drystone_lab.pictures.groups import plot_two_figures
 from drystone_lab.reproduce import summary, wins
 from drystone_lab.reproduce.base import IR, LIU_5, PaperWall, coarser
 from drystone_lab.reproduce.item import Context, Item, Output, Picture

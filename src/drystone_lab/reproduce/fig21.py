@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from drystone.plotting.groups import group_panels
-from drystone.plotting.wall_grid import plot_walls
+from drystone_lab.pictures.groups import group_panels
+from drystone_lab.pictures.wall_grid import plot_walls
 from drystone_lab.reproduce import summary, wins
 from drystone_lab.reproduce.base import MASONS, TWO_SIDED, PaperWall
 from drystone_lab.reproduce.drawn import titled_wall

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
-from drystone.plotting.groups import TWO_IN, plot_two_figures
-from drystone.plotting.noise import NoiseNames, NoisePanel, noise_panels
-from drystone.plotting.wall_grid import plot_walls
+from drystone_lab.pictures.groups import TWO_IN, plot_two_figures
+from drystone_lab.pictures.noise import NoiseNames, NoisePanel, noise_panels
+from drystone_lab.pictures.wall_grid import plot_walls
 from drystone_lab.reproduce.findings import findings_table, sentences
 from drystone_lab.reproduce.item import Context, Item, Output, Picture
 from drystone_lab.reproduce.noise_claims import findings

@@ -6,8 +6,8 @@ from statistics import median
 
 from scipy.stats import binomtest
 
-from drystone.plotting.groups import group_panels
-from drystone.plotting.wall_grid import plot_walls
+from drystone_lab.pictures.groups import group_panels
+from drystone_lab.pictures.wall_grid import plot_walls
 from drystone_lab.reproduce.base import TWO_SIDED, PaperWall
 from drystone_lab.reproduce.findings import LEVEL, Finding, findings_table, sentences
 from drystone_lab.reproduce.item import Context, Item, Output, Picture

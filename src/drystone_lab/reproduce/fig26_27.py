@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from scipy.stats import mannwhitneyu
 
 from drystone.generate.fourier import FourierSettings, fourier_descriptors
-from drystone.plotting.groups import TWO_IN, plot_two_figures
-from drystone.plotting.wall_grid import plot_walls
+from drystone_lab.pictures.groups import TWO_IN, plot_two_figures
+from drystone_lab.pictures.wall_grid import plot_walls
 from drystone_lab.reproduce.base import TWO_SIDED
 from drystone_lab.reproduce.findings import (
     LEVEL,

@@ -6,8 +6,8 @@ from dataclasses import replace
 from matplotlib.figure import Figure
 
 from drystone.planner.settings import method_settings
-from drystone.plotting.growth import GROWTH_IN
-from drystone.plotting.wall_grid import plot_walls
+from drystone_lab.pictures.growth import GROWTH_IN
+from drystone_lab.pictures.wall_grid import plot_walls
 from drystone_lab.reproduce.base import PR, PaperWall
 from drystone_lab.reproduce.findings import Finding, findings_table
 from drystone_lab.reproduce.item import Context, Item, Output, Picture

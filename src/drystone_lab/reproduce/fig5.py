@@ -11,8 +11,8 @@ from scipy.cluster.hierarchy import ward
 from drystone.clusters import ClusterSettings, cluster_stones, stone_features
 from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
-from drystone.plotting.features import COUNTS_IN, plot_counts, plot_features
 from drystone.poses import PoseBook
+from drystone_lab.pictures.features import COUNTS_IN, plot_counts, plot_features
 from drystone_lab.reproduce.base import MASONS, PR, PaperWall
 from drystone_lab.reproduce.item import Context, Item, Output, Picture
 from drystone_lab.table import Cell, Table

@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 from matplotlib.figure import Figure
 
-from drystone.plotting.action import Mark, plot_action
+from drystone_lab.pictures.action import Mark, plot_action
 from drystone_lab.reproduce.base import PR, PaperWall
 from drystone_lab.reproduce.construction import Moment, construction
 from drystone_lab.reproduce.item import Context, Item, Output, Picture

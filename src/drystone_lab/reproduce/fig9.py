@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from drystone.plotting.support import Standing, plot_standing, window_around
+from drystone_lab.pictures.support import Standing, plot_standing, window_around
 from drystone_lab.reproduce.base import PR, PaperWall
 from drystone_lab.reproduce.construction import construction
 from drystone_lab.reproduce.item import Context, Item, Output, Picture

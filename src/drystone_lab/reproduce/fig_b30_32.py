@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from drystone.model.site import working_px
-from drystone.plotting.wall_grid import plot_walls
+from drystone_lab.pictures.wall_grid import plot_walls
 from drystone_lab.reproduce.base import MASONS, PR, TWO_SIDED, PaperWall, R, coarser
 from drystone_lab.reproduce.drawn import titled_wall
 from drystone_lab.reproduce.fig16 import SAMPLINGS, sampled

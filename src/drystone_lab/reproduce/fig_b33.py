@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 
-from drystone.plotting.wall_grid import plot_walls
+from drystone_lab.pictures.wall_grid import plot_walls
 from drystone_lab.reproduce.base import TWO_SIDED, PaperWall
 from drystone_lab.reproduce.item import Context, Item, Output, Picture
 from drystone_lab.reproduce.summary import METRICS, metric_cells

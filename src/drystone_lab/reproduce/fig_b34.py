@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from drystone.model.wall import Wall
-from drystone.plotting.wall_grid import plot_walls
+from drystone_lab.pictures.wall_grid import plot_walls
 from drystone_lab.reproduce.base import TWO_SIDED
 from drystone_lab.reproduce.courses import OVERLAP, Courses, bricks_of, courses_of
 from drystone_lab.reproduce.item import Context, Item, Output, Picture

@@ -7,10 +7,10 @@ from typing import Any
 
 from drystone.errors import DrystoneError, UsageError
 from drystone.io.folder_lock import has_files
-from drystone.report.experiments_page import PAGE, Miss, write_item_page, write_page
 from drystone.whole_files import write_whole
 from drystone_lab.reproduce.files import files_of, write_picture, write_tables
 from drystone_lab.reproduce.item import Item, Output
+from drystone_lab.reproduce.page import PAGE, Miss, write_item_page, write_page
 from drystone_lab.reproduce.request import Request
 from drystone_lab.runs.store import RunStore
 

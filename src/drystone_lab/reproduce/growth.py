@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from drystone.clusters import cluster_stones
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.planner.settings import method_settings
-from drystone.plotting.growth import Series, plot_growth
 from drystone.poses import PoseBook
 from drystone.selection.sampling import Sampling
+from drystone_lab.pictures.growth import Series, plot_growth
 from drystone_lab.reproduce.findings import Finding, findings_table
 from drystone_lab.reproduce.item import Context, Item, Output, Picture
 from drystone_lab.reproduce.timing import how_timed, repeats

@@ -11,8 +11,8 @@ from drystone.indices.neighbour_height import left_neighbour, neighbour_height_r
 from drystone.indices.shape_factor import shape_factor
 from drystone.model.landscape import Box, view_box
 from drystone.model.pose import PosedStone
-from drystone.plotting.action import Action, Beside
 from drystone.stabilise.stabilise import falls_to
+from drystone_lab.pictures.action import Action, Beside
 from drystone_lab.reproduce.construction import Construction, Moment
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from drystone.kernels.raster import Mask
 from drystone.model.wall import Labels
-from drystone.plotting.action import Action
+from drystone_lab.pictures.action import Action
 
 
 def recounted(action: Action, name: str) -> float | None:

@@ -6,10 +6,10 @@ from matplotlib.axes import Axes
 
 from drystone.clusters import cluster_stones
 from drystone.drawing.pictures.stones import plot_stones
-from drystone.plotting.masonry import masonry_panel
-from drystone.plotting.sheet import EMPTY, Panel, sheet_of
-from drystone.plotting.wall_grid import wall_aspect, wall_panel
 from drystone.poses import PoseBook
+from drystone_lab.pictures.masonry import masonry_panel
+from drystone_lab.pictures.sheet import EMPTY, Panel, sheet_of
+from drystone_lab.pictures.wall_grid import wall_aspect, wall_panel
 from drystone_lab.reproduce.drawn import titled_wall
 from drystone_lab.reproduce.item import Context, Picture
 from drystone_lab.reproduce.table2_rows import FiveWall

@@ -3,10 +3,10 @@
 from dataclasses import dataclass, replace
 
 from drystone.model.placement import Wedge
-from drystone.plotting.support import Standing
 from drystone.stabilise.rotate import rotate_to_rest
 from drystone.stabilise.stabilise import WedgeStock, make_stable
 from drystone.stabilise.support import Pose, falling_side, support_polyline
+from drystone_lab.pictures.support import Standing
 from drystone_lab.reproduce.construction import Construction, Moment
 
 

@@ -8,8 +8,8 @@ from drystone.drawing.canvas import draw_block, draw_ground, fit_axes
 from drystone.drawing.outlines import label_regions
 from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
 from drystone.model.wall import Labels
-from drystone.plotting.sheet import Panel
-from drystone.plotting.wall_grid import wall_aspect
+from drystone_lab.pictures.sheet import Panel
+from drystone_lab.pictures.wall_grid import wall_aspect
 
 
 def plot_masonry(

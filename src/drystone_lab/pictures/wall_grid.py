@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from drystone.drawing.pictures.wall import plot_wall
 from drystone.model.wall import Wall
-from drystone.plotting.sheet import Panel, sheet_of
+from drystone_lab.pictures.sheet import Panel, sheet_of
 
 TitledWall = tuple[str, Wall, Mapping[int, int] | None]
 """What is written above a wall, the wall, and the cluster of each of its stones by id."""

@@ -3,7 +3,7 @@ import pytest
 
 from drystone.drawing.files import save
 from drystone.planner.profile import StepTime
-from drystone.plotting.growth import (
+from drystone_lab.pictures.growth import (
     LINES,
     PART_COLOURS,
     REST,

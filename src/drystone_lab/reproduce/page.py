@@ -8,11 +8,11 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from drystone.drawing.report.embedding import HERE
-from drystone.report.experiments_words import about, heading, lead, made_rows, part, shown
 from drystone.whole_files import write_whole
+from drystone_lab.reproduce.page_words import about, heading, lead, made_rows, part, shown
 
 PAGE = "index.html"
-TEMPLATE = "experiments.html"
+TEMPLATE = "page.html"
 
 LONG = 30
 """Tables of more rows are folded up."""

@@ -7,8 +7,8 @@ from matplotlib.colors import to_hex
 from drystone.model.landscape import Box
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
-from drystone.plotting import action as drawing
-from drystone.plotting.action import Action, Beside, plot_action
+from drystone_lab.pictures import action as drawing
+from drystone_lab.pictures.action import Action, Beside, plot_action
 
 LABELS = np.zeros((10, 20), np.uint32)
 LABELS[6:, :6] = 1

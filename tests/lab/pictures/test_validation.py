@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from drystone.drawing.files import save
-from drystone.plotting.validation import COLOURS, MARKERS, Prediction, plot_predictions
+from drystone_lab.pictures.validation import COLOURS, MARKERS, Prediction, plot_predictions
 
 POINTS = [
     Prediction("granite", "turns", 40.0, 30.0, 35.0, 50.0),

@@ -4,8 +4,8 @@ import pytest
 from drystone.model.placement import Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
-from drystone.plotting.support import Standing, plot_standing, window_around
 from drystone.stabilise.support import Support
+from drystone_lab.pictures.support import Standing, plot_standing, window_around
 
 LABELS = np.zeros((10, 20), np.uint32)
 LABELS[6:, :8] = 1

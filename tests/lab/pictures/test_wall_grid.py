@@ -7,9 +7,9 @@ import pytest
 
 from drystone.drawing import plot_wall, save
 from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
-from drystone.plotting.masonry import masonry_panel, plot_masonry
-from drystone.plotting.sheet import sheet_of
-from drystone.plotting.wall_grid import plot_walls, wall_aspect
+from drystone_lab.pictures.masonry import masonry_panel, plot_masonry
+from drystone_lab.pictures.sheet import sheet_of
+from drystone_lab.pictures.wall_grid import plot_walls, wall_aspect
 from tests.drawing.examples import CLUSTERS, WEDGE, wall
 
 
