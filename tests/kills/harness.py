@@ -1,0 +1,310 @@
+"""Commands that are killed at some moment: nothing runs on, nothing is half, nothing is lost.
+
+A command runs in a session of its own, so whatever it starts is found by the number of the session.
+"""
+
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from PIL import Image
+
+from drystone.cli import main
+from drystone.io.checkpoint import CHECKPOINT
+
+SIGNALS = ("INT", "TERM", "KILL")
+
+PATIENCE_S = 10.0
+"""Whatever a killed command has started ends within this time,"""
+
+ENDING_S = 120.0
+"""and the command itself within this after INT and TERM, on a machine that is busy too."""
+
+KEPT_S = 5.0
+"""What a search with a time limit has found so long before it is killed is kept."""
+
+LOGGED = """
+import sys, time
+from drystone.cli import keeping, main
+from drystone.planner.events import Callbacks
+
+log, pause = open(sys.argv[1], "a", buffering=1), sys.argv[2]
+
+def wait_at(place):
+    if place == pause:
+        open(sys.argv[1] + ".paused", "w").close()
+        time.sleep(1000.0)
+
+def on_walls(_, found):
+    log.write(f"{time.time()} {found.merit!r}\\n")
+    wait_at(f"wall {found.walls}")
+
+Callbacks.on_walls, Callbacks.on_step = on_walls, lambda _, step: wait_at(f"stone {step.number}")
+if pause:
+    keeping.EVERY_S, keeping.SHARE = 0.0, 1.0
+sys.exit(main(sys.argv[3:]))
+"""
+"""The command line, with a log of when which merit was the best.
+
+It may wait somewhere to be killed, and then keeps all that it finds at once.
+"""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A command whose runs are killed.
+
+    Parameters
+    ----------
+    name : str
+        In tables.
+    arguments : tuple of str
+        Of the command, ``{folder}`` for where it writes.
+    again : tuple of str
+        What is added to go on.
+    result : callable
+        Reads from the folder what an uninterrupted run must give too; None for a search that the
+        clock ends.
+    stones : Path or None
+        Of the plan in the folder; None when there is none.
+    pause : str
+        Where it waits to be killed, as ``"stone 3"`` or ``"wall 7"``; nowhere when it is empty.
+    """
+
+    name: str
+    arguments: tuple[str, ...]
+    again: tuple[str, ...]
+    result: Callable[[Path], Any] | None
+    stones: Path | None = None
+    pause: str = ""
+
+    def told(self, folder: Path, *more: str) -> list[str]:
+        """Return the arguments of the command that writes into a folder."""
+        return [one.replace("{folder}", str(folder)) for one in (*self.arguments, *more)]
+
+    def command(self, folder: Path, *more: str) -> list[str]:
+        """Return the same with its program."""
+        log = str(folder.with_suffix(".log"))
+        return [sys.executable, "-c", LOGGED, log, self.pause, *self.told(folder, *more)]
+
+    def waits(self, folder: Path) -> bool:
+        """Say whether the command waits to be killed."""
+        return folder.with_suffix(".log.paused").exists()
+
+
+@dataclass
+class Killed:
+    """What became of a run that was killed."""
+
+    case: str
+    sent: str
+    code: int
+    faults: list[str] = field(default_factory=list)
+
+
+def plan_bytes(folder: Path) -> bytes:
+    """Return the plan."""
+    return (folder / "plan.json").read_bytes()
+
+
+def outcomes(folder: Path) -> Mapping[str, Any]:
+    """Return the runs that are kept, without their times."""
+    found = {}
+    for path in sorted((folder / "runs").glob("*.json")):
+        data = json.loads(path.read_bytes())
+        found[path.name] = data["figures"], data["plan"]
+    return found
+
+
+def item(name: str) -> Callable[[Path], Any]:
+    """Return what reads an item of `reproduce`, its runs included, without times."""
+
+    def read(folder: Path) -> Any:
+        record = json.loads((folder / name / f"{name}.json").read_bytes())
+        return outcomes(folder), record["ours"], record["tables"]
+
+    return read
+
+
+def run_whole(case: Case, folder: Path) -> float:
+    """Let a command end by itself, and return how long it took, s."""
+    begun = time.monotonic()
+    done = subprocess.run(case.command(folder), capture_output=True, text=True, check=False)  # noqa: S603
+    assert done.returncode in (0, 4), done.stderr
+    return time.monotonic() - begun
+
+
+def called(arguments: Sequence[str]) -> tuple[int, str]:
+    """Call the command line in this process; return its exit code and what it said."""
+    words = io.StringIO()
+    with redirect_stdout(words), redirect_stderr(words):
+        return main(arguments), words.getvalue()
+
+
+def killed(
+    case: Case, sent: str, folder: Path, moment: Callable[[], bool], *, group: bool
+) -> Killed:
+    """Run a command, kill it, and see what is left.
+
+    Parameters
+    ----------
+    case : Case
+        What is run.
+    sent : {"INT", "TERM", "KILL"}
+        The signal.
+    folder : Path
+        Where it writes; not there yet.
+    moment : callable
+        Asked again and again whether it is time to.
+    group : bool
+        Whether the signal goes to all of its processes, as from a terminal or a supervisor.
+    """
+    with folder.with_suffix(".txt").open("w") as words:
+        process = subprocess.Popen(  # noqa: S603 - our own code
+            case.command(folder), stdout=words, stderr=words, start_new_session=True
+        )
+        while process.poll() is None and not moment():
+            time.sleep(0.01)
+        at = time.time()
+        number = getattr(signal, f"SIG{sent}")
+        if process.poll() is None:
+            (os.killpg if group else os.kill)(process.pid, number)
+        try:
+            code = process.wait(ENDING_S)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            return Killed(case.name, sent, 0, ["does not end"])
+    found = Killed(case.name, sent, code)
+    left = _left_after(process.pid)
+    if left:
+        found.faults.append(f"orphans: {left}")
+        os.killpg(process.pid, signal.SIGKILL)
+    found.faults += _odd_end(sent, code, folder.with_suffix(".txt").read_text())
+    found.faults += list(invalid(case, folder))
+    folder.with_suffix(".at").write_text(repr(at))
+    return found
+
+
+def _left_after(session: int) -> list[str]:
+    """Return the processes of a session that are at work after some patience."""
+    until = time.monotonic() + PATIENCE_S
+    while True:
+        said = subprocess.run(
+            ["ps", "-eo", "sess=,stat=,args="],  # noqa: S607
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.splitlines()
+        rows = [line.split(maxsplit=2) for line in said]
+        left = [row[-1] for row in rows if row[0] == str(session) and row[1][0] != "Z"]
+        if not left or time.monotonic() > until:
+            return left
+        time.sleep(0.2)
+
+
+def _odd_end(sent: str, code: int, words: str) -> Iterator[str]:
+    """Say what a command must not end with; one that had ended, or not begun, is its own."""
+    number = getattr(signal, f"SIG{sent}")
+    ends = {"INT": 130, "TERM": 143}
+    if code not in (0, 4, -number, ends.get(sent, -number)):
+        yield f"exit code {code}: {words[-300:]}"
+    if code >= 0 and "Traceback" in words:
+        yield f"traceback: {words[-300:]}"
+
+
+def invalid(case: Case, folder: Path) -> Iterator[str]:
+    """Say what is half in a folder, or no plan that `check` accepts."""
+    for path in sorted(folder.rglob("*")) if folder.exists() else ():
+        if path.name.startswith(".") or path.is_dir():
+            continue  # what a killed run was writing, and its lock
+        try:
+            if path.suffix == ".json":
+                json.loads(path.read_bytes())
+            elif path.suffix in (".png", ".gif"):
+                with Image.open(path) as picture:
+                    picture.load()
+            elif path.suffix == ".html" and not path.read_text().rstrip().endswith("</html>"):
+                yield f"half: {path.name}"
+        except (OSError, ValueError) as error:
+            yield f"half: {path.name}: {error}"
+    if case.stones is not None and (folder / "plan.json").exists():
+        code, words = called(["check", str(folder), "--stones", str(case.stones)])
+        if code != 0:
+            yield f"check: {words}"
+
+
+def lost(case: Case, folder: Path, whole: Any) -> Iterator[str]:
+    """Go on with a run that was killed, and say what an uninterrupted one has and it has not."""
+    if case.result is not None:
+        code, words = called(case.told(folder, *case.again))
+    else:
+        log = folder.with_suffix(".log")
+        before = _merits(log)
+        done = subprocess.run(  # noqa: S603 - our own code
+            case.command(folder, *case.again), capture_output=True, text=True, check=False
+        )
+        code, words = done.returncode, done.stderr
+    if code not in (0, 4) or "Traceback" in words:
+        yield f"does not go on: {code} {words[-300:]}"
+        return
+    hidden = [one.name for one in folder.rglob(".*")]
+    if hidden or (folder / CHECKPOINT).exists():
+        yield f"left behind: {hidden or CHECKPOINT}"
+    if case.result is not None:
+        if case.result(folder) != whole:
+            yield "another result"
+        return
+    yield from invalid(case, folder)
+    at = float(folder.with_suffix(".at").read_text())
+    kept = [merit for when, merit in before if when <= at - KEPT_S]
+    after = _merits(log)[len(before) :]
+    if kept and after and after[0][1] < max(kept):
+        yield f"merit {after[0][1]}, and {max(kept)} was found {KEPT_S} s before"
+
+
+def _merits(log: Path) -> list[tuple[float, float]]:
+    lines = log.read_text().splitlines() if log.exists() else []
+    return [(float(when), float(merit)) for when, merit in (line.split() for line in lines)]
+
+
+def made_stones(path: Path, count: int, width: int, height: int, courses: int) -> Path:
+    """Write a generated stone set."""
+    settings = {"width_px": width, "height_px": height, "courses": courses}
+    more = [word for name, value in settings.items() for word in ("--set", f"{name}={value}")]
+    command = [sys.executable, "-m", "drystone", "generate", "rubble", "--count", str(count)]
+    subprocess.run([*command, "-o", str(path), *more], check=True, stdout=subprocess.DEVNULL)  # noqa: S603
+    return path
+
+
+def cases(folder: Path) -> Sequence[Case]:
+    """Return the commands, on generated stones that are written to a folder."""
+    few = made_stones(folder / "few.png", 12, 130, 50, 3)
+    many = made_stones(folder / "many.png", 60, 700, 300, 6)
+    search = ("plan", str(few), "--wall", "130x50", "--scale", "1", "--seed", "1", "-o", "{folder}")
+    paper = ("plan", str(many), "--wall", "400x160", "--scale", "1", "--method", "paper")
+    bench = ("bench", "--suite", "bricks", "--policy", "paper", "random", "--quick", "--jobs", "2")
+    go_on = ("--resume",)
+    return (
+        Case("paper", (*paper, "-o", "{folder}"), go_on, plan_bytes, many),
+        Case("best, budget", (*search, "--budget", "60"), go_on, plan_bytes, few),
+        Case("best, time", (*search, "--time", "10"), go_on, None, few),
+        Case(
+            "best, jobs 2", (*search, "--budget", "60", "--jobs", "2"), go_on, plan_bytes, few
+        ),
+        Case("bench", (*bench, "--store", "{folder}"), (), outcomes),
+        Case(
+            "reproduce",
+            ("reproduce", "figB34", "--quick", "-o", "{folder}", "--jobs", "2"),
+            (),
+            item("figB34"),
+        ),
+    )  # fmt: skip
