@@ -5,7 +5,7 @@ BIN := .venv/bin
 KERNELS := $(shell grep -rl --include=*.py "import cython" src/drystone/kernels; find src/drystone/kernels -name "*.p[yx][xd]")
 SOURCES := pyproject.toml requirements.lock setup.py $(KERNELS)
 
-.PHONY: demo test lint bench docs lock clean
+.PHONY: demo test lint bench fuzz docs lock clean
 
 demo: .venv/demo.stamp          ## plan a generated stone set and say where the picture is
 	$(BIN)/drystone demo -o demo --overwrite
@@ -21,6 +21,9 @@ lint: .venv/dev.stamp
 
 bench: .venv/dev.stamp          ## times beside slow twins; QUICK=1 takes a minute instead of ten
 	$(BIN)/python -m benchmarks $(if $(QUICK),--quick)
+
+fuzz: .venv/dev.stamp           ## read damaged files of all formats: TIME=600 seconds, or COUNT=500000; SEED
+	$(BIN)/python -m fuzz --keep fuzz-found $(if $(SEED),--seed $(SEED)) $(if $(COUNT),--count $(COUNT),--time $(or $(TIME),600))
 
 docs: .venv/docs.stamp          ## pages with an executed gallery in docs/_build/html
 	$(BIN)/sphinx-build -b html -n -W --keep-going -q docs docs/_build/html
@@ -46,4 +49,4 @@ lock:                           ## renew requirements.lock (needs uv)
 		--no-header --output-file requirements.lock pyproject.toml
 
 clean:
-	rm -rf .venv demo build dist docs/_build docs/auto_gallery src/*.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv demo fuzz-found build dist docs/_build docs/auto_gallery src/*.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -1,0 +1,131 @@
+"""Readers with defects, for ``python -m tests.fuzz.planted`` to find: options as of the fuzzer."""
+
+import faulthandler
+import logging
+import os
+import pickle
+import re
+import socket
+import subprocess
+import sys
+import time
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+from fuzz.cli import main
+from fuzz.driver import Format
+
+from drystone.errors import InputError
+
+OUTSIDE = Path(__file__).with_name("written.txt")
+
+
+def fine(_: Path) -> None:
+    """Nothing is wrong."""
+
+
+def refuses(path: Path) -> None:
+    raise InputError("E106", f"{len(path.read_bytes())} bytes are damaged.")
+
+
+def raises(_: Path) -> None:
+    raise LookupError("a foreign error")
+
+
+def leaves(_: Path) -> None:
+    sys.exit(1)
+
+
+def spins(_: Path) -> None:
+    while True:
+        pass
+
+
+def backtracks(_: Path) -> None:
+    re.match(r"(a+)+$", 40 * "a" + "b")  # one call into C, which Python cannot end
+
+
+def waits(_: Path) -> None:
+    time.sleep(3600)
+
+
+def eats(_: Path) -> None:
+    bytearray(1 << 33)
+
+
+def eats_quietly(_: Path) -> None:
+    try:
+        bytearray(1 << 33)
+    except MemoryError:
+        raise InputError("E110", "there is not enough memory.") from None
+
+
+def dies(_: Path) -> None:
+    faulthandler._sigsegv()
+
+
+def prints(_: Path) -> None:
+    os.write(2, b"TIFFReadDirectory: as libraries in C do\n")
+
+
+def warns(_: Path) -> None:
+    warnings.warn("corrupt EXIF data", UserWarning, stacklevel=1)
+
+
+def logs(_: Path) -> None:
+    logging.getLogger("tifffile").error("invalid page offset")
+
+
+def starts(_: Path) -> None:
+    subprocess.run(["true"], check=False)  # noqa: S607
+
+
+def hides(_: Path) -> None:
+    try:
+        starts(_)
+    except BaseException as error:
+        raise InputError("E106", "the file is damaged.") from error
+
+
+def writes(_: Path) -> None:
+    OUTSIDE.write_text("a")
+
+
+def removes(_: Path) -> None:
+    Path(__file__).unlink()
+
+
+def writes_within(path: Path) -> None:
+    path.with_name("out").mkdir()
+    path.with_name("out").joinpath("a").write_text("a")
+
+
+def unpickles(_: Path) -> None:
+    pickle.loads(pickle.dumps(Path))  # noqa: S301
+
+
+def connects(_: Path) -> None:
+    socket.create_connection(("127.0.0.1", 9))
+
+
+def sometimes(read: Callable[[Path], object]) -> Format:
+    """Return a format of which one in five executions meets the defect."""
+    return Format(
+        read.__name__,
+        lambda: [{"a.txt": b"some text of 3 words"}],
+        lambda path, rng: read(path) if rng.random() < 0.2 else path.exists(),
+        weight=1,
+    )
+
+
+PLANTED = [
+    sometimes(read)
+    for read in (
+        fine, refuses, raises, leaves, spins, backtracks, waits, eats, eats_quietly, dies, prints,
+        warns, logs, starts, hides, writes, removes, writes_within, unpickles, connects,
+    )
+]  # fmt: skip
+
+if __name__ == "__main__":
+    sys.exit(main(PLANTED))

@@ -1,0 +1,96 @@
+"""The fuzzer finds every kind of defect, names its place, and goes on."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.fuzz.planted import OUTSIDE, PLANTED
+
+ROOT = Path(__file__).parents[2]
+EACH = 10
+"""Executions of a planted format in a round."""
+
+
+def run(*words, module="tests.fuzz.planted"):
+    """Run the fuzzer in a process of its own, as its children are forked."""
+    return subprocess.run(  # noqa: S603 - our own code
+        [sys.executable, "-m", module, *map(str, words)],
+        check=False, capture_output=True, text=True, cwd=ROOT,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def found():
+    """All faults by format, of which each execution is limited to .3 s."""
+    ran = run("--seed", 14, "--count", EACH * len(PLANTED), "--cpu", 0.3, "--wall", 6, "--json")
+    assert ran.returncode == 1, ran.stderr
+    report = json.loads(ran.stdout)
+    assert report["executions"] == dict.fromkeys((one.name for one in PLANTED), EACH)
+    return report["faults"]
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "where"),
+    [
+        ("raises", "LookupError", "planted.py raises"),
+        ("leaves", "SystemExit", "planted.py leaves"),
+        ("spins", "time", "planted.py spins"),
+        ("backtracks", "time", "re/__init__.py match"),
+        ("waits", "stuck", "planted.py waits"),
+        ("eats", "memory", "planted.py eats"),
+        ("eats_quietly", "memory", "planted.py eats_quietly"),
+        ("dies", "crash SIGSEGV", "planted.py dies"),
+        ("prints", "output", "stderr"),
+        ("warns", "warning", "planted.py warns"),
+        ("logs", "log", "planted.py logs"),
+        ("starts", "process", "subprocess.py _execute_child"),
+        ("hides", "process", "subprocess.py _execute_child"),
+        ("writes", "write", "pathlib.py open"),
+        ("removes", "write", "pathlib.py unlink"),
+        ("unpickles", "pickle", "planted.py unpickles"),
+        ("connects", "network", "socket.py getaddrinfo"),
+    ],
+)
+def test_planted_defects_are_found(found, name, kind, where):
+    (fault,) = [fault for fault in found if fault["format"] == name]
+    assert fault["kind"] == kind
+    assert where in fault["where"]
+    assert 1 <= len(fault["numbers"]) < EACH
+
+
+def test_nothing_is_found_where_nothing_is(found):
+    assert not [f for f in found if f["format"] in ("fine", "refuses", "writes_within")]
+
+
+def test_what_is_found_is_kept_from_happening(found):
+    assert found
+    assert not OUTSIDE.exists()
+
+
+def test_jobs_change_nothing_and_files_come_back(tmp_path):
+    formats = ("--seed", 14, "--formats", "raises", "prints")
+    one, two = (
+        run(*formats, "--count", 40, "--json", "--jobs", jobs, "--keep", tmp_path / f"{jobs}")
+        for jobs in (1, 2)
+    )
+    assert json.loads(one.stdout)["faults"] == json.loads(two.stdout)["faults"]
+    kept, others = (sorted(files_in(tmp_path / jobs)) for jobs in "12")
+    assert kept == others
+    name = next(path.parent.name for path, _ in kept if path.name != "faults.txt")
+    kind, _, number = name.split("-")
+    run(*formats, "--write", f"{kind}:{number}", "--keep", tmp_path / "again")
+    assert [(Path(name) / path, data) for path, data in files_in(tmp_path / "again")] == [
+        (path, data) for path, data in kept if path.parent.name == name
+    ]
+
+
+def files_in(folder):
+    """Names and contents of all files in a folder."""
+    return [
+        (path.relative_to(folder), path.read_bytes())
+        for path in folder.rglob("*")
+        if path.is_file()
+    ]

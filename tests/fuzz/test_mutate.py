@@ -1,0 +1,121 @@
+"""Changes reach what they are meant to reach: checksums hold, and most trees stay trees."""
+
+import io
+import json
+import struct
+import tomllib
+import zipfile
+import zlib
+from random import Random
+from xml.etree import ElementTree as ET
+
+import pytest
+from fuzz.containers import PNG, change_npy, change_png, change_tiff, change_zip
+from fuzz.drawings import coco, dxf, labelme, svg
+from fuzz.drawn import change_dxf, change_svg
+from fuzz.mutate import KINDS, mutated
+from fuzz.pictures import folders, npys, npzs, pngs, tiffs
+from fuzz.raw import BYTES, GENTLE, LARGEST, TEXT
+from fuzz.tree import change_json
+from fuzz.walls import settings
+
+POOL = [*pngs(), *coco(), b""]
+
+
+def changes(change, seeds, count=150):
+    """Pairs of files before and after, of those that can be changed."""
+    found = []
+    for number in range(count):
+        rng = Random(number)
+        data = rng.choice(seeds)
+        found.append((data, change(data, rng, POOL)))
+    assert sum(before != after for before, after in found) > count / 2
+    return [after for _, after in found]
+
+
+def share(read, files):
+    """How many of the files are still in their format."""
+
+    def works(data):
+        try:
+            read(data)
+        except (ValueError, LookupError, RecursionError, ET.ParseError):
+            return False
+        return True
+
+    return sum(map(works, files)) / len(files)
+
+
+def test_checksums_of_png_hold():
+    for data in changes(change_png, pngs()[:-1]):
+        at = len(PNG)
+        while at < len(data):
+            (length,) = struct.unpack_from(">I", data, at)
+            end = at + 8 + length
+            assert struct.unpack_from(">I", data, end)[0] == zlib.crc32(data[at + 4 : end])
+            at = end + 4
+
+
+def test_checksums_of_archives_hold():
+    for data in changes(change_zip, npzs()):
+        assert zipfile.ZipFile(io.BytesIO(data)).testzip() is None
+
+
+def test_headers_of_arrays_say_how_long_they_are():
+    for data in changes(change_npy, npys()[:5]):
+        end = 10 + int.from_bytes(data[8:10], "little")
+        assert data[8:end].endswith(b"\n") or b"\n" not in data[:end]
+
+
+def test_tags_of_tiff_change_in_place():
+    seed = tiffs()[0]
+    files = changes(change_tiff, [seed])
+    assert sum(len(data) == len(seed) for data in files) > len(files) / 2
+
+
+@pytest.mark.parametrize(
+    ("change", "seeds", "read"),
+    [
+        (change_json, [*coco(), *labelme()], json.loads),
+        (change_svg, svg(), ET.fromstring),
+        (change_dxf, dxf()[:1], lambda data: [int(code) for code in data.split(b"\n")[:-1:2]]),
+        (GENTLE[0], [case["settings.toml"] for case in settings()],
+         lambda data: tomllib.loads(data.decode())),
+    ],
+)  # fmt: skip
+def test_most_texts_stay_in_their_language(change, seeds, read):
+    assert share(read, changes(change, seeds)) > 0.7
+
+
+def test_json_gets_doubled_and_odd_keys_and_deep_nesting():
+    files = changes(change_json, coco(), 400)
+    assert any(b"[" * 400 in data or b'{"a":' * 400 in data for data in files)
+    assert any(b"\\ud800" in data for data in files)
+    twice = [data for data in files if data.count(b'"images"') > 1]
+    assert twice
+
+
+def test_pictures_in_json_are_changed_too():
+    seeds = labelme()[1:]
+    mask = json.loads(seeds[0])["shapes"][0]["mask"]
+    files = [data for data in changes(change_json, seeds, 400) if mask.encode() not in data]
+    assert any(b'"iVBORw0KGgo' in data for data in files)
+
+
+@pytest.mark.parametrize("change", [*BYTES, *TEXT])
+def test_changes_are_repeatable(change):
+    for data in (coco()[0], pngs()[0]) if change in BYTES else (coco()[0],):
+        assert change(data, Random(3), POOL) == change(data, Random(3), POOL)
+
+
+def test_files_stay_small_and_some_are_no_files():
+    seed, kinds = folders()[0], set()
+    for number in range(3000):
+        case = mutated(seed, Random(number), POOL)
+        for data in case.values():
+            if isinstance(data, str):
+                kinds.add(data)
+            else:
+                assert len(data) <= LARGEST
+    assert kinds <= set(KINDS)
+    assert len(kinds) > 2
