@@ -97,11 +97,15 @@ class Added:
 
     def joined(self, wall: Cones) -> Cones:
         """Return the columns of the wall that are left, then the new ones."""
-        closed, new = self.closed, self.cones
+        first, second, entries = wall.first, wall.second, wall.entries
+        if len(self.closed):
+            first, second = np.delete(first, self.closed), np.delete(second, self.closed)
+            entries = np.delete(entries, self.closed, axis=1)
+        new = self.cones
         return Cones(
-            np.concatenate((np.delete(wall.first, closed), new.first)),
-            np.concatenate((np.delete(wall.second, closed), new.second)),
-            np.concatenate((np.delete(wall.entries, closed, axis=1), new.entries), axis=1),
+            np.concatenate((first, new.first)),
+            np.concatenate((second, new.second)),
+            np.concatenate((entries, new.entries), axis=1),
         )
 
 

@@ -18,6 +18,7 @@ stone is solved from the start by :func:`drystone.statics.limit.lateral_resistan
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from math import isnan
 from typing import NamedTuple
 
 import numpy as np
@@ -118,7 +119,7 @@ class IncrementalAnalysis(ABC):
     def _added(self, model: RigidBlockModel, program: ConeProgram) -> Added | None:
         """Return what is new; None when it is not for the cone program."""
         addition = model.added
-        if addition is None or addition.base is not self.model:
+        if addition is None or addition.base is not self.model or not model.blocks:
             return None
         return program.columns_of(addition, model.mu)
 
@@ -232,12 +233,6 @@ class SimplexAnalysis(IncrementalAnalysis):
             self.least.extended(added, least),
             self.most,
         )
-
-    def _added(self, model: RigidBlockModel, program: ConeProgram) -> Added | None:
-        added = super()._added(model, program)
-        if added is None or not len(program.weights) + len(added.weights):
-            return None
-        return added
 
     def _bound(self, optimum: Optimum, added: Added) -> "tuple[Answer, Bound | None]":
         """Solve for one end; no bound without a certificate that holds."""
@@ -543,7 +538,7 @@ def certified_bound(found: Figures, alpha: float, sign: int, solver: str) -> Bou
 
     With an alpha that is NaN they have to prove that no alpha holds the blocks up.
     """
-    if np.isnan(alpha):
+    if isnan(alpha):
         certificate = no_alpha_of(found)
         return Bound(alpha, certificate, certificate, solver) if certificate.holds else None
     certificate = optimum_of(found, alpha, sign)
