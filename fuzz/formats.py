@@ -6,9 +6,10 @@ from importlib import import_module
 from pathlib import Path
 from random import Random
 
+from drystone.export.formats import FORMATS as EXPORTERS
+
 from drystone.cli.parser import build_parser
 from drystone.cli.settings import recorded_method, settings_from
-from drystone.export.formats import FORMATS as EXPORTERS
 from drystone.io.photo_beside import photo_beside, photo_of
 from drystone.io.photo_file import read_photo
 from drystone.io.photo_picture import read_photo_picture

@@ -12,13 +12,14 @@ from drystone.planner.deadline import Deadline, TimeIsUp
 from drystone.planner.events import INTERRUPTED, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.settings import method_settings
-from drystone.search.ending import as_found, surest, with_the_rest
+from drystone.search.ending import as_found, stays_at_every_step, surest, with_the_rest
 from drystone.search.found import Found
 from drystone.search.packed import Packed
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.search.whole_search import run_to_end
 from drystone.search.work import _opened
+from drystone.statics.model import RigidBlockModel
 from tests.planner.scenes import RUBBLE_SITE, Ticks, after_looks, greedy, rubble
 
 
@@ -190,3 +191,26 @@ def test_none_of_the_walls_to_choose_is_better_than_another() -> None:
 def test_nothing_is_kept_in_memory(planner: Planner) -> None:
     plan_wall(rubble(), 100, 36, scale=1.0, settings=planner.settings)
     assert _opened.cache_info().currsize == 0
+
+
+def test_a_wall_that_falls_when_it_is_let_go_gives_way_to_one_that_stays(
+    planner: Planner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole, half = Packed.of(Found.of(planner)), half_of(planner)
+    walls = sorted((whole, half), key=lambda wall: -wall.merit)
+    best, _ = surest(planner, walls)
+    assert best is not None
+    assert stays_at_every_step(planner.build)
+    lost = len(best.groups)
+
+    def fall(model: RigidBlockModel, *_: object) -> bool | None:
+        return len(model.blocks) == lost or None
+
+    monkeypatch.setattr("drystone.search.ending.fall_of", fall)
+    other, _ = surest(planner, walls)
+    assert other is not None
+    assert len(other.groups) != lost
+    monkeypatch.setattr("drystone.search.ending.fall_of", lambda *_: True)
+    again, _ = surest(planner, walls)
+    assert again is not None
+    assert again.merit == best.merit  # all fall
