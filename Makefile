@@ -5,7 +5,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 # What an installation is made from; the kernels are compiled when there is a compiler.
 SOURCES := pyproject.toml setup.py $(wildcard src/drystone/kernels/compiled/*.p[yx][xd])
 
-.PHONY: demo test lint bench fuzz docs lock clean
+.PHONY: demo test lint bench fuzz docs licences sbom lock clean
 
 demo: .venv/demo.stamp          ## plan a generated stone set and say where the picture is
 	$(BIN)/drystone demo -o demo --overwrite
@@ -28,6 +28,13 @@ fuzz: .venv/dev.stamp           ## read damaged files of all formats: TIME=600 s
 docs: .venv/dev.stamp           ## pages with an executed gallery in docs/_build/html
 	$(BIN)/sphinx-build -b html -n -W --keep-going -q docs docs/_build/html
 	@echo "docs/_build/html/index.html"
+
+licences: .venv/dev.stamp       ## list all that is installed with its licence
+	$(BIN)/python tools/licences.py
+
+sbom: .venv/dev.stamp           ## list the same as CycloneDX in sbom.json (needs uv)
+	uv tool run --from 'cyclonedx-bom>=7,<8' cyclonedx-py environment --pyproject pyproject.toml \
+		--mc-type library --output-reproducible --output-file sbom.json $(BIN)/python
 
 # Every file that is installed has its checksum in a lock; only then is the package itself built.
 define INSTALL
@@ -53,4 +60,4 @@ lock:                           ## renew the locks (needs uv)
 	$(PYTHON) -c $(NEEDED_TO_BUILD) | $(COMPILE) -c requirements-dev.lock --output-file requirements.lock
 
 clean:
-	rm -rf .venv demo fuzz-found build dist docs/_build docs/auto_gallery src/*.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv demo fuzz-found sbom.json build dist docs/_build docs/auto_gallery src/*.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
