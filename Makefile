@@ -1,11 +1,12 @@
 # Everything from a clean clone, with nothing but Python 3.11 or newer.
 PYTHON ?= python3
 BIN := .venv/bin
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 # What an installation is made from; the kernels are compiled when there is a compiler.
 KERNELS := $(shell grep -rl --include=*.py "import cython" src/drystone/kernels; find src/drystone/kernels -name "*.p[yx][xd]")
-SOURCES := pyproject.toml requirements.lock setup.py $(KERNELS)
+SOURCES := pyproject.toml setup.py $(KERNELS)
 
-.PHONY: demo test lint bench fuzz docs lock clean
+.PHONY: demo test lint bench fuzz docs licences sbom lock clean
 
 demo: .venv/demo.stamp          ## plan a generated stone set and say where the picture is
 	$(BIN)/drystone demo -o demo --overwrite
@@ -25,28 +26,39 @@ bench: .venv/dev.stamp          ## times beside slow twins; QUICK=1 takes a minu
 fuzz: .venv/dev.stamp           ## read damaged files of all formats: TIME=600 seconds, or COUNT=500000; SEED
 	$(BIN)/python -m fuzz --keep fuzz-found $(if $(SEED),--seed $(SEED)) $(if $(COUNT),--count $(COUNT),--time $(or $(TIME),600))
 
-docs: .venv/docs.stamp          ## pages with an executed gallery in docs/_build/html
+docs: .venv/dev.stamp           ## pages with an executed gallery in docs/_build/html
 	$(BIN)/sphinx-build -b html -n -W --keep-going -q docs docs/_build/html
 	@echo "docs/_build/html/index.html"
 
-.venv/demo.stamp: $(SOURCES)
-	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock -e .
-	@touch $@
+licences: .venv/dev.stamp       ## list all that is installed with its licence
+	$(BIN)/python tools/licences.py
 
-.venv/dev.stamp: $(SOURCES)
-	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock -e '.[dev]'
-	@touch $@ .venv/demo.stamp
+sbom: .venv/dev.stamp           ## list the same as CycloneDX in sbom.json (needs uv)
+	uv tool run --from 'cyclonedx-bom>=7,<8' cyclonedx-py environment --pyproject pyproject.toml \
+		--mc-type library --output-reproducible --output-file sbom.json $(BIN)/python
 
-# The package is there already, so this adds what the extra names and compiles nothing again.
-.venv/docs.stamp: .venv/demo.stamp
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock 'drystone[docs]'
-	@touch $@
+# Every file that is installed has its checksum in a lock; only then is the package itself built.
+define INSTALL
+$(PYTHON) -m venv .venv
+$(PIP) --require-hashes -r $<
+$(PIP) --no-deps --no-build-isolation -e .
+@touch $@ .venv/demo.stamp
+endef
 
-lock:                           ## renew requirements.lock (needs uv)
-	uv pip compile --quiet --universal --python-version 3.11 --all-extras --no-emit-index-url \
-		--no-header --output-file requirements.lock pyproject.toml
+.venv/demo.stamp: requirements.lock $(SOURCES)
+	$(INSTALL)
+
+.venv/dev.stamp: requirements-dev.lock requirements.lock $(SOURCES)
+	$(INSTALL)
+
+NEEDED_TO_BUILD := 'import tomllib; f = open("pyproject.toml", "rb"); \
+	print(*tomllib.load(f)["build-system"]["requires"], sep="\n")'
+COMPILE := uv pip compile --quiet --universal --python-version 3.11 --no-emit-index-url \
+	--no-header --generate-hashes pyproject.toml -
+
+lock:                           ## renew the locks (needs uv)
+	$(PYTHON) -c $(NEEDED_TO_BUILD) | $(COMPILE) --all-extras --output-file requirements-dev.lock
+	$(PYTHON) -c $(NEEDED_TO_BUILD) | $(COMPILE) -c requirements-dev.lock --output-file requirements.lock
 
 clean:
-	rm -rf .venv demo fuzz-found build dist docs/_build docs/auto_gallery src/*.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv demo fuzz-found sbom.json build dist docs/_build docs/auto_gallery src/*.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

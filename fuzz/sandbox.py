@@ -98,7 +98,7 @@ class Sandbox:
     Parameters
     ----------
     folder : Path
-        The only place where files may be written.
+        The only place where files may be written; it is the working directory, too.
     limits : Limits
         Of every execution.
     trace : file
@@ -129,6 +129,7 @@ class Sandbox:
         warnings.showwarning = self._on_warning
         logging.getLogger().addHandler(_Handler(self))
         tempfile.tempdir = str(folder)
+        os.chdir(folder)
         _limit(limits)
         sys.addaudithook(self._audit)
 
@@ -150,7 +151,8 @@ class Sandbox:
 
     def fault(self, kind: str, frames: Iterator[Frame], said: object) -> None:
         """Note what must not be."""
-        self._faults.setdefault((kind, where(frames, lines=kind != "memory")), str(said)[:300])
+        words = str(said)[:300].encode("utf-8", "backslashreplace").decode()
+        self._faults.setdefault((kind, where(frames, lines=kind != "memory")), words)
 
     def _on_error(self, error: BaseException) -> None:
         frames = _frames_of(error.__traceback__)
