@@ -88,11 +88,6 @@ def three_stones(wall: Wall) -> Labels:
 def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the pixel edges between two stones or a stone and the ground.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is; the ground is below the last row.
-
     Returns
     -------
     starts, ends : (n, 2) float arrays
