@@ -1,17 +1,14 @@
 """How the time of a step grows with pixels and with stones (§6)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import fmean
 
 from drystone.drawing.files import save
-from drystone.io.published import published_file
-from drystone.io.read_stones import read_stones
-from drystone.planner.settings import PlannerSettings, method_settings
+from drystone.planner.settings import method_settings
 from drystone.selection.sampling import Sampling
 from drystone_lab.table import BenchSettings, Cell, Table
 from drystone_lab.time_tables import (
-    PUBLISHED,
     SAMPLINGS,
     pixels_table,
     plot_pixels,
@@ -22,21 +19,19 @@ from drystone_lab.timed_walls import (
     COLUMNS,
     LEAST_STONES,
     Planned,
-    Task,
     exponent,
     numbers_of,
     parts_ms,
     planned,
-    rubble_task,
+    rubble,
     size_of,
     three_digits,
 )
+from drystone_lab.walls import PR, Target
 
 SOURCE_PX = (560, 160)
+LARGER_PX = (280, 80)
 """Wall of the paper at the resolution of the image PR."""
-
-WORKING = 0.5
-"""Scale at which that wall has the paper's 280 x 80 px."""
 
 SCALES = (0.25, 0.5, 1.0, 1.5, 2.0)
 """Of the paper's size."""
@@ -82,33 +77,36 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
     sizes = Sizes(None)
     if settings.quick:
         sizes = Sizes(8, (0.5, 1.0), (8, 16), repeats=1)
-    task = _task(settings, sizes.stones)
+    wall = _wall(settings, sizes.stones)
     often = sizes.repeats
 
-    def timed(task: Task, scale: float, repeats: int, sampling: Sampling = "variant") -> Planned:
-        return planned(task, scale, _paper(sampling), seed=settings.seed, repeats=repeats)
+    def timed(wall: Target, repeats: int, sampling: Sampling = "variant") -> Planned:
+        paper = method_settings("paper").updated({"sampling": sampling})
+        return planned(wall, settings.data, paper, seed=settings.seed, repeats=repeats)
 
-    by_scale = {s: timed(task, s * WORKING, often) for s in sizes.scales}
-    by_sampling = {s: timed(task, WORKING, often, s) for s in SAMPLINGS}
-    by_count = {n: timed(rubble_task(n, settings.seed), 1.0, 1) for n in sizes.counts}
+    by_scale = {s: timed(replace(wall, scale=s * wall.scale), often) for s in sizes.scales}
+    by_sampling = {s: timed(wall, often, s) for s in SAMPLINGS}
+    by_count = {n: timed(_scaled(n, settings.seed, LARGER_PX), 1) for n in sizes.counts}
     if settings.output is not None:
-        _draw(settings.output, task.name, by_scale, by_sampling)
+        _draw(settings.output, wall.name, by_scale, by_sampling)
     return (
-        pixels_table(task.name, by_scale),
-        steps_table(task.name, by_sampling),
+        pixels_table(wall.name, by_scale),
+        steps_table(wall.name, by_sampling),
         _walls_table(by_count),
     )
 
 
-def _task(settings: BenchSettings, stones: int | None) -> Task:
-    if stones is None and settings.data is not None and (settings.data / "almeida").is_dir():
-        published = read_stones(published_file(settings.data, "almeida/PR.png"))
-        return Task(PUBLISHED, published, SOURCE_PX)
-    return rubble_task(stones or LEAST_STONES, settings.seed, SOURCE_PX)
+def _wall(settings: BenchSettings, stones: int | None) -> Target:
+    if stones is None and PR.source.is_there(settings.data):
+        return PR
+    return _scaled(stones or LEAST_STONES, settings.seed, SOURCE_PX, PR.scale)
 
 
-def _paper(sampling: Sampling) -> PlannerSettings:
-    return method_settings("paper").updated({"sampling": sampling})
+def _scaled(count: int, seed: int, full_px: tuple[int, int], scale: float = 1.0) -> Target:
+    """Return a wall that has as many times the given area as there are 32 stones."""
+    factor = (count / LEAST_STONES) ** 0.5
+    width, height = (round(factor * side) for side in full_px)
+    return rubble(count, seed, (width, height), scale=scale)
 
 
 def _walls_table(by_count: dict[int, Planned]) -> Table:

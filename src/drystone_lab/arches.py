@@ -63,15 +63,6 @@ WITH_FRICTION = (
 def arch(count: int, thickness: float, mu: float) -> RigidBlockModel:
     """Make an arch with the joints of its corners, and area and centroid of annular sectors.
 
-    Parameters
-    ----------
-    count : int
-        Voussoirs, at least 2.
-    thickness : float
-        Over the mean radius, above 0 and below 2.
-    mu : float
-        Coefficient of friction.
-
     Examples
     --------
     >>> model = arch(9, 0.2, mu=0.6)

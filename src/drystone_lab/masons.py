@@ -35,17 +35,7 @@ def masons_walls(settings: BenchSettings) -> Table:
 
 
 def masons_row(name: str, labels: Labels, scale: float) -> tuple[Cell, ...]:
-    """Measure one of them.
-
-    Parameters
-    ----------
-    name : str
-        For people.
-    labels : (h, w) integer array
-        As it was traced.
-    scale : float
-        Working resolution over that of the image.
-    """
+    """Measure one of them."""
     reduced = reduce_labels(labels, scale)
     first = measure_labels(reduced)
     repeated = second_arrangement(finer_labels(reduced))

@@ -81,23 +81,7 @@ def packed_width_px(
     seconds: int,
     seed: int,
 ) -> float:
-    """Return the width of a strip into which the packer gets all stones, source px.
-
-    Parameters
-    ----------
-    packer : module
-        Of :func:`load_packer`.
-    stones : StoneSet
-        Packed as their outlines.
-    height_px : float
-        Of the strip, source px; every stone must fit in.
-    turns : tuple of float or None
-        Angles from the initial pose of a stone; None for any.
-    seconds : int
-        Time for the packer.
-    seed : int
-        Of the packer.
-    """
+    """Return the width of a strip into which the packer gets all stones, source px."""
     book = PoseBook(1.0)
     items = [
         packer.Item(

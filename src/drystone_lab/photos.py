@@ -80,15 +80,7 @@ def run(settings: BenchSettings) -> tuple[Table, ...]:
 
 
 def score(made: Photograph, result: SegmentedPhoto) -> Score:
-    """Compare what was found with what is there.
-
-    Parameters
-    ----------
-    made : Photograph
-        With the truth.
-    result : SegmentedPhoto
-        What was found in it.
-    """
+    """Compare what was found with what is there."""
     labels = result.found.labels
     truth = made.truth_in(inverse(result.from_photo), labels.shape)
     frame = made.truth_in(np.eye(3), (made.level.height_px, made.level.width_px))

@@ -156,19 +156,6 @@ def shear_wall(
     is the last block, as long as the wall, with the friction of the stones below it; its weight
     counts as part of N, which acts down at its middle.
 
-    Parameters
-    ----------
-    series : ShearSeries
-        Sizes and density.
-    vertical_kn : float
-        N.
-    mu : float
-        Coefficient of friction of all joints.
-    level : bool
-        The beam may move but not turn; else it may turn freely.
-    halves_first : bool
-        The lowest course is one with half blocks.
-
     Returns
     -------
     model : RigidBlockModel

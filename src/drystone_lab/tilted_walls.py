@@ -87,15 +87,6 @@ class TiltedWall:
 def tilted_wall(rng: Generator, courses: int = 4, length: float = 0.9) -> TiltedWall:
     """Draw a wall whose bed joints zigzag, whose head joints lean and whose ends have a batter.
 
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-        Decides lengths, slopes and their order.
-    courses : int
-        1 to 5.
-    length : float
-        Over the wall's height, measured on the ground; .7 to 1.5.
-
     Raises
     ------
     ValueError

@@ -47,12 +47,7 @@ def papers(name: str) -> tuple[dict[int, float], dict[int, float]]:
 def pixels_table(name: str, by_scale: Mapping[float, Planned]) -> Table:
     """Return the times of walls of several resolutions, and their exponents.
 
-    Parameters
-    ----------
-    name : str
-        Of the stones; :data:`PUBLISHED` has the paper's times beside.
-    by_scale : mapping of float to Planned
-        The walls, by scale.
+    The stones :data:`PUBLISHED` have the paper's times beside.
     """
     walls, longest_steps = papers(name)
     rows: list[tuple[Cell, ...]] = [
@@ -88,15 +83,7 @@ def pixels_table(name: str, by_scale: Mapping[float, Planned]) -> Table:
 
 
 def steps_table(name: str, by_sampling: Mapping[Sampling, Planned]) -> Table:
-    """Return the times of steps by stones placed, and how those of a candidate grow.
-
-    Parameters
-    ----------
-    name : str
-        Of the stones.
-    by_sampling : mapping of str to Planned
-        The walls, of one size.
-    """
+    """Return the times of steps by stones placed, and how those of a candidate grow."""
     rows: list[tuple[Cell, ...]] = []
     for sampling, planned in by_sampling.items():
         for first in range(0, len(planned.steps), BIN):
@@ -133,15 +120,7 @@ def steps_figure(by_sampling: Mapping[Sampling, Planned]) -> Figure:
 
 
 def plot_pixels(name: str, by_scale: Mapping[float, Planned], ax: Axes | None = None) -> Axes:
-    """Draw the times of walls and of their longest steps against pixels (Fig. 29).
-
-    Parameters
-    ----------
-    name, by_scale
-        As for :func:`pixels_table`.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    """
+    """Draw the times of walls and of their longest steps against pixels (Fig. 29)."""
     walls = tuple((float(p.pixels), p.seconds) for p in by_scale.values())
     steps = tuple((float(p.pixels), p.longest) for p in by_scale.values())
     said, said_of_steps = papers(name)

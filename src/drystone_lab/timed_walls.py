@@ -3,18 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import log
+from pathlib import Path
 from statistics import fmean
 
 import numpy as np
 
-from drystone.generate import RubbleSettings, rubble_stones
 from drystone.model.site import Site
-from drystone.model.stone import StoneSet
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Part, StepTime
 from drystone.planner.settings import PlannerSettings
 from drystone_lab.pictures.growth import PowerLaw
+from drystone_lab.runs.source import generated
 from drystone_lab.table import Cell
+from drystone_lab.walls import Target
 
 PARTS: tuple[Part, ...] = ("placement", "stabilisation", "contacts", "limit analysis", "indices")
 """Of a step; the last three are the paper's selection."""
@@ -23,41 +24,12 @@ COLUMNS = (*PARTS, "rest", "all")
 """Mean ms a step."""
 
 LEAST_STONES = 32
-"""For which :func:`rubble_task` makes a wall of the given size."""
-
-
-@dataclass(frozen=True)
-class Task:
-    """Stones and the wall that they are for.
-
-    Parameters
-    ----------
-    name : str
-        Of the stones.
-    stones : StoneSet
-        The stones.
-    wall_px : (float, float)
-        Width and height of the wall, px of the source image.
-    """
-
-    name: str
-    stones: StoneSet
-    wall_px: tuple[float, float]
+"""For which :func:`rubble` makes the given number of courses."""
 
 
 @dataclass(frozen=True)
 class Planned:
-    """Times of one wall.
-
-    Parameters
-    ----------
-    site : Site
-        Where.
-    preparation : float
-        Seconds before the first step.
-    steps : tuple of StepTime
-        Each the quickest of its repetitions.
-    """
+    """Times of one wall: seconds before the first step, and each step, the quickest of several."""
 
     site: Site
     preparation: float
@@ -79,39 +51,28 @@ class Planned:
         return self.site.width_px * self.site.height_px
 
 
-def rubble_task(count: int, seed: int, full_px: tuple[int, int] = (280, 80)) -> Task:
-    """Generate stones for a wall that has the given size when there are 32 of them."""
+def rubble(
+    count: int, seed: int, wall_px: tuple[int, int], courses: int = 4, scale: float = 1.0
+) -> Target:
+    """Return generated stones for a wall, with so many courses when there are 32 of them."""
+    width, height = wall_px
     factor = (count / LEAST_STONES) ** 0.5
-    width, height = round(factor * full_px[0]), round(factor * full_px[1])
-    size = RubbleSettings(
-        count=count, width_px=width, height_px=height, courses=max(1, round(4 * factor))
-    )
-    stones = rubble_stones(size, np.random.default_rng(seed))
-    return Task(f"{count} generated stones", stones, (width, height))
+    source = generated(
+        "rubble", seed, count=count, width_px=width, height_px=height,
+        courses=max(1, round(courses * factor)),
+    )  # fmt: skip
+    return Target(f"{count} generated stones", source, width, height, scale)
 
 
 def planned(
-    task: Task, scale: float, settings: PlannerSettings, *, seed: int, repeats: int
+    wall: Target, data: Path | None, settings: PlannerSettings, *, seed: int, repeats: int
 ) -> Planned:
-    """Plan a wall several times, and keep the quickest repetition of every step.
-
-    Parameters
-    ----------
-    task : Task
-        Stones and wall.
-    scale : float
-        Working resolution over that of the source.
-    settings : PlannerSettings
-        Of the method.
-    seed : int
-        Of the plan; equal ones give equal steps.
-    repeats : int
-        At least one.
-    """
-    site = Site.from_source(*task.wall_px, scale)
+    """Plan a wall several times, and keep the quickest repetition of every step."""
+    stones = wall.source.stones(data)
+    site = Site.from_source(wall.width, wall.height, wall.scale)
     profiles = []
     for _ in range(repeats):
-        planner = Planner(task.stones, site, seed=seed, settings=settings)
+        planner = Planner(stones, site, seed=seed, settings=settings)
         for _ in planner.steps():
             pass
         profiles.append(planner.profile)

@@ -13,7 +13,8 @@ from drystone_lab import timed_walls
 from drystone_lab.pictures.growth import PowerLaw
 from drystone_lab.table import BenchSettings
 from drystone_lab.time_tables import pixels_table, steps_table
-from drystone_lab.timed_walls import Planned, fitted, planned, rubble_task
+from drystone_lab.timed_walls import Planned, fitted, planned, rubble
+from drystone_lab.walls import PR
 
 
 @pytest.fixture(scope="module")
@@ -122,13 +123,13 @@ def test_the_quickest_repetition_of_every_step_counts(monkeypatch: pytest.Monkey
         return SimpleNamespace(profile=profile, steps=lambda: iter(()))
 
     monkeypatch.setattr(timed_walls, "Planner", planner)
-    found = planned(rubble_task(8, 0), 1.0, method_settings("paper"), seed=0, repeats=2)
+    wall = rubble(8, 0, (140, 40))
+    found = planned(wall, None, method_settings("paper"), seed=0, repeats=2)
     assert [s.seconds for s in found.steps] == [4.0, 3.0]
     assert found.seconds == 8.0
     assert found.longest == 4.0
 
 
 def test_the_published_stones_are_used_when_they_are_there(data_dir):
-    task = growth._task(BenchSettings(data=data_dir), None)
-    assert (task.name, len(task.stones), task.wall_px) == ("PR", 32, (560, 160))
-    assert growth._task(BenchSettings(), None).name == "32 generated stones"
+    assert growth._wall(BenchSettings(data=data_dir), None) == PR
+    assert growth._wall(BenchSettings(), None).name == "32 generated stones"

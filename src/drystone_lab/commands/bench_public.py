@@ -32,15 +32,6 @@ DPI = 150
 def public_tables(arguments: argparse.Namespace, suite: str, data: Path | None) -> Sequence[Table]:
     """Run a public suite and return its tables.
 
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        The options.
-    suite : str
-        Name of the suite.
-    data : Path or None
-        Folder of the published data.
-
     Raises
     ------
     UsageError
@@ -72,13 +63,6 @@ def public_tables(arguments: argparse.Namespace, suite: str, data: Path | None) 
 
 def history_tables(arguments: argparse.Namespace, suite: str | None) -> Sequence[Table]:
     """Return what a store holds by version, and draw it with -o.
-
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        The options.
-    suite : str or None
-        That is shown; None for all.
 
     Raises
     ------

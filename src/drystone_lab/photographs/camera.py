@@ -76,19 +76,7 @@ def moved(homography: Homography, points: NDArray[np.float64]) -> NDArray[np.flo
 
 
 def exposed(ground: Light, homography: Homography, level: Level, rng: Generator) -> bytes:
-    """Return the JPEG that a camera makes of a lit ground.
-
-    Parameters
-    ----------
-    ground : (h, w, 3) float array
-        Linear light.
-    homography : (3, 3) float array
-        Ground px to photograph px.
-    level : Level
-        Blur, noise, quality, orientation.
-    rng : Generator
-        Source of the noise.
-    """
+    """Return the JPEG that a camera makes of a lit ground."""
     shape = (level.height_px, level.width_px)
     # Centres of px lie at halves in the homography and at whole numbers in `warp`.
     half = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1]])

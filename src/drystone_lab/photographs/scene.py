@@ -63,15 +63,7 @@ class Photograph:
     level: Level
 
     def truth_in(self, to_photo: Homography, shape: tuple[int, int]) -> Labels:
-        """Return the true stones in another frame, such as that of a label image.
-
-        Parameters
-        ----------
-        to_photo : (3, 3) float array
-            Px of that frame to px of the photograph.
-        shape : (int, int)
-            Height and width of that frame.
-        """
+        """Return the true stones in another frame, such as that of a label image."""
         rows, cols = np.indices(shape)
         points = np.column_stack([cols.ravel() + 0.5, rows.ravel() + 0.5])
         ground = moved(inverse(self.homography) @ to_photo, points)
@@ -83,13 +75,7 @@ class Photograph:
 
 
 def photograph(level: Level) -> Photograph:
-    """Render a photograph.
-
-    Parameters
-    ----------
-    level : Level
-        How hard it is; equal levels give equal photographs.
-    """
+    """Render a photograph."""
     rng = np.random.default_rng(level.seed)
     homography, shape = view_of(level)
     corners = moved(inverse(homography), frame_corners(level))

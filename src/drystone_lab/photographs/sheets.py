@@ -31,17 +31,7 @@ def layout_of(level: Level) -> MarkerLayout | None:
 
 
 def place_markers(level: Level, surface: Light, seen: Mask) -> Mask:
-    """Draw markers on the ground; return where no stone may lie.
-
-    Parameters
-    ----------
-    level : Level
-        Which markers, their size, and one that is printed wrongly.
-    surface : (h, w, 3) float array
-        The ground; changed in place.
-    seen : (h, w) bool array
-        What the camera sees.
-    """
+    """Draw markers on the ground; return where no stone may lie."""
     layout = layout_of(level)
     covered = np.zeros(seen.shape, bool)
     if layout is None:

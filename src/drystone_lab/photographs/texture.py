@@ -49,19 +49,7 @@ def linear(colour: str) -> NDArray[np.float32]:
 def clouds(
     shape: tuple[int, int], cells: Sequence[tuple[float, float]], rng: Generator, fall: float = 0.6
 ) -> Plane:
-    """Return noise of several octaves with mean 0 and standard deviation about 1.
-
-    Parameters
-    ----------
-    shape : (int, int)
-        Height and width, px.
-    cells : sequence of (height, width)
-        Size of the cells of every octave, px, the strongest first.
-    rng : Generator
-        Equal states give equal noise.
-    fall : float
-        Strength of an octave over that of the one before.
-    """
+    """Return noise of several octaves with mean 0 and standard deviation about 1."""
     total, power, strength = np.zeros(shape, np.float32), 0.0, 1.0
     for down, across in cells:
         grid = (max(2, round(shape[0] / down) + 1), max(2, round(shape[1] / across) + 1))

@@ -101,11 +101,6 @@ class _NothingKept(RunStore):
 def run_public(settings: PublicSettings) -> tuple[Table, ...]:
     """Run a suite and compare its methods.
 
-    Parameters
-    ----------
-    settings : PublicSettings
-        What, and by whom.
-
     Returns
     -------
     tuple of Table

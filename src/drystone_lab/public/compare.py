@@ -12,13 +12,7 @@ UNITS = {PLACED: "placed share", SHAKE: "PGA, g"}
 
 
 def comparison(results: Results) -> tuple[Table, ...]:
-    """Return the figures of every method on every wall, on all walls, and the times.
-
-    Parameters
-    ----------
-    results : Results
-        Of every method on every wall.
-    """
+    """Return the figures of every method on every wall, on all walls, and the times."""
     walls = Table(
         "Walls: mean over seeds, standard deviation (±), best",
         ("wall", "method", "seeds", *_columns(results.figures)),

@@ -41,13 +41,7 @@ class Medians:
 
 
 def medians_of(runs: Sequence[KeptRun]) -> tuple[Medians, ...]:
-    """Return medians by suite, method and version, oldest version first.
-
-    Parameters
-    ----------
-    runs : sequence of KeptRun
-        All that are kept.
-    """
+    """Return medians by suite, method and version, oldest version first."""
     groups: dict[tuple[str, str, str], list[KeptRun]] = {}
     for run in runs:
         suite = f"{run.suite}/{run.suite_version}"
@@ -99,13 +93,7 @@ def history_table(medians: Sequence[Medians]) -> Table:
 
 
 def drawn_history(medians: Sequence[Medians]) -> Figure:
-    """Draw the medians of one suite over versions, a panel a figure that any method has.
-
-    Parameters
-    ----------
-    medians : sequence of Medians
-        At least one.
-    """
+    """Draw the medians of one suite over versions, a panel a figure that any method has."""
     versions = sorted({one.version for one in medians}, key=version_order)
     methods = dict.fromkeys(one.method for one in medians)
     values = {(one.method, one.version): one.values for one in medians}

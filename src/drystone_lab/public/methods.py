@@ -58,13 +58,6 @@ def known_methods() -> dict[str, str]:
 def method_named(name: str, changes: Changes = ()) -> BenchMethod:
     """Return a method.
 
-    Parameters
-    ----------
-    name : str
-        One of :func:`known_methods`.
-    changes : tuple of (str, value)
-        Settings that replace those of every method alike.
-
     Raises
     ------
     UsageError
@@ -98,13 +91,6 @@ def method_named(name: str, changes: Changes = ()) -> BenchMethod:
 
 def flat_changes(nested: Mapping[str, Any], where: str) -> Changes:
     """Return settings from a TOML file as changes of every method.
-
-    Parameters
-    ----------
-    nested : mapping
-        Tables and values.
-    where : str
-        Name of the file, for messages.
 
     Raises
     ------

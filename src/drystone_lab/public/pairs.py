@@ -58,13 +58,6 @@ def compared(
 ) -> Compared | None:
     """Compare two methods by one figure.
 
-    Parameters
-    ----------
-    first, second : sequence of float or None
-        Their values for the same walls and seeds.
-    higher : bool
-        A higher value is the better one.
-
     Returns
     -------
     Compared or None
@@ -99,11 +92,6 @@ def compared(
 def holm(p_values: Sequence[float]) -> list[float]:
     """Correct p values for how many they are (Holm 1979).
 
-    Parameters
-    ----------
-    p_values : sequence of float
-        Of all tests of a family.
-
     Returns
     -------
     list of float
@@ -123,13 +111,7 @@ def holm(p_values: Sequence[float]) -> list[float]:
 
 
 def pair_tables(results: Results) -> tuple[Table, ...]:
-    """Return the differences of all pairs of methods, a table a figure, and the ranking.
-
-    Parameters
-    ----------
-    results : Results
-        Of at least two methods; of fewer there is no table.
-    """
+    """Return the differences of all pairs of methods, a table a figure, and the ranking."""
     if len(results.methods) < 2:
         return ()
     counting = {pair: results.counting(*pair) for pair in combinations(results.methods, 2)}

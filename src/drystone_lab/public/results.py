@@ -88,15 +88,7 @@ class Results:
         return (*FIGURES, SHAKE) if shaken else FIGURES
 
     def of(self, method: str, wall: Target | None = None) -> tuple[Result, ...]:
-        """Return the results of a method, on a wall or on all, in the same order for all methods.
-
-        Parameters
-        ----------
-        method : str
-            Its name.
-        wall : Target, optional
-            One of :attr:`walls`.
-        """
+        """Return the results of a method on a wall or on all, in one order for all methods."""
         found = [r for r in self.all if r.method == method and wall in (None, r.wall)]
         order = {known: number for number, known in enumerate(self.walls)}
         return tuple(sorted(found, key=lambda result: (order[result.wall], result.seed)))
@@ -112,11 +104,6 @@ class Results:
 
         On a wall where neither method depends on the seed all pairs are copies of one, which
         counts once: they are no more evidence than it.
-
-        Parameters
-        ----------
-        one, other : str
-            Names of methods.
         """
         counts: list[bool] = []
         pairs = zip(self.of(one), self.of(other), strict=True)

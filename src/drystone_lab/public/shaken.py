@@ -18,15 +18,6 @@ from drystone_lab.runs.spec import RunSpec
 def pga_of(spec: RunSpec, outcome: Outcome, data: Path | None) -> float | None:
     """Return the amplitude that a planned wall stands, g.
 
-    Parameters
-    ----------
-    spec : RunSpec
-        Its run.
-    outcome : Outcome
-        What came out.
-    data : Path or None
-        Folder of the published data.
-
     Returns
     -------
     float or None

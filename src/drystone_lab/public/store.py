@@ -108,17 +108,7 @@ class Stamp:
 
 
 def kept_run(result: Result, outcome: Outcome, stamp: Stamp) -> KeptRun:
-    """Return the row of a run.
-
-    Parameters
-    ----------
-    result : Result
-        Wall, method, seed, and how it was shaken.
-    outcome : Outcome
-        What came out of its run.
-    stamp : Stamp
-        Version, time and machine.
-    """
+    """Return the row of a run."""
     figures, wall = outcome.figures, result.wall
     names = ("F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH", "wedge_area")
     pga_g = result.figures.get(SHAKE)

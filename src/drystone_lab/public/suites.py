@@ -110,15 +110,6 @@ PUBLIC_SUITES: Mapping[str, str] = MappingProxyType(
 def walls_of(suite: str, only: Sequence[str] = (), *, quick: bool = False) -> tuple[Target, ...]:
     """Return the walls of a suite, in order.
 
-    Parameters
-    ----------
-    suite : str
-        One of :data:`PUBLIC_SUITES`.
-    only : sequence of str
-        How the names of walls begin that are wanted; empty for all.
-    quick : bool
-        Its first wall alone.
-
     Raises
     ------
     UsageError

@@ -101,15 +101,7 @@ class Construction:
 
 
 def construction(context: Context, spec: RunSpec) -> Construction:
-    """Do a run of pixels from the left, and take it apart.
-
-    Parameters
-    ----------
-    context : Context
-        Does and keeps the run.
-    spec : RunSpec
-        One-sided, on the raster, at least one stone is placed.
-    """
+    """Do a run of pixels from the left, and take it apart."""
     (outcome,) = context.run((spec,))
     stones = spec.source.stones(context.data)
     replay = replay_plan(outcome.as_plan, stones)

@@ -13,17 +13,7 @@ usual rule of a bond."""
 
 @dataclass(frozen=True)
 class Brick:
-    """The box of a placed brick, px.
-
-    Parameters
-    ----------
-    left, right : int
-        Columns, right excluded.
-    bottom, top : int
-        Heights of its faces over the ground.
-    full : bool
-        True when it fills its box: it is not turned to some other angle.
-    """
+    """The box of a placed brick, px; full when it fills it, so that it is not turned."""
 
     left: int
     right: int
@@ -74,14 +64,7 @@ def bricks_of(wall: Wall) -> tuple[Brick, ...]:
 
 
 def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> Courses:
-    """Look at the courses of equal bricks.
-
-    Parameters
-    ----------
-    bricks : sequence of Brick
-        At least one.
-    height_px, width_px : int
-        Of a brick that lies.
+    """Look at the courses of equal bricks, of the size of one that lies.
 
     Examples
     --------

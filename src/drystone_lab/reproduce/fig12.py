@@ -1,6 +1,9 @@
 """Fig. 12: Pic-to-Ri, from the pixels of three stones to rigid blocks (§4.2)."""
 
 from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -12,9 +15,11 @@ from drystone.kernels.boundary import EMPTY, touching_edges
 from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone_lab.pictures.interfaces import plot_blocks, plot_boundary_edges
-from drystone_lab.reproduce.base import PR, PaperWall
-from drystone_lab.reproduce.item import Context, Item, Output, Picture
+from drystone_lab.reproduce.base import PR
+from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
+from drystone_lab.walls import PR, Target
 
 WAYS = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
 """(x, y) of the headings of :func:`drystone.kernels.boundary.touching_edges`."""
@@ -23,37 +28,30 @@ MARGIN_PX = 2
 TILTED_DEG = 1.0
 PANEL_IN = (6.4, 2.5)
 
-PAPER = (
-    "Fig. 12 takes three stones on an initial landscape: (a) each stone's pixels have one value; "
-    "(b) edge detection gives the contacts and the normal at each of their pixels; (c) the areas "
-    "are the weights, the centres of the pixels the centres of mass (triangles), 'only the end "
-    "points of the interface are used', and its normal is 'the average of all normal vectors in a "
-    "given interface' (§4.2). There are no numbers.",
-)
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """Three stones of a wall as pixels, edges and rigid blocks; and the model of the whole."""
+
+    wall: Target
+    labels: Labels
+    model: RigidBlockModel
+    whole: RigidBlockModel
+    runs: tuple[RunSpec, ...]
+
+    @cached_property
+    def edges(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Pixel edges between two of them or one and the ground: starts and ends."""
+        return boundary_edges(self.labels)
 
 
-def make(context: Context, wall: PaperWall = PR) -> Output:
-    """Take three stones of a wall to rigid blocks.
-
-    Parameters
-    ----------
-    context : Context
-        Does the run.
-    wall : PaperWall
-        What is built.
-    """
+def blocks(context: Context, wall: Target = PR) -> Blocks:
+    """Take three stones of a wall to rigid blocks."""
     spec = wall.run(context.seed)
     built = context.wall(spec)
     labels = three_stones(built)
-    model = model_from_labels(labels).model
-    starts, ends = boundary_edges(labels)
-    return Output(
-        paper=PAPER,
-        ours=_found(model, len(starts), model_from_labels(built.labels).model),
-        tables=(("blocks", _blocks(model)), ("interfaces", _interfaces(model))),
-        pictures=(_picture(labels, model, starts, ends, wall.name),),
-        runs=(spec,),
-    )
+    model, whole = (model_from_labels(each).model for each in (labels, built.labels))
+    return Blocks(wall, labels, model, whole, (spec,))
 
 
 def three_stones(wall: Wall) -> Labels:
@@ -91,11 +89,6 @@ def three_stones(wall: Wall) -> Labels:
 def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the pixel edges between two stones or a stone and the ground.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is; the ground is below the last row.
-
     Returns
     -------
     starts, ends : (n, 2) float arrays
@@ -115,20 +108,22 @@ def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.floa
     return starts, starts + WAYS[edges[:, 4]]
 
 
-def _found(model: RigidBlockModel, edges: int, whole: RigidBlockModel) -> tuple[str, ...]:
-    long = [interface for interface in model.interfaces if len(interface.points) == 2]
-    points = len(model.interfaces) - len(long)
-    angles = sorted(_apart_deg(i) for i in whole.interfaces if len(i.points) == 2)
-    tilted = sum(angle > TILTED_DEG for angle in angles)
-    return (
+def _found(found: Blocks) -> Iterator[str]:
+    model = found.model
+    long = sum(len(interface.points) == 2 for interface in model.interfaces)
+    yield (
         f"Stones {', '.join(str(block.id) for block in model.blocks)} touch each other and the "
-        f"ground on {edges} pixel edges, which make {len(long)} straight interfaces and {points} "
-        f"contacts at a point, {model.contact_count} contact points in all, at the corners of "
-        "pixels.",
+        f"ground on {len(found.edges[0])} pixel edges, which make {long} straight interfaces and "
+        f"{len(model.interfaces) - long} contacts at a point, {model.contact_count} contact points "
+        "in all, at the corners of pixels."
+    )
+    angles = sorted(_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2)
+    yield (
         "The planner takes the normal of the line fitted to a run. The paper takes the mean of the "
         "normals of its pixels, which depends on the two ends of the run alone. In the finished "
-        f"wall the two differ by more than {TILTED_DEG:g} degree in {tilted} of {len(angles)} "
-        f"interfaces, by {angles[-1]:.1f} degrees at most.",
+        f"wall the two differ by more than {TILTED_DEG:g} degree in "
+        f"{sum(angle > TILTED_DEG for angle in angles)} of {len(angles)} interfaces, by "
+        f"{angles[-1]:.1f} degrees at most."
     )
 
 
@@ -179,26 +174,39 @@ def _interfaces(model: RigidBlockModel) -> Table:
     )  # fmt: skip
 
 
-def _picture(
-    labels: Labels,
-    model: RigidBlockModel,
-    starts: NDArray[np.float64],
-    ends: NDArray[np.float64],
-    name: str,
-) -> Picture:
+def _picture(found: Blocks) -> Picture:
+    labels, model = found.labels, found.model
     figure = Figure(figsize=(PANEL_IN[0], 3 * PANEL_IN[1]), layout="constrained")
     first, second, third = figure.subplots(3, 1)
     plot_labels(labels, first, title="(a) labels")
-    plot_boundary_edges(labels, starts, ends, second)
+    plot_boundary_edges(labels, *found.edges, second)
     second.set_title("(b) edges between blocks, and their normals", fontsize=9, loc="left")
     plot_blocks(labels, model, third)
     third.set_title("(c) rigid blocks", fontsize=9, loc="left")
     return Picture(
         "fig12", figure,
-        f"Pic-to-Ri on three stones of {name}: (a) label image, (b) pixel edges between two "
-        "stones or a stone and the ground with their normals, (c) interfaces with their end "
+        f"Pic-to-Ri on three stones of {found.wall.name}: (a) label image, (b) pixel edges between "
+        "two stones or a stone and the ground with their normals, (c) interfaces with their end "
         "points and normals; triangles are centres of mass.",
     )  # fmt: skip
 
 
-ITEM = Item("Pic-to-Ri: from pixels to rigid blocks", "§4.2", make, needs=(PR.source.name,))
+PIC_TO_RI = Item(
+    title="Pic-to-Ri: from pixels to rigid blocks",
+    section="§4.2",
+    paper=(
+        "Fig. 12 takes three stones on an initial landscape: (a) each stone's pixels have one "
+        "value; (b) edge detection gives the contacts and the normal at each of their pixels; (c) "
+        "the areas are the weights, the centres of the pixels the centres of mass (triangles), "
+        "'only the end points of the interface are used', and its normal is 'the average of all "
+        "normal vectors in a given interface' (§4.2). There are no numbers.",
+    ),
+    study=blocks,
+    ours=lambda found: tuple(_found(found)),
+    tables={
+        "blocks": lambda found: _blocks(found.model),
+        "interfaces": lambda found: _interfaces(found.model),
+    },
+    pictures=lambda found: (_picture(found),),
+    needs=(PR.source.name,),
+)

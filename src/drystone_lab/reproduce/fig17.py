@@ -1,5 +1,6 @@
 """Fig. 17: the shortest paths along the joints, ours and the masons' (§5.2)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,38 +15,23 @@ from drystone.metrics.joints import PAD_LEFT, PAD_TOP, joint_mask
 from drystone.metrics.paths import JointPath, horizontal_paths, vertical_paths
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
-from drystone_lab.reproduce.base import PR, PaperWall
-from drystone_lab.reproduce.item import Context, Item, Output, Picture
+from drystone_lab.reproduce.base import PR
+from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
+from drystone_lab.walls import PR, Target
 
 ACROSS, UPRIGHT = 3, 7
 """How many paths Fig. 17 draws."""
 
 PANEL_IN = (6.4, 2.2)
 
-PAPER = (
-    "Fig. 17 draws (a) the three shortest horizontal paths along the joints of a dry-stone wall "
-    "and (b) seven shortest vertical ones. From such paths come F_AH (Eq. 26), by how much they "
-    "are longer than the wall is wide, the lower the straighter the courses, and F_AV (Eq. 27), by "
-    "how much they are longer than it is high, the higher the better head joints are interrupted. "
-    "The lengths of the paths are not given.",
-)
-
 
 @dataclass(frozen=True, eq=False)
 class Paths:
-    """The shortest paths along the joints of a wall.
+    """The shortest paths along the joints of a wall, the shortest first.
 
-    Parameters
-    ----------
-    name : str
-        Of the wall.
-    labels : (h, w) integer array
-        Of the wall, cut out.
-    across, upright : tuple of JointPath
-        From left to right and from top to bottom, the shortest first.
-    width, height : int
-        Lengths of straight paths, px.
+    Width and height are the lengths of straight paths, px.
     """
 
     name: str
@@ -71,53 +57,26 @@ class Paths:
         return mean_excess(across, self.width), mean_excess(upright, self.height)
 
 
-def make(context: Context, wall: PaperWall = PR) -> Output:
-    """Find and draw the shortest paths of a planned wall, and of the masons' beside it.
+@dataclass(frozen=True, eq=False)
+class Walls:
+    """A planned wall, and the masons' beside it where it is published."""
 
-    Parameters
-    ----------
-    context : Context
-        Does the run.
-    wall : PaperWall
-        What is built; of published stones the image is the masons' wall.
-    """
+    all: tuple[Paths, ...]
+    runs: tuple[RunSpec, ...]
+
+
+def walls(context: Context, wall: Target = PR) -> Walls:
+    """Find the shortest paths; of published stones the image is the masons' wall."""
     spec = wall.run(context.seed)
     built = context.wall(spec)
-    walls = [Paths.of(f"planned {wall.name}", built.labels, built.site.width_px)]
+    found = [Paths.of(f"planned {wall.name}", built.labels, built.site.width_px)]
     if context.data is not None and wall.source.kind == "published":
         traced = read_wall_image(published_file(context.data, wall.source.name))
-        walls.append(Paths.of(f"the masons' {wall.name}", reduce_labels(traced, wall.scale)))
-    return Output(
-        paper=PAPER,
-        ours=_found(walls),
-        tables=(("figures", _figures(walls)), ("paths", _paths(walls))),
-        pictures=tuple(_picture(paths, number) for number, paths in enumerate(walls)),
-        runs=(spec,),
-    )
+        found.append(Paths.of(f"the masons' {wall.name}", reduce_labels(traced, wall.scale)))
+    return Walls(tuple(found), (spec,))
 
 
-def _found(walls: list[Paths]) -> tuple[str, ...]:
-    told = []
-    for paths in walls:
-        across, upright = paths.figures
-        told.append(
-            f"{paths.name}: F_AH {_percent(across)}, F_AV {_percent(upright)} over the {SHORTEST} "
-            f"shortest paths each ({len(paths.across)} horizontal and {len(paths.upright)} "
-            "vertical starts have a path)"
-        )
-    return (
-        "; ".join(told) + ".",
-        "Both walls are measured by one definition on pixels of one size: starts every tenth of "
-        "the side, each stone eroded once, so that stones that touch have a joint of two px. The "
-        "paper's Eq. 26 and Eq. 27 leave n and the starts open.",
-    )
-
-
-def _percent(value: float | None) -> str:
-    return "not defined" if value is None else f"{value:.2f} %"
-
-
-def _figures(walls: list[Paths]) -> Table:
+def _figures(walls: Sequence[Paths]) -> Table:
     rows = []
     for paths in walls:
         figures = (None if value is None else round(value, 4) for value in paths.figures)
@@ -130,7 +89,7 @@ def _figures(walls: list[Paths]) -> Table:
     )
 
 
-def _paths(walls: list[Paths]) -> Table:
+def _paths(walls: Sequence[Paths]) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for paths in walls:
         for way, found, straight in (
@@ -170,4 +129,26 @@ def _picture(paths: Paths, number: int) -> Picture:
     )  # fmt: skip
 
 
-ITEM = Item("shortest paths along the joints", "§5.2", make, needs=(PR.source.name,))
+PATHS = Item(
+    title="shortest paths along the joints",
+    section="§5.2",
+    paper=(
+        "Fig. 17 draws (a) the three shortest horizontal paths along the joints of a dry-stone "
+        "wall and (b) seven shortest vertical ones. From such paths come F_AH (Eq. 26), by how "
+        "much they are longer than the wall is wide, the lower the straighter the courses, and "
+        "F_AV (Eq. 27), by how much they are longer than it is high, the higher the better head "
+        "joints are interrupted. The lengths of the paths are not given.",
+    ),
+    study=walls,
+    ours=lambda _: (
+        "Both walls are measured by one definition on pixels of one size: starts every tenth of "
+        "the side, each stone eroded once, so that stones that touch have a joint of two px. The "
+        "paper's Eq. 26 and Eq. 27 leave n and the starts open.",
+    ),
+    tables={
+        "figures": lambda found: _figures(found.all),
+        "paths": lambda found: _paths(found.all),
+    },
+    pictures=lambda found: [_picture(paths, number) for number, paths in enumerate(found.all)],
+    needs=(PR.source.name,),
+)

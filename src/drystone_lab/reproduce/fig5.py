@@ -1,6 +1,6 @@
 """Fig. 5: the stones PR in clusters of like eccentricity and size (§3.4)."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,9 +13,10 @@ from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.pictures.features import COUNTS_IN, plot_counts, plot_features
-from drystone_lab.reproduce.base import MASONS, PR, PaperWall
-from drystone_lab.reproduce.item import Context, Item, Output, Picture
+from drystone_lab.reproduce.base import MASONS, PR
+from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.table import Cell, Table
+from drystone_lab.walls import MASONS, PR, Target
 
 DISTANCE = ClusterSettings().distance
 DISTANCES = (0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4)
@@ -24,33 +25,12 @@ DISTANCES = (0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4)
 PAPER_CLUSTERS = 7
 """Of the 32 stones PR (§3.4)."""
 
-PAPER = (
-    "Fig. 5 shows the stones of the wall PR coloured by cluster, and each as a point by its "
-    f"features. §3.4: 'a set with 32 stones which is separated into {PAPER_CLUSTERS} clusters' by "
-    "Ward's agglomerative clustering with a distance threshold of 0.2, on the eccentricity of the "
-    "ellipse with like second moments and the area of the bounding box over the largest in the "
-    "set. The members of the clusters are only in the picture.",
-)
-
 
 @dataclass(frozen=True, eq=False)
 class Grouped:
-    """A set of stones in clusters.
+    """A set of stones in clusters: their number by threshold, and those at the paper's by id.
 
-    Parameters
-    ----------
-    name : str
-        Of the set.
-    stones : StoneSet
-        The stones.
-    features : (n, 2) float array
-        Of each (:func:`drystone.clusters.stone_features`).
-    counts : dict of float to int
-        Clusters by threshold.
-    merges : (n - 1,) float array
-        Distances at which Ward's linkage joins two clusters, ascending.
-    clusters : dict of int to int
-        At the paper's threshold, by id.
+    Merges are the distances at which Ward's linkage joins two clusters, ascending.
     """
 
     name: str
@@ -73,63 +53,37 @@ class Grouped:
         merges = np.sort(ward(features)[:, 2])
         return cls(name, stones, features, counts, merges, by_distance[DISTANCE])
 
-    def between(self, count: int) -> tuple[float, float]:
-        """Return from which threshold on, and below which, there are so many clusters.
+    @property
+    def number(self) -> int:
+        """Of the clusters."""
+        return len({*self.clusters.values()})
 
-        Parameters
-        ----------
-        count : int
-            From 2 to one less than there are stones.
-        """
+    def between(self, count: int) -> tuple[float, float]:
+        """Return from which threshold on, and below which, there are so many clusters."""
         return float(self.merges[-count]), float(self.merges[1 - count])
 
 
-def make(context: Context, wall: PaperWall = PR, others: Sequence[PaperWall] = MASONS) -> Output:
-    """Group the stones of a wall, and count the clusters of some sets over the threshold.
-
-    Parameters
-    ----------
-    context : Context
-        Gives the published data.
-    wall : PaperWall
-        Whose stones are drawn.
-    others : sequence of PaperWall
-        Whose clusters are counted; those whose stones are absent are left out.
-    """
-    drawn = Grouped.of(wall.name, wall.source.stones(context.data))
-    counted = {wall.name: drawn}
-    for other in others:
-        if other.name not in counted and other.source.is_there(context.data):
-            counted[other.name] = Grouped.of(other.name, other.source.stones(context.data))
-    return Output(
-        paper=PAPER,
-        ours=_found(drawn, list(counted.values())),
-        tables=(
-            ("clusters", _clusters(drawn)),
-            ("stones", _stones(drawn)),
-            ("thresholds", _thresholds(list(counted.values()))),
-        ),
-        pictures=(_picture(drawn), _counts_picture(list(counted.values()))),
-    )
+def grouped(
+    context: Context, wall: Target = PR, others: Sequence[Target] = MASONS
+) -> list[Grouped]:
+    """Group the stones of a wall, which are drawn, and of others whose stones are there."""
+    sets = {one.name: one.stones(context.data) for one in (wall, *others)}
+    return [Grouped.of(name, stones) for name, stones in sets.items() if stones is not None]
 
 
-def _found(drawn: Grouped, counted: Sequence[Grouped]) -> tuple[str, ...]:
-    number = len({*drawn.clusters.values()})
+def _found(counted: Sequence[Grouped]) -> Iterator[str]:
+    drawn = counted[0]
     low, high = drawn.between(PAPER_CLUSTERS)
-    agrees = "the paper's number" if number == PAPER_CLUSTERS else f"not {PAPER_CLUSTERS}"
-    sets = "; ".join(
-        f"{one.name}: {len({*one.clusters.values()})} of {len(one.stones)} stones"
-        for one in counted
+    yield (
+        f"The {len(drawn.stones)} stones {drawn.name} fall into {drawn.number} clusters at a "
+        f"distance of {DISTANCE:g}; the paper has {PAPER_CLUSTERS}. There are so many for every "
+        f"threshold from {low:.3f} to {high:.3f}."
     )
-    ends = (DISTANCES[0], DISTANCES[-1])
-    return (
-        f"The {len(drawn.stones)} stones {drawn.name} fall into {number} clusters at a distance "
-        f"of {DISTANCE:g}, {agrees}. There are {PAPER_CLUSTERS} for every threshold from {low:.3f} "
-        f"to {high:.3f}, {drawn.counts[ends[0]]} at {ends[0]:g} and {drawn.counts[ends[1]]} at "
-        f"{ends[1]:g}.",
+    sets = "; ".join(f"{one.name}: {one.number} of {len(one.stones)} stones" for one in counted)
+    yield (
         f"Clusters at {DISTANCE:g} by set: {sets}. Size is relative to the largest of a set, so "
         "the number depends on how far its sizes spread, and one very large stone makes fewer "
-        "clusters of the others.",
+        "clusters of the others."
     )
 
 
@@ -182,11 +136,10 @@ def _picture(drawn: Grouped) -> Picture:
     ids = [stone.id for stone in drawn.stones]
     plot_features(drawn.features, ids, drawn.clusters, above.add_subplot())
     plot_stones(drawn.stones, drawn.clusters, below.add_subplot())
-    number = len({*drawn.clusters.values()})
     return Picture(
         "fig5", figure,
-        f"The {len(ids)} stones {drawn.name} in {number} clusters: by eccentricity and size, and "
-        "as they lie in the source image. Numbers are ids.",
+        f"The {len(ids)} stones {drawn.name} in {drawn.number} clusters: by eccentricity and size, "
+        "and as they lie in the source image. Numbers are ids.",
     )  # fmt: skip
 
 
@@ -201,4 +154,23 @@ def _counts_picture(counted: Sequence[Grouped]) -> Picture:
     )  # fmt: skip
 
 
-ITEM = Item("clusters of the stones PR", "§3.4", make, needs=(PR.source.name,))
+CLUSTERS = Item(
+    title="clusters of the stones PR",
+    section="§3.4",
+    paper=(
+        "Fig. 5 shows the stones of the wall PR coloured by cluster, and each as a point by its "
+        f"features. §3.4: 'a set with 32 stones which is separated into {PAPER_CLUSTERS} clusters' "
+        "by Ward's agglomerative clustering with a distance threshold of 0.2, on the eccentricity "
+        "of the ellipse with like second moments and the area of the bounding box over the largest "
+        "in the set. The members of the clusters are only in the picture.",
+    ),
+    study=grouped,
+    ours=lambda sets: tuple(_found(sets)),
+    tables={
+        "clusters": lambda sets: _clusters(sets[0]),
+        "stones": lambda sets: _stones(sets[0]),
+        "thresholds": _thresholds,
+    },
+    pictures=lambda sets: (_picture(sets[0]), _counts_picture(sets)),
+    needs=(PR.source.name,),
+)

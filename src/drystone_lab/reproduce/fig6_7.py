@@ -1,14 +1,15 @@
 """Fig. 6 and Fig. 7: what the indices measure, on real stones (§3.5)."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 
 from matplotlib.figure import Figure
 
 from drystone_lab.pictures.action import Mark, plot_action
-from drystone_lab.reproduce.base import PR, PaperWall
+from drystone_lab.reproduce.base import PR
 from drystone_lab.reproduce.construction import Moment, construction
-from drystone_lab.reproduce.item import Context, Item, Output, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.places import (
     Place,
     action_at,
@@ -17,7 +18,9 @@ from drystone_lab.reproduce.places import (
     resting_places,
 )
 from drystone_lab.reproduce.recounted import recounted
+from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
+from drystone_lab.walls import PR, Target
 
 MARKS: Mapping[str, Mark] = MappingProxyType(
     {
@@ -30,70 +33,50 @@ MARKS: Mapping[str, Mark] = MappingProxyType(
 PANEL_IN = (3.6, 1.28)
 WIDE_IN = (8.4, 3.1)
 
-PAPER = (
-    "Fig. 6 draws a favourable and an unfavourable case of each geometric index SF, LFR, GDS, NHR, "
-    "IWR and IS. §3.5 gives their ranges: SF, LFR, GDS and IWR from 0 to 1, the highest best; a "
-    "straight course is NHR = 0; a large IS is a top that slopes inwards. Fig. 6 has no values.",
-    "Fig. 7 shows on one landscape what they are computed from: the rays of LFR to the left and "
-    "downwards, the bounding box of the landscape, the left neighbour and the two stones below.",
-)
-
-
-def make(context: Context, wall: PaperWall = PR) -> Output:
-    """Find and draw the best and the worst place by each index, and one place with everything.
-
-    Parameters
-    ----------
-    context : Context
-        Does the run.
-    wall : PaperWall
-        What is built.
-    """
-    spec = wall.run(context.seed)
-    built = construction(context, spec)
-    moment, place = amid_course(built)
-    places = resting_places(moment)
-    cases = [
-        (name, best, found)
-        for name in MARKS
-        for best in (True, False)
-        if (found := extreme(places, name, best=best)) is not None
-    ]
-    return Output(
-        paper=PAPER,
-        ours=(_found(moment, places, cases), _found_one(moment, place)),
-        tables=(
-            ("extremes", _extremes(moment, cases)),
-            ("ranges", _ranges(places)),
-            ("fig7", _one(moment, place)),
-        ),
-        pictures=(_picture6(moment, cases, wall.name), _picture7(moment, place)),
-        runs=(spec,),
-    )
-
-
 Cases = Sequence[tuple[str, bool, Place]]
 """Index, whether it is best there, and the place."""
 
 
-def _found(moment: Moment, places: Sequence[Place], cases: Cases) -> str:
-    spans = "; ".join(
-        f"{name} {worst.values[name]:.3f} to {best.values[name]:.3f}"
-        for (name, _, best), (_, _, worst) in zip(cases[::2], cases[1::2], strict=True)
-    )
-    return (
+@dataclass(frozen=True, eq=False)
+class Places:
+    """A moment of a run, where stones that are left would rest, and a stone amid a course."""
+
+    wall: Target
+    moment: Moment
+    place: Place
+    all: tuple[Place, ...]
+    runs: tuple[RunSpec, ...]
+
+    @property
+    def cases(self) -> Cases:
+        """The best and the worst place by each index."""
+        found = [
+            (name, best, extreme(self.all, name, best=best))
+            for name in MARKS
+            for best in (True, False)
+        ]
+        return [(name, best, place) for name, best, place in found if place is not None]
+
+
+def places(context: Context, wall: Target = PR) -> Places:
+    """Find the places of all stones that are left at a moment of a run."""
+    spec = wall.run(context.seed)
+    moment, place = amid_course(construction(context, spec))
+    return Places(wall, moment, place, resting_places(moment), (spec,))
+
+
+def _found(found: Places) -> Iterator[str]:
+    moment, place = found.moment, found.place
+    yield (
         f"With {len(moment.wall.placements)} stones placed, {len(moment.remaining)} are left, and "
-        f"there are {len(places)} feasible positions at which one of them rests by itself. From "
-        f"the worst to the best of them: {spans}. NHR is taken where there is a left neighbour, "
-        "IWR of inner stones over two joints, IS of boundary stones. The column of values counted "
-        "again is worked out from the pixels of the picture alone; SF differs there because the "
-        "planner takes the area and the box from the source image."
+        f"there are {len(found.all)} feasible positions at which one of them rests by itself. NHR "
+        "is taken where there is a left neighbour, IWR of inner stones over two joints, IS of "
+        "boundary stones. The column of values counted again is worked out from the pixels of the "
+        "picture alone; SF differs there because the planner takes the area and the box from the "
+        "source image."
     )
-
-
-def _found_one(moment: Moment, place: Place) -> str:
     values = ", ".join(f"{name} = {value:.3f}" for name, value in place.values.items())
-    return (
+    yield (
         f"Fig. 7 shows stone {place.posed.stone.id}, number {moment.number} of the run, where it "
         f"ended: {values}."
     )
@@ -179,4 +162,28 @@ def _picture7(moment: Moment, place: Place) -> Picture:
     )  # fmt: skip
 
 
-ITEM = Item("the indices, good and bad, on real stones", "§3.5", make, needs=(PR.source.name,))
+INDICES = Item(
+    title="the indices, good and bad, on real stones",
+    section="§3.5",
+    paper=(
+        "Fig. 6 draws a favourable and an unfavourable case of each geometric index SF, LFR, GDS, "
+        "NHR, IWR and IS. §3.5 gives their ranges: SF, LFR, GDS and IWR from 0 to 1, the highest "
+        "best; a straight course is NHR = 0; a large IS is a top that slopes inwards. Fig. 6 has "
+        "no values.",
+        "Fig. 7 shows on one landscape what they are computed from: the rays of LFR to the left "
+        "and downwards, the bounding box of the landscape, the left neighbour and the two stones "
+        "below.",
+    ),
+    study=places,
+    ours=lambda found: tuple(_found(found)),
+    tables={
+        "extremes": lambda found: _extremes(found.moment, found.cases),
+        "ranges": lambda found: _ranges(found.all),
+        "fig7": lambda found: _one(found.moment, found.place),
+    },
+    pictures=lambda found: (
+        _picture6(found.moment, found.cases, found.wall.name),
+        _picture7(found.moment, found.place),
+    ),
+    needs=(PR.source.name,),
+)

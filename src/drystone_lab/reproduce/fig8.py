@@ -1,6 +1,8 @@
 """Fig. 8: the feasible positions of a stone by two convolutions, and the best (§3.6)."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -12,24 +14,18 @@ from drystone.kernels.merits import eq12_merits
 from drystone.kernels.raster import Mask
 from drystone.model.pose import PosedStone
 from drystone_lab.pictures.positions import Layer, plot_position_layers, plot_position_values
-from drystone_lab.reproduce.base import PR, PaperWall
+from drystone_lab.reproduce.base import PR
 from drystone_lab.reproduce.construction import Moment, construction
-from drystone_lab.reproduce.item import Context, Item, Output, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.places import amid_course
+from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
+from drystone_lab.walls import PR, Target
 
 FREE, FLOATING, TOUCHING = "#d55e00", "#0072b2", "#cc79a7"
 """The paper's red, blue and pink in Okabe and Ito's colours, apart for colour-blind readers."""
 
 PANEL_IN = (7.2, 2.35)
-
-PAPER = (
-    "Fig. 8 shows a landscape and a stone. The convolution of the landscape with the stone gives "
-    "the positions without overlap (red); the convolution of the landscape dilated by one pixel "
-    "those at which the stone would not touch it either (blue); 'the difference of the two "
-    "convolution results (red and blue in Fig. 8) produce the feasible solutions' (pink, §3.6). "
-    "The stone goes where Eq. 12 is largest (black). There are no numbers.",
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,65 +70,79 @@ def _overlap(picture: Mask, mask: Mask) -> NDArray[np.int64]:
     return np.asarray(np.rint(counts), np.int64)
 
 
-def make(context: Context, wall: PaperWall = PR) -> Output:
-    """Find the positions of a stone of the run on what was built before it.
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A stone of a run on what was built before it: its positions, and the one that is tried."""
 
-    Parameters
-    ----------
-    context : Context
-        Does the run.
-    wall : PaperWall
-        What is built.
-    """
+    wall: Target
+    moment: Moment
+    posed: PosedStone
+    chosen: tuple[int, int]
+    runs: tuple[RunSpec, ...]
+
+    @cached_property
+    def maps(self) -> PositionMaps:
+        """The paper's positions."""
+        return PositionMaps.of(self.moment.wall.occupied, self.posed.mask)
+
+    @cached_property
+    def resting(self) -> Positions:
+        """Where it rests on something from below."""
+        return self.moment.positions(self.posed)
+
+    def values(self, positions: Positions) -> NDArray[np.float64]:
+        """Return Eq. 12 at some positions."""
+        landscape, posed = self.moment.landscape, self.posed
+        built, beta = landscape.built_height_px, self.moment.settings.placement.beta
+        return eq12_merits(
+            positions, posed.silhouette, landscape.rays, built, posed.anchor[0], beta
+        )
+
+    @cached_property
+    def touching(self) -> Positions:
+        """Where it touches something."""
+        return np.argwhere(self.maps.touching).astype(np.int64)
+
+
+def trial(context: Context, wall: Target = PR) -> Trial:
+    """Find the positions of a stone of the run on what was built before it."""
     spec = wall.run(context.seed)
     moment, place = amid_course(construction(context, spec))
-    trial = moment.trial(place.posed.stone.id)
-    if trial is None:
+    found = moment.trial(place.posed.stone.id)
+    if found is None:
         raise RuntimeError("a stone of the run fits nowhere where it was placed")
-    posed, *chosen = trial
-    maps = PositionMaps.of(moment.wall.occupied, posed.mask)
-    resting = moment.positions(posed)
-    values = _values(moment, posed, resting)
-    table, sentences = _found(moment, posed, maps, (chosen[0], chosen[1]))
-    figure = _drawn(moment, posed, maps, resting, values, (chosen[0], chosen[1]))
-    caption = (
-        f"Positions of stone {posed.stone.id} on {len(moment.wall.placements)} stones of "
-        f"{wall.name}, each drawn where the stone's centroid would be. Top: no overlap, and of "
-        "these floating. Middle: the difference, and of it resting on something from below. "
-        "Bottom: Eq. 12 at the resting positions, and the stone at the best (cross)."
-    )
-    return Output(
-        paper=PAPER,
-        ours=sentences,
-        tables=(("positions", table),),
-        pictures=(Picture("fig8", figure, caption),),
-        runs=(spec,),
-    )
+    return Trial(wall, moment, found[0], found[1:], (spec,))
 
 
-def _values(moment: Moment, posed: PosedStone, positions: Positions) -> NDArray[np.float64]:
-    """Return Eq. 12 at some positions."""
-    landscape = moment.landscape
-    built, beta = landscape.built_height_px, moment.settings.placement.beta
-    return eq12_merits(positions, posed.silhouette, landscape.rays, built, posed.anchor[0], beta)
-
-
-def _found(
-    moment: Moment, posed: PosedStone, maps: PositionMaps, chosen: tuple[int, int]
-) -> tuple[Table, tuple[str, ...]]:
-    resting = moment.positions(posed)
-    touching = np.argwhere(maps.touching).astype(np.int64)
-    best = [_best(moment, posed, positions) for positions in (touching, resting)]
-    value = float(_values(moment, posed, np.array([chosen], np.int64))[0])
+def _found(found: Trial) -> Iterator[str]:
+    maps, resting = found.maps, found.resting
     inside = int(np.count_nonzero(maps.touching[resting[:, 0], resting[:, 1]]))
-    height = moment.landscape.height_px
+    share = len(found.touching) / maps.free.size
+    yield (
+        f"Of {maps.free.size} positions {int(maps.free.sum())} overlap nothing; "
+        f"{int(maps.floating.sum())} of these float, which leaves {len(found.touching)} "
+        f"({100 * share:.1f} %) that touch something. The planner is stricter: a touch at a side "
+        f"or at the bounds carries nothing, so it takes the {len(resting)} at which the stone "
+        f"rests on something from below; {inside} of these are among the paper's."
+    )
+    papers, ours = (_best(found, positions) for positions in (found.touching, resting))
+    yield (
+        f"Of these Eq. 12 is largest, {ours[2]:.3f}, at {ours[1]} px from the left; the stone is "
+        f"tried at {found.chosen[1]} px. Among the paper's positions the best is {papers[2]:.3f}, "
+        f"at {papers[1]} px; it may rest on nothing."
+    )
+
+
+def _table(found: Trial) -> Table:
+    posed, maps, height = found.posed, found.maps, found.moment.landscape.height_px
+    value = float(found.values(np.array([found.chosen], np.int64))[0])
     sets: list[tuple[str, int, tuple[int, int, float] | None]] = [
         ("all inside the wall", maps.free.size, None),
         ("no overlap (red)", int(maps.free.sum()), None),
         ("floating (blue)", int(maps.floating.sum()), None),
-        ("touching: the difference (pink)", len(touching), best[0]),
-        ("resting on something from below", len(resting), best[1]),
-        ("chosen", 1, (*chosen, value)),
+        ("touching: the difference (pink)", len(found.touching), _best(found, found.touching)),
+        ("resting on something from below", len(found.resting), _best(found, found.resting)),
+        ("chosen", 1, (*found.chosen, value)),
     ]
     rows: list[tuple[Cell, ...]] = []
     for name, count, at in sets:
@@ -140,47 +150,23 @@ def _found(
         if at is not None:
             told = (at[1], height - at[0] - posed.height_px, round(at[2], 4))
         rows.append((name, count, *told))
-    table = Table(
+    return Table(
         f"Positions of stone {posed.stone.id}, {posed.width_px} x {posed.height_px} working px",
         ("positions", "count", "best: left px", "best: bottom px", "best: Eq. 12"),
         tuple(rows),
     )
-    share = len(touching) / maps.free.size
-    first = (
-        f"Of {maps.free.size} positions {int(maps.free.sum())} overlap nothing; "
-        f"{int(maps.floating.sum())} of these float, which leaves {len(touching)} "
-        f"({100 * share:.1f} %) that touch something. The planner is stricter: a touch at a side "
-        f"or at the bounds carries nothing, so it takes the {len(resting)} at which the stone "
-        f"rests on something from below; {inside} of these are among the paper's."
-    )
-    same = best[0][:2] == best[1][:2]
-    there = (
-        "where the planner tries the stone" if best[1][:2] == chosen else "not where it is tried"
-    )
-    second = (
-        f"Of these Eq. 12 is largest, {best[1][2]:.3f}, at {best[1][1]} px from the left, {there}. "
-        f"Among the paper's positions the best is "
-        + ("the same." if same else f"another, {best[0][2]:.3f}: it rests on nothing.")
-    )
-    return table, (first, second)
 
 
-def _best(moment: Moment, posed: PosedStone, positions: Positions) -> tuple[int, int, float]:
+def _best(found: Trial, positions: Positions) -> tuple[int, int, float]:
     """Return the position of the largest value; of equal ones the lower, then the left one."""
-    values = _values(moment, posed, positions)
+    values = found.values(positions)
     order = np.lexsort((positions[:, 1], -positions[:, 0], -np.round(values, 12)))
     row, col = positions[order[0]].tolist()
     return row, col, float(values[order[0]])
 
 
-def _drawn(
-    moment: Moment,
-    posed: PosedStone,
-    maps: PositionMaps,
-    resting: Positions,
-    values: NDArray[np.float64],
-    chosen: tuple[int, int],
-) -> Figure:
+def _drawn(found: Trial) -> Picture:
+    moment, posed, maps, resting = found.moment, found.posed, found.maps, found.resting
     figure = Figure(figsize=(PANEL_IN[0], 3 * PANEL_IN[1]), layout="constrained")
     first, second, third = figure.subplots(3, 1)
     labels = moment.wall.labels
@@ -192,8 +178,29 @@ def _drawn(
     touching = Layer(maps.touching, TOUCHING, "touching: the difference")
     rests = Layer(bearing, "#000000", "resting on something from below")
     plot_position_layers(labels, posed, (touching, rests), second)
-    plot_position_values(labels, posed, resting, values, chosen, third)
-    return figure
+    plot_position_values(labels, posed, resting, found.values(resting), found.chosen, third)
+    return Picture(
+        "fig8", figure,
+        f"Positions of stone {posed.stone.id} on {len(moment.wall.placements)} stones of "
+        f"{found.wall.name}, each drawn where the stone's centroid would be. Top: no overlap, and "
+        "of these floating. Middle: the difference, and of it resting on something from below. "
+        "Bottom: Eq. 12 at the resting positions, and the stone at the best (cross).",
+    )  # fmt: skip
 
 
-ITEM = Item("feasible positions of a stone", "§3.6", make, needs=(PR.source.name,))
+POSITIONS = Item(
+    title="feasible positions of a stone",
+    section="§3.6",
+    paper=(
+        "Fig. 8 shows a landscape and a stone. The convolution of the landscape with the stone "
+        "gives the positions without overlap (red); the convolution of the landscape dilated by "
+        "one pixel those at which the stone would not touch it either (blue); 'the difference of "
+        "the two convolution results (red and blue in Fig. 8) produce the feasible solutions' "
+        "(pink, §3.6). The stone goes where Eq. 12 is largest (black). There are no numbers.",
+    ),
+    study=trial,
+    ours=lambda found: tuple(_found(found)),
+    tables={"positions": _table},
+    pictures=lambda found: (_drawn(found),),
+    needs=(PR.source.name,),
+)

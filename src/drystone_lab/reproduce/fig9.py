@@ -1,16 +1,19 @@
 """Fig. 9: stones that fall where they are tried, turned and wedged (§3.7)."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from drystone_lab.pictures.support import Standing, plot_standing, window_around
-from drystone_lab.reproduce.base import PR, PaperWall
+from drystone_lab.reproduce.base import PR
 from drystone_lab.reproduce.construction import construction
-from drystone_lab.reproduce.item import Context, Item, Output, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.unstable import Unstable, unstable_trials
+from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
+from drystone_lab.walls import PR, Target
 
 PANEL_IN = (3.1, 2.3)
 
@@ -18,36 +21,26 @@ WIDE = 0.1
 """Cases that are drawn have a support at least this wide, in widths of the stone, so that AB is
 seen, unless there is none."""
 
-PAPER = (
-    "Fig. 9 draws one stone: (a) not stable, since its centre of mass C is not above the support "
-    "AB; (b) turned about A, the nearer end, until C' lies on the new AB, counter-clockwise when "
-    "AB x AC is positive; (c) on a wedge under the unsupported part, of height h_wedge and width "
-    "w_wedge. 'The rotation-based stabilization has the priority, whereas wedging is employed only "
-    "when the rotation-based method fails' (§3.7). There are no numbers.",
-)
+
+@dataclass(frozen=True, eq=False)
+class Falls:
+    """What was tried before each step of a run, what falls there, and the cases that are drawn."""
+
+    wall: Target
+    trials: int
+    unstable: tuple[Unstable, ...]
+    runs: tuple[RunSpec, ...]
+
+    @property
+    def shown(self) -> tuple[Unstable, ...]:
+        """One that is turned, and one that has to be wedged."""
+        return _shown(self.unstable)
 
 
-def make(context: Context, wall: PaperWall = PR) -> Output:
-    """Try all stones that are left before each step of a run, and treat those that fall.
-
-    Parameters
-    ----------
-    context : Context
-        Does the run.
-    wall : PaperWall
-        What is built.
-    """
+def falls(context: Context, wall: Target = PR) -> Falls:
+    """Try all stones that are left before each step of a run, and treat those that fall."""
     spec = wall.run(context.seed)
-    trials, unstable = unstable_trials(construction(context, spec))
-    shown = _shown(unstable)
-    pictures = (_picture(shown, wall.name),) if shown else ()
-    return Output(
-        paper=PAPER,
-        ours=_found(trials, unstable),
-        tables=(("counts", _counts(trials, unstable)), ("cases", _cases(shown))),
-        pictures=pictures,
-        runs=(spec,),
-    )
+    return Falls(wall, *unstable_trials(construction(context, spec)), (spec,))
 
 
 def _shown(unstable: Sequence[Unstable]) -> tuple[Unstable, ...]:
@@ -72,31 +65,26 @@ def _wedge_area(case: Unstable) -> int:
     return sum(wedge.area_px for wedge in case.wedged.wedges) if case.wedged is not None else 0
 
 
-def _found(trials: int, unstable: Sequence[Unstable]) -> tuple[str, ...]:
-    turned = sum(one.turned is not None for one in unstable)
-    wedged = sum(one.turned is None and one.wedged is not None for one in unstable)
-    wrong = [one for one in unstable if not one.sign_agrees]
-    hanging = sum(one.hangs for one in wrong)
-    lost = len(unstable) - turned - wedged
-    first = (
-        f"Before each step every stone that is left was tried where Eq. 12 puts it: {trials} "
-        f"trials, of which {len(unstable)} are not stable. Turning makes {turned} of these stable, "
-        f"wedging {wedged} of the others, and {lost} are given up."
+def _found(found: Falls) -> Iterator[str]:
+    wrong = [one for one in found.unstable if not one.sign_agrees]
+    yield (
+        f"Before each step every stone that is left was tried where Eq. 12 puts it: {found.trials} "
+        f"trials, of which {len(found.unstable)} are not stable."
     )
-    second = (
-        f"AB x AC has the sign that the paper's rule needs in {len(unstable) - len(wrong)} of "
-        f"{len(unstable)} cases. In the other {len(wrong)} it would turn the stone away from the "
-        f"side to which it falls; in {hanging} of them C is below A, where the stone hangs on a "
-        "shoulder. So the planner turns towards the side on which C is beyond A."
+    yield (
+        f"AB x AC has the sign that the paper's rule needs in {len(found.unstable) - len(wrong)} "
+        f"of {len(found.unstable)} cases. In the others it would turn the stone away from the side "
+        f"to which it falls; in {sum(one.hangs for one in wrong)} of them C is below A, where the "
+        "stone hangs on a shoulder. So the planner turns towards the side on which C is beyond A."
     )
-    return (first, second)
 
 
-def _counts(trials: int, unstable: Sequence[Unstable]) -> Table:
+def _counts(found: Falls) -> Table:
+    unstable = found.unstable
     turned = [one for one in unstable if one.turned is not None]
     stuck = [one for one in unstable if one.turned is None]
     rows: tuple[tuple[Cell, ...], ...] = (
-        ("tried", trials),
+        ("tried", found.trials),
         ("not stable", len(unstable)),
         ("stable after turning", len(turned)),
         ("of these, a wedge would do as well", sum(one.wedged is not None for one in turned)),
@@ -170,4 +158,20 @@ def _draw_case(axes: Sequence[Axes], case: Unstable) -> None:
                     size=8, transform=ax.transAxes)  # fmt: skip
 
 
-ITEM = Item("an unstable stone, turned and wedged", "§3.7", make, needs=(PR.source.name,))
+STABILISING = Item(
+    title="an unstable stone, turned and wedged",
+    section="§3.7",
+    paper=(
+        "Fig. 9 draws one stone: (a) not stable, since its centre of mass C is not above the "
+        "support AB; (b) turned about A, the nearer end, until C' lies on the new AB, "
+        "counter-clockwise when AB x AC is positive; (c) on a wedge under the unsupported part, of "
+        "height h_wedge and width w_wedge. 'The rotation-based stabilization has the priority, "
+        "whereas wedging is employed only when the rotation-based method fails' (§3.7). There are "
+        "no numbers.",
+    ),
+    study=falls,
+    ours=lambda found: tuple(_found(found)),
+    tables={"counts": _counts, "cases": lambda found: _cases(found.shown)},
+    pictures=lambda found: (_picture(found.shown, found.wall.name),) if found.shown else (),
+    needs=(PR.source.name,),
+)

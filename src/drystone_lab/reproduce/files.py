@@ -20,13 +20,6 @@ TIMES = "_times"
 def write_tables(folder: Path, output: Output) -> dict[str, list[dict[str, Any]]]:
     """Write the tables of an item; those of times under names that end with ``_times.csv``.
 
-    Parameters
-    ----------
-    folder : Path
-        That exists.
-    output : Output
-        Of the item.
-
     Returns
     -------
     dict

@@ -78,15 +78,6 @@ class ReportFolder:
     ) -> dict[str, Any]:
         """Write the files of an item in place of those of an earlier one; its JSON comes last.
 
-        Parameters
-        ----------
-        name : str
-            Of the item.
-        item, output : Item, Output
-            What was made.
-        about : mapping
-            Request, machine and times, for the JSON.
-
         Returns
         -------
         record : dict
@@ -124,13 +115,7 @@ class ReportFolder:
         self._write_misses({key: miss for key, miss in self.misses.items() if key != name})
 
     def write_report(self, order: Iterable[str]) -> Path:
-        """Write the page of everything that was made so far.
-
-        Parameters
-        ----------
-        order : iterable of str
-            Names of items as they come in the paper.
-        """
+        """Write the page of everything that was made so far."""
         names = list(order)
         records = [record for name in names if (record := self.record(name)) is not None]
         misses = [Miss(name, **self.misses[name]) for name in names if name in self.misses]

@@ -1,8 +1,9 @@
 """A table or figure of the paper that can be made again."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -99,9 +100,9 @@ class Output:
     runs: tuple[RunSpec, ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Item:
-    """A table or figure of the paper.
+    """A table or figure of the paper: data, and what is read off it.
 
     Parameters
     ----------
@@ -109,13 +110,39 @@ class Item:
         What it shows.
     section : str
         Of the paper.
-    make : callable
-        Makes it.
+    paper : tuple of str
+        What the paper shows and reports there, its numbers among it; a paragraph each.
+    study : callable
+        Does what the item is about: builds walls (:class:`~drystone_lab.reproduce.study.Study`)
+        or times them.  All others take what it returns; its `runs` are those of the item.
+    ours : callable
+        Says what was found, in sentences whose numbers are computed, and why it differs.
+    tables, times : mapping of str to callable
+        By the name of the CSV file; times differ from machine to machine.
+    pictures : callable
+        Draws.
     needs : tuple of str
         Published stones without which it cannot be made, as paths in their folder.
     """
 
     title: str
     section: str
-    make: Callable[[Context], Output]
-    needs: tuple[str, ...] = field(default=())
+    paper: tuple[str, ...]
+    study: Callable[[Context], Any]
+    ours: Callable[[Any], Sequence[str]]
+    tables: Mapping[str, Callable[[Any], Table]] = field(default_factory=dict)
+    times: Mapping[str, Callable[[Any], Table]] = field(default_factory=dict)
+    pictures: Callable[[Any], Sequence[Picture]] = lambda _: ()
+    needs: tuple[str, ...] = ()
+
+    def make(self, context: Context) -> Output:
+        """Do the study, and read everything off it."""
+        found = self.study(context)
+        return Output(
+            paper=self.paper,
+            ours=tuple(self.ours(found)),
+            tables=tuple((name, table(found)) for name, table in self.tables.items()),
+            times=tuple((name, table(found)) for name, table in self.times.items()),
+            pictures=tuple(self.pictures(found)),
+            runs=tuple(getattr(found, "runs", ())),
+        )

@@ -12,32 +12,32 @@ if TYPE_CHECKING:  # names are listed without waiting for matplotlib
 
 ITEMS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        "fig5": ("clusters of the stones PR (§3.4)", "fig5"),
-        "fig6-7": ("the indices, good and bad, on real stones (§3.5)", "fig6_7"),
-        "fig8": ("feasible positions of a stone (§3.6)", "fig8"),
-        "beta": ("the threshold of GDS in Eq. 12: 0, .5, .7, .9 (§3.6)", "beta"),
-        "fig9": ("an unstable stone, turned and wedged (§3.7)", "fig9"),
-        "fig12": ("Pic-to-Ri: from pixels to rigid blocks (§4.2)", "fig12"),
-        "fig13": ("the masons' walls, and with their gaps closed (§5.1)", "fig13"),
-        "fig14-15": ("the base case PR and its mechanisms (§5.1)", "fig14_15"),
-        "fig16": ("sampling: uniform, two-fold, full batch (§5.1)", "fig16"),
-        "fig17": ("shortest paths along the joints (§5.2)", "fig17"),
-        "table2": ("walls 1-5: fixed seed, best of 20, masons; with fig18 (§5.2)", "table2"),
-        "fig19": ("wedges of walls 3 and 5 (§5.2)", "fig19"),
-        "fig20": ("stabilisation: filling against area of wedges (§5.2)", "fig20"),
-        "fig21": ("walls built from both ends (§5.2)", "fig21"),
-        "fig22-24": ("polygons of eight noise levels, ten walls each (§5.3)", "fig22_24"),
-        "fig25": ("orientations in steps of 10 degrees (§5.3)", "fig25"),
-        "fig26-27": ("Fourier stones of four kinds, twenty walls each (§5.3)", "fig26_27"),
-        "fig28": ("time of a step by part, variant and full batch (§6.1)", "fig28"),
-        "growth": ("time against the numbers of stones Q and of clusters K (§6.2)", "growth"),
-        "fig29": ("resolutions .5 to 2: walls and times (§6.3)", "fig29"),
-        "figB30-32": ("walls of the stones of Fig. 18 by other methods (B.1)", "fig_b30_32"),
-        "figB33": ("91 irregular stones (B.2)", "fig_b33"),
-        "figB34": ("bricks of aspect 2 and 3 (B.2)", "fig_b34"),
+        "fig5": ("clusters of the stones PR (§3.4)", "fig5.CLUSTERS"),
+        "fig6-7": ("the indices, good and bad, on real stones (§3.5)", "fig6_7.INDICES"),
+        "fig8": ("feasible positions of a stone (§3.6)", "fig8.POSITIONS"),
+        "beta": ("the threshold of GDS in Eq. 12: 0, .5, .7, .9 (§3.6)", "ways.BETA"),
+        "fig9": ("an unstable stone, turned and wedged (§3.7)", "fig9.STABILISING"),
+        "fig12": ("Pic-to-Ri: from pixels to rigid blocks (§4.2)", "fig12.PIC_TO_RI"),
+        "fig13": ("the masons' walls, and with their gaps closed (§5.1)", "masons.FIG13"),
+        "fig14-15": ("the base case PR and its mechanisms (§5.1)", "base_case.BASE_CASE"),
+        "fig16": ("sampling: uniform, two-fold, full batch (§5.1)", "ways.SAMPLING"),
+        "fig17": ("shortest paths along the joints (§5.2)", "fig17.PATHS"),
+        "table2": ("walls 1-5: fixed seed, best of 20, masons; with fig18 (§5.2)", "table2.TABLE2"),
+        "fig19": ("wedges of walls 3 and 5 (§5.2)", "base_case.WEDGES"),
+        "fig20": ("stabilisation: filling against area of wedges (§5.2)", "ways.STABILISATION"),
+        "fig21": ("walls built from both ends (§5.2)", "ways.BOTH_ENDS"),
+        "fig22-24": ("polygons of eight noise levels, ten walls each (§5.3)", "noise.NOISE"),
+        "fig25": ("orientations in steps of 10 degrees (§5.3)", "noise.TURNED"),
+        "fig26-27": ("Fourier stones of four kinds, twenty walls each (§5.3)", "rounded.ROUNDED"),
+        "fig28": ("time of a step by part, variant and full batch (§6.1)", "times.STEPS"),
+        "growth": ("time against the numbers of stones Q and of clusters K (§6.2)", "times.GROWTH"),
+        "fig29": ("resolutions .5 to 2: walls and times (§6.3)", "times.RESOLUTION"),
+        "figB30-32": ("walls of the stones of Fig. 18 by other methods (B.1)", "ways.ALL_METHODS"),
+        "figB33": ("91 irregular stones (B.2)", "appendix.IRREGULAR"),
+        "figB34": ("bricks of aspect 2 and 3 (B.2)", "appendix.BRICKS"),
     }
 )
-"""What each shows, and the module of this package whose ITEM it is; in the order of the paper."""
+"""What each shows, and where in this package it is; in the order of the paper."""
 
 ALSO: Mapping[str, str] = MappingProxyType(
     {
@@ -83,5 +83,5 @@ def item_names(asked: str) -> tuple[str, ...]:
 
 def item_named(name: str) -> "Item":
     """Return one of :data:`ITEMS`."""
-    module = import_module(f"drystone_lab.reproduce.{ITEMS[name][1]}")
-    return cast("Item", module.ITEM)
+    module, _, item = ITEMS[name][1].partition(".")
+    return cast("Item", getattr(import_module(f"drystone_lab.reproduce.{module}"), item))

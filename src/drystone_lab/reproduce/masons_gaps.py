@@ -19,11 +19,6 @@ def drawn_together(labels: Labels) -> Labels:
     its centre nearest to the corner, and does not overlap another stone or leave the image, as
     long as there is one; every stone is moved once.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is; the corner is that of the image.
-
     Returns
     -------
     moved : (h, w) array of the same type

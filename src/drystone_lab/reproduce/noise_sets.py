@@ -1,7 +1,6 @@
 """The stones of Thangavelu et al. (2018), and our own of the noise levels between (§5.3)."""
 
 import math
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,8 +11,8 @@ from drystone.metrics.measure import measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.reproduce.base import PaperWall
 from drystone_lab.runs.source import generated, published
+from drystone_lab.walls import Target
 
 NOISES = tuple(range(10, 90, 10))
 """Levels of the paper, %."""
@@ -37,9 +36,6 @@ GAP_SOURCE_PX = 20 / 3
 
 GAP_RANGE = (0.5, 1.0, 1.5)
 """The resistance is also told for gaps of as many times this width."""
-
-Sets = Mapping[int, PaperWall]
-"""Stones and walls by noise, %."""
 
 
 @dataclass(frozen=True)
@@ -75,38 +71,18 @@ class Reference:
         return named[name]
 
 
-def noise_sets(noises: Sequence[int] = NOISES, scale: float = SCALE) -> dict[int, PaperWall]:
-    """Return the stones and walls of some noise levels, published ones where there are any.
-
-    Parameters
-    ----------
-    noises : sequence of int
-        Of :data:`NOISES`.
-    scale : float
-        Working resolution over that of the source.
-    """
-    return {noise: noise_set(noise, scale) for noise in noises}
-
-
-def noise_set(noise: int, scale: float = SCALE) -> PaperWall:
-    """Return the stones of a noise level, %; its number is the noise."""
+def noise_set(noise: int, scale: float = SCALE) -> Target:
+    """Return the stones of a noise level, %, and their wall; published ones where there are any."""
     if noise in PUBLISHED:
         source = published(f"thangavelu/noise_{noise}.png")
-        return PaperWall(noise, f"noise {noise} %", source, 0.0, 0.0, scale)
+        return Target(f"noise {noise} %", source, 0.0, 0.0, scale, noise)
     return generated_set(noise, COUNT, scale)
 
 
-def generated_set(noise: int, count: int, scale: float) -> PaperWall:
+def generated_set(noise: int, count: int, scale: float) -> Target:
     """Return generated stones, with a wall of which they are the same share as published ones.
 
-    Parameters
-    ----------
-    noise : int
-        Deviation of the corners over the shorter side of the brick, %.
-    count : int
-        Stones.
-    scale : float
-        Working resolution over that of the source.
+    The noise is the deviation of the corners over the shorter side of the brick, %.
 
     Examples
     --------
@@ -121,34 +97,18 @@ def generated_set(noise: int, count: int, scale: float) -> PaperWall:
     height = round(math.sqrt(wall_px / ASPECT))
     width = round(wall_px / height)
     name = f"noise {noise} % (generated)"
-    return PaperWall(noise, name, source, width, height, scale, stand_in=True)
+    return Target(name, source, width, height, scale, noise, stand_in=True)
 
 
-def reference_of(wall: PaperWall, data: Path | None) -> Reference | None:
-    """Measure the published wall of some stones; None of generated ones, which were never built.
-
-    Parameters
-    ----------
-    wall : PaperWall
-        The stones.
-    data : Path or None
-        Folder of the published data, where they are.
-    """
+def reference_of(wall: Target, data: Path | None) -> Reference | None:
+    """Measure the published wall of some stones; None of generated ones, which were never built."""
     if wall.stand_in or data is None:
         return None
     return measured(read_wall_image(published_file(data, wall.source.name)), wall.scale)
 
 
 def measured(labels: Labels, scale: float) -> Reference:
-    """Measure a label image as a wall that fills all of it.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        At the resolution of the source.
-    scale : float
-        At which it is measured.
-    """
+    """Measure a label image as a wall that fills all of it, reduced by a scale."""
     reduced = reduce_labels(labels, scale)
     height, width = reduced.shape
     # As in plans: stones have their area at the resolution of the source.

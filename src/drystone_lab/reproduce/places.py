@@ -58,19 +58,7 @@ def resting_places(moment: Moment) -> tuple[Place, ...]:
 
 
 def place_of(moment: Moment, posed: PosedStone, row: int, col: int, factor: float) -> Place:
-    """Return a place with its indices.
-
-    Parameters
-    ----------
-    moment : Moment
-        What is built.
-    posed : PosedStone
-        The stone.
-    row, col : int
-        Top-left corner of its mask.
-    factor : float
-        Its SF, which is the same everywhere.
-    """
+    """Return a place with its indices."""
     landscape, end_px = moment.landscape, moment.workshop.stock.narrowest_px
     box = view_box(posed, row, col, landscape.height_px)
     values = {

@@ -54,11 +54,6 @@ class Request:
     def is_met_by(self, record: Mapping[str, Any]) -> bool:
         """Return whether an item that was made before is what is asked for now.
 
-        Parameters
-        ----------
-        record : mapping
-            What :meth:`as_dict` gave then.
-
         Examples
         --------
         >>> full = Request("1", False, 1, None, ("almeida/R.png",))
@@ -82,15 +77,6 @@ class Request:
 
 def request_of(*, quick: bool, seed: int, image: Path | None, data: Path | None) -> Request:
     """Return what is asked for.
-
-    Parameters
-    ----------
-    quick, seed
-        See :class:`Request`.
-    image : Path or None
-        A picture of stones, or a folder of masks.
-    data : Path or None
-        Folder of the published data.
 
     Raises
     ------

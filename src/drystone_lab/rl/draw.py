@@ -55,13 +55,6 @@ class DrawSettings:
 def draw_wall(settings: DrawSettings, rng: Generator) -> tuple[StoneSet, Site]:
     """Draw stones, numbered from 1 in the order in which they arrive, and the site of their wall.
 
-    Parameters
-    ----------
-    settings : DrawSettings
-        What walls.
-    rng : Generator
-        Equal states give equal walls.
-
     Examples
     --------
     >>> stones, site = draw_wall(DrawSettings(kinds=("brick",)), np.random.default_rng(1))

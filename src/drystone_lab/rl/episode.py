@@ -104,11 +104,6 @@ class Episode:
     def take(self, position: int | None) -> None:
         """Build the stone that has arrived, and let the next come that can be built.
 
-        Parameters
-        ----------
-        position : int or None
-            Which of :attr:`offers`; None puts the stone aside for good.
-
         Raises
         ------
         IndexError

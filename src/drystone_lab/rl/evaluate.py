@@ -88,15 +88,6 @@ def figures_by(
 ) -> dict[str, list[float]]:
     """Return the figures of the walls that a policy builds.
 
-    Parameters
-    ----------
-    policy : str
-        Its name.
-    workshops : sequence of Workshop
-        Stones whose ids are in the order of arrival, and sites.
-    settings : PlannerSettings
-        How stones are placed.
-
     Raises
     ------
     UsageError

@@ -22,15 +22,7 @@ for how it lies."""
 
 
 def observation_space(offers: int, columns: int) -> spaces.Space[Observation]:
-    """Return the space of :func:`observation`.
-
-    Parameters
-    ----------
-    offers : int
-        How many are offered at most.
-    columns : int
-        Of the profile.
-    """
+    """Return the space of :func:`observation`."""
     shape = (offers, len(FEATURES) + len(STONE))
     space: Any = spaces.Dict(
         {

@@ -37,13 +37,6 @@ def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator
     the worker's machine, else from the folder that ``DRYSTONE_DATA`` names there.  A file of
     one's own is read here, and its stones are sent.
 
-    Parameters
-    ----------
-    address : str
-        Of the scheduler, for example ``"tcp://10.0.0.1:8786"``.
-    patience_s : float
-        Seconds within which it must answer and have a worker.
-
     Yields
     ------
     Work
@@ -68,11 +61,6 @@ def cluster_at_work(address: str, *, patience_s: float = PATIENCE_S) -> Iterator
 
 def check_versions(client: Any) -> None:
     """Compare the versions of this package on a cluster.
-
-    Parameters
-    ----------
-    client : distributed.Client
-        Of the cluster.
 
     Raises
     ------

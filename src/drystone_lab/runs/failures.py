@@ -7,15 +7,7 @@ from drystone_lab.runs.spec import RunSpec
 
 
 def died(spec: RunSpec | str, who: str) -> DrystoneError:
-    """Return E402: who did a run died at it.
-
-    Parameters
-    ----------
-    spec : RunSpec or str
-        The run, or what it is called.
-    who : str
-        What did it, without an article.
-    """
+    """Return E402: who did a run died at it."""
     return DrystoneError(
         "E402",
         f"the {who} that did this run died, for want of memory for example.",
@@ -27,13 +19,6 @@ def died(spec: RunSpec | str, who: str) -> DrystoneError:
 
 def absent_data(absent: Sequence[str], *, known: bool) -> InputError:
     """Return the error about published stones that are not there (E100).
-
-    Parameters
-    ----------
-    absent : sequence of str
-        Their paths in a folder of published data.
-    known : bool
-        Whether there is such a folder.
 
     Examples
     --------

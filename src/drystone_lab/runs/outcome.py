@@ -57,15 +57,7 @@ class Outcome:
         return {step.stone: step.cluster for step in steps if isinstance(step, StoneStep)}
 
     def wall(self, spec: RunSpec, data: Path | None) -> Wall:
-        """Return the wall with its stones, built again from the poses of the plan.
-
-        Parameters
-        ----------
-        spec : RunSpec
-            The run.
-        data : Path or None
-            Folder of the published data.
-        """
+        """Return the wall with its stones, built again from the poses of the plan."""
         replay = replay_plan(self.as_plan, spec.source.stones(data))
         if replay.broken_at is not None or not replay.stages:
             raise ValueError(f"run {self.key} cannot be built again")
@@ -74,15 +66,6 @@ class Outcome:
 
 def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) -> Outcome:
     """Plan the wall of a run, in this process.
-
-    Parameters
-    ----------
-    spec : RunSpec
-        The run.
-    data : Path or None
-        Folder of the published data.
-    stones : StoneSet, optional
-        Those of the source, where they have been read already.
 
     Raises
     ------

@@ -35,11 +35,6 @@ Process = Any
 def processes_at_work(jobs: int) -> Iterator[Work]:
     """Start processes that do runs; they end with the block, whatever they do then.
 
-    Parameters
-    ----------
-    jobs : int
-        How many; 1 is this process itself.
-
     Yields
     ------
     Work

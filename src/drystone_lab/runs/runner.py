@@ -40,13 +40,7 @@ class Runner:
     say: Callable[[str], None] = lambda _: None
 
     def run(self, specs: Sequence[RunSpec]) -> tuple[Outcome, ...]:
-        """Return the outcomes of runs, in their order; what ended is kept at once.
-
-        Parameters
-        ----------
-        specs : sequence of RunSpec
-            Equal ones are run once.
-        """
+        """Return the outcomes of runs, in their order; what ended is kept at once."""
         found = {spec.key: self.store.get(spec.key) for spec in specs}
         missing = {spec.key: spec for spec in specs if found[spec.key] is None}
         for count, outcome in enumerate(self.work(tuple(missing.values()), self.data), 1):

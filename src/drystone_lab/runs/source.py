@@ -62,11 +62,6 @@ class StoneSource:
     def stones(self, data: Path | None) -> StoneSet:
         """Return the stones.
 
-        Parameters
-        ----------
-        data : Path or None
-            Folder of the published data.
-
         Raises
         ------
         FileNotFoundError

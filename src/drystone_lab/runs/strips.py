@@ -14,13 +14,6 @@ SECONDS = "seconds"
 def packed(spec: RunSpec, data: Path | None) -> Outcome:
     """Pack the stones of a run into a strip as high as its wall, as short as it gets.
 
-    Parameters
-    ----------
-    spec : RunSpec
-        Its `changes` say the seconds.
-    data : Path or None
-        Folder of the published data.
-
     Returns
     -------
     outcome : Outcome

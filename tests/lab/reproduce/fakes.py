@@ -1,11 +1,13 @@
 """Items that take no time, under names of the paper's."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 from matplotlib.figure import Figure
 
 from drystone.errors import InputError
-from drystone_lab.reproduce.item import Context, Item, Output, Picture
+from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.runs.outcome import Outcome
 from drystone_lab.runs.source import generated
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Table
@@ -13,49 +15,74 @@ from drystone_lab.table import Table
 BRICKS = generated("brick", 1, count=4, height_px=10, aspect=2)
 
 
-def walls(context: Context) -> Output:
+@dataclass(frozen=True)
+class Walls:
+    """Runs and what came out of them."""
+
+    runs: tuple[RunSpec, ...]
+    outcomes: tuple[Outcome, ...]
+
+
+def walls(context: Context) -> Walls:
     """Two walls of bricks; one in the quick version."""
     seeds = range(context.seed, context.seed + (1 if context.quick else 2))
     runs = tuple(RunSpec(source=BRICKS, width=40, height=20, seed=seed) for seed in seeds)
     outcomes = context.run(runs)
-    rows = tuple(
-        (run.seed, out.figures["F_SF"], None) for run, out in zip(runs, outcomes, strict=True)
-    )
-    times = tuple((run.seed, out.times["wall"]) for run, out in zip(runs, outcomes, strict=True))
+    return Walls(runs, outcomes)
+
+
+def _table(found: Walls) -> Table:
+    pairs = zip(found.runs, found.outcomes, strict=True)
+    rows = tuple((run.seed, outcome.figures["F_SF"], None) for run, outcome in pairs)
+    return Table("Filling", ("seed", "F_SF", "F_AV"), rows, ("Of bricks.",))
+
+
+def _times(found: Walls) -> Table:
+    pairs = zip(found.runs, found.outcomes, strict=True)
+    rows = tuple((run.seed, outcome.times["wall"]) for run, outcome in pairs)
+    return Table("Seconds", ("seed", "s"), rows)
+
+
+def _picture(found: Walls) -> Picture:
     figure = Figure(figsize=(2, 1))
-    figure.add_subplot().plot([run.seed for run in runs], [row[1] for row in rows], marker="o")
-    return Output(
-        paper=("Walls & <joints>.",),
-        ours=(f"We have {len(runs)} walls.",),
-        tables=(("walls", Table("Filling", ("seed", "F_SF", "F_AV"), rows, ("Of bricks.",))),),
-        times=(("walls", Table("Seconds", ("seed", "s"), times)),),
-        pictures=(Picture("filling", figure, "Filling over the seed."),),
-        runs=runs,
-    )
+    filled = [outcome.figures["F_SF"] for outcome in found.outcomes]
+    figure.add_subplot().plot([run.seed for run in found.runs], filled, marker="o")
+    return Picture("filling", figure, "Filling over the seed.")
 
 
-def words(context: Context) -> Output:
-    """A sentence with the seed."""
-    return Output(paper=("Words.",), ours=(f"Seed {context.seed}, image {context.image}.",))
-
-
-def broken(context: Context) -> Output:
+def broken(context: Context) -> Walls:
     """An error with a code, after a wall was planned."""
     walls(context)
     raise InputError("E104", "there are no stones.", where="broken", cure="Look for some.")
 
 
-def interrupted(context: Context) -> Output:
+def interrupted(context: Context) -> Walls:
     """Ctrl-C after a wall was planned."""
     walls(context)
     raise KeyboardInterrupt
 
 
-FILLING = Item("filling of bricks", "§3.4", walls)
-WORDS = Item("words", "5.1", words)
-NEEDY = Item("published stones", "§5.1", words, needs=("almeida/PR.png", "ferris/x.json"))
-BROKEN = Item("no stones", "B.1", broken)
-INTERRUPTED = Item("interrupted", "§5.2", interrupted)
+FILLING = Item(
+    title="filling of bricks",
+    section="§3.4",
+    paper=("Walls & <joints>.",),
+    study=walls,
+    ours=lambda found: (f"We have {len(found.runs)} walls.",),
+    tables={"walls": _table},
+    times={"walls": _times},
+    pictures=lambda found: (_picture(found),),
+)
+WORDS = Item(
+    title="words",
+    section="5.1",
+    paper=("Words.",),
+    study=lambda context: context,
+    ours=lambda context: (f"Seed {context.seed}, image {context.image}.",),
+)
+NEEDY = replace(WORDS, title="published stones", section="§5.1",
+                needs=("almeida/PR.png", "ferris/x.json"))  # fmt: skip
+BROKEN = replace(FILLING, title="no stones", section="B.1", study=broken)
+INTERRUPTED = replace(FILLING, title="interrupted", section="§5.2", study=interrupted)
 
 ITEMS: Mapping[str, Item] = {
     "fig5": FILLING, "fig13": NEEDY, "beta": WORDS, "fig17": INTERRUPTED, "figB33": BROKEN,
@@ -65,10 +92,9 @@ ITEMS: Mapping[str, Item] = {
 def counted(item: Item) -> tuple[Item, list[Context]]:
     """An item, and the contexts that it is made with."""
     contexts: list[Context] = []
-    make: Callable[[Context], Output] = item.make
 
-    def noted(context: Context) -> Output:
+    def noted(context: Context) -> object:
         contexts.append(context)
-        return make(context)
+        return item.study(context)
 
-    return Item(item.title, item.section, noted, item.needs), contexts
+    return replace(item, study=noted), contexts

@@ -1,20 +1,22 @@
 """Small generated walls on which the items about the method are made without published data."""
 
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import Any
 
-from drystone_lab.reproduce.base import PaperWall
 from drystone_lab.reproduce.construction import Construction, construction
-from drystone_lab.reproduce.item import Context, Output
+from drystone_lab.reproduce.item import Context, Item, Output
 from drystone_lab.runs.runner import Runner
 from drystone_lab.runs.source import generated
 from drystone_lab.runs.store import RunStore
+from drystone_lab.walls import Target
 
-RUBBLE = PaperWall(
-    0, "rubble", generated("rubble", 3, count=16, width_px=160, height_px=60, courses=4),
-    170, 64, 1.0,
-)  # fmt: skip
+RUBBLE = Target(
+    "rubble", generated("rubble", 3, count=16, width_px=160, height_px=60, courses=4), 170, 64, 1.0
+)
 
-SHARP = PaperWall(0, "sharp", generated("polygon", 3, count=14, noise=0.3), 700, 300, 0.2)
+SHARP = Target("sharp", generated("polygon", 3, count=14, noise=0.3), 700, 300, 0.2)
 """Polygons of which most fall where they are tried."""
 
 
@@ -23,9 +25,23 @@ def context(folder: Path, data: Path | None = None) -> Context:
     return Context(Runner(RunStore(folder), data))
 
 
-def built(folder: Path, wall: PaperWall) -> Construction:
+def built(folder: Path, wall: Target) -> Construction:
     """The run that the items look at."""
     return construction(context(folder), wall.run(1))
+
+
+def on(item: Item, *walls: Target, seeds: int = 2) -> Item:
+    """An item that builds walls, of these and from so many seeds."""
+    study: Any = item.study
+    inner = study.keywords["study"] if isinstance(study, partial) else study
+    inner = replace(inner, walls=walls, quick_walls=(), seeds=seeds, quick_seeds=seeds)
+    changed = partial(study.func, study=inner) if isinstance(study, partial) else inner
+    return replace(item, study=changed)
+
+
+def of(item: Item, *given: object, **named: object) -> Item:
+    """An item whose study takes these instead of what it usually takes."""
+    return replace(item, study=lambda context: item.study(context, *given, **named))  # type: ignore[call-arg]
 
 
 def gids(output: Output, picture: str) -> list[str]:

@@ -3,7 +3,7 @@ import pytest
 
 from drystone.contacts.blocks import model_from_labels
 from drystone_lab.reproduce import fig12
-from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, rows
+from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, of, rows
 
 
 @pytest.fixture(scope="module")
@@ -13,7 +13,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def output(folder):
-    return fig12.make(context(folder), RUBBLE)
+    return of(fig12.PIC_TO_RI, RUBBLE).make(context(folder))
 
 
 @pytest.fixture(scope="module")

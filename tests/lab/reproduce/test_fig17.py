@@ -7,8 +7,8 @@ from drystone.io.wall_image import read_wall_image
 from drystone.metrics.measure import measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone_lab.reproduce import fig17
-from drystone_lab.reproduce.base import PR
-from tests.lab.reproduce.small_walls import RUBBLE, context, gids, rows
+from drystone_lab.walls import PR
+from tests.lab.reproduce.small_walls import RUBBLE, context, gids, of, rows
 from tests.naive import metrics as naive
 
 
@@ -19,7 +19,7 @@ def where(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def output(where):
-    return fig17.make(where, RUBBLE)
+    return of(fig17.PATHS, RUBBLE).make(where)
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +70,7 @@ def test_drawn_paths_run_along_joints_for_as_long_as_is_told(output, joint):
 
 
 def test_the_masons_wall_is_measured_beside_it(tmp_path, data_dir):
-    output = fig17.ITEM.make(context(tmp_path, data_dir))
+    output = fig17.PATHS.make(context(tmp_path, data_dir))
     ours, masons = rows(output, "figures")
     assert (ours["wall"], masons["wall"]) == ("planned PR", "the masons' PR")
     labels = reduce_labels(read_wall_image(data_dir / PR.source.name), PR.scale)

@@ -6,12 +6,12 @@ import pytest
 from drystone.clusters import stone_features
 from drystone.poses import INITIAL_DEG, PoseBook
 from drystone_lab.reproduce import fig5
-from tests.lab.reproduce.small_walls import RUBBLE, context, gids, rows
+from tests.lab.reproduce.small_walls import RUBBLE, context, gids, of, rows
 
 
 @pytest.fixture(scope="module")
 def output(tmp_path_factory):
-    return fig5.make(context(tmp_path_factory.mktemp("runs")), RUBBLE, (RUBBLE,))
+    return of(fig5.CLUSTERS, RUBBLE, (RUBBLE,)).make(context(tmp_path_factory.mktemp("runs")))
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +96,7 @@ def test_pictures_show_every_stone_twice_and_the_paper_s_count(output, stones):
 
 
 def test_the_stones_pr_fall_into_the_paper_s_clusters(tmp_path, data_dir):
-    output = fig5.ITEM.make(context(tmp_path, data_dir))
+    output = fig5.CLUSTERS.make(context(tmp_path, data_dir))
     assert len(rows(output, "clusters")) == fig5.PAPER_CLUSTERS
     assert [row["stones"] for row in rows(output, "thresholds")] == ["PR", "R", "IR"]
     assert [row["count"] for row in rows(output, "thresholds")] == [32, 34, 61]

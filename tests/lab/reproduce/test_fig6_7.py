@@ -4,7 +4,7 @@ import pytest
 from drystone_lab.reproduce import fig6_7
 from drystone_lab.reproduce.places import action_at, amid_course, resting_places
 from drystone_lab.reproduce.recounted import recounted
-from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, rows
+from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, of, rows
 from tests.naive import indices as naive
 from tests.naive.rays import local_filling_ratio
 from tests.naive.support import rests_stably
@@ -20,7 +20,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def output(folder):
-    return fig6_7.make(context(folder), RUBBLE)
+    return of(fig6_7.INDICES, RUBBLE).make(context(folder))
 
 
 @pytest.fixture(scope="module")

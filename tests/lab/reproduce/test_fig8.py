@@ -4,7 +4,7 @@ from scipy import ndimage
 
 from drystone_lab.reproduce import fig8
 from drystone_lab.reproduce.places import amid_course
-from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, rows
+from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, of, rows
 from tests.naive import indices as naive
 from tests.naive.rays import local_filling_ratio
 
@@ -16,7 +16,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def output(folder):
-    return fig8.make(context(folder), RUBBLE)
+    return of(fig8.POSITIONS, RUBBLE).make(context(folder))
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import pytest
 
 from drystone_lab.reproduce import fig9
 from drystone_lab.reproduce.unstable import unstable_trials
-from tests.lab.reproduce.small_walls import SHARP, built, context, gids, rows
+from tests.lab.reproduce.small_walls import SHARP, built, context, gids, of, rows
 from tests.naive.support import rests_stably, support_ends
 
 
@@ -16,7 +16,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def output(folder):
-    return fig9.make(context(folder), SHARP)
+    return of(fig9.STABILISING, SHARP).make(context(folder))
 
 
 @pytest.fixture(scope="module")

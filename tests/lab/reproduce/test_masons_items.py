@@ -10,15 +10,17 @@ from PIL import Image
 from drystone.contacts.blocks import model_from_labels
 from drystone.metrics.measure import measure_labels
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.reproduce import fig13, fig14_15, table2
-from drystone_lab.reproduce.base import PaperWall
-from drystone_lab.reproduce.best_trial import best_trial
+from drystone_lab.reproduce import base_case, table2
 from drystone_lab.reproduce.item import Context
-from drystone_lab.reproduce.masons_wall import MasonsWall, masons_wall, treatments
+from drystone_lab.reproduce.masons import FIG13, MasonsWall, masons_wall, treatments
+from drystone_lab.reproduce.table2 import best_trial, tenths
+from drystone_lab.runs.outcome import Outcome
 from drystone_lab.runs.source import published
-from tests.lab.reproduce.small_walls import RUBBLE, context, rows
+from drystone_lab.walls import Target
+from tests.lab.reproduce.made_outcomes import outcome as made
+from tests.lab.reproduce.small_walls import RUBBLE, context, of, on, rows
 
-BLOCKS = PaperWall(1, "blocks", published("blocks.png"), 66, 32, 1.0)
+BLOCKS = Target("blocks", published("blocks.png"), 66, 32, 1.0, 1)
 SEEDS = (1, 2)
 
 
@@ -56,8 +58,8 @@ def test_gaps_are_closed_in_every_way(masons: MasonsWall) -> None:
     assert (masons.papers_way > 0).sum() > (masons.labels > 0).sum()
 
 
-def test_fig13(masons: MasonsWall) -> None:
-    output = fig13.closed([masons])
+def test_fig13(here: Context, masons: MasonsWall) -> None:
+    output = of(FIG13, (BLOCKS,)).make(here)
     traced, closed, papers = rows(output, "fig13")
     measured = measure_labels(masons.labels)
     assert traced["F_SF"] == pytest.approx(measured.F_SF, abs=1e-4)
@@ -74,7 +76,7 @@ def test_fig13(masons: MasonsWall) -> None:
 
 
 def test_base_case(here: Context) -> None:
-    output = fig14_15.base_case(here, RUBBLE, SEEDS)
+    output = on(base_case.BASE_CASE, RUBBLE).make(here)
     outcomes = here.run([RUBBLE.run(seed) for seed in SEEDS])
     table = rows(output, "fig14_seeds")
     assert [row["seed"] for row in table] == list(SEEDS)
@@ -89,14 +91,14 @@ def test_base_case(here: Context) -> None:
         loose = by_rule[side, "without dilatancy"]
         assert loose is None or float(str(loose)) <= float(alpha or 0) + 1e-4
     reached = sum(float(o.figures["alpha_left"] or 0) / 0.58 >= 0.79 for o in outcomes)
-    assert f"{reached} of 2 walls reach the paper's 0.79" in output.ours[1]
+    assert f"{reached} reach the paper's 0.79" in output.ours[1]
     names = {picture.name for picture in output.pictures}
     assert {"fig14", "fig15_left", "fig15_right", "fig14_seeds"} <= names
 
 
 def test_table2(here: Context) -> None:
     stand_in = replace(RUBBLE, name="other", number=4, stand_in=True)
-    output = table2.compare(here, (BLOCKS, stand_in), SEEDS)
+    output = on(table2.TABLE2, BLOCKS, stand_in).make(here)
     outcomes = here.run([BLOCKS.run(seed) for seed in SEEDS])
     mine = {str(row["what"]).split(",")[0]: row for row in rows(output, "table2")
             if row["wall"] == 1}  # fmt: skip
@@ -121,7 +123,35 @@ def test_table2(here: Context) -> None:
 
 def test_a_filling_that_cannot_be_is_said_so(here: Context) -> None:
     wide = replace(BLOCKS, width=132.0)
-    said = table2.compare(here, (wide,), (1,)).ours[0]
+    said = on(table2.TABLE2, wide, seeds=1).make(here).ours[0]
     assert "cannot be reached" in said
     low = replace(BLOCKS, height=29.0)
-    assert "is possible" in table2.compare(here, (low,), (1,)).ours[0]
+    assert "is possible" in on(table2.TABLE2, low, seeds=1).make(here).ours[0]
+
+
+def _wall(resistance: float | None, filled: float) -> Outcome:
+    return made(F_LR=resistance, F_SF=filled)
+
+
+@pytest.mark.parametrize(
+    ("walls", "best"),
+    [
+        # Filling to one decimal first, however strong the others are.
+        ([_wall(0.38, 0.9), _wall(0.98, 0.7)], 0),
+        # .78 and .82 are both .8: the multiplier decides.
+        ([_wall(0.38, 0.82), _wall(0.46, 0.78)], 1),
+        # .42 and .38 are both .4 too: the fuller one.
+        ([_wall(0.42, 0.78), _wall(0.38, 0.8)], 1),
+        # Equal in filling: the larger multiplier, then the earlier trial.
+        ([_wall(0.38, 0.8), _wall(0.42, 0.8), _wall(0.42, 0.8)], 1),
+        # Among equally full walls those without a multiplier are last.
+        ([_wall(None, 0.84), _wall(0.01, 0.76)], 1),
+    ],
+)
+def test_the_best_trial(walls: list[Outcome], best: int) -> None:
+    assert best_trial(walls) == best
+
+
+def test_halves_are_rounded_up_whatever_the_solver_leaves() -> None:
+    assert [tenths(value) for value in (0.05, 0.15, 0.25, 0.35, 0.45, 0.55)] == [1, 2, 3, 4, 5, 6]
+    assert tenths(0.35 - 1e-12) == tenths(0.35 + 1e-12) == 4

@@ -9,20 +9,19 @@ import pytest
 from drystone.model.placement import Wedge
 from drystone.model.site import Site
 from drystone.model.wall import Group, Wall
-from drystone_lab.reproduce import beta, fig16, fig19, fig20, fig21, fig_b30_32
-from drystone_lab.reproduce.base import PaperWall
+from drystone.planner.profile import StepTime
+from drystone_lab.reproduce import base_case, noise, rounded, times, ways
 from drystone_lab.reproduce.item import Context, Output
-from drystone_lab.reproduce.trials import Trials
 from drystone_lab.runs.outcome import Outcome
 from drystone_lab.runs.source import generated
-from tests.lab.reproduce.made_outcomes import outcome as made
-from tests.lab.reproduce.small_walls import context, rows
+from drystone_lab.timed_walls import Planned
+from drystone_lab.walls import Target
+from tests.lab.reproduce.small_walls import context, of, on, rows
 
 SEEDS = (1, 2)
-RUBBLE = PaperWall(
-    0, "rubble", generated("rubble", 5, count=9, width_px=100, height_px=40, courses=3),
-    100, 40, 1.0,
-)  # fmt: skip
+RUBBLE = Target(
+    "rubble", generated("rubble", 5, count=9, width_px=100, height_px=40, courses=3), 100, 40, 1.0
+)
 SHARP = replace(RUBBLE, name="sharp", source=replace(RUBBLE.source, seed=8), number=5)
 
 
@@ -44,7 +43,7 @@ def _drawn(output: Output) -> dict[str, int]:
 
 
 def test_beta(here: Context) -> None:
-    output = beta.compare(here, (RUBBLE,), SEEDS)
+    output = on(ways.BETA, RUBBLE).make(here)
     table = {row["beta"]: row for row in rows(output, "beta")}
     assert list(table) == ["0", "0.5", "0.7", "0.9"]
     base, other = _outcomes(here, ("placement.beta", 0.7)), _outcomes(here, ("placement.beta", 0.9))
@@ -53,14 +52,12 @@ def test_beta(here: Context) -> None:
     better = sum(a > b + 1e-9 for a, b in zip(_filled(base), _filled(other), strict=True))
     assert pairs[0] == {**pairs[0], "figure": "F_SF", "better": better}
     assert sum(int(str(pairs[0][name])) for name in ("better", "equal", "worse")) == len(SEEDS)
-    assert "in 2 of 2 runs" in output.ours[0]
-    same = sum(a.plan["steps"] == b.plan["steps"] for a, b in zip(base, other, strict=True))
-    assert f"Against beta = 0.9, {same} of 2 pairs" in output.ours[1]
+    assert f"against 0.9: better to worse walls of one seed are {better} to " in output.ours[-1]
     assert _drawn(output) == {"beta": 4}
 
 
 def test_sampling(here: Context) -> None:
-    output = fig16.compare(here, RUBBLE, SEEDS)
+    output = on(ways.SAMPLING, RUBBLE).make(here)
     table = {row["sampling"]: row for row in rows(output, "fig16")}
     full = _outcomes(here, ("sampling", "full"))
     counts = [int(outcome.figures["candidates"] or 0) for outcome in full]
@@ -70,16 +67,14 @@ def test_sampling(here: Context) -> None:
     assert table["full"]["candidates median"] == median(counts)
     ratio = median(counts) / float(str(table["variant"]["candidates median"]))
     assert f"full {median(counts):.0f} ({ratio:.2f} times variant)" in output.ours[0]
-    whole = sum(outcome.figures["placed"] == outcome.figures["stones"] for outcome in full)
-    assert f"full {whole} of 2." in output.ours[2]
-    same = full[0].plan["steps"] == full[1].plan["steps"]
-    assert ("the same for every seed" in output.ours[0]) is same
+    kinds = 1 if full[0].plan["steps"] == full[1].plan["steps"] else 2
+    assert f"its seeds give {kinds} different walls" in output.ours[1]
     assert [name for name, _ in output.times] == ["fig16_times"]
     assert _drawn(output) == {"fig16": 4, "fig16_seeds": 6}
 
 
 def test_wedges(here: Context) -> None:
-    output = fig19.show(replace(here, seed=2), (RUBBLE, SHARP))
+    output = on(base_case.WEDGES, RUBBLE, SHARP, seeds=1).make(replace(here, seed=2))
     table = rows(output, "fig19")
     assert table
     for wall in (RUBBLE, SHARP):
@@ -92,7 +87,7 @@ def test_wedges(here: Context) -> None:
         ids = [wedge.id for wedge in built.wedges]
         heights = [int((built.labels == each).any(axis=1).sum()) for each in ids]
         assert [row["height, px"] for row in mine] == heights
-        chosen = fig19.shown(built)
+        chosen = base_case.shown(built)
         largest = max((int((built.labels == each).sum()) for each in ids), default=None)
         assert (chosen[0].area_px if chosen else None) == largest
 
@@ -103,11 +98,11 @@ def test_the_largest_wedges_are_shown_once() -> None:
     for number, (column, size) in enumerate(((10, 2), (100, 6), (110, 5), (60, 4), (190, 3)), 1):
         wedge = Wedge(number, 0, np.ones((size, size), bool), 20, column)
         wall = Wall(wall.site, wall.labels, (*wall.groups, Group(None, (wedge,))))  # type: ignore[arg-type]
-    assert [wedge.id for wedge in fig19.shown(wall)] == [2, 4, 5]
+    assert [wedge.id for wedge in base_case.shown(wall)] == [2, 4, 5]
 
 
 def test_stabilisation(here: Context) -> None:
-    output = fig20.compare(here, (RUBBLE,), SEEDS)
+    output = on(ways.STABILISATION, RUBBLE).make(here)
     table = {row["stabilise"]: row for row in rows(output, "fig20")}
     assert list(table) == ["both", "rotation", "wedge", "none"]
     assert table["rotation"]["wedges median"] == table["none"]["wedges median"] == 0
@@ -123,23 +118,8 @@ def test_stabilisation(here: Context) -> None:
     assert f"largest with {best}" in output.ours[0]
 
 
-def test_a_larger_median_alone_is_not_quite_as_in_the_paper() -> None:
-    def said(wedge: tuple[float, ...]) -> str:
-        filled = {"both": (0.5, 0.6, 0.7), "rotation": (0.4, 0.5, 0.6), "wedge": wedge,
-                  "none": (0.1, 0.1, 0.1)}  # fmt: skip
-        return fig20._said([
-            Trials(RUBBLE, way, (), tuple(made(F_SF=value) for value in values))
-            for way, values in filled.items()
-        ])  # fmt: skip
-
-    assert "as in the paper; with both" in said((0.4, 0.5, 0.6))
-    # The median of wedge is less, and yet it wins two pairs of three.
-    assert "not in most pairs" in said((0.55, 0.1, 0.8))
-    assert "unlike in the paper" in said((0.9, 0.9, 0.9))
-
-
 def test_both_ends(here: Context) -> None:
-    output = fig21.compare(here, (RUBBLE,), SEEDS)
+    output = on(ways.BOTH_ENDS, RUBBLE).make(here)
     one, two = rows(output, "fig21")
     assert (one["built"], two["built"]) == ("one-sided", "two-sided")
     both = _outcomes(here, ("two_sided", True))
@@ -156,11 +136,10 @@ def test_both_ends(here: Context) -> None:
 
 def test_all_methods(here: Context) -> None:
     wall = replace(RUBBLE, name="PR", width=RUBBLE.width + 0.5)
-    output = fig_b30_32.build(here, (wall,))
+    output = on(ways.ALL_METHODS, wall, seeds=1).make(here)
     (outcome,) = here.run([wall.run(here.seed)])
     site = outcome.wall(wall.run(here.seed), here.data).site
     assert f"PR on {site.width_px} x {site.height_px} px:" in output.ours[0]
-    assert not any("quick version" in words for words in output.ours)
     table = rows(output, "figB30_32")
     assert len(table) == 8
     for row in table:
@@ -175,3 +154,87 @@ def test_all_methods(here: Context) -> None:
     fullest = max(table, key=lambda row: float(str(row["F_SF"])))
     assert f"the fullest by {fullest['method']};" in output.ours[0]
     assert _drawn(output) == {"figB31": 8}
+
+
+def test_noise(here: Context) -> None:
+    output = on(noise.NOISE, *(replace(SHARP, number=n, stand_in=True) for n in (30, 80))).make(
+        here
+    )
+    levels = {(row["noise, %"], row["rule"]): row for row in rows(output, "levels")}
+    assert list(levels) == [(30, "paper"), (30, "random"), (80, "paper"), (80, "random")]
+    walls = rows(output, "walls")
+    filled = [float(str(r["F_SF"])) for r in walls if (r["noise, %"], r["rule"]) == (30, "paper")]
+    assert levels[30, "paper"]["F_SF median"] == pytest.approx(median(filled), abs=1e-4)
+    assert all(row["F_SF above 0.6"] is (float(str(row["F_SF"])) > 0.6) for row in walls)
+    claims = {str(row["the paper"]): row for row in rows(output, "claims")}
+    always = claims["Below 60 % noise F_SF is always above 0.6."]
+    assert always["agrees"] is all(value > 0.6 for value in filled)
+    assert rows(output, "reference") == []
+    assert [picture.name for picture in output.pictures] == ["fig22", "fig23", "fig24"]
+
+
+def test_orientations(here: Context) -> None:
+    output = on(noise.TURNED, RUBBLE, seeds=1).make(here)
+    few, many = rows(output, "walls")
+    assert (few["orientations"], many["orientations"]) == ("sf", "10deg")
+    gain = float(str(many["F_SF"])) - float(str(few["F_SF"]))
+    claim = rows(output, "claims")[0]
+    assert f"{gain:+.3f} in the median" in str(claim["here"])
+    assert claim["agrees"] is None  # one pair tells nothing
+
+
+@pytest.mark.parametrize(("more", "agrees"), [(0.1, True), (0.0, False), (-0.1, False)])
+def test_a_gain_is_told_from_chance(more: float, agrees: bool) -> None:
+    assert noise._gain([more] * 6, "more").holds is agrees
+    assert noise._gain([more] * 4, "more").holds is None
+    assert noise._gain([], "more").holds is None
+
+
+def test_rounded_stones(here: Context) -> None:
+    kinds = [rounded.Kind(0.0, 8.0, 8.0), rounded.Kind(0.0, 5.0, 12.0)]
+    quick = replace(here, quick=True)
+    output = of(rounded.ROUNDED, kinds, 60, 1).make(quick)
+    fixed, varied = rows(output, "kinds")
+    assert (fixed["kind"], varied["kind"]) == ("round, radius 8 px", "round, radius 5 to 12 px")
+    for run, kind in zip(output.runs, kinds, strict=True):
+        share = run.source.stones(None).total_area_px / (2 * 60**2)
+        assert 1.0 < share < 1.0 + 1.2 * kind.mean_area_px / (2 * 60**2) + 0.35
+    assert [row["agrees"] for row in rows(output, "claims")] == [None, None]  # too few walls
+
+
+def test_more_walls_tell_a_difference() -> None:
+    few, many = [0.5, 0.51, 0.52, 0.53, 0.54], [0.6, 0.61, 0.62, 0.63, 0.64]
+    assert rounded._compared("more", "F_SF", few, many).holds is True
+    assert rounded._compared("more", "F_SF", many, few).holds is False
+    assert rounded._compared("more", "F_SF", few[:3], many).holds is None
+
+
+def test_resolutions(here: Context) -> None:
+    output = of(times.RESOLUTION, RUBBLE, (0.5, 1.0)).make(replace(here, quick=True))
+    assert [row["wall, px"] for row in rows(output, "walls")] == ["50 x 20", "100 x 40"]
+    assert [name for name, _ in output.times] == ["claims", "pixels"]
+    assert [picture.name for picture in output.pictures] == ["fig29", "fig29-time"]
+
+
+def test_stones_and_clusters(here: Context) -> None:
+    sizes = times.Sizes((8, 12), (0.1,))
+    output = of(times.GROWTH, sizes).make(replace(here, quick=True))
+    found = rows(output, "walls")
+    assert [(row["sampling"], row["Q"]) for row in found] == [
+        ("variant", 8), ("variant", 12), ("full", 8), ("full", 12), ("variant", 12)
+    ]  # fmt: skip
+    # The full batch tries all that are left in every step.
+    full = found[2]
+    assert full["candidates"] == sum(8 - step for step in range(int(str(full["placed"]))))
+
+
+def test_steps_by_part() -> None:
+    steps = [
+        StepTime(n, 4, 0.01, {"placement": 0.006, "stabilisation": 0.0001, "contacts": 0.001 * n})
+        for n in range(1, 9)
+    ]
+    assert times.late_over_early([1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 3.0, 3.0]) == 3.0
+    assert sum(times.shares(steps).values()) == pytest.approx(1.0)
+    wall = Planned(Site(280, 80), 0.5, tuple(steps))
+    found = times.step_findings({"variant": wall, "full": wall})
+    assert [one.holds for one in found] == [True, True, True, True, False]

@@ -1,0 +1,243 @@
+"""Fig. B.33: 91 irregular stones; Fig. B.34: bricks of aspect 2 and 3 (B.2)."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from drystone_lab.pictures.wall_grid import plot_walls
+from drystone_lab.reproduce.cells import METRICS, metric_cells
+from drystone_lab.reproduce.courses import OVERLAP, Courses, bricks_of, courses_of
+from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.study import Built, Trials, built
+from drystone_lab.runs.changes import Changes
+from drystone_lab.runs.source import from_file, generated
+from drystone_lab.runs.spec import RunSpec
+from drystone_lab.table import Cell, Table
+from drystone_lab.walls import TWO_SIDED, Target
+
+SIDES: Mapping[str, Changes] = {"one side": (), "two sides": TWO_SIDED}
+
+PAPER_PLACED = (90, 91)
+"""Of 91, in the left and in the right wall."""
+
+
+def _irregular(count: int, width_px: int, height_px: int, courses: int) -> Target:
+    """Return rubble as irregular as ours can be, of sizes that differ by a factor.
+
+    It has about as many pixels a stone as the paper's PR has, and as much wall as its best walls
+    fill.
+    """
+    source = generated(
+        "rubble", 2024, count=count, width_px=float(width_px), height_px=float(height_px),
+        area_ratio=0.75, courses=courses, spread=0.6, roughness=0.3, pentagons=0.5, rounding=0.2,
+        tilt_deg=45.0,
+    )  # fmt: skip
+    name = f"{count} generated stones"
+    return Target(name, source, width_px, height_px, 1.0, stand_in=True)
+
+
+GENERATED = _irregular(91, 480, 200, 8)
+QUICK = _irregular(24, 240, 100, 4)
+
+MOST_PX = 96_000
+"""Pixels of the wall of a user's stones at the working resolution, at most."""
+
+
+def irregular_walls(context: Context) -> Built:
+    """Build a wall from one end and from both; of a user's own stones where there are any."""
+    wall = QUICK if context.quick else GENERATED
+    if context.image is not None:
+        wall = wall_of_image(context)
+    return built(context, (wall,), SIDES, (context.seed,))
+
+
+def wall_of_image(context: Context) -> Target:
+    """Return the wall of a user's stones: as large as their image, at :data:`MOST_PX` at most."""
+    if context.image is None:
+        raise ValueError("there is no image")
+    source = from_file(context.image)
+    size = source.stones(context.data).source
+    # Two digits, rounded down, so that the scale reads well and stays below the limit.
+    full = math.sqrt(MOST_PX / (size.width_px * size.height_px))
+    scale = max(0.01, min(1.0, math.floor(100 * full) / 100))
+    return Target(context.image.name, source, 0.0, 0.0, scale)
+
+
+def _irregular_found(found: Built) -> Iterator[str]:
+    for one in found:
+        figures = one.outcomes[0].figures
+        yield (
+            f"{found.name}, from {one.way}: {figures['placed']} of {figures['stones']}, F_SF "
+            f"{figures['F_SF']:.3f}."
+        )
+    yield (
+        "The paper's stones are not public; generated ones are our own irregular rubble. How many "
+        "of them fit depends on the wall that they are given, which the paper does not tell, so "
+        "the counts can be compared in kind only."
+    )
+
+
+def _irregular_table(found: Built) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for one in found:
+        outcome = one.outcomes[0]
+        clusters = len({*outcome.clusters.values()})
+        figures = outcome.figures
+        rows.append(
+            (found.name, one.way, figures["placed"], figures["stones"], clusters,
+             *metric_cells(outcome), figures["wedges"])
+        )  # fmt: skip
+    rows += [("the paper's", f"wall {n}", placed, 91, None, None, None, None, None, None)
+             for n, placed in enumerate(PAPER_PLACED, 1)]  # fmt: skip
+    columns = ("stones", "built from", "placed", "of", "clusters", *METRICS, "wedges")
+    return Table("Walls of many irregular stones", columns, tuple(rows))
+
+
+def _irregular_picture(found: Built) -> Picture:
+    walls = [found.titled(one, f"{found.name}, from {one.way}") for one in found]
+    return Picture(
+        "figB33", plot_walls(walls, 2),
+        f"Walls of {found.name}, built from one end and from both; stones of one cluster have "
+        "one colour, numbers are the order of placement, wedges are dark red.",
+    )  # fmt: skip
+
+
+IRREGULAR = Item(
+    title="91 irregular stones",
+    section="B.2",
+    paper=(
+        "Fig. B.33 (B.2): 'Walls constructed from a stone set of 91 irregular stones, of which "
+        f"{PAPER_PLACED[0]} stones could be placed in the construction of the left wall and "
+        f"{PAPER_PLACED[1]} stones could be placed in the construction of the right wall', "
+        "coloured by cluster. The stones are not public, and what the two walls differ in is not "
+        "said.",
+    ),
+    study=irregular_walls,
+    ours=lambda found: tuple(_irregular_found(found)),
+    tables={"walls": _irregular_table},
+    pictures=lambda found: (_irregular_picture(found),),
+)
+
+ASPECTS = (2.0, 3.0)
+HEIGHT_PX = 12
+
+HALF = 0.5
+"""Bricks by which the wall is longer than a whole number: so that a bond can be flush in every
+other course, as there are no halves."""
+
+FULL_SIZE, QUICK_SIZE = (8, 8), (4, 4)
+"""Bricks in a course, and courses."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bricks:
+    """Walls of bricks of each aspect from each side, and what their courses are like."""
+
+    built: Built
+    aspects: tuple[float, ...]
+
+    @property
+    def runs(self) -> tuple[RunSpec, ...]:
+        """Of all walls."""
+        return self.built.runs
+
+    @property
+    def all(self) -> list[tuple[float, Trials, Courses]]:
+        """Aspect, run, and courses; all aspects from one side, then from both."""
+        groups = list(zip(self.aspects, self.built.by_wall, strict=True))
+        return [
+            (aspect, one, _courses(group, one, aspect))
+            for side in SIDES
+            for aspect, group in groups
+            for one in group.of(side)
+        ]
+
+
+def _courses(group: Built, one: Trials, aspect: float) -> Courses:
+    return courses_of(bricks_of(group.wall(one)), HEIGHT_PX, round(HEIGHT_PX * aspect))
+
+
+def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks:
+    """Build walls of bricks of both aspects; bricks are enough for all courses."""
+    length, courses = size or (QUICK_SIZE if context.quick else FULL_SIZE)
+    walls = tuple(
+        Target(
+            f"aspect {aspect:g}",
+            generated("brick", 1, count=length * courses, height_px=HEIGHT_PX, aspect=aspect),
+            (length + HALF) * round(HEIGHT_PX * aspect), courses * HEIGHT_PX, 1.0,
+        )
+        for aspect in ASPECTS
+    )  # fmt: skip
+    return Bricks(built(context, walls, SIDES, (context.seed,)), ASPECTS)
+
+
+def _bricks_found(found: Bricks) -> Iterator[str]:
+    for aspect, one, courses in found.all:
+        figures = one.outcomes[0].figures
+        yield (
+            f"Aspect {aspect:g} from {one.way}: {figures['placed']} of {figures['stones']} bricks "
+            f"in {courses.courses} courses, F_SF {figures['F_SF']:.3f}; {courses.in_course} of "
+            f"{courses.bricks} bricks lie at a whole number of brick heights. {courses.crossed} of "
+            f"{courses.joints} head joints are crossed: {OVERLAP:g} of a brick or more from those "
+            "of the courses beside them."
+        )
+    yield (
+        "The bricks of a wall are alike, so that variant sampling has next to nothing to choose "
+        "from: Eq. 12 alone says where the next one lies, and the indices that reward a bond "
+        "compare stones, not places. §5.3 says the like of stones of little variety: easy to stack "
+        "and to fill with, 'but it often results in walls with inferior interlocking'."
+    )
+
+
+def _bricks_table(found: Bricks) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for aspect, one, courses in found.all:
+        outcome, spec = one.outcomes[0], one.specs[0]
+        rows.append(
+            (
+                aspect, one.way, f"{spec.width:g} x {spec.height:g}", outcome.figures["placed"],
+                outcome.figures["stones"], *metric_cells(outcome), courses.lying,
+                courses.in_course, courses.courses, courses.joints, courses.crossed,
+            )
+        )  # fmt: skip
+    return Table(
+        "Walls of bricks of one size",
+        ("aspect", "built from", "wall, px", "placed", "of", *METRICS, "lying", "in courses",
+         "courses", "head joints", "crossed"),
+        tuple(rows),
+        (
+            f"Crossed: {OVERLAP:g} of the brick's length or more from every head joint of the "
+            "courses above and below.",
+        ),
+    )  # fmt: skip
+
+
+def _bricks_picture(found: Bricks) -> Picture:
+    walls = []
+    for aspect, one, _ in found.all:
+        outcome = one.outcomes[0]
+        # Bricks are one cluster: a colour each tells them apart, as in the paper.
+        colours = {brick: number for number, brick in enumerate(sorted(outcome.clusters), 1)}
+        title = f"aspect {aspect:g}, from {one.way}: F_SF {outcome.figures['F_SF']:.2f}"
+        walls.append((title, found.built.wall(one), colours))
+    return Picture(
+        "figB34", plot_walls(walls, len(ASPECTS)),
+        "Walls of bricks of aspect 2 and 3, coloured for differentiation and numbered in order of "
+        "placement.",
+    )  # fmt: skip
+
+
+BRICKS = Item(
+    title="bricks of aspect 2 and 3",
+    section="B.2",
+    paper=(
+        "Fig. B.34 (B.2): 'Walls constructed with bricks of the same size. The wall on the left is "
+        "constructed with bricks of an aspect ratio of 2 and the wall on the right is constructed "
+        "with bricks of an aspect ratio of 3.' There are no numbers; sizes of the walls are not "
+        "given.",
+    ),
+    study=brick_walls,
+    ours=lambda found: tuple(_bricks_found(found)),
+    tables={"walls": _bricks_table},
+    pictures=lambda found: (_bricks_picture(found),),
+)

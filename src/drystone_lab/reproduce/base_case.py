@@ -1,0 +1,315 @@
+"""Figs. 14 and 15: the base case PR and its failure mechanisms (§5.1); Fig. 19: wedges (§5.2)."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from statistics import fmean, median
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from drystone.contacts.blocks import model_from_labels
+from drystone.drawing.palette import OUTLINE_COLOUR
+from drystone.drawing.pictures.mechanism import plot_mechanism
+from drystone.drawing.pictures.wall import plot_wall
+from drystone.model.placement import Wedge
+from drystone.model.wall import Wall
+from drystone.statics.failing.mechanism import describe_mechanism
+from drystone.statics.flow.nonassociative import NonassociativeResult, nonassociative_resistance
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LimitResult, LimitStatus
+from drystone_lab.pictures.groups import group_panels
+from drystone_lab.pictures.sheet import Panel, sheet_of
+from drystone_lab.pictures.wall_grid import wall_aspect
+from drystone_lab.reproduce import cells
+from drystone_lab.reproduce.cells import METRICS, rounded
+from drystone_lab.reproduce.item import Context, Item, Picture
+from drystone_lab.reproduce.study import Built, Study, Trials, sheet
+from drystone_lab.runs.spec import RunSpec
+from drystone_lab.table import Cell, Table
+from drystone_lab.walls import IR, LIU_5, PR
+
+ALPHAS: Mapping[str, float] = {"left": 0.79, "right": 0.71}
+"""Load multipliers of §5.1, tilting towards that side."""
+
+Result = LimitResult | NonassociativeResult
+
+
+@dataclass(frozen=True, eq=False)
+class BaseCase:
+    """Walls of several seeds, and the mechanisms of the first by both flow rules."""
+
+    built: Built
+    wall: Wall
+    model: RigidBlockModel
+    pairs: tuple[tuple[LimitResult, NonassociativeResult], ...]
+
+    @property
+    def trials(self) -> Trials:
+        """The walls."""
+        return self.built.all[0]
+
+    @property
+    def runs(self) -> tuple[RunSpec, ...]:
+        """Of all walls."""
+        return self.built.runs
+
+    def over_mu(self, side: str) -> list[float]:
+        """Return the load multipliers of all walls towards a side, over mu."""
+        return [a / self.model.mu for a in cells.figures_of(self.trials.outcomes, f"alpha_{side}")]
+
+
+def base_case(context: Context, study: Study) -> BaseCase:
+    """Build the walls, and look at the first one's mechanisms."""
+    found = study(context)
+    (trials,) = found
+    wall = found.wall(trials)
+    model = model_from_labels(wall.labels, trials.specs[0].settings().mu).model
+    both = lateral_resistance(model, mechanism=True)
+    without = nonassociative_resistance(model)
+    pairs = ((both.left, without.left), (both.right, without.right))
+    return BaseCase(found, wall, model, pairs)
+
+
+def _found(case: BaseCase) -> Iterator[str]:
+    mu = case.model.mu
+    yield (
+        "A wall on flat ground slides as a whole when the load is mu times its weight, so alpha is "
+        f"at most mu = {mu:g} here. The paper's {ALPHAS['left']:g} and {ALPHAS['right']:g} are "
+        "over mu already, as its LLC is, which it says to be between 0 and 1 (Eq. 11), or belong "
+        "to a larger mu that it does not state; we compare them with alpha over mu."
+    )
+    for side, papers in ALPHAS.items():
+        if values := case.over_mu(side):
+            yield (
+                f"To the {side} the median of alpha / mu of {len(values)} walls is "
+                f"{median(values):.2f} ({min(values):.2f} to {max(values):.2f}), and "
+                f"{sum(value >= papers for value in values)} reach the paper's {papers:g}."
+            )
+    yield "The wall that is drawn is the first, not the best; tables have it by both flow rules."
+
+
+def _seeds(case: BaseCase) -> Table:
+    rows = []
+    for spec, outcome in zip(case.trials.specs, case.trials.outcomes, strict=True):
+        ends = [outcome.figures[f"alpha_{side}"] for side in ALPHAS]
+        over = [None if alpha is None else alpha / case.model.mu for alpha in ends]
+        numbers = [rounded(value) for value in (*ends, *over)]
+        rows.append((spec.seed, outcome.figures["placed"], *cells.metric_cells(outcome), *numbers))
+    return Table(
+        f"The base case {case.built.name} seed by seed",
+        (
+            "seed", "placed", *METRICS, "alpha left", "alpha right", "alpha left / mu",
+            "alpha right / mu",
+        ),
+        tuple(rows),
+    )  # fmt: skip
+
+
+def _summary(case: BaseCase) -> Table:
+    row = dict(zip(cells.COLUMNS, cells.summary(case.trials.outcomes), strict=True))
+    for side, papers in ALPHAS.items():
+        found, name = case.over_mu(side), f"alpha {side} / mu"
+        row[f"{name} median"] = rounded(median(found)) if found else None
+        row[f"{name} range"] = f"{min(found):.2f} to {max(found):.2f}" if found else None
+        row[f"{name} paper"] = papers
+    title = f"The base case {case.built.name} over its seeds"
+    return Table(title, tuple(row), (tuple(row.values()),))
+
+
+def _rules(case: BaseCase) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for one, other in case.pairs:
+        found: tuple[tuple[Result, str], ...] = (one, "associative"), (other, "without dilatancy")
+        for result, rule in found:
+            over = None if result.alpha is None else rounded(result.alpha / case.model.mu)
+            papers = ALPHAS[result.direction] if result is one else None
+            alpha = rounded(result.alpha)
+            words = _words(case, result)
+            rows.append((result.direction, rule, str(result.status), alpha, over, papers, words))
+    return Table(
+        "Load multipliers of the drawn wall by both flow rules",
+        ("towards", "flow rule", "status", "alpha", "alpha / mu", "paper", "mechanism"),
+        tuple(rows),
+        ("Without dilatancy: Coulomb friction, the least of the solutions that were found.",),
+    )
+
+
+def _words(case: BaseCase, result: Result) -> str | None:
+    if result.mechanism is None:
+        return None
+    falls = result.status is LimitStatus.UNSTABLE
+    wedges = frozenset(wedge.id for wedge in case.wall.wedges)
+    return describe_mechanism(
+        case.model, result.mechanism, falls=falls, noun="stone", wedges=wedges
+    ).words
+
+
+def _pictures(case: BaseCase) -> Iterator[Picture]:
+    title = f"{case.built.name}, seed {case.built.seeds[0]}"
+    yield sheet(case.built, "fig14", 1, lambda _: title, "The first wall.")
+    for one, other in case.pairs:
+        named: tuple[tuple[Result, str, str], ...] = (
+            (one, "", "associative"), (other, "_coulomb", "no dilatancy"),
+        )  # fmt: skip
+        for result, name, rule in named:
+            if result.mechanism is not None:
+                falls = result.status is LimitStatus.UNSTABLE
+                towards = None if falls else result.direction
+                ax = plot_mechanism(case.wall.labels, result.mechanism, towards, result.alpha)
+                figure = ax.get_figure(root=True)
+                assert figure is not None  # noqa: S101 - it was made for the axes
+                caption = f"Mechanism towards the {one.direction}, {rule}; colours are "
+                caption += "displacements over the largest, grey lines the wall before."
+                yield Picture(f"fig15_{one.direction}{name}", figure, caption)
+    sides = {side: case.over_mu(side) for side in ALPHAS}
+    metrics: dict[str, dict[str, Sequence[float | None]]] = {
+        name: {case.built.name: case.trials.values(name)} for name in ("F_SF", "F_AV", "F_AH")
+    }
+    panels = group_panels({"alpha / mu": sides, **metrics}, claims={"alpha / mu": ALPHAS})
+    caption = "All seeds; lines are medians, crosses the paper's load multipliers over mu."
+    yield Picture("fig14_seeds", panels, caption)
+
+
+BASE_CASE = Item(
+    title="The base case PR and its failure mechanisms",
+    section="§5.1, Figs. 14 and 15",
+    paper=(
+        f"§5.1, Fig. 14: the base case PR; load multipliers {ALPHAS['left']:g} and "
+        f"{ALPHAS['right']:g} for tilting to the left and right. Fig. 15: in the mechanism to "
+        "the left a sliding stone rises, which is artificial dilation by the associative flow "
+        "rule. How the wall was chosen from those of other seeds is not said.",
+    ),
+    study=partial(base_case, study=Study(walls=(PR,), quick_seeds=5)),
+    ours=lambda case: tuple(_found(case)),
+    tables={"fig14_seeds": _seeds, "fig14": _summary, "fig15": _rules},
+    pictures=lambda case: tuple(_pictures(case)),
+    needs=(PR.source.name,),
+)
+
+SHOWN = 3
+"""Wedges that are zoomed in on at most."""
+
+ZOOM = 0.25
+"""Width of what a zoom shows, over that of the wall."""
+
+ZOOM_ASPECT = 0.6
+
+Box = tuple[float, float, float, float]
+
+
+def _wedges_found(found: Built) -> Iterator[str]:
+    for one in found:
+        wall, figures = found.wall(one), one.outcomes[0].figures
+        share = 100 * float(figures["wedge_area"] or 0.0) / (one.wall.width * one.wall.height)
+        tallest = max((wedge.mask.shape[0] for wedge in wall.wedges), default=0)
+        yield (
+            f"Wall {one.wall.number} ({one.wall.name}), seed {found.seeds[0]}: {len(wall.wedges)} "
+            f"wedges under {len({w.under for w in wall.wedges})} of {figures['placed']} stones, "
+            f"{share:.2f} % of the wall's area; the tallest has "
+            f"{tallest / _mean_height_px(wall):.0%} of the mean height of a stone."
+        )
+
+
+def _mean_height_px(wall: Wall) -> float:
+    return fmean(placement.posed.mask.shape[0] for placement in wall.placements)
+
+
+def _wedges_table(found: Built) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for one in found:
+        wall = found.wall(one)
+        unit, mean = 1 / wall.site.scale, _mean_height_px(wall)
+        for wedge in wall.wedges:
+            height, width = wedge.mask.shape
+            sizes = (width * unit, height * unit, wedge.area_px * unit**2, height / mean)
+            rows.append((one.wall.number, wedge.id, wedge.under, *map(rounded, sizes)))
+    return Table(
+        "Wedges, in the order of construction",
+        (
+            "wall", "wedge", "under stone", "width, px", "height, px", "area, px2",
+            "height / mean stone height",
+        ),
+        tuple(rows),
+        ("Lengths in px of the source.",),
+    )  # fmt: skip
+
+
+def _wedges_picture(trials: Trials, wall: Wall) -> Picture:
+    boxes = [_box(wall, wedge) for wedge in shown(wall)]
+    title = f"Wall {trials.wall.number}, {trials.wall.name}\n"
+    title += cells.in_words(trials.outcomes[0].figures)
+    aspect = wall_aspect(wall.site.height_px / wall.site.width_px)
+    zooms = [
+        Panel(f"{letter}: wedge {wedge.id} under stone {wedge.under}", ZOOM_ASPECT,
+              partial(_draw_zoom, wall, box))
+        for letter, wedge, box in zip("abc", shown(wall), boxes, strict=False)
+    ]  # fmt: skip
+    figure: Figure = sheet_of([Panel(title, aspect, partial(_draw_whole, wall, boxes)), *zooms], 2)
+    return Picture(
+        f"fig19_wall{trials.wall.number}",
+        figure,
+        f"Wall {trials.wall.number} ({trials.wall.name}): all wedges in dark red, and the "
+        "largest ones from near. Numbers on stones are steps of the plan; titles have ids.",
+    )
+
+
+def shown(wall: Wall) -> list[Wedge]:
+    """Return the largest wedges, without those that are seen beside a larger one."""
+    found: list[Wedge] = []
+    for wedge in sorted(wall.wedges, key=lambda each: (-each.area_px, each.id)):
+        x, y = _middle(wall, wedge)
+        boxes = (_box(wall, other) for other in found)
+        if not any(x0 <= x <= x1 and y0 <= y <= y1 for x0, y0, x1, y1 in boxes):
+            found.append(wedge)
+    return found[:SHOWN]
+
+
+def _middle(wall: Wall, wedge: Wedge) -> tuple[float, float]:
+    """Return the middle of a wedge in source px, y up."""
+    height, width = wedge.mask.shape
+    unit = wall.site.units_per_px
+    return (wedge.col + width / 2) * unit, (wall.site.height_px - wedge.row - height / 2) * unit
+
+
+def _box(wall: Wall, wedge: Wedge) -> Box:
+    """Return what a zoom on a wedge shows."""
+    x, y = _middle(wall, wedge)
+    half = ZOOM * wall.site.width_px * wall.site.units_per_px / 2
+    # Little of the ground, which is of no interest.
+    y0 = max(y - ZOOM_ASPECT * half, -0.1 * half)
+    return x - half, y0, x + half, y0 + 2 * ZOOM_ASPECT * half
+
+
+def _draw_whole(wall: Wall, boxes: Sequence[Box], ax: Axes) -> None:
+    plot_wall(wall, None, ax)
+    for letter, (x0, y0, x1, y1) in zip("abc", boxes, strict=False):
+        ax.plot([x0, x1, x1, x0, x0], [y0, y0, y1, y1, y0], color=OUTLINE_COLOUR, linewidth=0.9,
+                linestyle=":", zorder=6)  # fmt: skip
+        ax.text(
+            x0, y1, letter, fontsize=8, ha="right", va="top", zorder=7, fontweight="bold",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
+        )  # fmt: skip
+
+
+def _draw_zoom(wall: Wall, box: Box, ax: Axes) -> None:
+    plot_wall(wall, None, ax)
+    ax.set_xlim(box[0], box[2])
+    ax.set_ylim(box[1], box[3])
+
+
+WEDGES = Item(
+    title="Wedges of walls 3 and 5",
+    section="§5.2, Fig. 19",
+    paper=(
+        "§5.2, Fig. 19: walls 3 and 5 need wedges (in red), since their stones differ much in "
+        "size and eccentricity and large ones must be kept stable. Their number and sizes are "
+        "in the picture only.",
+    ),
+    study=Study(walls=(IR, LIU_5), seeds=1, quick_seeds=1),
+    ours=lambda found: tuple(_wedges_found(found)),
+    tables={"fig19": _wedges_table},
+    pictures=lambda found: [_wedges_picture(one, found.wall(one)) for one in found],
+    needs=(IR.source.name,),
+)

@@ -1,0 +1,196 @@
+"""Figures of walls as cells of tables and as words: medians, pairs, trends, claims."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from statistics import median
+
+from scipy.stats import spearmanr
+
+from drystone_lab.runs.outcome import Outcome
+from drystone_lab.table import Cell, Table
+
+FORMATS = {"placed": ".0f", "F_SF": ".3f", "F_AV": ".1f", "F_AH": ".2f", "F_LR": ".2f"}
+"""Figures of a summary, and how the ends of their ranges are written."""
+
+COLUMNS = (
+    "walls", "stones",
+    *(f"{name}{end}" for name in FORMATS for end in (" median", " range")),
+)  # fmt: skip
+"""Names of the cells of :func:`summary`; the best of each figure is an end of its range."""
+
+METRICS = ("F_SF", "F_AV", "F_AH", "F_LR")
+
+LOWER_IS_BETTER = ("F_AH", "T_LEVEL", "E_FLUSH")
+
+DIGITS = 4
+"""Decimals of a number in a table, which all machines agree on."""
+
+
+def summary(outcomes: Sequence[Outcome]) -> tuple[Cell, ...]:
+    """Return the cells of :data:`COLUMNS` of walls of the same stones; None for what none has."""
+    found: list[Cell] = [len(outcomes), outcomes[0].figures["stones"]]
+    for name, written in FORMATS.items():
+        values = figures_of(outcomes, name)
+        found.append(rounded(median(values)) if values else None)
+        found.append(f"{min(values):{written}} to {max(values):{written}}" if values else None)
+    return tuple(found)
+
+
+def figures_of(outcomes: Sequence[Outcome], name: str) -> list[float]:
+    """Return a figure of the walls that have it, in their order."""
+    values = (outcome.figures[name] for outcome in outcomes)
+    return [float(value) for value in values if value is not None]
+
+
+def median_of(outcomes: Sequence[Outcome], name: str) -> float | None:
+    """Return the median of a figure over the walls that have it; None when none has."""
+    found = figures_of(outcomes, name)
+    return median(found) if found else None
+
+
+def metric_cells(outcome: Outcome) -> tuple[Cell, ...]:
+    """Return F_SF, F_AV, F_AH and F_LR of a wall as cells of a table."""
+    return tuple(rounded(outcome.figures[name]) for name in METRICS)
+
+
+def rounded(value: float | None) -> float | None:
+    """Return a number as tables hold it; an integer stays what it is."""
+    return None if value is None else round(value, DIGITS)
+
+
+def in_words(figures: Mapping[str, float | None]) -> str:
+    """Write F_SF, F_AV, F_AH and F_LR in a line.
+
+    Examples
+    --------
+    >>> in_words({"F_SF": 0.8123, "F_AV": 20.0, "F_AH": 2.345, "F_LR": None})
+    'F_SF 0.812  F_AV 20.0  F_AH 2.35  F_LR -'
+    """
+    return "  ".join(
+        f"{name} {'-' if figures[name] is None else format(figures[name], FORMATS[name])}"
+        for name in METRICS
+    )
+
+
+SAME = 1e-9
+"""Figures that differ by less are equal."""
+
+WINS = ("figure", "better", "equal", "worse", "median difference")
+"""Names of :meth:`Wins.cells`."""
+
+
+@dataclass(frozen=True)
+class Wins:
+    """How often walls of one way are better than those of another, pairs of one seed."""
+
+    better: int
+    equal: int
+    worse: int
+    median_difference: float | None
+
+    @property
+    def pairs(self) -> int:
+        """How many there are."""
+        return self.better + self.equal + self.worse
+
+    @property
+    def is_majority(self) -> bool:
+        """True when the first is better in more than half of all pairs."""
+        return 2 * self.better > self.pairs
+
+    def cells(self, figure: str) -> tuple[Cell, ...]:
+        """Return the cells of :data:`WINS`."""
+        return figure, self.better, self.equal, self.worse, rounded(self.median_difference)
+
+
+def wins(first: Sequence[float | None], second: Sequence[float | None], figure: str) -> Wins:
+    """Compare figures in pairs; those with a None are left out.
+
+    Examples
+    --------
+    >>> wins([0.8, 0.7, None], [0.7, 0.7, 0.9], "F_SF")
+    Wins(better=1, equal=1, worse=0, median_difference=0.05)
+    """
+    pairs = zip(first, second, strict=True)
+    more = [round(a - b, 12) for a, b in pairs if a is not None and b is not None]
+    sign = -1 if figure in LOWER_IS_BETTER else 1
+    better = sum(sign * each > SAME for each in more)
+    worse = sum(sign * each < -SAME for each in more)
+    return Wins(better, len(more) - better - worse, worse, median(more) if more else None)
+
+
+LEVEL = 0.05
+"""A trend is one that equal chances would give less often than this."""
+
+FEWEST = 4
+"""Pairs without which there is no talk of a trend: three ranks fall in line by chance too often."""
+
+
+@dataclass(frozen=True)
+class Trend:
+    """Spearman's correlation of the ranks, and the chance of one as large without any relation."""
+
+    rho: float
+    p: float
+    count: int
+
+    @property
+    def clear(self) -> bool:
+        """True when chance alone would hardly give it."""
+        return self.p < LEVEL
+
+    def words(self) -> str:
+        """Return it for a sentence.
+
+        Examples
+        --------
+        >>> Trend(-0.5, 0.012345, 24).words()
+        'rho -0.50, p 0.012, n 24'
+        """
+        return f"rho {self.rho:.2f}, p {self.p:.2g}, n {self.count}"
+
+
+def trend(pairs: Sequence[tuple[float, float | None]]) -> Trend | None:
+    """Correlate the ranks of two figures; None with few pairs, or where either never changes.
+
+    Examples
+    --------
+    >>> trend([(1, 2.0), (2, 3.0), (3, 5.0), (4, 4.0), (5, None)])
+    Trend(rho=0.8, p=0.2, count=4)
+    """
+    x = [pair[0] for pair in pairs if pair[1] is not None]
+    y = [pair[1] for pair in pairs if pair[1] is not None]
+    if len(x) < FEWEST or len({*x}) < 2 or len({*y}) < 2:
+        return None
+    found = spearmanr(x, y)
+    return Trend(round(float(found.statistic), 6), float(f"{found.pvalue:.3g}"), len(x))
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One claim of the paper, what our walls say of it, and whether that agrees (None: unknown)."""
+
+    claim: str
+    found: str
+    holds: bool | None
+
+
+def findings_table(title: str, findings: Sequence[Finding]) -> Table:
+    """Return claims and findings as a table."""
+    rows = tuple((each.claim, each.found, each.holds) for each in findings)
+    return Table(title, ("the paper", "here", "agrees"), rows)
+
+
+def sentences(findings: Sequence[Finding]) -> tuple[str, ...]:
+    """Return of how many claims the walls agree with the paper, and a paragraph each.
+
+    Examples
+    --------
+    >>> sentences([Finding("Walls are low.", "2 px.", True)])[0]
+    'Of 1 claims of the paper that can be told, 1 agree.'
+    """
+    verdicts = {True: "Agrees", False: "Differs", None: "Cannot be told"}
+    told = [each.holds for each in findings if each.holds is not None]
+    count = f"Of {len(told)} claims of the paper that can be told, {sum(told)} agree."
+    each = (f"{verdicts[one.holds]}: {one.claim} Here: {one.found}" for one in findings)
+    return (count, *each)

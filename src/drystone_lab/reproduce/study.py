@@ -1,0 +1,233 @@
+"""Walls of several sets, by several ways, from several seeds: what most items are made of."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from drystone.model.wall import Wall
+from drystone_lab.pictures.groups import group_panels
+from drystone_lab.pictures.wall_grid import TitledWall, plot_walls
+from drystone_lab.reproduce import cells
+from drystone_lab.reproduce.item import Context, Picture
+from drystone_lab.runs.changes import Changes
+from drystone_lab.runs.outcome import Outcome
+from drystone_lab.runs.spec import RunSpec
+from drystone_lab.table import Cell, Table
+from drystone_lab.walls import Target
+
+ONE_WAY: Mapping[str, Changes] = {"variant": ()}
+"""The paper's method as it is."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Study:
+    """What is built.
+
+    Parameters
+    ----------
+    walls : tuple of Target
+        The sets.
+    ways : mapping of str to changes
+        Settings that replace the paper's, by name of the way.
+    seeds, quick_seeds : int
+        How many, the same for all; in the quick version.
+    quick_walls : tuple of Target
+        Of the quick version; empty for the same.
+    at_hand : bool
+        Leave out sets whose stones are not there.
+    """
+
+    walls: tuple[Target, ...]
+    ways: Mapping[str, Changes] = field(default_factory=lambda: ONE_WAY)
+    seeds: int = 20
+    quick_seeds: int = 3
+    quick_walls: tuple[Target, ...] = ()
+    at_hand: bool = False
+
+    def __call__(self, context: Context) -> "Built":
+        """Build the walls."""
+        walls = (context.quick and self.quick_walls) or self.walls
+        if self.at_hand:
+            walls = tuple(wall for wall in walls if wall.source.is_there(context.data))
+        seeds = self.quick_seeds if context.quick else self.seeds
+        return built(context, walls, self.ways, range(context.seed, context.seed + seeds))
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """Walls of one set by one way, which differ in their seeds: runs and what came out of them."""
+
+    wall: Target
+    way: str
+    specs: tuple[RunSpec, ...]
+    outcomes: tuple[Outcome, ...]
+
+    def values(self, figure: str) -> tuple[float | None, ...]:
+        """Return a figure of all of them; None where a wall has none."""
+        found = (outcome.figures[figure] for outcome in self.outcomes)
+        return tuple(None if value is None else float(value) for value in found)
+
+    def median(self, figure: str) -> float | None:
+        """Return the median of a figure over the walls that have it; None when none has."""
+        return cells.median_of(self.outcomes, figure)
+
+    @property
+    def middle(self) -> int:
+        """Place of the wall in the middle by filling, the lower one of two."""
+        filled = self.values("F_SF")
+        order = sorted(range(len(filled)), key=lambda place: (filled[place] or 0.0, place))
+        return order[(len(order) - 1) // 2]
+
+
+@dataclass(frozen=True, eq=False)
+class Built:
+    """The walls of a study: of the first set by every way, then of the next."""
+
+    context: Context
+    all: tuple[Trials, ...]
+
+    def __iter__(self) -> Iterator[Trials]:
+        """Iterate over the trials."""
+        return iter(self.all)
+
+    @property
+    def runs(self) -> tuple[RunSpec, ...]:
+        """Of all walls."""
+        return tuple(spec for trials in self.all for spec in trials.specs)
+
+    @property
+    def seeds(self) -> tuple[int, ...]:
+        """Of every set and way."""
+        return tuple(spec.seed for spec in self.all[0].specs)
+
+    @property
+    def by_wall(self) -> tuple["Built", ...]:
+        """The walls of each set."""
+        walls = dict.fromkeys(trials.wall for trials in self.all)
+        return tuple(
+            Built(self.context, tuple(one for one in self.all if one.wall == wall))
+            for wall in walls
+        )
+
+    @property
+    def name(self) -> str:
+        """Of the first set."""
+        return self.all[0].wall.name
+
+    def of(self, way: str) -> list[Trials]:
+        """Return the trials of one way, in the order of the sets."""
+        return [each for each in self.all if each.way == way]
+
+    def wins(self, way: str, other: str, figure: str) -> cells.Wins:
+        """Compare the walls of two ways, pairs of one set and seed."""
+        ours, others = (
+            [value for trials in self.of(each) for value in trials.values(figure)]
+            for each in (way, other)
+        )
+        return cells.wins(ours, others, figure)
+
+    def wall(self, trials: Trials, which: int = 0) -> Wall:
+        """Return one of the walls, built again."""
+        return trials.outcomes[which].wall(trials.specs[which], self.context.data)
+
+    def drawn(self, trials: Trials, title: str, which: int = 0) -> TitledWall:
+        """Return one of the walls as a panel, stones coloured by cluster."""
+        return title, self.wall(trials, which), trials.outcomes[which].clusters
+
+    def titled(self, trials: Trials, title: str, which: int = 0) -> TitledWall:
+        """Return one of the walls as a panel, with its figures in the title."""
+        figures = trials.outcomes[which].figures
+        placed = f"{figures['placed']} of {figures['stones']} stones"
+        return self.drawn(trials, f"{title}: {placed}\n{cells.in_words(figures)}", which)
+
+
+def built(
+    context: Context,
+    walls: Sequence[Target],
+    ways: Mapping[str, Changes],
+    seeds: Sequence[int],
+) -> Built:
+    """Build walls of every set, by every way, from every seed."""
+    asked = [
+        (wall, way, tuple(wall.run(seed, *changes) for seed in seeds))
+        for wall in walls
+        for way, changes in ways.items()
+    ]
+    outcomes = iter(context.run([spec for *_, specs in asked for spec in specs]))
+    trials = (
+        Trials(wall, way, specs, tuple(next(outcomes) for _ in specs)) for wall, way, specs in asked
+    )
+    return Built(context, tuple(trials))
+
+
+Cells = Callable[[Trials], tuple[Cell, ...]]
+
+
+def ways_table(
+    title: str,
+    heads: Sequence[str],
+    key: Cells,
+    more: Sequence[str] = (),
+    extra: Cells = lambda _: (),
+    notes: Sequence[str] = (),
+) -> Callable[[Built], Table]:
+    """Return a table of medians and ranges, a row a set and way, between `key` and `extra`."""
+
+    def table(found: Built) -> Table:
+        rows = tuple((*key(one), *cells.summary(one.outcomes), *extra(one)) for one in found)
+        return Table(_named(title, found), (*heads, *cells.COLUMNS, *more), rows, tuple(notes))
+
+    return table
+
+
+def walls_table(
+    title: str,
+    heads: Sequence[str],
+    row: Callable[[Trials, RunSpec, Outcome], tuple[Cell, ...]],
+    notes: Sequence[str] = (),
+) -> Callable[[Built], Table]:
+    """Return a table with a row a wall."""
+
+    def table(found: Built) -> Table:
+        rows = tuple(
+            row(one, spec, outcome)
+            for one in found
+            for spec, outcome in zip(one.specs, one.outcomes, strict=True)
+        )
+        return Table(_named(title, found), tuple(heads), rows, tuple(notes))
+
+    return table
+
+
+def pairs_table(title: str, way: str, others: Sequence[str], head: str) -> Callable[[Built], Table]:
+    """Return a table of one way against others, pairs of one set and seed, by figure."""
+
+    def table(found: Built) -> Table:
+        rows = tuple(
+            (other, *found.wins(way, other, figure).cells(figure))
+            for other in others
+            for figure in cells.METRICS
+        )
+        return Table(_named(title, found), (head, *cells.WINS), rows)
+
+    return table
+
+
+def strips(
+    found: Built, name: str, figures: Sequence[str], label: Callable[[Trials], str]
+) -> Picture:
+    """Draw a point a wall: a panel a figure, a group a set and way."""
+    panels = {figure: {label(one): one.values(figure) for one in found} for figure in figures}
+    return Picture(name, group_panels(panels), "A point a wall; lines are medians.")
+
+
+def sheet(
+    found: Built, name: str, columns: int, label: Callable[[Trials], str], caption: str
+) -> Picture:
+    """Draw the wall of the first seed of every set and way."""
+    walls = [found.titled(one, label(one)) for one in found]
+    caption += " Numbers are steps of the plan, colours clusters of stones, wedges are dark red."
+    return Picture(name, plot_walls(walls, columns), caption)
+
+
+def _named(title: str, found: Built) -> str:
+    return title.format(wall=found.name) if found.all else title

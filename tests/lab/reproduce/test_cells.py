@@ -1,0 +1,100 @@
+"""Medians, ranges, pairs, trends and claims as cells and words."""
+
+import numpy as np
+import pytest
+
+from drystone_lab.reproduce.cells import (
+    COLUMNS,
+    METRICS,
+    Finding,
+    Wins,
+    figures_of,
+    findings_table,
+    median_of,
+    metric_cells,
+    sentences,
+    summary,
+    trend,
+    wins,
+)
+from tests.lab.reproduce.made_outcomes import outcome
+
+
+def test_medians_and_ranges() -> None:
+    walls = [
+        outcome(placed=8, F_SF=0.7, F_LR=None),
+        outcome(placed=10, F_SF=0.9, F_LR=0.25),
+        outcome(placed=9, F_SF=0.7500049, F_LR=0.75),
+    ]
+    cells = dict(zip(COLUMNS, summary(walls), strict=True))
+    assert cells["walls"] == 3
+    assert cells["stones"] == 10
+    assert (cells["placed median"], cells["placed range"]) == (9, "8 to 10")
+    assert (cells["F_SF median"], cells["F_SF range"]) == (0.75, "0.700 to 0.900")
+    assert (cells["F_LR median"], cells["F_LR range"]) == (0.5, "0.25 to 0.75")
+    assert cells["F_AV median"] == 1.0
+
+
+def test_a_figure_that_no_wall_has() -> None:
+    cells = dict(zip(COLUMNS, summary([outcome(F_LR=None)] * 2), strict=True))
+    assert (cells["F_LR median"], cells["F_LR range"]) == (None, None)
+    assert median_of([outcome(F_LR=None)], "F_LR") is None
+    assert figures_of([outcome(F_LR=None), outcome(F_LR=0.5)], "F_LR") == [0.5]
+
+
+def test_figures_of_one_wall() -> None:
+    wall = outcome(F_SF=0.123456, F_AV=None, F_AH=2.0, F_LR=0.5)
+    assert dict(zip(METRICS, metric_cells(wall), strict=True)) == {
+        "F_SF": 0.1235, "F_AV": None, "F_AH": 2.0, "F_LR": 0.5,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("figure", ["F_SF", "F_AH"])
+def test_counts_are_those_of_all_pairs(figure: str) -> None:
+    rng = np.random.default_rng(4)
+    first, second = rng.integers(0, 4, (2, 40)).astype(float)
+    more, less = int((first > second).sum()), int((first < second).sum())
+    found = wins(list(first), list(second), figure)
+    assert (found.better, found.worse) == ((less, more) if figure == "F_AH" else (more, less))
+    assert found.pairs == 40
+    assert found.median_difference == np.median(first - second)
+
+
+def test_what_is_missing_makes_no_pair_and_a_majority_is_of_all() -> None:
+    assert wins([None, 1.0], [2.0, None], "F_LR") == Wins(0, 0, 0, None)
+    assert wins([0.5, 0.5], [0.5 + 1e-12, None], "F_LR").equal == 1
+    assert Wins(3, 0, 2, 0.0).is_majority
+    assert not Wins(3, 3, 0, 0.0).is_majority
+
+
+def test_a_trend_is_the_correlation_of_the_ranks() -> None:
+    rng = np.random.default_rng(3)
+    x = np.repeat([10, 20, 30, 40], 3)
+    y = np.round(x / 40 + rng.normal(0, 0.3, 12), 1)
+    ranks = [(v[:, None] > v).sum(axis=1) + ((v[:, None] == v).sum(axis=1) + 1) / 2 for v in (x, y)]
+    found = trend(list(zip(x.tolist(), y.tolist(), strict=True)))
+    assert found is not None
+    assert found.rho == pytest.approx(np.corrcoef(*ranks)[0, 1], abs=1e-6)
+    falling = trend([(n, -n) for n in range(8)])
+    mixed = trend(list(enumerate([3.0, 1.0, 4.0, 1.0, 5.0, 2.0, 6.0, 0.0])))
+    assert falling is not None
+    assert mixed is not None
+    assert (falling.rho, falling.clear, mixed.clear) == (-1, True, False)
+
+
+def test_there_is_no_trend_of_few_or_equal_values() -> None:
+    assert trend([(1, 1.0), (2, 2.0), (3, 3.0), (4, None)]) is None
+    assert trend([(n, 1.0) for n in range(9)]) is None
+    assert trend([(1, float(n)) for n in range(9)]) is None
+
+
+def test_claims_that_cannot_be_told_do_not_count() -> None:
+    found = [
+        Finding("A.", "one", True), Finding("B.", "two", False), Finding("C.", "three", None)
+    ]  # fmt: skip
+    told = sentences(found)
+    assert told[0] == "Of 2 claims of the paper that can be told, 1 agree."
+    assert [one.split(":")[0] for one in told[1:]] == ["Agrees", "Differs", "Cannot be told"]
+    assert [row["agrees"] for row in findings_table("Claims", found).records()] == [
+        True, False, None
+    ]  # fmt: skip
