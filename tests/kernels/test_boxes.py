@@ -1,6 +1,5 @@
 """Neighbours among many boxes: against plain loops (Eq. 6-9)."""
 
-
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st

@@ -1,6 +1,5 @@
 """Shares of cells against the common area with every cell."""
 
-
 import numpy as np
 import pytest
 import shapely

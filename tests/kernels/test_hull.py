@@ -1,6 +1,5 @@
 """Corners of the convex hull of pixels: against shapely's."""
 
-
 import numpy as np
 import shapely
 from hypothesis import given

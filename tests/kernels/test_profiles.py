@@ -1,6 +1,5 @@
 """Height profiles against cutting polygons into columns."""
 
-
 import numpy as np
 import pytest
 from hypothesis import given

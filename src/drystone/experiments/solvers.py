@@ -12,7 +12,7 @@ from drystone.experiments.benchmark_walls import coursed_labels, irregular_label
 from drystone.experiments.fresh_linprog import TOLERANCE, fresh_linprog
 from drystone.experiments.growing_walls import Pattern, built_up
 from drystone.experiments.table import BenchSettings, Cell, Table
-from drystone.kernels.certificate import figures_numpy
+from drystone.kernels.certificate import figures
 from drystone.kernels.simplex import MAX_PIVOTS, OPTIMAL, Added, Tilt
 from drystone.kernels.simplex_growth import solve_added_numpy
 from drystone.model.wall import Labels
@@ -248,7 +248,7 @@ def _in_numpy(analysis: SimplexGrowth) -> Method:
         answer = solve_added_numpy(tilt, added, MAX_PIVOTS)
         if answer.status != OPTIMAL:
             return None
-        found = figures_numpy(
+        found = figures(
             program.cones, program.weights, added, answer.alpha, answer.forces, answer.velocity
         )
         certified = optimum(found, answer.alpha, tilt.sign, NUMPY)
