@@ -8,9 +8,7 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy import ndimage
 
-from drystone import clusters
 from drystone.clusters import ClusterSettings, cluster_stones
-from drystone.generate.fourier import FourierSettings, fourier_stones
 from drystone.model.stone import Stone, StoneSet
 from drystone.poses import PoseBook
 
@@ -46,25 +44,6 @@ def test_published_sets(data_dir: Path, name: str, stones: int | None, count: in
     found = stones_of(read_ids(data_dir / "almeida" / f"{name}.png"))
     assert stones is None or len(found) == stones
     assert len(set(cluster_stones(found, PoseBook()).values())) == count
-
-
-@pytest.mark.parametrize("name", ["PR", "R"])
-def test_sets_too_large_for_pairs_have_the_same_clusters(
-    data_dir: Path, name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    found, book = stones_of(read_ids(data_dir / "almeida" / f"{name}.png")), PoseBook()
-    expected = cluster_stones(found, book)
-    monkeypatch.setattr(clusters, "MOST_IN_PAIRS", 1)
-    assert cluster_stones(found, book) == expected
-
-
-def test_a_generated_set_too_large_for_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
-    settings = FourierSettings(count=150, smallest_radius_px=4, largest_radius_px=12, D2=0.15)
-    found, book = fourier_stones(settings, np.random.default_rng(2)), PoseBook()
-    expected = cluster_stones(found, book)
-    monkeypatch.setattr(clusters, "MOST_IN_PAIRS", 149)
-    assert cluster_stones(found, book) == expected
-    assert len(set(expected.values())) > 3
 
 
 def rectangles(*sizes: tuple[int, int]) -> StoneSet:

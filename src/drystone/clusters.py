@@ -7,12 +7,8 @@ from numpy.typing import NDArray
 from scipy.cluster.hierarchy import fcluster, ward
 
 from drystone.kernels.raster import turn
-from drystone.kernels.ward import ward_clusters
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
-
-MOST_IN_PAIRS = 2000
-"""Of more stones the distances of all pairs are not written down: they are half the square."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,10 +57,7 @@ def cluster_stones(
         return dict.fromkeys(ids, 1)
     box = _box_areas(stones, book)
     features = _features(stones, box)
-    if len(ids) <= MOST_IN_PAIRS:
-        flat = fcluster(ward(features), settings.distance, criterion="distance")
-    else:
-        flat = ward_clusters(features, settings.distance)
+    flat = fcluster(ward(features), settings.distance, criterion="distance")
     size = {label: -float(box[flat == label].mean()) for label in np.unique(flat)}
     order = {label: rank for rank, label in enumerate(sorted(size, key=lambda k: size[k]), 1)}
     return {stone_id: order[label] for stone_id, label in zip(ids, flat, strict=True)}

@@ -1,15 +1,11 @@
-"""Neighbours among many boxes: compiled and NumPy against plain loops (Eq. 6-9)."""
-
-from collections.abc import Callable
+"""Neighbours among many boxes: against plain loops (Eq. 6-9)."""
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from drystone.kernels import boxes as module
-from drystone.kernels.backend import compiled
+from drystone.kernels.boxes import left_neighbour, nearest_joints
 from tests.strategies import repeatable
 
 Box = tuple[int, int, int, int]
@@ -25,17 +21,7 @@ def table(boxes: list[Box]) -> NDArray[np.int64]:
     return np.array(boxes, np.int64).reshape(-1, 4)
 
 
-def kernels(name: str) -> list[object]:
-    fast = compiled("boxes")
-    absent = pytest.mark.skipif(fast is None, reason="kernels are not compiled here")
-    return [
-        pytest.param(getattr(module, f"{name}_numpy"), id="numpy"),
-        pytest.param(getattr(module, name), id="compiled", marks=absent),
-    ]
-
-
-@pytest.mark.parametrize("kernel", kernels("nearest_joints"))
-def test_the_joints_are_those_of_a_loop(kernel: Callable[..., tuple[int, int]]) -> None:
+def test_the_joints_are_those_of_a_loop() -> None:
     @repeatable(300)
     @given(tables, box, st.floats(0, 6), st.floats(6, 18))
     def check(boxes: list[Box], above: Box, leftmost: float, rightmost: float) -> None:
@@ -51,13 +37,12 @@ def test_the_joints_are_those_of_a_loop(kernel: Callable[..., tuple[int, int]]) 
         below = [k for k, b in enumerate(boxes) if 2 * b[3] <= top + bottom]
         one = nearest([k for k in below if boxes[k][1] < rightmost], 1, left)
         two = nearest([k for k in below if boxes[k][0] > leftmost], 0, right)
-        assert kernel(table(boxes), above, leftmost, rightmost) == (one, two)
+        assert nearest_joints(table(boxes), above, leftmost, rightmost) == (one, two)
 
     check()
 
 
-@pytest.mark.parametrize("kernel", kernels("left_neighbour"))
-def test_the_neighbour_is_that_of_a_loop(kernel: Callable[..., int]) -> None:
+def test_the_neighbour_is_that_of_a_loop() -> None:
     @repeatable(300)
     @given(tables, box)
     def check(boxes: list[Box], beside: Box) -> None:
@@ -69,6 +54,6 @@ def test_the_neighbour_is_that_of_a_loop(kernel: Callable[..., int]) -> None:
             and 2 * (min(high, top) - max(low, bottom)) >= min(high - low, top - bottom)
         ]
         expected = max(level, key=lambda k: (boxes[k][1], boxes[k][3]), default=-1)
-        assert kernel(table(boxes), beside) == expected
+        assert left_neighbour(table(boxes), beside) == expected
 
     check()

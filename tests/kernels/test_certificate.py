@@ -1,4 +1,4 @@
-"""Figures of forces and mechanisms: compiled and NumPy against linear algebra."""
+"""Figures of forces and mechanisms: against linear algebra."""
 
 import math
 
@@ -7,22 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels import certificate as module
-from drystone.kernels.backend import compiled
-from drystone.kernels.certificate import figures, figures_numpy
+from drystone.kernels.certificate import figures
 from drystone.kernels.simplex import Added, Cones
 from tests.naive import columns as naive
 from tests.strategies import repeatable
-
-VERSIONS = ["numpy", "compiled"]
-
-
-@pytest.fixture(params=VERSIONS)
-def version(request, monkeypatch):
-    if request.param == "numpy":
-        monkeypatch.setattr(module, "_fast", None)
-    elif compiled("certificate") is None:
-        pytest.skip("kernels are not compiled here")
 
 
 def some_cones(rng, count, bodies):
@@ -51,7 +39,6 @@ def some_answer(seed, built, new):
 answers = st.builds(some_answer, st.integers(0, 10**6), st.integers(0, 4), st.integers(0, 3))
 
 
-@pytest.mark.usefixtures("version")
 def test_figures_are_those_of_linear_algebra():
     @repeatable(200)
     @given(answers)
@@ -65,16 +52,6 @@ def test_figures_are_those_of_linear_algebra():
     check()
 
 
-@pytest.mark.skipif(compiled("certificate") is None, reason="kernels are not compiled here")
-@given(answers)
-@repeatable(300)
-def test_both_versions_are_the_same_to_the_last_bit(answer):
-    *program, forces, velocity = answer
-    for carried in (forces, forces[:0]):
-        assert figures(*program, carried, velocity) == figures_numpy(*program, carried, velocity)
-
-
-@pytest.mark.usefixtures("version")
 def test_what_is_no_number_is_found_out_wherever_it_is():
     """By one of the figures that a certificate looks at."""
     wall, weights, added, alpha, forces, velocity = some_answer(3, 4, 2)
@@ -98,7 +75,6 @@ def test_what_is_no_number_is_found_out_wherever_it_is():
     assert math.isnan(found.residual)
 
 
-@pytest.mark.usefixtures("version")
 def test_every_row_and_every_column_counts():
     wall, weights, added, _, forces, velocity = some_answer(3, 4, 2)
     matrix, live, rhs = naive.program(wall, weights, added)
@@ -118,7 +94,6 @@ def test_every_row_and_every_column_counts():
         assert (found.live, found.rhs) == pytest.approx((-2 * live[row], -2 * rhs[row]))
 
 
-@pytest.mark.usefixtures("version")
 def test_vectors_of_another_program_are_refused():
     wall, weights, added, alpha, forces, velocity = some_answer(3, 4, 2)
     for wrong in (forces[1:], np.append(forces, 0.0)):

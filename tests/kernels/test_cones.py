@@ -1,13 +1,11 @@
-"""Columns of the limit analysis: compiled and NumPy against plain loops."""
+"""Columns of the limit analysis: against plain loops."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels import cones as module
-from drystone.kernels.backend import compiled
-from drystone.kernels.cones import GROUND_BODY
+from drystone.kernels.cones import GROUND_BODY, cone_edges
 from tests.naive import columns as naive
 from tests.strategies import repeatable
 
@@ -31,22 +29,16 @@ interfaces = st.lists(
 lengths = st.floats(0.1, 40.0)
 
 
-def run(version, monkeypatch, found, length):
-    """The columns by one version of the kernel."""
-    if version == "numpy":
-        monkeypatch.setattr(module, "_fast", None)
-    elif compiled("cones") is None:
-        pytest.skip("kernels are not compiled here")
+def columns(found, length):
     parts = [list(part) for part in zip(*found, strict=True)] or [[], [], [], []]
-    return module.cone_edges(*parts, length)
+    return cone_edges(*parts, length)
 
 
-@pytest.mark.parametrize("version", ["numpy", "compiled"])
-def test_columns_are_those_of_a_loop(version, monkeypatch):
+def test_columns_are_those_of_a_loop():
     @repeatable(100)
     @given(interfaces, lengths)
     def check(found, length):
-        first, second, entries = run(version, monkeypatch, found, length)
+        first, second, entries = columns(found, length)
         parts = [list(part) for part in zip(*found, strict=True)] or [[], [], [], []]
         expected = naive.cone_edges(*parts, length)
         assert first.tolist() == [column[0] for column in expected]
@@ -59,42 +51,21 @@ def test_columns_are_those_of_a_loop(version, monkeypatch):
     check()
 
 
-@pytest.mark.skipif(compiled("cones") is None, reason="kernels are not compiled here")
-@given(interfaces, lengths)
-@repeatable(150)
-def test_both_versions_are_the_same_to_the_last_bit(found, length):
-    with pytest.MonkeyPatch.context() as patch:
-        one = run("compiled", patch, found, length)
-        other = run("numpy", patch, found, length)
-    for fast, slow in zip(one, other, strict=True):
-        assert fast.dtype == slow.dtype
-        assert fast.shape == slow.shape
-        assert fast.flags.c_contiguous
-        assert slow.flags.c_contiguous
-        assert np.array_equal(fast, slow)
-
-
-@pytest.mark.parametrize("version", ["numpy", "compiled"])
-def test_points_may_be_slices_of_one_array(version, monkeypatch):
+def test_points_may_be_slices_of_one_array():
     everything = np.arange(24.0).reshape(4, 6)
     wrench = [((1, 2.0, 3.0), (0, 5.0, 1.0)), ((2, 0.0, 1.0), GROUND_BODY)]
     slices = [everything[:2, 1:3], everything[1::2, ::3]]
     found = list(zip(wrench, [(0.6, 0.8), (1.0, 0.0)], [0.5, 0.7], slices, strict=True))
     whole = [(*part[:3], part[3].copy()) for part in found]
-    for fast, slow in zip(
-        run(version, monkeypatch, found, 3.0), run(version, monkeypatch, whole, 3.0), strict=True
-    ):
+    for fast, slow in zip(columns(found, 3.0), columns(whole, 3.0), strict=True):
         assert np.array_equal(fast, slow)
 
 
-@pytest.mark.parametrize("version", ["numpy", "compiled"])
-def test_what_does_not_fit_together_is_refused(version, monkeypatch):
+def test_what_does_not_fit_together_is_refused():
     one = (((0, 0.0, 0.0), GROUND_BODY), (0.0, 1.0), 0.5, np.zeros((1, 2)))
     parts = [[part] for part in one]
-    if version == "numpy":
-        monkeypatch.setattr(module, "_fast", None)
     for k in range(4):
         with pytest.raises(ValueError, match="interfaces"):
-            module.cone_edges(*parts[:k], parts[k] * 2, *parts[k + 1 :], 1.0)
+            cone_edges(*parts[:k], parts[k] * 2, *parts[k + 1 :], 1.0)
     with pytest.raises(ValueError, match="points"):
-        module.cone_edges(*parts[:3], [np.zeros((2, 3))], 1.0)
+        cone_edges(*parts[:3], [np.zeros((2, 3))], 1.0)

@@ -1,6 +1,4 @@
-"""Shares of cells, compiled and NumPy, against the common area with every cell."""
-
-from collections.abc import Iterator
+"""Shares of cells against the common area with every cell."""
 
 import numpy as np
 import pytest
@@ -8,14 +6,10 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels import coverage as kernel_module
-from drystone.kernels.backend import compiled
 from drystone.kernels.coverage import (
     Grid,
     coverage,
-    coverage_numpy,
     newly_filled,
-    newly_filled_numpy,
     windows,
 )
 from drystone.kernels.polygons import Points
@@ -24,21 +18,9 @@ from tests.naive import coverage as naive
 from tests.polygons import random_polygon, simple_polygons
 from tests.strategies import repeatable
 
-FAST = compiled("coverage")
-WITHOUT = pytest.mark.skipif(FAST is None, reason="kernels are not compiled here")
-KERNELS = [pytest.param(None, id="numpy"), pytest.param(FAST, id="compiled", marks=WITHOUT)]
-
 PLACES = st.one_of(
     st.integers(-4, 4).map(float), st.floats(-30, 30), st.sampled_from([-1e-300, 1e-9, 2e5 + 0.3])
 )
-
-
-@pytest.fixture(autouse=True, scope="module", params=KERNELS)
-def kernel(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Everything here by NumPy, then by the compiled kernels."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(kernel_module, "_fast", request.param)
-        yield
 
 
 @repeatable(120)
@@ -151,25 +133,6 @@ def test_what_is_no_polygon_is_refused(corners: list[list[float]], message: str)
         coverage(np.array(corners))
 
 
-@WITHOUT
-@repeatable(300)
-@given(
-    polygon=simple_polygons(max_size=40.0),
-    angle=st.one_of(st.sampled_from([0.0, 45.0, 90.0]), st.floats(-180, 180)),
-    x=PLACES,
-    y=PLACES,
-)
-def test_compiled_shares_have_the_same_bits(
-    polygon: Points, angle: float, x: float, y: float
-) -> None:
-    corners = turn(polygon, angle) + np.array([x, y])
-    assert FAST is not None
-    fast, slow = FAST.coverage(corners), coverage_numpy(corners)
-    assert (fast[0].dtype, fast[0].shape) == (slow[0].dtype, slow[0].shape)
-    assert fast[0].tobytes() == slow[0].tobytes()
-    assert fast[1:] == slow[1:]
-
-
 Scene = tuple[Grid, Grid, int, int]
 
 
@@ -201,19 +164,6 @@ def test_newly_filled_cells_are_those_that_turn_to_half(scene: Scene) -> None:
     assert {(row + i, col + j) for i, j in np.argwhere(mask).tolist()} == expected
     assert mask[[0, -1]].any(axis=1).all()
     assert mask[:, [0, -1]].any(axis=0).all()
-
-
-@WITHOUT
-@repeatable(300)
-@given(scene=scenes())
-def test_compiled_cells_are_the_same(scene: Scene) -> None:
-    assert FAST is not None
-    fast, slow = FAST.newly_filled(*scene), newly_filled_numpy(*scene)
-    assert (fast is None) == (slow is None)
-    if slow is not None:
-        assert fast[0].dtype == slow[0].dtype
-        np.testing.assert_array_equal(fast[0], slow[0])
-        assert fast[1:] == slow[1:]
 
 
 def test_half_is_filled_and_what_was_half_is_not_new() -> None:

@@ -1,6 +1,4 @@
-"""The free space under a polygon: compiled and NumPy, against upright lines and shapely."""
-
-from collections.abc import Callable
+"""The free space under a polygon, against upright lines and shapely."""
 
 import numpy as np
 import pytest
@@ -8,24 +6,13 @@ import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from drystone.kernels.backend import compiled
-from drystone.kernels.crevice import Crevice, between, crevice, crevice_numpy, gap_polygon, slabs
+from drystone.kernels.crevice import between, crevice, gap_polygon, slabs
 from drystone.kernels.polygons import Points, Polygons, mirrored_polygon, no_polygons
 from tests.naive.crevice import gap_at
 from tests.settle.piles import WIDTH, moved, piles
 from tests.strategies import repeatable
 
-Kernel = Callable[[Points, Polygons, float], Crevice]
-
 CLEARANCE = 0.01
-
-
-def kernels() -> list[object]:
-    absent = pytest.mark.skipif(compiled("crevice") is None, reason="kernels are not compiled here")
-    return [
-        pytest.param(crevice_numpy, id="numpy"),
-        pytest.param(crevice, id="compiled", marks=absent),
-    ]
 
 
 def box(left: float, low: float, right: float, high: float) -> Points:
@@ -58,29 +45,12 @@ def bodies(around: Polygons) -> shapely.Geometry:
     )
 
 
-@pytest.mark.skipif(compiled("crevice") is None, reason="kernels are not compiled here")
-@repeatable(150)
-@given(
-    st.one_of(piles(6), piles(6, 0.0)), st.sampled_from([0.0, CLEARANCE, 0.5]), st.floats(0.0, 12.0)
-)
-def test_compiled_and_numpy_give_the_same_bits(
-    pile: tuple[Points, Polygons], clearance: float, sunk: float
-) -> None:
-    stone, around = pile
-    for y in (0.0, sunk):  # also where the stone stands in others
-        one = crevice(moved(stone, 0.0, -y), around, clearance)
-        two = crevice_numpy(moved(stone, 0.0, -y), around, clearance)
-        assert np.array_equal(one.lid, two.lid)
-        assert np.array_equal(one.floor, two.floor)
-
-
-@pytest.mark.parametrize("kernel", kernels())
-def test_boundaries_are_what_upright_lines_meet(kernel: Kernel) -> None:
+def test_boundaries_are_what_upright_lines_meet() -> None:
     @repeatable(100)
     @given(piles(), st.lists(st.floats(0.001, 0.999), min_size=4, max_size=4))
     def check(pile: tuple[Points, Polygons], shares: list[float]) -> None:
         stone, around = pile
-        space = kernel(stone, around, 0.0)
+        space = crevice(stone, around, 0.0)
         for share in shares:
             x = away_from_corners(stone, around, share)
             floor, lid = gap_at(stone, around, x)
@@ -90,8 +60,7 @@ def test_boundaries_are_what_upright_lines_meet(kernel: Kernel) -> None:
     check()
 
 
-@pytest.mark.parametrize("kernel", kernels())
-def test_keeps_its_distance_and_gives_nothing_away(kernel: Kernel) -> None:
+def test_keeps_its_distance_and_gives_nothing_away() -> None:
     @repeatable(100)
     @given(piles(), st.floats(0.0, 0.9), st.floats(0.02, 1.0), st.integers(0, 2**32 - 1))
     def check(pile: tuple[Points, Polygons], start: float, run: float, seed: int) -> None:
@@ -99,7 +68,7 @@ def test_keeps_its_distance_and_gives_nothing_away(kernel: Kernel) -> None:
         left, right = extent(stone)
         x = left + start * (right - left)
         ends = x, min(x + run * (right - left), right)
-        piece = between(kernel(stone, around, CLEARANCE), *ends)
+        piece = between(crevice(stone, around, CLEARANCE), *ends)
         if piece is None:
             return
         shape, held, below = shapely.Polygon(piece), shapely.Polygon(stone), bodies(around)
@@ -123,13 +92,12 @@ def test_keeps_its_distance_and_gives_nothing_away(kernel: Kernel) -> None:
     check()
 
 
-@pytest.mark.parametrize("kernel", kernels())
-def test_corners_are_near_what_they_belong_to(kernel: Kernel) -> None:
+def test_corners_are_near_what_they_belong_to() -> None:
     @repeatable(60)
     @given(piles())
     def check(pile: tuple[Points, Polygons]) -> None:
         stone, around = pile
-        space = kernel(stone, around, CLEARANCE)
+        space = crevice(stone, around, CLEARANCE)
         free = crevice(stone, around, 0.0)
         for chain, body in ((space.lid, shapely.Polygon(stone)), (space.floor, bodies(around))):
             before, after = np.roll(chain[:, 0], 1), np.roll(chain[:, 0], -1)

@@ -1,16 +1,11 @@
-"""Corners of the convex hull of pixels: compiled and NumPy against shapely's."""
-
-from collections.abc import Callable
-from typing import Any
+"""Corners of the convex hull of pixels: against shapely's."""
 
 import numpy as np
-import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels import hull as module
-from drystone.kernels.backend import compiled
+from drystone.kernels.hull import pixel_hull
 from drystone.kernels.raster import Mask
 from tests.strategies import blobs, repeatable
 
@@ -26,16 +21,7 @@ dust = st.builds(noise, shapes, shares, st.integers(0, 10**6))
 pixels = st.one_of(dust, dust, blobs(max_px=16)).filter(lambda mask: bool(mask.any()))
 
 
-def kernels() -> list[object]:
-    absent = pytest.mark.skipif(compiled("hull") is None, reason="kernels are not compiled here")
-    return [
-        pytest.param(module.pixel_hull_numpy, id="numpy"),
-        pytest.param(module.pixel_hull, id="compiled", marks=absent),
-    ]
-
-
-@pytest.mark.parametrize("pixel_hull", kernels())
-def test_corners_are_those_of_all_pixel_squares(pixel_hull: Callable[[Mask], Any]) -> None:
+def test_corners_are_those_of_all_pixel_squares() -> None:
     @repeatable(150)
     @given(pixels)
     def check(mask: Mask) -> None:
@@ -58,16 +44,7 @@ def test_corners_are_those_of_all_pixel_squares(pixel_hull: Callable[[Mask], Any
     check()
 
 
-@pytest.mark.skipif(compiled("hull") is None, reason="kernels are not compiled here")
-@repeatable(100)
-@given(pixels)
-def test_both_versions_agree(mask: Mask) -> None:
-    for view in (mask, mask[:, ::-1], mask.T):
-        assert module.pixel_hull(view).tolist() == module.pixel_hull_numpy(view).tolist()
-
-
-@pytest.mark.parametrize("pixel_hull", kernels())
-def test_one_pixel_and_empty_lines_around_it(pixel_hull: Callable[[Mask], Any]) -> None:
+def test_one_pixel_and_empty_lines_around_it() -> None:
     assert pixel_hull(np.ones((1, 1), bool)).tolist() == [[1, 0], [1, 1], [0, 1], [0, 0]]
     lonely = np.zeros((4, 5), bool)
     lonely[1, 3] = True

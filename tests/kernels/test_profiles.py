@@ -1,20 +1,15 @@
-"""Height profiles, compiled and NumPy, against cutting polygons into columns."""
-
-from collections.abc import Iterator
+"""Height profiles against cutting polygons into columns."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels import profiles
-from drystone.kernels.backend import compiled
 from drystone.kernels.polygons import Points, mirrored_polygon
 from drystone.kernels.profiles import (
     HeightProfile,
     bare,
     extremes,
-    extremes_numpy,
     hanging,
     in_a_row,
     raised,
@@ -23,24 +18,7 @@ from tests.naive.drops import column_span, height_profile
 from tests.polygons import simple_polygons
 from tests.strategies import repeatable
 
-FAST = compiled("profiles")
-KERNELS = [
-    pytest.param(None, id="numpy"),
-    pytest.param(
-        FAST,
-        id="compiled",
-        marks=pytest.mark.skipif(FAST is None, reason="kernels are not compiled here"),
-    ),
-]
 CELLS = st.sampled_from([0.5, 1.0, 2.0, 1 / 0.35, 40.0])
-
-
-@pytest.fixture(autouse=True, scope="module", params=KERNELS)
-def kernel(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Everything here by NumPy, then by the compiled kernel."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(profiles, "_fast", request.param)
-        yield
 
 
 def block(left: float, bottom: float, width: float, height: float) -> Points:
@@ -102,17 +80,6 @@ def test_a_hanging_polygon_starts_on_a_column_edge(polygon: Points, cell: float)
             span = column_span(polygon, at - 1e-6, at + 1e-6)
             assert span is None or stone.bottoms[column] <= span[0] + 1e-8
             assert span is None or stone.tops[column] >= span[1] - 1e-8
-
-
-@pytest.mark.skipif(FAST is None, reason="kernels are not compiled here")
-@repeatable(60)
-@given(polygon=simple_polygons(), cell=CELLS, columns=st.integers(0, 12), left=st.floats(-9.0, 9.0))
-def test_both_kernels_give_the_same_bits(
-    polygon: Points, cell: float, columns: int, left: float
-) -> None:
-    expected = extremes_numpy(polygon, left, cell, columns)
-    found = FAST.extremes(np.asfortranarray(polygon), left, cell, columns)
-    assert [part.tobytes() for part in found] == [part.tobytes() for part in expected]
 
 
 @repeatable(40)

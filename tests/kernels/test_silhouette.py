@@ -1,33 +1,18 @@
-"""Runs, underside and rays of a mask: compiled and NumPy against pixels one by one (Eq. 4)."""
-
-from collections.abc import Callable
+"""Runs, underside and rays of a mask: against pixels one by one (Eq. 4)."""
 
 import numpy as np
-import pytest
 from hypothesis import given
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.raster import Mask
-from drystone.kernels.silhouette import Silhouette, silhouette, silhouette_numpy
+from drystone.kernels.silhouette import silhouette
 from tests.strategies import masks, repeatable
 
-absent = pytest.mark.skipif(compiled("silhouette") is None, reason="kernels are not compiled here")
-twins = pytest.mark.parametrize(
-    "prepare",
-    [
-        pytest.param(silhouette_numpy, id="numpy"),
-        pytest.param(silhouette, id="compiled", marks=absent),
-    ],
-)
-Prepare = Callable[[Mask], Silhouette]
 
-
-@twins
-def test_runs_give_back_the_mask_from_the_lowest_row_up(prepare: Prepare) -> None:
+def test_runs_give_back_the_mask_from_the_lowest_row_up() -> None:
     @repeatable(100)
     @given(mask=masks(12))
     def check(mask: Mask) -> None:
-        outline = prepare(mask)
+        outline = silhouette(mask)
         painted = np.zeros_like(mask)
         for row, start, length in outline.runs.tolist():
             assert not painted[row, max(0, start - 1) : start + length + 1].any()
@@ -44,12 +29,11 @@ def test_runs_give_back_the_mask_from_the_lowest_row_up(prepare: Prepare) -> Non
     check()
 
 
-@twins
-def test_swept_is_what_is_left_of_the_mask_or_below_it(prepare: Prepare) -> None:
+def test_swept_is_what_is_left_of_the_mask_or_below_it() -> None:
     @repeatable(100)
     @given(mask=masks(12))
     def check(mask: Mask) -> None:
-        rays = prepare(mask).rays
+        rays = silhouette(mask).rays
         height, width = mask.shape
         expected = {
             (i, j)
@@ -68,28 +52,13 @@ def test_swept_is_what_is_left_of_the_mask_or_below_it(prepare: Prepare) -> None
     check()
 
 
-@absent
-@repeatable(100)
-@given(mask=masks(12))
-def test_both_twins_give_the_same_arrays(mask: Mask) -> None:
-    fast, slow = silhouette(mask), silhouette_numpy(mask)
-    arrays = [(s.runs, s.bottom, s.area_from, s.rays.left, s.rays.runs) for s in (fast, slow)]
-    assert all(
-        one.dtype == other.dtype and one.shape == other.shape and np.array_equal(one, other)
-        for one, other in zip(*arrays, strict=True)
-    )
-    assert fast.rays.area == slow.rays.area
-
-
-@twins
-def test_rays_go_left_and_down_only(prepare: Prepare) -> None:
-    rays = prepare(np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]], bool)).rays
+def test_rays_go_left_and_down_only() -> None:
+    rays = silhouette(np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]], bool)).rays
     assert (rays.left.tolist(), rays.runs.tolist(), rays.area) == ([1, 0, 1], [[2, 2, 3]], 3)
 
 
-@twins
-def test_one_pixel(prepare: Prepare) -> None:
-    outline = prepare(np.ones((1, 1), bool))
+def test_one_pixel() -> None:
+    outline = silhouette(np.ones((1, 1), bool))
     assert (outline.runs.tolist(), outline.bottom.tolist()) == ([[0, 0, 1]], [0])
     assert outline.area_from.tolist() == [1, 0]
     assert (outline.rays.left.tolist(), outline.rays.runs.tolist()) == ([0], [])

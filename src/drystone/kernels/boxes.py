@@ -1,19 +1,28 @@
 """Which of many boxes are next to one: joints below a stone, its neighbour in the course."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import longs
+else:
+    from drystone.kernels.lists import longs
 
 BoxTable = NDArray[np.int64]
 """(n, 4): left, right, bottom and top of n boxes, y up."""
 
-_fast = compiled("boxes")
+Box = tuple[int, int, int, int]
+"""Left, right, bottom, top."""
 
 
-def nearest_joints(
-    boxes: BoxTable, box: tuple[int, int, int, int], leftmost: float, rightmost: float
-) -> tuple[int, int]:
+def nearest_joints(boxes: BoxTable, box: Box, leftmost: float, rightmost: float) -> tuple[int, int]:
     """Return the boxes whose top corners are closest to the bottom corners of a box above (Eq. 9).
 
     Parameters
@@ -39,27 +48,38 @@ def nearest_joints(
     >>> nearest_joints(np.array([[0, 5, 0, 4], [5, 9, 0, 4]]), (2, 8, 4, 6), 1, 8)
     (0, 1)
     """
-    if _fast is None:
-        return nearest_joints_numpy(boxes, box, leftmost, rightmost)
-    found: tuple[int, int] = _fast.nearest_joints(boxes, *box, leftmost, rightmost)
-    return found
-
-
-def nearest_joints_numpy(
-    boxes: BoxTable, box: tuple[int, int, int, int], leftmost: float, rightmost: float
-) -> tuple[int, int]:
-    """Twin of :func:`nearest_joints`."""
+    boxes = np.ascontiguousarray(boxes)
+    at: cython.p_longlong = longs(boxes)
+    left: cython.longlong
+    right: cython.longlong
+    bottom: cython.longlong
+    top: cython.longlong
     left, right, bottom, top = box
-    lefts, rights, tops = boxes[:, 0], boxes[:, 1], boxes[:, 3]
-    below = 2 * tops <= top + bottom
-    rise2 = (tops - bottom) ** 2
-    return (
-        _first_least((rights - left) ** 2 + rise2, below & (rights < rightmost)),
-        _first_least((lefts - right) ** 2 + rise2, below & (lefts > leftmost)),
-    )
+    low: cython.double = leftmost
+    high: cython.double = rightmost
+    k: cython.Py_ssize_t
+    one: cython.Py_ssize_t = -1
+    two: cython.Py_ssize_t = -1
+    rise: cython.longlong
+    distance: cython.longlong
+    least_one: cython.longlong = 0
+    least_two: cython.longlong = 0
+    for k in range(0, 4 * len(boxes), 4):
+        if 2 * at[k + 3] > top + bottom:
+            continue
+        rise = (at[k + 3] - bottom) * (at[k + 3] - bottom)
+        if at[k + 1] < high:
+            distance = (at[k + 1] - left) * (at[k + 1] - left) + rise
+            if one < 0 or distance < least_one:
+                one, least_one = k // 4, distance
+        if at[k] > low:
+            distance = (at[k] - right) * (at[k] - right) + rise
+            if two < 0 or distance < least_two:
+                two, least_two = k // 4, distance
+    return one, two
 
 
-def left_neighbour(boxes: BoxTable, box: tuple[int, int, int, int]) -> int:
+def left_neighbour(boxes: BoxTable, box: Box) -> int:
     """Return the nearest box to the left in the same course; -1 when there is none (Eq. 6-7).
 
     In the same course are boxes whose rows overlap those of the box by at least half the smaller
@@ -78,24 +98,27 @@ def left_neighbour(boxes: BoxTable, box: tuple[int, int, int, int]) -> int:
     >>> left_neighbour(np.array([[0, 5, 0, 4], [0, 6, 4, 8]]), (6, 9, 0, 4))
     0
     """
-    if _fast is None:
-        return left_neighbour_numpy(boxes, box)
-    return int(_fast.left_neighbour(boxes, *box))
-
-
-def left_neighbour_numpy(boxes: BoxTable, box: tuple[int, int, int, int]) -> int:
-    """Twin of :func:`left_neighbour`."""
+    boxes = np.ascontiguousarray(boxes)
+    at: cython.p_longlong = longs(boxes)
+    left: cython.longlong
+    right: cython.longlong
+    bottom: cython.longlong
+    top: cython.longlong
     left, right, bottom, top = box
-    lowest, highest = np.maximum(boxes[:, 2], bottom), np.minimum(boxes[:, 3], top)
-    level = 2 * (highest - lowest) >= np.minimum(boxes[:, 3] - boxes[:, 2], top - bottom)
-    beside = np.flatnonzero(level & (2 * boxes[:, 1] <= left + right))
-    if not beside.size:
-        return -1
-    ends = boxes[beside, 1]
-    last = beside[ends == ends.max()]
-    return int(last[np.argmax(boxes[last, 3])])
-
-
-def _first_least(distance: NDArray[np.int64], counts: NDArray[np.bool_]) -> int:
-    places = np.flatnonzero(counts)
-    return int(places[np.argmin(distance[places])]) if places.size else -1
+    k: cython.Py_ssize_t
+    best: cython.Py_ssize_t = -1
+    shared: cython.longlong
+    smaller: cython.longlong
+    for k in range(0, 4 * len(boxes), 4):
+        if 2 * at[k + 1] > left + right:
+            continue
+        shared = min(at[k + 3], top) - max(at[k + 2], bottom)
+        smaller = min(at[k + 3] - at[k + 2], top - bottom)
+        if 2 * shared < smaller:
+            continue
+        if best >= 0 and (
+            at[k + 1] < at[best + 1] or (at[k + 1] == at[best + 1] and at[k + 3] <= at[best + 3])
+        ):
+            continue
+        best = k
+    return best // 4 if best >= 0 else -1

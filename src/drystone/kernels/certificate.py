@@ -4,17 +4,26 @@ The program is that of :mod:`drystone.kernels.simplex`, its columns a_j in two p
 wall, and those that a stone adds.  Nothing that a solver says of its answer is used.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.simplex import Added, Cones
 
-Floats = NDArray[np.float64]
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
 
-_fast = compiled("certificate")
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import doubles, ints, new_doubles, release
+else:
+    from drystone.kernels.lists import doubles, ints, new_doubles, release
+
+Floats = NDArray[np.float64]
 
 
 class Figures(NamedTuple):
@@ -98,74 +107,122 @@ def figures(
     columns = len(wall.first) - len(added.closed) + len(new.first)
     if len(forces) not in (0, columns) or len(velocity) != 3 * (len(weights) + len(added.weights)):
         raise ValueError("forces or velocities of another program")
-    if _fast is None:
-        with np.errstate(all="ignore"):  # what is no number is told by the figures
-            return figures_numpy(wall, weights, added, alpha, forces, velocity)
-    return Figures(
-        *_fast.figures(
-            wall.first, wall.second, wall.entries, weights,
-            new.first, new.second, new.entries, added.weights, added.closed,
-            alpha, forces, velocity,
-        )
-    )  # fmt: skip
+    # The lock of the interpreter is kept: all of it takes less time than getting that back.
+    n: cython.Py_ssize_t = len(weights)
+    rows: cython.Py_ssize_t = len(velocity)
+    check: Check = Check()
+    check.forces, check.loaded = doubles(forces), len(forces) > 0
+    check.velocity = doubles(velocity)
+    check.left = new_doubles(rows + 1)
+    i: cython.Py_ssize_t
+    for i in range(rows):
+        check.left[i] = 0.0
+    heavy: cython.p_double = doubles(weights)
+    new_heavy: cython.p_double = doubles(added.weights)
+    closed: cython.p_int = ints(added.closed)
+    gone: cython.Py_ssize_t
+    column: cython.Py_ssize_t = 0
+    stop: cython.Py_ssize_t
+    entries: cython.p_double = doubles(wall.entries)
+    first: cython.p_int = ints(wall.first)
+    second: cython.p_int = ints(wall.second)
+    size: cython.Py_ssize_t = len(wall.first)
+    for gone in range(len(added.closed) + 1):
+        stop = closed[gone] if gone < len(added.closed) else size
+        check_columns(check, first, second, entries, size, column, stop)
+        column = stop + 1
+    size = len(new.first)
+    check_columns(check, ints(new.first), ints(new.second), doubles(new.entries), size, 0, size)
+    residual: cython.double = 0.0
+    largest: cython.double = 0.0
+    live: cython.double = 0.0
+    rhs: cython.double = 0.0
+    weight: cython.double
+    load: cython.double = alpha
+    for i in range(rows // 3):
+        weight = heavy[i] if i < n else new_heavy[i - n]
+        live += weight * check.velocity[3 * i]
+        rhs += weight * check.velocity[3 * i + 1]
+        if check.loaded:
+            residual = larger(residual, abs(check.left[3 * i] + load * weight))
+            residual = larger(residual, abs(check.left[3 * i + 1] - weight))
+            residual = larger(residual, abs(check.left[3 * i + 2]))
+    for i in range(rows):
+        largest = larger(largest, abs(check.velocity[i]))
+    return Figures(residual, check.violation, check.total, largest, check.inadmissible, live, rhs)
 
 
-def figures_numpy(
-    wall: Cones,
-    weights: Floats,
-    added: Added,
-    alpha: float,
-    forces: Floats,
-    velocity: Floats,
-) -> Figures:
-    """Twin of :func:`figures`; every sum goes from the first term to the last."""
-    stays = np.ones(len(wall.first), bool)
-    stays[added.closed] = False
-    first = np.concatenate((wall.first[stays], added.cones.first))
-    second = np.concatenate((wall.second[stays], added.cones.second))
-    entries = np.concatenate((wall.entries[:, stays], added.cones.entries), axis=1)
-    weights = np.concatenate((weights, added.weights))
-    moving = np.concatenate((velocity.reshape(-1, 3), np.zeros((1, 3)))).T  # last: the ground
-    power = _work(entries[:3], moving[:, first]) + _work(entries[3:], moving[:, second])
-    return Figures(
-        *(_balance(first, second, entries, weights, alpha, forces) if len(forces) else (0.0,) * 3),
-        _largest(np.abs(velocity)),
-        _largest(-power),
-        _sum(weights * moving[0, :-1]),
-        _sum(weights * moving[1, :-1]),
-    )
+@cython.cclass
+class Check:
+    """Forces and velocities, and what was found of all columns so far."""
+
+    forces: cython.p_double
+    velocity: cython.p_double
+    left: cython.p_double
+    loaded: cython.bint
+    force: cython.Py_ssize_t
+    violation: cython.double
+    total: cython.double
+    inadmissible: cython.double
+
+    def __init__(self) -> None:
+        self.force = 0
+        self.violation = self.total = self.inadmissible = 0.0
+
+    def __dealloc__(self) -> None:
+        release(self.left)
 
 
-def _balance(
-    first: NDArray[np.int32],
-    second: NDArray[np.int32],
-    entries: Floats,
-    weights: Floats,
-    alpha: float,
-    forces: Floats,
-) -> tuple[float, float, float]:
-    """Return residual, violation and total; columns that carry nothing are left out."""
-    carry = forces != 0.0
-    bodies = np.column_stack((first, second))[carry].ravel()
-    bodies[bodies < 0] = len(weights)
-    shares = (forces * entries)[:, carry]
-    left = np.empty((3, len(weights)))
-    for k in range(3):
-        left[k] = np.bincount(bodies, shares[k::3].T.ravel(), len(weights) + 1)[:-1]
-    left[0] += alpha * weights
-    left[1] -= weights
-    return _largest(np.abs(left)), _largest(-forces), _sum(np.abs(forces))
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def check_columns(
+    check: Check,
+    first: cython.p_int,
+    second: cython.p_int,
+    entries: cython.p_double,
+    size: cython.Py_ssize_t,
+    start: cython.Py_ssize_t,
+    stop: cython.Py_ssize_t,
+) -> cython.void:
+    """Go through some of so many columns; their forces come next."""
+    velocity: cython.p_double = check.velocity
+    left: cython.p_double = check.left
+    column: cython.Py_ssize_t
+    one: cython.Py_ssize_t
+    two: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    x: cython.double
+    power: cython.double
+    for column in range(start, stop):
+        one, two = 3 * first[column], 3 * second[column]
+        power = entries[column] * velocity[one]
+        power = power + entries[size + column] * velocity[one + 1]
+        power = power + entries[2 * size + column] * velocity[one + 2]
+        if two >= 0:
+            x = entries[3 * size + column] * velocity[two]
+            x = x + entries[4 * size + column] * velocity[two + 1]
+            power = power + (x + entries[5 * size + column] * velocity[two + 2])
+        check.inadmissible = larger(check.inadmissible, -power)
+        if not check.loaded:
+            continue
+        x = check.forces[check.force]
+        check.force += 1
+        if x == 0.0:
+            continue
+        check.total += abs(x)
+        check.violation = larger(check.violation, -x)
+        for k in range(3):
+            left[one + k] += x * entries[k * size + column]
+        if two >= 0:
+            for k in range(3):
+                left[two + k] += x * entries[(3 + k) * size + column]
 
 
-def _work(force: Floats, velocity: Floats) -> Floats:
-    work: Floats = force[0] * velocity[0] + force[1] * velocity[1] + force[2] * velocity[2]
-    return work
-
-
-def _largest(values: Floats) -> float:
-    """Return the largest value above 0; NaN when there is one."""
-    return float(values.max(initial=0.0)) + 0.0  # never -0.0
-
-
-def _sum(values: Floats) -> float:
-    return float(np.cumsum(values)[-1]) if len(values) else 0.0
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def larger(one: cython.double, two: cython.double) -> cython.double:
+    """Return the larger one; what is no number counts as the largest."""
+    return two if two > one or two != two else one

@@ -1,11 +1,21 @@
 """Edges of the cones of friction at contact points, as columns of the limit analysis (Eq. 23)."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import doubles, doubles_out, ints_out
+else:
+    from drystone.kernels.lists import doubles, doubles_out, ints_out
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -14,8 +24,6 @@ Body = tuple[int, float, float]
 """Place of a body, and where its centroid is; place -1 for the ground, wherever that is."""
 
 GROUND_BODY: Body = (-1, 0.0, 0.0)
-
-_fast = compiled("cones")
 
 
 def cone_edges(
@@ -71,36 +79,66 @@ def cone_edges(
     at = np.concatenate(points, dtype=np.float64) if points else np.empty((0, 2))
     if at.shape[1] != 2:
         raise ValueError("points have two coordinates")
-    if _fast is None:
-        return cone_edges_numpy(bodies, normals, frictions, counts, at, length)
-    first = np.empty(2 * len(at), np.int32)
-    second = np.empty(2 * len(at), np.int32)
-    entries = np.empty((6, 2 * len(at)))
-    _fast.cone_edges(bodies, normals, frictions, counts, at, length, first, second, entries)
+    at = np.ascontiguousarray(at)
+    size: cython.Py_ssize_t = 2 * len(at)
+    first, second = np.empty(size, np.int32), np.empty(size, np.int32)
+    entries = np.empty((6, size))
+    ones: cython.p_int = ints_out(first)
+    twos: cython.p_int = ints_out(second)
+    out: cython.p_double = doubles_out(entries)
+    where: cython.p_double = doubles(at)
+    # The lock of the interpreter is kept: all of it takes less time than getting that back.
+    arm: cython.double = length
+    point: cython.Py_ssize_t = 0
+    end: cython.Py_ssize_t
+    edge: cython.Py_ssize_t
+    one: cython.int
+    two: cython.int
+    one_x: cython.double
+    one_y: cython.double
+    two_x: cython.double
+    two_y: cython.double
+    normal_x: cython.double
+    normal_y: cython.double
+    along: cython.double
+    x: cython.double
+    y: cython.double
+    for (body, other), normal, friction, count in zip(
+        bodies, normals, frictions, counts, strict=True
+    ):
+        one, one_x, one_y = body
+        two, two_x, two_y = other
+        normal_x, normal_y = normal
+        along = friction
+        end = 2 * (point + count)
+        for edge in range(2 * point, end):
+            x, y = normal_x + along * normal_y, normal_y - along * normal_x
+            along = -along
+            ones[edge], twos[edge] = one, two
+            point = 2 * (edge // 2)
+            out[edge], out[size + edge] = x, y
+            out[2 * size + edge] = moment(where[point] - one_x, where[point + 1] - one_y, arm, x, y)
+            if two < 0:
+                out[3 * size + edge] = out[4 * size + edge] = out[5 * size + edge] = 0.0
+                continue
+            out[3 * size + edge], out[4 * size + edge] = -x, -y
+            out[5 * size + edge] = moment(
+                where[point] - two_x, where[point + 1] - two_y, arm, -x, -y
+            )
+        point = end // 2
     return first, second, entries
 
 
-def cone_edges_numpy(
-    bodies: Sequence[tuple[Body, Body]],
-    normals: Sequence[tuple[float, float]],
-    frictions: Sequence[float],
-    counts: Sequence[int],
-    points: Floats,
-    length: float,
-) -> tuple[Ints, Ints, Floats]:
-    """Twin of :func:`cone_edges`, with the number of points of each interface, and all points."""
-    repeats = 2 * np.array(counts, np.intp)
-    body = np.array(bodies, float).reshape(-1, 2, 3).repeat(repeats, axis=0)
-    normal = np.array(normals, float).reshape(-1, 2).repeat(repeats, axis=0)
-    along = np.array(frictions, float).repeat(repeats)
-    along[1::2] *= -1.0
-    arm = (points.repeat(2, axis=0)[:, None] - body[:, :, 1:]) / length
-    entries = np.empty((6, len(along)))
-    entries[0] = normal[:, 0] + along * normal[:, 1]
-    entries[1] = normal[:, 1] - along * normal[:, 0]
-    entries[3:5] = -entries[:2]
-    entries[2] = arm[:, 0, 0] * entries[1] - arm[:, 0, 1] * entries[0]
-    entries[5] = arm[:, 1, 0] * entries[4] - arm[:, 1, 1] * entries[3]
-    first, second = body[:, :, 0].T.astype(np.int32, order="C")
-    entries[3:, second < 0] = 0.0
-    return first, second, entries
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def moment(
+    x: cython.double,
+    y: cython.double,
+    length: cython.double,
+    force_x: cython.double,
+    force_y: cython.double,
+) -> cython.double:
+    """Return the moment of a force on an arm, over a length."""
+    return x / length * force_y - y / length * force_x

@@ -5,14 +5,26 @@ edge crosses and its height in all cells behind them.  So every edge is noted wh
 cells only, and a sum along each row does the rest, as rasterisers of fonts do.
 """
 
-import math
+from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
+
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import doubles, doubles_out, flags_out
+    from cython.cimports.libc.math import ceil, floor, isfinite
+else:
+    from math import ceil, floor, isfinite
+
+    from drystone.kernels.lists import doubles, doubles_out, flags_out
 
 Grid = NDArray[np.float64]
 
@@ -22,7 +34,9 @@ ROUNDING = 1e-12
 FILLED = 0.5 - ROUNDING
 """A cell is filled when at least half of it is covered (DESIGN 4.9)."""
 
-_fast = compiled("coverage")
+NOTHING = cython.declare(cython.double, ROUNDING)
+ENOUGH = cython.declare(cython.double, FILLED)
+INFINITY = cython.declare(cython.double, np.inf)
 
 
 def coverage(corners: Points) -> tuple[Grid, int, int]:
@@ -54,90 +68,128 @@ def coverage(corners: Points) -> tuple[Grid, int, int]:
     corners = np.ascontiguousarray(corners, np.float64)
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3:
         raise ValueError(f"a polygon has three corners (x, y) or more, not {corners.shape}")
-    kernel = coverage_numpy if _fast is None else _fast.coverage
-    found: tuple[Grid, int, int] = kernel(corners)
-    return found
+    at: cython.p_double = doubles(corners)
+    end: cython.Py_ssize_t = 2 * len(corners)
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    left: cython.double = INFINITY
+    bottom: cython.double = INFINITY
+    right: cython.double = -INFINITY
+    top: cython.double = -INFINITY
+    x0: cython.double
+    y0: cython.double
+    x1: cython.double
+    y1: cython.double
+    for i in range(0, end, 2):
+        if not (isfinite(at[i]) and isfinite(at[i + 1])):
+            raise ValueError("a corner is not a finite number")
+        left, right = min(left, at[i]), max(right, at[i])
+        bottom, top = min(bottom, at[i + 1]), max(top, at[i + 1])
+    left, bottom = floor(left), floor(bottom)
+    width: cython.Py_ssize_t = max(cython.cast(cython.Py_ssize_t, ceil(right) - left), 1)
+    height: cython.Py_ssize_t = max(cython.cast(cython.Py_ssize_t, ceil(top) - bottom), 1)
+    shares = np.zeros((height, width))
+    out: cython.p_double = doubles_out(shares)
+    for i in range(0, end, 2):
+        j = i + 2 if i + 2 < end else 0
+        x0, y0 = at[i] - left, at[i + 1] - bottom
+        x1, y1 = at[j] - left, at[j + 1] - bottom
+        if y1 < y0:
+            cut_at_rows(x1, y1, x0, y0, 1.0, out, width, height)
+        elif y0 < y1:
+            cut_at_rows(x0, y0, x1, y1, -1.0, out, width, height)
+    add_up(out, width, height)
+    return shares, int(left), int(bottom)
 
 
-def coverage_numpy(corners: Points) -> tuple[Grid, int, int]:
-    """Return what :func:`coverage` returns, by NumPy."""
-    if not np.isfinite(corners).all():
-        raise ValueError("a corner is not a finite number")
-    left, bottom = (math.floor(value) for value in corners.min(axis=0).tolist())
-    right, top = (math.ceil(value) for value in corners.max(axis=0).tolist())
-    width, height = max(right - left, 1), max(top - bottom, 1)
-    # An edge that ends at the right side may be a rounding beyond it: two columns to spare.
-    x, y = (corners - np.array([left, bottom], np.float64)).T
-    row, drop, low, high = _row_pieces(x, y)
-    at, drop, middle = _cell_pieces(row * (width + 2), drop, low, high)
-    # What lies to the right of a piece in its cell, and in those behind it: in this order.
-    sums = np.bincount(
-        np.column_stack([at, at + 1]).ravel(),
-        np.column_stack([drop * (1.0 - middle), drop * middle]).ravel(),
-        minlength=height * (width + 2),
-    ).reshape(height, width + 2)
-    shares: Grid = np.cumsum(sums[::-1, :width], axis=1)
-    shares[shares < ROUNDING] = 0.0
-    shares[shares > 1.0 - ROUNDING] = 1.0
-    return shares, left, bottom
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def cut_at_rows(
+    foot_x: cython.double,
+    foot_y: cython.double,
+    head_x: cython.double,
+    head_y: cython.double,
+    sign: cython.double,
+    out: cython.p_double,
+    width: cython.Py_ssize_t,
+    height: cython.Py_ssize_t,
+) -> cython.void:
+    """Note an edge, from its lower to its upper end, in every row of cells that it crosses."""
+    first: cython.double = floor(foot_y)
+    row: cython.double
+    start: cython.double
+    stop: cython.double
+    start_x: cython.double
+    stop_x: cython.double
+    rises: cython.double = head_y - foot_y
+    run: cython.double = head_x - foot_x
+    count: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, ceil(head_y) - first)
+    step: cython.Py_ssize_t
+    at: cython.Py_ssize_t
+    for step in range(count):
+        row = first + step
+        start, stop = max(foot_y, row), min(head_y, row + 1.0)
+        start_x = foot_x + run * ((start - foot_y) / rises)
+        stop_x = foot_x + run * ((stop - foot_y) / rises)
+        at = width * (height - 1 - cython.cast(cython.Py_ssize_t, row))
+        cut_at_columns(
+            min(start_x, stop_x), max(start_x, stop_x), sign * (stop - start), out, at, width
+        )
 
 
-def _row_pieces(x: Grid, y: Grid) -> tuple[NDArray[np.int64], Grid, Grid, Grid]:
-    """Cut the edges of a polygon at the lines between rows of cells.
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def cut_at_columns(
+    low: cython.double,
+    high: cython.double,
+    drop: cython.double,
+    sums: cython.p_double,
+    row: cython.Py_ssize_t,
+    width: cython.Py_ssize_t,
+) -> cython.void:
+    """Note a piece of an edge in every cell of its row that it crosses, and in the next one."""
+    column: cython.double = floor(low)
+    at: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, column)
+    count: cython.Py_ssize_t = max(cython.cast(cython.Py_ssize_t, ceil(high) - column), 1)
+    start: cython.double
+    stop: cython.double
+    middle: cython.double
+    share: cython.double
+    step: cython.Py_ssize_t
+    for step in range(count):  # noqa: B007 - typed
+        start, stop = max(low, column), min(high, column + 1.0)
+        share = drop * ((stop - start) / (high - low)) if count > 1 else drop
+        middle = (start + stop) * 0.5 - column
+        if at < width:
+            sums[row + at] += share * (1.0 - middle)
+        if at + 1 < width:
+            sums[row + at + 1] += share * middle
+        column += 1.0
+        at += 1
 
-    Returns
-    -------
-    row : (m,) int array
-        Of each piece, counted from the bottom; edge by edge, from the lower end of each.
-    drop : (m,) float array
-        How far the polygon falls along it: below 0 where it rises.
-    low, high : (m,) float array
-        x of its left and its right end.
-    """
-    x1, y1 = np.roll(x, -1), np.roll(y, -1)
-    falls = y1 < y
-    foot, head = np.where(falls, [x1, y1], [x, y]), np.where(falls, [x, y], [x1, y1])
-    first = np.floor(foot[1])
-    counts = np.where(foot[1] < head[1], np.ceil(head[1]) - first, 0.0).astype(np.int64)
-    edge = np.repeat(np.arange(len(x)), counts)
-    step = np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts)
-    (foot_x, foot_y), (head_x, head_y) = foot[:, edge], head[:, edge]
-    row = first[edge] + step
-    start, stop = np.maximum(foot_y, row), np.minimum(head_y, row + 1.0)
-    rises, run = head_y - foot_y, head_x - foot_x
-    start_x = foot_x + run * ((start - foot_y) / rises)
-    stop_x = foot_x + run * ((stop - foot_y) / rises)
-    drop = np.where(falls[edge], stop - start, start - stop)
-    return row.astype(np.int64), drop, np.minimum(start_x, stop_x), np.maximum(start_x, stop_x)
 
-
-def _cell_pieces(
-    base: NDArray[np.int64], drop: Grid, low: Grid, high: Grid
-) -> tuple[NDArray[np.int64], Grid, Grid]:
-    """Cut pieces of edges at the lines between columns of cells.
-
-    Returns
-    -------
-    at : (k,) int array
-        The base of each smaller piece plus its column; piece by piece, from the left.
-    drop : (k,) float array
-        Its share of the drop.
-    middle : (k,) float array
-        x of its middle, from the left side of its cell.
-    """
-    first = np.floor(low)
-    counts = np.maximum(np.ceil(high) - first, 1.0).astype(np.int64)
-    piece = np.repeat(np.arange(len(low)), counts)
-    step = np.arange(len(piece)) - np.repeat(np.cumsum(counts) - counts, counts)
-    low, high, several = low[piece], high[piece], counts[piece] > 1
-    column = first[piece] + step
-    start, stop = np.maximum(low, column), np.minimum(high, column + 1.0)
-    share = np.where(several, stop - start, 1.0) / np.where(several, high - low, 1.0)
-    return (
-        base[piece] + column.astype(np.int64),
-        drop[piece] * share,
-        (start + stop) * 0.5 - column,
-    )
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def add_up(
+    shares: cython.p_double, width: cython.Py_ssize_t, height: cython.Py_ssize_t
+) -> cython.void:
+    """Sum along the rows, and leave no rounding near 0 and 1."""
+    row: cython.Py_ssize_t
+    at: cython.Py_ssize_t
+    share: cython.double
+    for row in range(height):
+        share = 0.0
+        for at in range(row * width, (row + 1) * width):
+            share += shares[at]
+            if share < NOTHING:
+                shares[at] = 0.0
+            elif share > 1.0 - NOTHING:
+                shares[at] = 1.0
+            else:
+                shares[at] = share
 
 
 def newly_filled(total: Grid, shares: Grid, row: int, col: int) -> tuple[Mask, int, int] | None:
@@ -168,27 +220,41 @@ def newly_filled(total: Grid, shares: Grid, row: int, col: int) -> tuple[Mask, i
     >>> newly_filled(total, np.array([[0.1, 0.3, 0.4]]), 0, 0)
     (array([[ True]]), 0, 2)
     """
-    kernel = newly_filled_numpy if _fast is None else _fast.newly_filled
-    found: tuple[Mask, int, int] | None = kernel(total, shares, row, col)
-    return found
-
-
-def newly_filled_numpy(
-    total: Grid, shares: Grid, row: int, col: int
-) -> tuple[Mask, int, int] | None:
-    """Return what :func:`newly_filled` returns, by NumPy."""
-    inside, part = windows(total.shape, shares.shape, row, col)
-    before = np.zeros(shares.shape)
-    before[part] = total[inside]
-    filled = (before < FILLED) & (before + shares >= FILLED)
-    rows, cols = np.flatnonzero(filled.any(axis=1)), np.flatnonzero(filled.any(axis=0))
-    if not rows.size:
+    total, shares = np.ascontiguousarray(total), np.ascontiguousarray(shares)
+    before: cython.p_double = doubles(total)
+    new: cython.p_double = doubles(shares)
+    high: cython.Py_ssize_t = total.shape[0]
+    wide: cython.Py_ssize_t = total.shape[1]
+    height: cython.Py_ssize_t = shares.shape[0]
+    width: cython.Py_ssize_t = shares.shape[1]
+    down: cython.Py_ssize_t = row
+    along: cython.Py_ssize_t = col
+    top: cython.Py_ssize_t = height
+    left: cython.Py_ssize_t = width
+    bottom: cython.Py_ssize_t = -1
+    right: cython.Py_ssize_t = -1
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    at: cython.Py_ssize_t = 0
+    was: cython.double
+    all_filled = np.zeros((height, width), bool)
+    filled: cython.p_uchar = flags_out(all_filled)
+    for i in range(height):
+        for j in range(width):
+            was = 0.0
+            if 0 <= down + i < high and 0 <= along + j < wide:
+                was = before[(down + i) * wide + along + j]
+            if was < ENOUGH and was + new[at] >= ENOUGH:
+                filled[at] = True
+                top, bottom = min(top, i), i
+                left, right = min(left, j), max(right, j)
+            at += 1
+    if bottom < 0 or down + top < 0 or down + bottom >= high:
         return None
-    box = slice(int(rows[0]), int(rows[-1]) + 1), slice(int(cols[0]), int(cols[-1]) + 1)
-    for cut, held in zip(box, part, strict=True):
-        if cut.start < held.start or cut.stop > held.stop:
-            return None
-    return filled[box].copy(), row + box[0].start, col + box[1].start
+    if along + left < 0 or along + right >= wide:
+        return None
+    mask = all_filled[top : bottom + 1, left : right + 1].copy()
+    return mask, down + top, along + left
 
 
 def windows(

@@ -5,23 +5,50 @@ step.  The lid is the stone's lower boundary as seen from below, the floor the f
 the way down from there.  Both are moved into the free space by a clearance.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.polygons import Points, Polygons
 
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import (
+        doubles,
+        doubles_out,
+        ints,
+        new_doubles,
+        new_ints,
+        release,
+        sort_doubles,
+    )
+    from cython.cimports.libc.math import sqrt
+else:
+    from math import sqrt
+
+    from drystone.kernels.lists import (
+        doubles,
+        doubles_out,
+        ints,
+        new_doubles,
+        new_ints,
+        release,
+        sort_doubles,
+    )
+
 Chain = Points
-Segments = NDArray[np.float64]
-"""Rows x0, y0, x1, y1 with x0 < x1."""
-Ints = NDArray[np.int64]
 
 SAME = 1e-9
 """Corners nearer than this are one, and edges that cover less of the x axis are upright."""
 
-_fast = compiled("crevice")
+NEAR = cython.declare(cython.double, SAME)
+INFINITY = cython.declare(cython.double, np.inf)
 
 
 class Crevice(NamedTuple):
@@ -59,20 +86,25 @@ def crevice(stone: Points, around: Polygons, clearance: float) -> Crevice:
     >>> space.lid.tolist(), space.floor.tolist()
     ([[0.0, 2.75], [2.0, 2.75]], [[0.0, 0.25], [2.0, 0.25]])
     """
-    if _fast is None:
-        return crevice_numpy(stone, around, clearance)
-    corners = np.ascontiguousarray(stone, np.float64)
-    return Crevice(*_fast.crevice(corners, around.corners, around.first, around.boxes, clearance))
+    return Crevice(*_crevice(np.ascontiguousarray(stone, np.float64), around, clearance))
 
 
-def crevice_numpy(stone: Points, around: Polygons, clearance: float) -> Crevice:
-    """Twin of :func:`crevice`."""
-    lid, floor = _boundaries(stone, around, 4.0 * clearance)
-    left, right = float(stone[:, 0].min()), float(stone[:, 0].max())
-    return Crevice(
-        _flipped(_raised(_flipped(lid), clearance, left, right)),
-        _raised(floor, clearance, left, right),
-    )
+@cython.cfunc
+def _crevice(stone: Points, around: Polygons, clearance: cython.double) -> tuple:
+    """Return lid and floor, moved into the free space."""
+    corners: cython.p_double = doubles(stone)
+    left: cython.double = corners[0]
+    right: cython.double = corners[0]
+    i: cython.Py_ssize_t
+    for i in range(2, 2 * len(stone), 2):
+        left, right = min(left, corners[i]), max(right, corners[i])
+    lid: Corners
+    floor: Corners
+    lid, floor = boundaries(stone, around, 4.0 * clearance)
+    flip(lid.at, 2 * lid.count)
+    lid = raised(lid, clearance, left, right)
+    flip(lid.at, 2 * lid.count)
+    return as_array(lid), as_array(raised(floor, clearance, left, right))
 
 
 def gap_polygon(
@@ -159,143 +191,6 @@ def slabs(space: Crevice, x_left: float, x_right: float) -> tuple[Points, Points
     return x, _heights(space.floor, x), _heights(space.lid, x)
 
 
-def _boundaries(stone: Points, around: Polygons, reach: float) -> tuple[Chain, Chain]:
-    """Return lid and floor as they are, from `reach` left of the stone to so far right of it."""
-    x, y = stone[:, 0], stone[:, 1]
-    left, right = float(x.min()) - reach, float(x.max()) + reach
-    lids = _lids(stone, reach)
-    near = (around.boxes[:, 0] < right) & (around.boxes[:, 2] > left)
-    near &= around.boxes[:, 1] < y.max()
-    edges, bottoms = _edges_of(around, np.flatnonzero(near))
-    edges = np.concatenate([edges, [[left, 0.0, right, 0.0]]])
-    at = _distinct(np.concatenate([lids[:, ::2].ravel(), edges[:, ::2].ravel()]), left, right)
-    middle = (at[:-1] + at[1:]) / 2.0
-    lid = _highest(_flipped(lids), middle, np.full(len(middle), np.inf))
-    below = _highest(edges, middle, _line(lids[lid], middle))
-    # Where nothing is below, or the next is a bottom from inside, the stone stands in something.
-    closed = (below < 0) | np.append(bottoms, False)[below]
-    floor = np.where(closed[:, None], lids[lid], edges[below])
-    return (
-        _chain(lids[lid], lid, at),
-        _chain(floor, np.where(closed, len(edges) + lid, below), at),
-    )
-
-
-def _lids(stone: Points, reach: float) -> Segments:
-    """Return the edges below which a polygon ends, and level ones beyond its two ends.
-
-    In thought it goes on there, so that what stands close beside the lines is seen as well.
-    """
-    x, y = stone[:, 0], stone[:, 1]
-    left, right = x.min(), x.max()
-    low_left, low_right = y[x == left].min(), y[x == right].min()
-    after = np.roll(stone, -1, axis=0)
-    edges = np.concatenate(
-        [
-            np.column_stack([stone, after]),
-            [
-                [left - reach, low_left, left, low_left],
-                [right, low_right, right + reach, low_right],
-            ],
-        ]
-    )
-    return np.asarray(edges[edges[:, 2] - edges[:, 0] > SAME])
-
-
-def _edges_of(around: Polygons, near: Ints) -> tuple[Segments, NDArray[np.bool_]]:
-    """Return the edges of some polygons from left to right, and whether each is a bottom."""
-    sizes = np.diff(around.first)[near].astype(np.int64)
-    ends = np.cumsum(sizes)
-    at = np.arange(int(sizes.sum())) + np.repeat(around.first[near] - (ends - sizes), sizes)
-    following = np.arange(1, len(at) + 1)
-    following[ends - 1] = ends - sizes
-    here = around.corners[at]
-    after = here[following]
-    run = after[:, 0] - here[:, 0]
-    bottom = run > 0.0
-    edges = np.where(
-        bottom[:, None], np.column_stack([here, after]), np.column_stack([after, here])
-    )
-    kept = np.abs(run) > SAME
-    return edges[kept], bottom[kept]
-
-
-def _raised(chain: Chain, clearance: float, left: float, right: float) -> Chain:
-    """Move a chain up by a clearance, along its normals, and cut it off at two places.
-
-    The highest of its moved edges counts everywhere.  At corners that stand out they are made
-    longer until they meet; where the chain turns by more than 90 degrees, by the clearance, and
-    joined straight.
-    """
-    edges = _moved(chain, clearance) if clearance else np.column_stack([chain[:-1], chain[1:]])
-    edges = edges[edges[:, 2] - edges[:, 0] > SAME]
-    at = _distinct(np.concatenate([edges[:, ::2].ravel(), _crossings(edges)]), left, right)
-    middle = (at[:-1] + at[1:]) / 2.0
-    top = _highest(edges, middle, np.full(len(middle), np.inf))
-    return _chain(edges[top], top, at)
-
-
-def _moved(chain: Chain, clearance: float) -> Segments:
-    """Return the edges of a chain moved up and made longer, and those that join them."""
-    step = chain[1:] - chain[:-1]
-    length = np.sqrt(step[:, 0] * step[:, 0] + step[:, 1] * step[:, 1])
-    x, y = step[:, 0] / length, step[:, 1] / length
-    sine = x[:-1] * y[1:] - y[:-1] * x[1:]
-    cosine = x[:-1] * x[1:] + y[:-1] * y[1:]
-    out, sharp = sine < 0.0, (sine < 0.0) & (cosine < 0.0)
-    # The tangent of half the turn.
-    more = np.where(sharp, 1.0, np.where(out, -sine / (1.0 + np.maximum(cosine, 0.0)), 0.0))
-    longer = np.concatenate([[0.0], more, [0.0]])
-    first, last = longer[:-1], longer[1:]
-    starts = chain[:-1] + clearance * np.column_stack([-y - first * x, x - first * y])
-    stops = chain[1:] + clearance * np.column_stack([-y + last * x, x + last * y])
-    joints = np.column_stack([stops[:-1], starts[1:]])[sharp]
-    return np.concatenate([np.column_stack([starts, stops]), joints])
-
-
-def _crossings(edges: Segments) -> Points:
-    """Return the x of all points where two segments cross."""
-    one, two = np.nonzero(
-        (edges[:, None, 0] < edges[None, :, 2]) & (edges[None, :, 0] < edges[:, None, 2])
-    )
-    one, two = one[one < two], two[one < two]
-    low = np.maximum(edges[one, 0], edges[two, 0])
-    high = np.minimum(edges[one, 2], edges[two, 2])
-    before = _line(edges[one], low) - _line(edges[two], low)
-    after = _line(edges[one], high) - _line(edges[two], high)
-    cross = before * after < 0.0
-    low, high, before, after = low[cross], high[cross], before[cross], after[cross]
-    return np.asarray(low + (high - low) * (before / (before - after)))
-
-
-def _highest(edges: Segments, middle: Points, ceiling: Points) -> Ints:
-    """Return which segment is the highest at each of some x, none above the ceiling; -1: none."""
-    first = np.searchsorted(middle, edges[:, 0])
-    count = np.searchsorted(middle, edges[:, 2]) - first
-    which = np.repeat(np.arange(len(edges)), count)
-    starts = np.cumsum(count) - count
-    at = np.arange(int(count.sum())) + np.repeat(first - starts, count)
-    y = _line(edges[which], middle[at])
-    below = y <= ceiling[at]
-    which, at, y = which[below], at[below], y[below]
-    order = np.lexsort((-which, y, at))
-    found = np.full(len(middle), -1, np.int64)
-    # Of several values for one place the last one stays.
-    found[at[order]] = which[order]
-    return found
-
-
-def _chain(edges: Segments, which: Ints, x: Points) -> Chain:
-    """Return the chain of segments that are given for each slab."""
-    new = np.flatnonzero(np.append(True, which[1:] != which[:-1]))
-    stop = np.append(new[1:], len(which))
-    starts = np.column_stack([x[new], _line(edges[new], x[new])])
-    stops = np.column_stack([x[stop], _line(edges[new], x[stop])])
-    corners = np.stack([starts, stops], axis=1).reshape(-1, 2)
-    new = (np.abs(corners[1:] - corners[:-1]) > SAME).any(axis=1)
-    return np.asarray(corners[np.append(True, new)])
-
-
 def _heights(chain: Chain, x: Points) -> Points:
     """Return y of a chain at the left and at the right end of each slab."""
     stop = np.searchsorted(chain[:, 0], (x[:-1] + x[1:]) / 2.0)
@@ -317,12 +212,405 @@ def _distinct(x: Points, left: float, right: float) -> Points:
     return np.concatenate([[left], inside[new], [right]])
 
 
-def _line(edges: Segments, x: Points) -> Points:
+def _line(edges: Points, x: Points) -> Points:
     """Return y of segments at one x each."""
     share = (x - edges[:, 0]) / (edges[:, 2] - edges[:, 0])
     return np.asarray(edges[:, 1] + (edges[:, 3] - edges[:, 1]) * share)
 
 
-def _flipped(points: Points) -> Points:
-    """Return points or segments upside down."""
-    return np.asarray(points * np.tile([1.0, -1.0], points.shape[1] // 2))
+@cython.cclass
+class Segments:
+    """Segments from left to right, x0, y0, x1, y1, one after the other."""
+
+    at: cython.p_double
+    count: cython.Py_ssize_t
+
+    def __init__(self, room: int) -> None:
+        self.at, self.count = new_doubles(4 * room), 0
+
+    def __dealloc__(self) -> None:
+        release(self.at)
+
+
+@cython.cclass
+class Slabs:
+    """Strips between upright lines, and which segment is taken in each: -1 for none."""
+
+    x: cython.p_double
+    middle: cython.p_double
+    ceiling: cython.p_double
+    best: cython.p_double
+    which: cython.p_int
+    count: cython.Py_ssize_t
+
+    def __init__(self, room: int) -> None:
+        self.x, self.middle = new_doubles(room), new_doubles(room)
+        self.ceiling, self.best = new_doubles(room), new_doubles(room)
+        self.which, self.count = new_ints(room), 0
+
+    def __dealloc__(self) -> None:
+        release(self.x)
+        release(self.middle)
+        release(self.ceiling)
+        release(self.best)
+        release(self.which)
+
+
+@cython.cclass
+class Corners:
+    """A chain: corners from left to right."""
+
+    at: cython.p_double
+    count: cython.Py_ssize_t
+
+    def __init__(self, room: int) -> None:
+        self.at, self.count = new_doubles(2 * room), 0
+
+    def __dealloc__(self) -> None:
+        release(self.at)
+
+
+@cython.cfunc
+def as_array(chain: Corners):
+    """Return the corners of a chain."""
+    points = np.empty((chain.count, 2))
+    into: cython.p_double = doubles_out(points)
+    i: cython.Py_ssize_t
+    for i in range(2 * chain.count):
+        into[i] = chain.at[i]
+    return points
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def flip(at: cython.p_double, end: cython.Py_ssize_t) -> cython.void:
+    """Turn points upside down."""
+    i: cython.Py_ssize_t
+    for i in range(1, end, 2):
+        at[i] = -at[i]
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def add(
+    out: Segments,
+    x0: cython.double,
+    y0: cython.double,
+    x1: cython.double,
+    y1: cython.double,
+) -> cython.bint:
+    """Add a segment, unless it is upright or goes to the left."""
+    k: cython.Py_ssize_t = 4 * out.count
+    if not x1 - x0 > NEAR:
+        return False
+    out.at[k], out.at[k + 1], out.at[k + 2], out.at[k + 3] = x0, y0, x1, y1
+    out.count += 1
+    return True
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def line(at: cython.p_double, k: cython.Py_ssize_t, x: cython.double) -> cython.double:
+    """Return y of a segment at an x."""
+    share: cython.double = (x - at[k]) / (at[k + 2] - at[k])
+    return at[k + 1] + (at[k + 3] - at[k + 1]) * share
+
+
+@cython.cfunc
+def boundaries(stone: Points, around: Polygons, reach: cython.double) -> tuple:
+    """Return lid and floor as they are, from `reach` left of the stone to so far right of it."""
+    corners: cython.p_double = doubles(stone)
+    others: cython.p_double = doubles(around.corners)
+    first: cython.p_int = ints(around.first)
+    boxes: cython.p_double = doubles(around.boxes)
+    size: cython.Py_ssize_t = len(stone)
+    room: cython.Py_ssize_t = len(around.corners) + 1
+    lids: Segments = Segments(size + 2)
+    edges: Segments = Segments(room)
+    bottom: cython.p_int = new_ints(room)
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    run: cython.double
+    left: cython.double = corners[0]
+    right: cython.double = corners[0]
+    top: cython.double = corners[1]
+    low_left: cython.double = INFINITY
+    low_right: cython.double = INFINITY
+    for i in range(size):
+        left, right = min(left, corners[2 * i]), max(right, corners[2 * i])
+        top = max(top, corners[2 * i + 1])
+    for i in range(size):
+        if corners[2 * i] == left:
+            low_left = min(low_left, corners[2 * i + 1])
+        if corners[2 * i] == right:
+            low_right = min(low_right, corners[2 * i + 1])
+        j = i + 1 if i + 1 < size else 0
+        add(lids, corners[2 * i], corners[2 * i + 1], corners[2 * j], corners[2 * j + 1])
+    # In thought the lid goes on beyond both ends, so that what stands close beside the lines is
+    # seen as well.
+    add(lids, left - reach, low_left, left, low_left)
+    add(lids, right, low_right, right + reach, low_right)
+    left, right = left - reach, right + reach
+    for k in range(len(around)):
+        if not (boxes[4 * k] < right and boxes[4 * k + 2] > left and boxes[4 * k + 1] < top):
+            continue
+        for i in range(first[k], first[k + 1]):
+            j = 2 * (i + 1 if i + 1 < first[k + 1] else first[k])
+            run = others[j] - others[2 * i]
+            if abs(run) <= NEAR:
+                continue
+            bottom[edges.count] = run > 0.0
+            if run > 0.0:
+                put(edges, others[2 * i], others[2 * i + 1], others[j], others[j + 1])
+            else:
+                put(edges, others[j], others[j + 1], others[2 * i], others[2 * i + 1])
+    bottom[edges.count] = False
+    put(edges, left, 0.0, right, 0.0)
+
+    cuts: Slabs = Slabs(2 * (lids.count + edges.count) + 2)
+    for i in range(lids.count):
+        cuts.x[2 * i], cuts.x[2 * i + 1] = lids.at[4 * i], lids.at[4 * i + 2]
+    for i in range(edges.count):
+        j = 2 * (lids.count + i)
+        cuts.x[j], cuts.x[j + 1] = edges.at[4 * i], edges.at[4 * i + 2]
+    slice_up(cuts, 2 * (lids.count + edges.count), left, right)
+    flip(lids.at, 4 * lids.count)
+    highest(lids, cuts)
+    flip(lids.at, 4 * lids.count)
+    picked: Segments = Segments(cuts.count)
+    for i in range(cuts.count):
+        pick(picked, lids, cuts.which[i] if cuts.which[i] >= 0 else lids.count - 1)
+        cuts.ceiling[i] = line(picked.at, 4 * i, cuts.middle[i])
+    lid = chained(picked, cuts)
+    was: cython.p_int = new_ints(cuts.count)
+    for i in range(cuts.count):
+        was[i] = cuts.which[i]
+    highest(edges, cuts)
+    for i in range(cuts.count):
+        # Nothing below, or a bottom from inside: the stone stands in something.
+        if cuts.which[i] < 0 or bottom[cuts.which[i]]:
+            cuts.which[i] = edges.count + was[i]
+        else:
+            picked.count = i
+            pick(picked, edges, cuts.which[i])
+    floor = chained(picked, cuts)
+    release(bottom)
+    release(was)
+    return lid, floor
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def put(
+    out: Segments,
+    x0: cython.double,
+    y0: cython.double,
+    x1: cython.double,
+    y1: cython.double,
+) -> cython.void:
+    """Add a segment as it is."""
+    k: cython.Py_ssize_t = 4 * out.count
+    out.at[k], out.at[k + 1], out.at[k + 2], out.at[k + 3] = x0, y0, x1, y1
+    out.count += 1
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def pick(out: Segments, one: Segments, i: cython.Py_ssize_t) -> cython.void:
+    """Add one of some segments."""
+    k: cython.Py_ssize_t = 4 * i
+    put(out, one.at[k], one.at[k + 1], one.at[k + 2], one.at[k + 3])
+
+
+@cython.cfunc
+def raised(
+    chain: Corners, clearance: cython.double, left: cython.double, right: cython.double
+) -> Corners:
+    """Move a chain up by a clearance, along its normals, and cut it off at two places.
+
+    The highest of its moved edges counts everywhere.  At corners that stand out they are made
+    longer until they meet; where the chain turns by more than 90 degrees, by the clearance, and
+    joined straight.
+    """
+    edges: Segments = Segments(2 * chain.count)
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    points: cython.Py_ssize_t = 0
+    low: cython.double
+    high: cython.double
+    before: cython.double
+    after: cython.double
+    if clearance != 0.0:
+        moved(chain, clearance, edges)
+    else:
+        for i in range(0, 2 * chain.count - 2, 2):
+            add(edges, chain.at[i], chain.at[i + 1], chain.at[i + 2], chain.at[i + 3])
+    at: cython.p_double = edges.at
+    # Two ends each, and at most one crossing of each pair.
+    cuts: Slabs = Slabs(2 * edges.count + edges.count * (edges.count - 1) // 2 + 2)
+    for i in range(edges.count):
+        cuts.x[points], cuts.x[points + 1] = at[4 * i], at[4 * i + 2]
+        points += 2
+    for i in range(0, 4 * edges.count, 4):
+        for j in range(i + 4, 4 * edges.count, 4):
+            if not (at[i] < at[j + 2] and at[j] < at[i + 2]):
+                continue
+            low = at[i] if at[i] > at[j] else at[j]
+            high = at[i + 2] if at[i + 2] < at[j + 2] else at[j + 2]
+            before = line(at, i, low) - line(at, j, low)
+            after = line(at, i, high) - line(at, j, high)
+            if before * after < 0.0:
+                cuts.x[points] = low + (high - low) * (before / (before - after))
+                points += 1
+    slice_up(cuts, points, left, right)
+    highest(edges, cuts)
+    picked: Segments = Segments(cuts.count)
+    for i in range(cuts.count):
+        pick(picked, edges, cuts.which[i] if cuts.which[i] >= 0 else edges.count - 1)
+    return chained(picked, cuts)
+
+
+@cython.cfunc
+def moved(chain: Corners, clearance: cython.double, out: Segments):
+    """List the edges of a chain moved up and made longer, then those that join them."""
+    edges: cython.Py_ssize_t = chain.count - 1
+    joints: Segments = Segments(chain.count)
+    at: cython.p_double = chain.at
+    one: cython.double[2] = [0.0, 0.0]
+    two: cython.double[2] = [0.0, 0.0]
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    x: cython.double
+    y: cython.double
+    sine: cython.double
+    cosine: cython.double
+    before: cython.double = 0.0
+    after: cython.double
+    end_x: cython.double
+    end_y: cython.double
+    joint: cython.bint
+    direction(at, 0, one)
+    for i in range(edges):
+        k = 2 * i
+        x, y = one[0], one[1]
+        after, joint = 0.0, False
+        if i + 1 < edges:
+            direction(at, k + 2, two)
+            sine = x * two[1] - y * two[0]
+            cosine = x * two[0] + y * two[1]
+            if sine < 0.0:
+                joint = cosine < 0.0
+                # The tangent of half the turn.
+                after = 1.0 if joint else -sine / (1.0 + cosine)
+        end_x = at[k + 2] + clearance * (-y + after * x)
+        end_y = at[k + 3] + clearance * (x + after * y)
+        add(
+            out, at[k] + clearance * (-y - before * x), at[k + 1] + clearance * (x - before * y),
+            end_x, end_y,
+        )  # fmt: skip
+        if joint:
+            add(
+                joints, end_x, end_y, at[k + 2] + clearance * (-two[1] - after * two[0]),
+                at[k + 3] + clearance * (two[0] - after * two[1]),
+            )  # fmt: skip
+        before, one[0], one[1] = after, two[0], two[1]
+    for i in range(joints.count):
+        pick(out, joints, i)
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def direction(at: cython.p_double, k: cython.Py_ssize_t, out: cython.p_double) -> cython.void:
+    """Give the unit vector of an edge of a chain."""
+    x: cython.double = at[k + 2] - at[k]
+    y: cython.double = at[k + 3] - at[k + 1]
+    length: cython.double = sqrt(x * x + y * y)
+    out[0], out[1] = x / length, y / length
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def highest(edges: Segments, cuts: Slabs) -> cython.void:
+    """Find the highest segment of each slab, not above its ceiling."""
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    low: cython.Py_ssize_t
+    half: cython.Py_ssize_t
+    y: cython.double
+    at: cython.p_double = edges.at
+    for k in range(cuts.count):
+        cuts.best[k], cuts.which[k] = -INFINITY, -1
+    for i in range(edges.count):
+        # The first slab whose middle is not left of the segment.
+        low, k = 0, cuts.count
+        while low < k:
+            half = (low + k) // 2
+            if cuts.middle[half] < at[4 * i]:
+                low = half + 1
+            else:
+                k = half
+        while k < cuts.count and cuts.middle[k] < at[4 * i + 2]:
+            y = line(at, 4 * i, cuts.middle[k])
+            if y <= cuts.ceiling[k] and y > cuts.best[k]:
+                cuts.best[k], cuts.which[k] = y, i
+            k += 1
+
+
+@cython.cfunc
+def chained(picked: Segments, cuts: Slabs) -> Corners:
+    """Return the chain of segments that are given for each slab."""
+    out: Corners = Corners(2 * cuts.count)
+    i: cython.Py_ssize_t = 0
+    stop: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    end: cython.int
+    x: cython.double
+    y: cython.double
+    last_x: cython.double = 0.0
+    last_y: cython.double = 0.0
+    while i < cuts.count:
+        stop = i + 1
+        while stop < cuts.count and cuts.which[stop] == cuts.which[i]:
+            stop += 1
+        for end in range(2):
+            x = cuts.x[stop if end else i]
+            y = line(picked.at, 4 * i, x)
+            if (i == 0 and end == 0) or abs(x - last_x) > NEAR or abs(y - last_y) > NEAR:
+                k = 2 * out.count
+                out.at[k], out.at[k + 1] = x, y
+                out.count += 1
+            last_x, last_y = x, y
+        i = stop
+    return out
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def slice_up(
+    cuts: Slabs, count: cython.Py_ssize_t, left: cython.double, right: cython.double
+) -> cython.void:
+    """Make slabs between the first numbers, without those that are the same, and two limits."""
+    x: cython.p_double = cuts.x
+    i: cython.Py_ssize_t
+    inside: cython.Py_ssize_t = 0
+    kept: cython.Py_ssize_t = 0
+    last: cython.double = 0.0
+    value: cython.double
+    for i in range(count):
+        if x[i] > left + NEAR and x[i] < right - NEAR:
+            x[inside] = x[i]
+            inside += 1
+    sort_doubles(x, inside)
+    for i in range(inside):
+        value = x[i]
+        if i == 0 or value - last > NEAR:
+            x[kept] = value
+            kept += 1
+        last = value
+    for i in range(kept, 0, -1):
+        x[i] = x[i - 1]
+    x[0], x[kept + 1] = left, right
+    cuts.count = kept + 1
+    for i in range(cuts.count):
+        cuts.middle[i], cuts.ceiling[i] = (x[i] + x[i + 1]) / 2.0, INFINITY

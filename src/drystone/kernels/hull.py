@@ -1,12 +1,21 @@
 """Convex hull of the pixels of a mask."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.raster import Mask
 
-_fast = compiled("hull")
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import flags, longs_out
+else:
+    from drystone.kernels.lists import flags, longs_out
 
 
 def pixel_hull(mask: Mask) -> NDArray[np.int64]:
@@ -28,28 +37,49 @@ def pixel_hull(mask: Mask) -> NDArray[np.int64]:
     >>> pixel_hull(np.array([[1, 0], [1, 1]], bool)).tolist()
     [[2, 0], [2, 1], [1, 2], [0, 2], [0, 0]]
     """
-    if _fast is None:
-        return pixel_hull_numpy(mask)
-    corners = np.empty((2 * mask.shape[0] + 2, 2), np.int64)
-    count = _fast.pixel_hull(np.ascontiguousarray(mask).view(np.uint8), corners)
+    mask = np.ascontiguousarray(mask)
+    height: cython.Py_ssize_t = mask.shape[0]
+    width: cython.Py_ssize_t = mask.shape[1]
+    # As many as there could ever be on the way: two a row on one side, then on the other.
+    corners = np.empty((2 * height + 2, 2), np.int64)
+    pixels: cython.p_uchar = flags(mask)
+    chain: cython.p_longlong = longs_out(corners)
+    count: cython.Py_ssize_t = 0
+    row: cython.Py_ssize_t
+    col: cython.Py_ssize_t
+    for row in range(height - 1, -1, -1):
+        col = width
+        while col > 0 and not pixels[row * width + col - 1]:
+            col -= 1
+        if col:
+            count = put(chain, count, col, height - row - 1)
+            count = put(chain, count, col, height - row)
+    for row in range(height):
+        col = 0
+        while col < width and not pixels[row * width + col]:
+            col += 1
+        if col < width:
+            count = put(chain, count, col, height - row)
+            count = put(chain, count, col, height - row - 1)
     return corners[:count].copy()
 
 
-def pixel_hull_numpy(mask: Mask) -> NDArray[np.int64]:
-    """Twin of :func:`pixel_hull`."""
-    rows = np.flatnonzero(mask.any(axis=1))[::-1]
-    used, below = mask[rows], mask.shape[0] - rows - 1
-    height = np.column_stack([below, below + 1]).ravel().tolist()
-    left = np.repeat(used.argmax(axis=1), 2).tolist()
-    right = np.repeat(mask.shape[1] - used[:, ::-1].argmax(axis=1), 2).tolist()
-    up, down = zip(right, height, strict=True), zip(left[::-1], height[::-1], strict=True)
-    # Andrew's monotone chain: corners at which the way around does not turn left are left out.
-    chain: list[tuple[int, int]] = []
-    for x, y in (*up, *down):
-        while len(chain) > 1:
-            (x0, y0), (x1, y1) = chain[-2:]
-            if (x1 - x0) * (y - y1) > (y1 - y0) * (x - x1):
-                break
-            chain.pop()
-        chain.append((x, y))
-    return np.array(chain, np.int64)
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def put(
+    at: cython.p_longlong, count: cython.Py_ssize_t, x: cython.longlong, y: cython.longlong
+) -> cython.Py_ssize_t:
+    """Add a point to the chain of corners (Andrew's); return how many there are then."""
+    k: cython.Py_ssize_t
+    x1: cython.longlong
+    y1: cython.longlong
+    while count > 1:
+        k = 2 * count - 4
+        x1, y1 = at[k + 2], at[k + 3]
+        # Corners at which the way around does not turn left are left out.
+        if (x1 - at[k]) * (y - y1) > (y1 - at[k + 1]) * (x - x1):
+            break
+        count -= 1
+    at[2 * count], at[2 * count + 1] = x, y
+    return count + 1

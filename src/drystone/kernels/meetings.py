@@ -5,30 +5,86 @@ between them is small: at its two ends.  Any other contact is that of a corner o
 corner on a corner.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
-from drystone.kernels.meeting_rules import (
-    BESIDE,
-    Contact,
-    Sides,
-    corner_on_corner,
-    corner_on_edge,
-    edge_on_corner,
-    facing_edges,
-    set_back,
-    set_back_by,
-    without_repeats,
-)
 from drystone.kernels.polygons import Points, Polygons
 
-GROUND_PLACE = -1
-"""What stands for the ground where the index of a polygon is told."""
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
 
-_fast = compiled("meetings")
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import (
+        doubles,
+        doubles_out,
+        ints,
+        ints_out,
+        more_doubles,
+        new_doubles,
+        new_ints,
+        release,
+    )
+    from cython.cimports.libc.math import sqrt
+else:
+    from math import sqrt
+
+    from drystone.kernels.lists import (
+        doubles,
+        doubles_out,
+        ints,
+        ints_out,
+        more_doubles,
+        new_doubles,
+        new_ints,
+        release,
+    )
+
+# Edges that face each other may lean by so much (tangent) and still touch along a piece.
+LEAN = cython.declare(cython.double, 0.05)
+
+# Cosine above which normals of contacts at one place are those of one contact.
+SAME = cython.declare(cython.double, 0.995)
+
+# Nothing that is further away than so many tolerances has to do with a contact.
+BESIDE = cython.declare(cython.double, 1.5)
+
+# Faces separate corners equally when they do to this share of the tolerance.
+EQUAL = cython.declare(cython.double, 0.01)
+
+# How much more level, by the cosine, a face must be to be preferred.
+LEVEL = cython.declare(cython.double, 1e-6)
+
+# A face ends where the outline has turned away from it by more than 30 degrees (tangent).
+SHARP = cython.declare(cython.double, 0.577)
+
+# The numbers of a contact: edge, how far along it, number of points, x and y of both points,
+# normal into the polygon, edge and index of the other polygon.
+EDGE = cython.declare(cython.Py_ssize_t, 0)
+START = cython.declare(cython.Py_ssize_t, 1)
+COUNT = cython.declare(cython.Py_ssize_t, 2)
+X0 = cython.declare(cython.Py_ssize_t, 3)
+Y0 = cython.declare(cython.Py_ssize_t, 4)
+X1 = cython.declare(cython.Py_ssize_t, 5)
+Y1 = cython.declare(cython.Py_ssize_t, 6)
+NORMAL_X = cython.declare(cython.Py_ssize_t, 7)
+NORMAL_Y = cython.declare(cython.Py_ssize_t, 8)
+FACING = cython.declare(cython.Py_ssize_t, 9)
+OTHER = cython.declare(cython.Py_ssize_t, 10)
+NUMBERS = cython.declare(cython.Py_ssize_t, 11)
+
+# What :func:`common` finds.
+LOW = cython.declare(cython.Py_ssize_t, 0)
+HIGH = cython.declare(cython.Py_ssize_t, 1)
+FIRST = cython.declare(cython.Py_ssize_t, 2)
+LAST = cython.declare(cython.Py_ssize_t, 3)
+INSIDE = cython.declare(cython.Py_ssize_t, 4)
+SLOPE = cython.declare(cython.Py_ssize_t, 5)
 
 
 class Meetings(NamedTuple):
@@ -83,7 +139,7 @@ def meetings(corners: Points, around: Polygons, tolerance: float, setback: float
 
     Notes
     -----
-    Edges that face each other at an angle of less than 2.9 degrees (:data:`~.LEAN`) touch on the
+    Edges that face each other at an angle of less than 2.9 degrees (a tangent of .05) touch on the
     part where the gap is within reach, as long as both run beside each other for more than the
     tolerance.  Reach is the tolerance for parallel edges and less the more they lean, nothing at
     2.9 degrees: from one stone to the next the part shrinks to the corner that is nearest, without
@@ -117,73 +173,766 @@ def meetings(corners: Points, around: Polygons, tolerance: float, setback: float
         raise ValueError("the tolerance must be above 0")
     if not setback >= 0.0:
         raise ValueError("the set-back must not be below 0")
-    if _fast is None:
-        return meetings_numpy(corners, around, tolerance, setback)
-    return Meetings(
-        *_fast.meetings(corners, around.corners, around.first, around.boxes, tolerance, setback)
-    )
+    first: cython.p_int = ints(around.first)
+    count: cython.Py_ssize_t = len(around)
+    most: cython.Py_ssize_t = 4
+    k: cython.Py_ssize_t
+    for k in range(count):
+        most = max(most, first[k + 1] - first[k])
+    mine: Sides = Sides(len(corners))
+    theirs: Sides = Sides(most)
+    found: Contacts = Contacts(4 * len(corners) + 16)
+    at: cython.p_double = doubles(corners)
+    others: cython.p_double = doubles(around.corners)
+    boxes: cython.p_double = doubles(around.boxes)
+    near: cython.double = tolerance
+    back: cython.double = setback
+    mine.count = len(corners)
+    with cython.nogil:
+        meet_all(mine, theirs, at, others, first, boxes, count, near, back, found)
+    return _told(found)
 
 
-def meetings_numpy(
-    corners: Points, around: Polygons, tolerance: float, setback: float = 0.0
-) -> Meetings:
-    """Twin of :func:`meetings` without compiled code; inputs are taken as they are."""
-    reach = BESIDE * tolerance
-    left, bottom = corners.min(axis=0).tolist()
-    right, top = corners.max(axis=0).tolist()
-    sides = Sides.of(corners)
-    others: list[int] = []
-    found: list[Contact] = []
+@cython.cfunc
+def _told(found: Contacts) -> Meetings:
+    """Write what was found into arrays."""
+    count: cython.Py_ssize_t = found.count
+    others, counts = np.empty(count, np.int32), np.empty(count, np.int32)
+    points, normals = np.empty((count, 2, 2)), np.empty((count, 2))
+    other: cython.p_int = ints_out(others)
+    number: cython.p_int = ints_out(counts)
+    point: cython.p_double = doubles_out(points)
+    normal: cython.p_double = doubles_out(normals)
+    at: cython.p_double = found.at
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    for i in range(count):
+        k = NUMBERS * i
+        other[i] = cython.cast(cython.int, at[k + OTHER])
+        number[i] = cython.cast(cython.int, at[k + COUNT])
+        point[4 * i], point[4 * i + 1] = at[k + X0], at[k + Y0]
+        point[4 * i + 2], point[4 * i + 3] = at[k + X1], at[k + Y1]
+        # No zero has a sign.
+        normal[2 * i], normal[2 * i + 1] = at[k + NORMAL_X] + 0.0, at[k + NORMAL_Y] + 0.0
+    return Meetings(others, counts, points, normals)
+
+
+@cython.cclass
+class Sides:
+    """The edges of a polygon and the corners at their starts: unit vectors, lengths, boxes."""
+
+    count: cython.Py_ssize_t
+    x: cython.p_double
+    y: cython.p_double
+    along_x: cython.p_double
+    along_y: cython.p_double
+    length: cython.p_double
+    left: cython.p_double
+    bottom: cython.p_double
+    right: cython.p_double
+    top: cython.p_double
+    convex: cython.p_int
+
+    def __init__(self, room: int) -> None:
+        self.count = 0
+        self.x, self.y = new_doubles(room), new_doubles(room)
+        self.along_x, self.along_y = new_doubles(room), new_doubles(room)
+        self.length = new_doubles(room)
+        self.left, self.bottom = new_doubles(room), new_doubles(room)
+        self.right, self.top = new_doubles(room), new_doubles(room)
+        self.convex = new_ints(room)
+
+    def __dealloc__(self) -> None:
+        release(self.x)
+        release(self.y)
+        release(self.along_x)
+        release(self.along_y)
+        release(self.length)
+        release(self.left)
+        release(self.bottom)
+        release(self.right)
+        release(self.top)
+        release(self.convex)
+
+
+@cython.cclass
+class Contacts:
+    """Contacts one after the other, :data:`NUMBERS` numbers each."""
+
+    at: cython.p_double
+    count: cython.Py_ssize_t
+    room: cython.Py_ssize_t
+
+    def __init__(self, room: int) -> None:
+        self.count, self.room = 0, room
+        self.at = new_doubles(NUMBERS * room)
+
+    def __dealloc__(self) -> None:
+        release(self.at)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def meet_all(
+    mine: Sides,
+    theirs: Sides,
+    corners: cython.p_double,
+    others: cython.p_double,
+    first: cython.p_int,
+    boxes: cython.p_double,
+    count: cython.Py_ssize_t,
+    tolerance: cython.double,
+    setback: cython.double,
+    found: Contacts,
+) -> cython.int:
+    """Find the contacts with the ground and with every polygon that is near."""
+    reach: cython.double = BESIDE * tolerance
+    beyond: cython.double = 1.0 + 4.0 * tolerance
+    ground: cython.double[8] = [0.0, -beyond, 0.0, -beyond, 0.0, 0.0, 0.0, 0.0]
+    k: cython.Py_ssize_t
+    set_sides(mine, corners, 0)
+    left: cython.double = mine.left[0]
+    bottom: cython.double = mine.bottom[0]
+    right: cython.double = mine.right[0]
+    top: cython.double = mine.top[0]
+    for k in range(1, mine.count):
+        left, bottom = min(left, mine.left[k]), min(bottom, mine.bottom[k])
+        right, top = max(right, mine.right[k]), max(top, mine.top[k])
     if bottom - reach <= 0.0:
-        by = set_back_by(sides, None, tolerance, setback)
-        found += _contacts(sides, Sides.of(_ground(left, right, tolerance)), tolerance, by)
-        others += [GROUND_PLACE] * len(found)
-    boxes = around.boxes
-    near = (boxes[:, 0] <= right + reach) & (boxes[:, 2] >= left - reach)
-    near &= (boxes[:, 1] <= top + reach) & (boxes[:, 3] >= bottom - reach)
-    for index in np.flatnonzero(near).tolist():
-        other = Sides.of(around.polygon(index))
-        by = set_back_by(sides, other, tolerance, setback)
-        new = _contacts(sides, other, tolerance, by)
-        found += new
-        others += [index] * len(new)
-    table = np.array([contact[2:9] for contact in found], np.float64).reshape(-1, 7)
-    return Meetings(
-        np.array(others, np.int32),
-        table[:, 0].astype(np.int32),
-        table[:, 1:5].reshape(-1, 2, 2).copy(),
-        table[:, 5:] + 0.0,  # no zero has a sign
-    )
+        # The piece of ground below, a box that reaches further on all sides.
+        ground[0] = ground[6] = left - beyond
+        ground[2] = ground[4] = right + beyond
+        theirs.count = 4
+        set_sides(theirs, ground, 0)
+        meet(mine, theirs, -1, tolerance, set_back_by(area(mine), tolerance, setback), found)
+    for k in range(count):
+        if not (boxes[4 * k] <= right + reach and boxes[4 * k + 2] >= left - reach):
+            continue
+        if not (boxes[4 * k + 1] <= top + reach and boxes[4 * k + 3] >= bottom - reach):
+            continue
+        theirs.count = first[k + 1] - first[k]
+        set_sides(theirs, others, 2 * first[k])
+        size: cython.double = min(area(mine), area(theirs)) if setback != 0.0 else 0.0
+        meet(mine, theirs, k, tolerance, set_back_by(size, tolerance, setback), found)
+    return 0
 
 
-def _ground(left: float, right: float, tolerance: float) -> Points:
-    """Return the piece of ground below a polygon, a box that reaches further on all sides."""
-    beyond = 1.0 + 4.0 * tolerance
-    return np.array(
-        [
-            [left - beyond, -beyond],
-            [right + beyond, -beyond],
-            [right + beyond, 0.0],
-            [left - beyond, 0.0],
-        ]
-    )
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def set_sides(sides: Sides, corners: cython.p_double, first: cython.Py_ssize_t) -> cython.void:
+    """Prepare the sides of a polygon."""
+    n: cython.Py_ssize_t = sides.count
+    k: cython.Py_ssize_t
+    at: cython.Py_ssize_t
+    before: cython.Py_ssize_t = n - 1
+    x: cython.double
+    y: cython.double
+    step_x: cython.double
+    step_y: cython.double
+    length: cython.double
+    for k in range(n):
+        at = first + 2 * k
+        sides.x[k], sides.y[k] = corners[at], corners[at + 1]
+        at = at + 2 if k + 1 < n else first
+        x, y = corners[at], corners[at + 1]
+        step_x, step_y = x - sides.x[k], y - sides.y[k]
+        length = sqrt(step_x * step_x + step_y * step_y)
+        sides.length[k] = length
+        sides.along_x[k], sides.along_y[k] = step_x / length, step_y / length
+        sides.left[k], sides.right[k] = min(sides.x[k], x), max(sides.x[k], x)
+        sides.bottom[k], sides.top[k] = min(sides.y[k], y), max(sides.y[k], y)
+    for k in range(n):
+        x = sides.along_x[before] * sides.along_y[k] - sides.along_y[before] * sides.along_x[k]
+        sides.convex[k] = x > 0.0
+        before = k
 
 
-def _contacts(sides: Sides, other: Sides, tolerance: float, by: float) -> list[Contact]:
-    """Return the contacts of two polygons, in order along the first."""
-    reach = BESIDE * tolerance
-    mine, theirs = sides.boxes[:, None], other.boxes[None]
-    near = (theirs[..., 0] <= mine[..., 2] + reach) & (theirs[..., 2] >= mine[..., 0] - reach)
-    near &= (theirs[..., 1] <= mine[..., 3] + reach) & (theirs[..., 3] >= mine[..., 1] - reach)
-    found: list[Contact] = []
-    for i, j in np.argwhere(near).tolist():
-        # What an edge and the corner at its start have to do with an edge and the corner at its.
-        for rule in (facing_edges, corner_on_edge, edge_on_corner, corner_on_corner):
-            contact = rule(sides, i, other, j, tolerance)
-            if contact is not None:
-                found.append(contact)
-    kept = without_repeats(found, tolerance)
-    if by == 0.0:
-        return kept
-    left = (set_back(sides, other, contact, by, tolerance) for contact in kept)
-    return [contact for contact in left if contact is not None]
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def meet(
+    p: Sides,
+    q: Sides,
+    other: cython.Py_ssize_t,
+    tolerance: cython.double,
+    by: cython.double,
+    found: Contacts,
+) -> cython.int:
+    """Add the contacts of two polygons, in order along the first."""
+    reach: cython.double = BESIDE * tolerance
+    q_left: cython.double = q.left[0]
+    q_bottom: cython.double = q.bottom[0]
+    q_right: cython.double = q.right[0]
+    q_top: cython.double = q.top[0]
+    left: cython.double
+    bottom: cython.double
+    right: cython.double
+    top: cython.double
+    begin: cython.Py_ssize_t = found.count
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    for j in range(1, q.count):
+        q_left, q_bottom = min(q_left, q.left[j]), min(q_bottom, q.bottom[j])
+        q_right, q_top = max(q_right, q.right[j]), max(q_top, q.top[j])
+    for i in range(p.count):
+        left, bottom = p.left[i] - reach, p.bottom[i] - reach
+        right, top = p.right[i] + reach, p.top[i] + reach
+        if q_left > right or q_right < left or q_bottom > top or q_top < bottom:
+            continue
+        for j in range(q.count):
+            if q.left[j] > right or q.right[j] < left or q.bottom[j] > top or q.top[j] < bottom:
+                continue
+            # What an edge and the corner at its start have to do with an edge and the corner at
+            # its start.
+            facing_edges(p, i, q, j, tolerance, found)
+            corner_on_edge(p, i, q, j, tolerance, found)
+            edge_on_corner(p, i, q, j, tolerance, found)
+            corner_on_corner(p, i, q, j, tolerance, found)
+    without_repeats(found, begin, tolerance)
+    if by > 0.0:
+        j = begin
+        for i in range(begin, found.count):
+            if set_back(p, q, found.at, NUMBERS * i, by, tolerance):
+                copy(found.at, i, j)
+                j += 1
+        found.count = j
+    for i in range(begin, found.count):
+        found.at[NUMBERS * i + OTHER] = other
+    return 0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def copy(at: cython.p_double, one: cython.Py_ssize_t, to: cython.Py_ssize_t) -> cython.void:
+    """Copy a contact to another place."""
+    k: cython.Py_ssize_t
+    for k in range(NUMBERS):
+        at[NUMBERS * to + k] = at[NUMBERS * one + k]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def add(
+    found: Contacts,
+    edge: cython.Py_ssize_t,
+    facing: cython.Py_ssize_t,
+    start: cython.double,
+    count: cython.int,
+    x0: cython.double,
+    y0: cython.double,
+    x1: cython.double,
+    y1: cython.double,
+    normal_x: cython.double,
+    normal_y: cython.double,
+) -> cython.int:
+    """Add a contact of one or two points; there is always room for one more."""
+    k: cython.Py_ssize_t = NUMBERS * found.count
+    at: cython.p_double = found.at
+    at[k + EDGE], at[k + FACING], at[k + START], at[k + COUNT] = edge, facing, start, count
+    at[k + X0], at[k + Y0], at[k + X1], at[k + Y1] = x0, y0, x1, y1
+    at[k + NORMAL_X], at[k + NORMAL_Y] = normal_x, normal_y
+    found.count += 1
+    if found.count + 1 >= found.room:
+        found.room *= 2
+        found.at = more_doubles(found.at, NUMBERS * found.room)
+    return 0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def facing_edges(
+    p: Sides,
+    i: cython.Py_ssize_t,
+    q: Sides,
+    j: cython.Py_ssize_t,
+    tolerance: cython.double,
+    found: Contacts,
+) -> cython.int:
+    """Add the contact along edges that face each other; one point where it is short."""
+    c: cython.double[6] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    part: cython.double[2] = [0.0, 0.0]
+    at_low: cython.double
+    at_high: cython.double
+    reach: cython.double
+    over: cython.double
+    share: cython.double
+    nx: cython.double
+    ny: cython.double
+    length: cython.double
+    count: cython.int = 2
+    low_first: cython.bint
+    ux: cython.double = p.along_x[i]
+    uy: cython.double = p.along_y[i]
+    if not common(p, i, q, j, tolerance, c):
+        return 0
+    at_low = c[INSIDE] + c[SLOPE] * (c[LOW] - c[FIRST])
+    at_high = c[INSIDE] + c[SLOPE] * (c[HIGH] - c[FIRST])
+    low_first = abs(at_low) <= abs(at_high)
+    reach = tolerance * (1.0 - abs(c[SLOPE]) / LEAN)
+    if not within(c[LOW], c[HIGH], at_low, at_high, reach, part):
+        if min(abs(at_low), abs(at_high)) > tolerance:
+            return 0
+        part[0] = part[1] = c[LOW] if low_first else c[HIGH]
+    over = c[LAST] if low_first else p.length[i] - c[FIRST]
+    share = 0.5 + over / (2.0 * tolerance)
+    if share < 0.0:
+        share = 0.0
+    elif share > 1.0:
+        share = 1.0
+    nx = share * -uy + (1.0 - share) * q.along_y[j]
+    ny = share * ux + (1.0 - share) * -q.along_x[j]
+    length = sqrt(nx * nx + ny * ny)
+    if not part[1] - part[0] > tolerance:
+        part[0] = part[1] = (part[0] + part[1]) / 2.0
+        count = 1
+    return add(
+        found, i, j, part[0], count,
+        p.x[i] + part[0] * ux, p.y[i] + part[0] * uy,
+        p.x[i] + part[1] * ux, p.y[i] + part[1] * uy,
+        nx / length, ny / length,
+    )  # fmt: skip
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def corner_on_edge(
+    p: Sides,
+    i: cython.Py_ssize_t,
+    q: Sides,
+    j: cython.Py_ssize_t,
+    tolerance: cython.double,
+    found: Contacts,
+) -> cython.int:
+    """Add the contact of corner `i` on edge `j`, away from its ends."""
+    c: cython.double[6] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    if stands_on(p, i, q, j, tolerance) < 0.0:
+        return 0
+    if common(p, before(p, i), q, j, tolerance, c) or common(p, i, q, j, tolerance, c):
+        return 0
+    x: cython.double = p.x[i]
+    y: cython.double = p.y[i]
+    return add(found, i, j, 0.0, 1, x, y, x, y, q.along_y[j], -q.along_x[j])
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def edge_on_corner(
+    p: Sides,
+    i: cython.Py_ssize_t,
+    q: Sides,
+    j: cython.Py_ssize_t,
+    tolerance: cython.double,
+    found: Contacts,
+) -> cython.int:
+    """Add the contact of edge `i`, away from its ends, on corner `j`."""
+    c: cython.double[6] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    start: cython.double = stands_on(q, j, p, i, tolerance)
+    if start < 0.0:
+        return 0
+    if common(p, i, q, before(q, j), tolerance, c) or common(p, i, q, j, tolerance, c):
+        return 0
+    x: cython.double = p.x[i] + start * p.along_x[i]
+    y: cython.double = p.y[i] + start * p.along_y[i]
+    return add(found, i, j, start, 1, x, y, x, y, -p.along_y[i], p.along_x[i])
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1)
+def corner_on_corner(
+    p: Sides,
+    i: cython.Py_ssize_t,
+    q: Sides,
+    j: cython.Py_ssize_t,
+    tolerance: cython.double,
+    found: Contacts,
+) -> cython.int:
+    """Add the contact of two convex corners beside each other, where a face separates them."""
+    c: cython.double[6] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    apart: cython.double[4] = [0.0, 0.0, 0.0, 0.0]
+    level: cython.double[4] = [0.0, 0.0, 0.0, 0.0]
+    separates: cython.bint[4] = [False, False, False, False]
+    i_before: cython.Py_ssize_t
+    j_before: cython.Py_ssize_t
+    edge: cython.Py_ssize_t = i
+    face: cython.Py_ssize_t
+    place: cython.int
+    x: cython.double
+    y: cython.double
+    along: cython.double
+    start: cython.double = 0.0
+    if not (p.convex[i] and q.convex[j] and are_beside(p, i, q, j, tolerance)):
+        return 0
+    i_before, j_before = before(p, i), before(q, j)
+    if common(p, i_before, q, j_before, tolerance, c) or common(p, i_before, q, j, tolerance, c):
+        return 0
+    if common(p, i, q, j_before, tolerance, c) or common(p, i, q, j, tolerance, c):
+        return 0
+    x, y = p.x[i] - q.x[j], p.y[i] - q.y[j]
+    for place in range(4):
+        if place < 2:
+            face = j if place else j_before
+            separates[place] = clears(p, i, q.along_y[face], -q.along_x[face])
+            apart[place] = x * q.along_y[face] + y * -q.along_x[face]
+            level[place] = abs(q.along_x[face])
+        else:
+            face = i_before if place == 2 else i
+            separates[place] = clears(q, j, p.along_y[face], -p.along_x[face])
+            apart[place] = -x * p.along_y[face] + -y * -p.along_x[face]
+            level[place] = abs(p.along_x[face])
+    place = best(separates, apart, level, EQUAL * tolerance)
+    if place < 0 or abs(apart[place]) > tolerance:
+        return 0
+    if place < 2:
+        face = j if place else j_before
+        along = x * q.along_x[face] + y * q.along_y[face]
+    else:
+        face = i_before if place == 2 else i
+        along = -x * p.along_x[face] + -y * p.along_y[face]
+    if place in (0, 2):
+        along = -along
+    if not (along >= 0.0 or x * x + y * y <= tolerance * tolerance):
+        return 0
+    if place < 2:
+        x, y = p.x[i], p.y[i]
+        return add(found, i, face, 0.0, 1, x, y, x, y, q.along_y[face], -q.along_x[face])
+    if along > 0.0 and place == 3:
+        start = along
+    elif along > 0.0:
+        edge, start = i_before, p.length[i_before] - along
+    x, y = p.x[edge] + start * p.along_x[edge], p.y[edge] + start * p.along_y[edge]
+    return add(found, edge, j, start, 1, x, y, x, y, -p.along_y[face], p.along_x[face])
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def set_back_by(
+    size: cython.double, tolerance: cython.double, setback: cython.double
+) -> cython.double:
+    """Return by how much contacts are set back, by the area of the smaller polygon."""
+    return max(tolerance, setback * sqrt(size)) if setback != 0.0 else 0.0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def area(s: Sides) -> cython.double:
+    """Return the area of a polygon."""
+    k: cython.Py_ssize_t
+    doubled: cython.double = 0.0
+    x: cython.double
+    y: cython.double
+    for k in range(1, s.count - 1):
+        x, y = s.x[k] - s.x[0], s.y[k] - s.y[0]
+        doubled += x * (s.y[k + 1] - s.y[0]) - y * (s.x[k + 1] - s.x[0])
+    return doubled / 2.0 if doubled > 0.0 else 0.0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def set_back(
+    p: Sides,
+    q: Sides,
+    at: cython.p_double,
+    k: cython.Py_ssize_t,
+    by: cython.double,
+    tolerance: cython.double,
+) -> cython.bint:
+    """Set a contact back from the ends of faces; return whether anything is left of it."""
+    edge: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, at[k + EDGE])
+    facing: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, at[k + FACING])
+    ux: cython.double = p.along_x[edge]
+    uy: cython.double = p.along_y[edge]
+    start: cython.double = at[k + START]
+    end: cython.double
+    across: cython.double
+    if at[k + COUNT] == 2.0:
+        end = start + (at[k + X1] - at[k + X0]) * ux + (at[k + Y1] - at[k + Y0]) * uy
+        across = projected(q, facing, at[k + X0], at[k + Y0])
+        start = start + by - min(runs_on(p, edge, start, by, -1), runs_on(q, facing, across, by, 1))
+        across = projected(q, facing, at[k + X1], at[k + Y1])
+        end = end - by + min(runs_on(p, edge, end, by, 1), runs_on(q, facing, across, by, -1))
+        if end - start > tolerance:
+            at[k + START] = start
+            at[k + X0], at[k + Y0] = p.x[edge] + start * ux, p.y[edge] + start * uy
+            at[k + X1], at[k + Y1] = p.x[edge] + end * ux, p.y[edge] + end * uy
+            return True
+        start = (start + end) / 2.0
+        if start < 0.0:
+            start = 0.0
+        elif start > p.length[edge]:
+            start = p.length[edge]
+        at[k + START] = start
+        at[k + X0], at[k + Y0] = p.x[edge] + start * ux, p.y[edge] + start * uy
+    at[k + COUNT], at[k + X1], at[k + Y1] = 1.0, at[k + X0], at[k + Y0]
+    if min(runs_on(p, edge, start, by, -1), runs_on(p, edge, start, by, 1)) >= by:
+        return True
+    across = projected(q, facing, at[k + X0], at[k + Y0])
+    return min(runs_on(q, facing, across, by, -1), runs_on(q, facing, across, by, 1)) >= by
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def projected(s: Sides, i: cython.Py_ssize_t, x: cython.double, y: cython.double) -> cython.double:
+    """Return how far along an edge a point is beside it; its ends for what is beyond them."""
+    along: cython.double = (x - s.x[i]) * s.along_x[i] + (y - s.y[i]) * s.along_y[i]
+    if along < 0.0:
+        return 0.0
+    return s.length[i] if along > s.length[i] else along
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def runs_on(
+    s: Sides,
+    i: cython.Py_ssize_t,
+    along: cython.double,
+    enough: cython.double,
+    sense: cython.int,
+) -> cython.double:
+    """Return how far a face goes on from a point of edge `i`, at most `enough`."""
+    run: cython.double = s.length[i] - along if sense > 0 else along
+    dot: cython.double
+    away: cython.double
+    edge: cython.Py_ssize_t = i
+    k: cython.Py_ssize_t
+    for k in range(s.count - 1):  # noqa: B007 - typed
+        if run >= enough:
+            return enough
+        if sense > 0:
+            edge = edge + 1 if edge + 1 < s.count else 0
+        else:
+            edge = before(s, edge)
+        dot = s.along_x[i] * s.along_x[edge] + s.along_y[i] * s.along_y[edge]
+        away = sense * (s.along_x[i] * s.along_y[edge] - s.along_y[i] * s.along_x[edge])
+        if abs(away) > SHARP * dot:
+            return run if away >= 0.0 else enough
+        run += s.length[edge]
+    return run if run < enough else enough
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def without_repeats(
+    found: Contacts, begin: cython.Py_ssize_t, tolerance: cython.double
+) -> cython.void:
+    """Leave out points that are told already, and sort the others, from a place on."""
+    k: cython.Py_ssize_t
+    other: cython.Py_ssize_t
+    kept: cython.Py_ssize_t = begin
+    at: cython.p_double = found.at
+    spare: cython.Py_ssize_t = found.count
+    # Marked first: also what is left out makes others repeats.
+    for k in range(begin, found.count):
+        at[NUMBERS * k + OTHER] = 0.0
+        if at[NUMBERS * k + COUNT] == 2.0:
+            continue
+        for other in range(begin, found.count):
+            if (at[NUMBERS * other + COUNT] == 2.0 or other < k) and is_same(
+                at, NUMBERS * k, NUMBERS * other, tolerance
+            ):
+                at[NUMBERS * k + OTHER] = 1.0
+                break
+    for k in range(begin, found.count):
+        if at[NUMBERS * k + OTHER] != 0.0:
+            continue
+        copy(at, k, spare)
+        other = kept
+        while other > begin and comes_before(at, NUMBERS * spare, NUMBERS * (other - 1)):
+            copy(at, other - 1, other)
+            other -= 1
+        copy(at, spare, other)
+        kept += 1
+    found.count = kept
+
+
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def comes_before(
+    at: cython.p_double, one: cython.Py_ssize_t, other: cython.Py_ssize_t
+) -> cython.bint:
+    """Tell whether a contact comes before another one, along the polygon."""
+    if at[one + EDGE] != at[other + EDGE]:
+        return at[one + EDGE] < at[other + EDGE]
+    return at[one + START] < at[other + START]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def before(s: Sides, i: cython.Py_ssize_t) -> cython.Py_ssize_t:
+    """Return the edge that ends where edge `i` starts."""
+    return i - 1 if i else s.count - 1
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def common(
+    p: Sides,
+    i: cython.Py_ssize_t,
+    q: Sides,
+    j: cython.Py_ssize_t,
+    tolerance: cython.double,
+    c: cython.p_double,
+) -> cython.bint:
+    """Find where two edges face each other; return whether they do.
+
+    Along edge `i`: from where to where they are beside each other, and both ends of edge `j`; how
+    far the start of that is inside, and how much it leans.
+    """
+    dot: cython.double = p.along_x[i] * q.along_x[j] + p.along_y[i] * q.along_y[j]
+    cross: cython.double = p.along_x[i] * q.along_y[j] - p.along_y[i] * q.along_x[j]
+    end: cython.Py_ssize_t
+    x: cython.double
+    y: cython.double
+    if dot >= 0.0 or abs(cross) > LEAN * -dot:
+        return False
+    end = j + 1 if j + 1 < q.count else 0
+    x, y = q.x[j] - p.x[i], q.y[j] - p.y[i]
+    c[FIRST] = x * p.along_x[i] + y * p.along_y[i]
+    c[INSIDE] = p.along_x[i] * y - p.along_y[i] * x
+    c[LAST] = (q.x[end] - p.x[i]) * p.along_x[i] + (q.y[end] - p.y[i]) * p.along_y[i]
+    c[LOW] = c[LAST] if c[LAST] > 0.0 else 0.0
+    c[HIGH] = c[FIRST] if c[FIRST] < p.length[i] else p.length[i]
+    c[SLOPE] = cross / dot
+    return c[HIGH] - c[LOW] > tolerance
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def within(
+    low: cython.double,
+    high: cython.double,
+    at_low: cython.double,
+    at_high: cython.double,
+    reach: cython.double,
+    part: cython.p_double,
+) -> cython.bint:
+    """Find the part from low to high on which a value is at most `reach` from 0."""
+    limit: cython.double
+    if min(at_low, at_high) > reach or max(at_low, at_high) < -reach:
+        return False
+    part[0], part[1] = low, high
+    if abs(at_low) > reach:
+        limit = reach if at_low > 0.0 else -reach
+        part[0] = low + (high - low) * ((limit - at_low) / (at_high - at_low))
+    if abs(at_high) > reach:
+        limit = reach if at_high > 0.0 else -reach
+        part[1] = low + (high - low) * ((limit - at_low) / (at_high - at_low))
+    return True
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def stands_on(
+    s: Sides,
+    i: cython.Py_ssize_t,
+    t: Sides,
+    j: cython.Py_ssize_t,
+    tolerance: cython.double,
+) -> cython.double:
+    """Return how far along edge `j` corner `i` stands on it; -1 when it does not."""
+    x: cython.double = s.x[i] - t.x[j]
+    y: cython.double = s.y[i] - t.y[j]
+    outside: cython.double = x * t.along_y[j] - y * t.along_x[j]
+    along: cython.double = x * t.along_x[j] + y * t.along_y[j]
+    end: cython.Py_ssize_t = j + 1 if j + 1 < t.count else 0
+    if not (along >= 0.0 and along <= t.length[j] and s.convex[i]):
+        return -1.0
+    if abs(outside) > tolerance or not clears(s, i, t.along_y[j], -t.along_x[j]):
+        return -1.0
+    if t.convex[j] and are_beside(s, i, t, j, tolerance):
+        return -1.0
+    return -1.0 if t.convex[end] and are_beside(s, i, t, end, tolerance) else along
+
+
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def are_beside(
+    s: Sides, i: cython.Py_ssize_t, t: Sides, j: cython.Py_ssize_t, tolerance: cython.double
+) -> cython.bint:
+    """Tell whether two corners are so near that neither stands on an edge away from its ends."""
+    x: cython.double = s.x[i] - t.x[j]
+    y: cython.double = s.y[i] - t.y[j]
+    return x * x + y * y <= 2.0 * tolerance * tolerance
+
+
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def clears(
+    s: Sides, i: cython.Py_ssize_t, out_x: cython.double, out_y: cython.double
+) -> cython.bint:
+    """Tell whether both edges at a corner lead outwards, or hardly inwards."""
+    coming: cython.Py_ssize_t = before(s, i)
+    if s.along_x[coming] * out_x + s.along_y[coming] * out_y > LEAN:
+        return False
+    return s.along_x[i] * out_x + s.along_y[i] * out_y >= -LEAN
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def best(
+    separates: cython.pointer[cython.bint],
+    apart: cython.p_double,
+    level: cython.p_double,
+    equal: cython.double,
+) -> cython.int:
+    """Return which of four faces separates most, the most level of equals; -1 when none does."""
+    place: cython.int
+    chosen: cython.int = -1
+    most: cython.double = 0.0
+    for place in range(4):
+        if separates[place] and (chosen < 0 or apart[place] > most):
+            most, chosen = apart[place], place
+    chosen = -1
+    for place in range(4):
+        if separates[place] and apart[place] >= most - equal:
+            if chosen < 0 or level[place] > level[chosen] + LEVEL:
+                chosen = place
+    return chosen
+
+
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def is_same(
+    at: cython.p_double,
+    one: cython.Py_ssize_t,
+    other: cython.Py_ssize_t,
+    tolerance: cython.double,
+) -> cython.bint:
+    """Tell whether a contact at a point has the place and the normal of another contact."""
+    limit: cython.double = 4.0 * tolerance * tolerance
+    x: cython.double = at[one + NORMAL_X] * at[other + NORMAL_X]
+    y: cython.double = at[one + NORMAL_Y] * at[other + NORMAL_Y]
+    if x + y < SAME:
+        return False
+    x, y = at[one + X0] - at[other + X0], at[one + Y0] - at[other + Y0]
+    if x * x + y * y <= limit:
+        return True
+    x, y = at[one + X0] - at[other + X1], at[one + Y0] - at[other + Y1]
+    return x * x + y * y <= limit

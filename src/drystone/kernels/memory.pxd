@@ -14,4 +14,5 @@ cdef double *new_doubles(Py_ssize_t count) except? NULL nogil
 cdef int *new_ints(Py_ssize_t count) except? NULL nogil
 cdef double *more_doubles(double *at, Py_ssize_t count) except? NULL nogil
 cdef int *more_ints(int *at, Py_ssize_t count) except? NULL nogil
+cdef void sort_doubles(double *at, Py_ssize_t count) noexcept nogil
 cdef void release(void *at) noexcept nogil

@@ -11,7 +11,7 @@ from cpython.buffer cimport (
     PyBuffer_Release,
     PyObject_GetBuffer,
 )
-from libc.stdlib cimport free, realloc
+from libc.stdlib cimport free, qsort, realloc
 
 
 cdef void *start(object array, const char *kinds, Py_ssize_t size, int access) except? NULL:
@@ -85,6 +85,15 @@ cdef void *resized(void *at, Py_ssize_t size) except? NULL nogil:
         with gil:
             raise MemoryError
     return more
+
+
+cdef void sort_doubles(double *at, Py_ssize_t count) noexcept nogil:
+    qsort(at, count, sizeof(double), compared)
+
+
+cdef int compared(const void *one, const void *two) noexcept nogil:
+    cdef double a = (<const double *>one)[0], b = (<const double *>two)[0]
+    return (a > b) - (a < b)
 
 
 cdef void release(void *at) noexcept nogil:

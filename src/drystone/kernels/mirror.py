@@ -2,10 +2,7 @@
 
 import numpy as np
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.raster import Mask
-
-_fast = compiled("mirror")
 
 
 def mirrored(pixels: Mask) -> Mask:
@@ -16,13 +13,4 @@ def mirrored(pixels: Mask) -> Mask:
     >>> mirrored(np.array([[True, False, False]])).tolist()
     [[False, False, True]]
     """
-    if _fast is None or not pixels.flags.c_contiguous:
-        return mirrored_numpy(pixels)
-    image = np.empty(pixels.shape, bool)
-    _fast.mirror(pixels, image)
-    return image
-
-
-def mirrored_numpy(pixels: Mask) -> Mask:
-    """Twin of :func:`mirrored`."""
     return np.ascontiguousarray(pixels[:, ::-1])

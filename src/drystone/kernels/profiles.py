@@ -4,6 +4,8 @@ Columns are half open, [j c, (j + 1) c) for a column width c, and conservative: 
 column a polygon is over, the whole column counts.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -11,7 +13,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import doubles, doubles_out
+    from cython.cimports.libc.math import ceil, floor
+else:
+    from math import ceil, floor
+
+    from drystone.kernels.lists import doubles, doubles_out
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -29,7 +42,8 @@ stone go moves it aside by what it may overlap.
 GROUND = -1
 """Owner of a column over which there is nothing."""
 
-_fast = compiled("profiles")
+SHARE = cython.declare(cython.double, EDGE)
+INFINITY = cython.declare(cython.double, np.inf)
 
 
 class HeightProfile(NamedTuple):
@@ -218,31 +232,83 @@ def extremes(
         raise ValueError(f"columns {cell_px} px wide")
     if corners.ndim != 2 or corners.shape[1] != 2:
         raise ValueError(f"corners of shape {corners.shape}")
-    kernel = extremes_numpy if _fast is None else _fast.extremes
-    found: tuple[Floats, Floats] = kernel(corners, left_px, cell_px, columns)
-    return found
+    corners = np.ascontiguousarray(corners, np.float64)
+    lowest, highest = np.empty(columns), np.empty(columns)
+    at: cython.p_double = doubles(corners)
+    size: cython.Py_ssize_t = len(corners)
+    count: cython.Py_ssize_t = columns
+    left: cython.double = left_px
+    cell: cython.double = cell_px
+    bottoms: cython.p_double = doubles_out(lowest)
+    tops: cython.p_double = doubles_out(highest)
+    with cython.nogil:
+        sweep_all(at, size, left, cell, bottoms, tops, count)
+    return lowest, highest
 
 
-def extremes_numpy(
-    corners: Floats, left_px: float, cell_px: float, columns: int
-) -> tuple[Floats, Floats]:
-    """Return what :func:`extremes` returns, by NumPy."""
-    x, y = corners[:, :1] - left_px, corners[:, 1:]
-    next_x, next_y = np.roll(x, -1, axis=0), np.roll(y, -1, axis=0)
-    forward = x <= next_x
-    start_x, end_x = np.where(forward, x, next_x), np.where(forward, next_x, x)
-    start_y, end_y = np.where(forward, y, next_y), np.where(forward, next_y, y)
-    run = end_x - start_x
-    slope = np.divide(end_y - start_y, run, out=np.zeros_like(run), where=run > 0.0)
-    number = np.arange(columns)
-    over = (np.floor(start_x / cell_px + EDGE) <= number) & (
-        number <= np.ceil(end_x / cell_px - EDGE) - 1.0
-    )
-    # An edge is highest and lowest at the ends of its piece over a column.
-    left, right = number * cell_px, (number + 1) * cell_px
-    one = np.where(start_x >= left, start_y, start_y + (left - start_x) * slope)
-    two = np.where(end_x <= right, end_y, start_y + (right - start_x) * slope)
-    bottoms = np.where(over, np.minimum(one, two), np.inf).min(axis=0, initial=np.inf)
-    tops = np.where(over, np.maximum(one, two), -np.inf).max(axis=0, initial=-np.inf)
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def sweep_all(
+    at: cython.p_double,
+    size: cython.Py_ssize_t,
+    left: cython.double,
+    cell: cython.double,
+    bottoms: cython.p_double,
+    tops: cython.p_double,
+    columns: cython.Py_ssize_t,
+) -> cython.void:
+    """Take in all edges of a polygon."""
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    for j in range(columns):
+        bottoms[j], tops[j] = INFINITY, -INFINITY
+    for i in range(0, 2 * size, 2):
+        j = i + 2 if i + 2 < 2 * size else 0
+        if at[i] - left <= at[j] - left:
+            sweep(at[i] - left, at[i + 1], at[j] - left, at[j + 1], cell, bottoms, tops, columns)
+        else:
+            sweep(at[j] - left, at[j + 1], at[i] - left, at[i + 1], cell, bottoms, tops, columns)
     # Zeros have no sign: minima of +0 and -0 depend on the order.
-    return bottoms + 0.0, tops + 0.0
+    for j in range(columns):
+        bottoms[j], tops[j] = bottoms[j] + 0.0, tops[j] + 0.0
+
+
+@cython.cfunc
+@cython.nogil
+@cython.inline
+@cython.exceptval(check=False)
+def sweep(
+    start_x: cython.double,
+    start_y: cython.double,
+    end_x: cython.double,
+    end_y: cython.double,
+    cell: cython.double,
+    bottoms: cython.p_double,
+    tops: cython.p_double,
+    columns: cython.Py_ssize_t,
+) -> cython.void:
+    """Take in the edge from one corner to another that is not left of it."""
+    run: cython.double = end_x - start_x
+    slope: cython.double = (end_y - start_y) / run if run > 0.0 else 0.0
+    one: cython.double
+    two: cython.double
+    left: cython.double
+    right: cython.double
+    # Compared as floats: what is far away does not fit into an integer.
+    first: cython.double = floor(start_x / cell + SHARE)
+    last: cython.double = ceil(end_x / cell - SHARE) - 1.0
+    most: cython.double = columns - 1
+    j: cython.Py_ssize_t
+    if last < 0.0 or first > most or not first <= last:
+        return
+    for j in range(
+        cython.cast(cython.Py_ssize_t, max(first, 0.0)),
+        cython.cast(cython.Py_ssize_t, min(last, most)) + 1,
+    ):
+        left, right = j * cell, (j + 1) * cell
+        # An edge is highest and lowest at the ends of its piece over a column.
+        one = start_y if start_x >= left else start_y + (left - start_x) * slope
+        two = end_y if end_x <= right else start_y + (right - start_x) * slope
+        bottoms[j] = min(bottoms[j], min(one, two))  # noqa: PLW3301 - the order of zeros
+        tops[j] = max(tops[j], max(one, two))  # noqa: PLW3301

@@ -1,16 +1,25 @@
 """What placement asks of a mask, prepared once: its runs, its underside, what its rays sweep."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.raster import Mask
 
-Ints = NDArray[np.int32]
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
 
-_fast = compiled("silhouette")
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import flags, flags_out, ints_out
+else:
+    from drystone.kernels.lists import flags, flags_out, ints_out
+
+Ints = NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,38 +82,74 @@ def silhouette(mask: Mask) -> Silhouette:
     >>> outline.rays.left.tolist(), outline.rays.runs.tolist(), outline.rays.area
     ([0, 1], [[0, 2, 3]], 2)
     """
-    if _fast is None:
-        return silhouette_numpy(mask)
-    runs, bottom, area_from = _fast.runs(mask)
-    height, width = mask.shape
-    return Silhouette(height, width, runs, bottom, area_from, RayPattern(*_fast.rays(mask)))
-
-
-def silhouette_numpy(mask: Mask) -> Silhouette:
-    """Twin of :func:`silhouette`."""
-    height, width = mask.shape
-    rows, starts, stops = _runs(mask[::-1])
-    runs = np.column_stack([height - 1 - rows, starts, stops - starts]).astype(np.int32)
-    bottom = (height - 1 - np.argmax(mask[::-1], axis=0)).astype(np.int32)
+    mask = np.ascontiguousarray(mask)
+    height: cython.Py_ssize_t = mask.shape[0]
+    width: cython.Py_ssize_t = mask.shape[1]
+    # No row has more runs than every second pixel.
+    runs = np.empty((height * (width // 2 + 1), 3), np.int32)
+    bottom = np.full(width, -1, np.int32)
     area_from = np.zeros(height + 1, np.int32)
-    area_from[:-1] = np.cumsum(np.count_nonzero(mask, axis=1)[::-1])[::-1]
-    return Silhouette(height, width, runs, bottom, area_from, _ray_pattern(mask))
+    pixels: cython.p_uchar = flags(mask)
+    found: cython.p_int = ints_out(runs)
+    lowest: cython.p_int = ints_out(bottom)
+    areas: cython.p_int = ints_out(area_from)
+    row: cython.Py_ssize_t
+    col: cython.Py_ssize_t
+    start: cython.Py_ssize_t
+    at: cython.Py_ssize_t
+    n: cython.Py_ssize_t = 0
+    area: cython.int = 0
+    for row in range(height - 1, -1, -1):
+        at, col = row * width, 0
+        while col < width:
+            start = col
+            while col < width and pixels[at + col]:
+                if lowest[col] < 0:
+                    lowest[col] = row
+                col += 1
+            if col > start:
+                found[n], found[n + 1], found[n + 2] = row, start, col - start
+                area += col - start
+                n += 3
+            col += 1
+        areas[row] = area
+    return Silhouette(height, width, runs[: n // 3].copy(), bottom, area_from, _rays(mask))
 
 
-def _ray_pattern(mask: Mask) -> RayPattern:
-    left_of = np.logical_or.accumulate(mask[:, ::-1], axis=1)[:, ::-1]
-    below = np.logical_or.accumulate(mask, axis=0)
-    swept = (left_of | below) & ~mask
-    rows, starts, stops = _runs(swept)
-    first = starts == 0
-    left = np.zeros(mask.shape[0], np.int32)
-    left[rows[first]] = stops[first]
-    runs = np.column_stack([rows, starts, stops])[~first].astype(np.int32)
-    return RayPattern(left, runs, int(np.count_nonzero(swept)))
-
-
-def _runs(pixels: Mask) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
-    """Return row, first column and column after the last of every run of set pixels in a row."""
-    edges = np.diff(np.pad(pixels, ((0, 0), (1, 1))).view(np.int8), axis=1)
-    rows, starts = np.nonzero(edges == 1)
-    return rows, starts, np.nonzero(edges == -1)[1]
+def _rays(mask: Mask) -> RayPattern:
+    """Return what the rays of a mask sweep."""
+    height: cython.Py_ssize_t = mask.shape[0]
+    width: cython.Py_ssize_t = mask.shape[1]
+    runs = np.empty((height * (width // 2 + 1), 3), np.int32)
+    first, above = np.zeros(height, np.int32), np.zeros(width, np.uint8)
+    pixels: cython.p_uchar = flags(mask)
+    found: cython.p_int = ints_out(runs)
+    left: cython.p_int = ints_out(first)
+    under: cython.p_uchar = flags_out(above)
+    row: cython.Py_ssize_t
+    col: cython.Py_ssize_t
+    start: cython.Py_ssize_t
+    last: cython.Py_ssize_t
+    at: cython.Py_ssize_t
+    n: cython.Py_ssize_t = 0
+    area: cython.Py_ssize_t = 0
+    for row in range(height):
+        at, col, last = row * width, 0, width - 1
+        while last >= 0 and not pixels[at + last]:
+            last -= 1
+        while col < width:
+            start = col
+            while col < width and not pixels[at + col] and (col < last or under[col]):
+                col += 1
+            if col > start:
+                area += col - start
+                if start == 0:
+                    left[row] = col
+                else:
+                    found[n], found[n + 1], found[n + 2] = row, start, col
+                    n += 3
+            while col < width and (pixels[at + col] or not (col < last or under[col])):
+                if pixels[at + col]:
+                    under[col] = 1
+                col += 1
+    return RayPattern(first, runs[: n // 3].copy(), area)

@@ -15,7 +15,6 @@ from drystone.kernels.boundary import EMPTY, touching_edges
 from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone_lab.pictures.interfaces import plot_blocks, plot_boundary_edges
-from drystone_lab.reproduce.base import PR
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table

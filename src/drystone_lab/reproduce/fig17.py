@@ -15,7 +15,6 @@ from drystone.metrics.joints import PAD_LEFT, PAD_TOP, joint_mask
 from drystone.metrics.paths import JointPath, horizontal_paths, vertical_paths
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
-from drystone_lab.reproduce.base import PR
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table

@@ -13,7 +13,6 @@ from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.pictures.features import COUNTS_IN, plot_counts, plot_features
-from drystone_lab.reproduce.base import MASONS, PR
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import MASONS, PR, Target

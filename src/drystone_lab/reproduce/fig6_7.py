@@ -7,7 +7,6 @@ from types import MappingProxyType
 from matplotlib.figure import Figure
 
 from drystone_lab.pictures.action import Mark, plot_action
-from drystone_lab.reproduce.base import PR
 from drystone_lab.reproduce.construction import Moment, construction
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.places import (

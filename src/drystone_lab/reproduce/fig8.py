@@ -14,7 +14,6 @@ from drystone.kernels.merits import eq12_merits
 from drystone.kernels.raster import Mask
 from drystone.model.pose import PosedStone
 from drystone_lab.pictures.positions import Layer, plot_position_layers, plot_position_values
-from drystone_lab.reproduce.base import PR
 from drystone_lab.reproduce.construction import Moment, construction
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.places import amid_course

@@ -7,7 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from drystone_lab.pictures.support import Standing, plot_standing, window_around
-from drystone_lab.reproduce.base import PR
 from drystone_lab.reproduce.construction import construction
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.unstable import Unstable, unstable_trials
