@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from drystone.drawing.pictures.joints import plot_joint_paths
+from drystone.drawing.pictures.stones import plot_joint_paths
 from drystone.experiments.reproduce.base import PR, PaperWall
 from drystone.experiments.reproduce.item import Context, Item, Output, Picture
 from drystone.experiments.table import Cell, Table
