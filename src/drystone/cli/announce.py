@@ -62,10 +62,9 @@ def write_film(result: PlanResult, folder: Path) -> None:
         return
     # What draws is loaded when it draws.
     from drystone.drawing.assembly.read import read_assembly  # noqa: PLC0415
-    from drystone.drawing.export import gif  # noqa: PLC0415
     from drystone.drawing.export.settings import ExportSettings  # noqa: PLC0415
 
-    gif.write(read_assembly(folder), folder, ExportSettings())
+    FORMATS["gif"].write(read_assembly(folder), folder, ExportSettings())
 
 
 def exports_notice(folder: Path) -> Notice | None:

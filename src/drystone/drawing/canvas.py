@@ -1,18 +1,25 @@
-"""What all pictures share: axes that fit the thing, stones, numbers, the ground."""
+"""Drawings by Matplotlib: axes that fit the thing, and what is on them.
 
-from collections.abc import Iterable
+Figures are made without pyplot, so nothing global changes and no window opens.
+"""
+
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch, PathPatch, Rectangle
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from drystone.drawing.outlines import Loop
-from drystone.drawing.palette import GREY, OUTLINE_COLOUR, text_colour
+from drystone.drawing.drawing import Area, Dots, Drawing, Item, Lines, Words, ground, letters_pt
+from drystone.drawing.lettering import drawable, fitted
+from drystone.drawing.outlines import Box, Loop
+from drystone.drawing.palette import OUTLINE_COLOUR, text_colour
 
 WIDTH_IN = 9.0
 """Width of the drawing area; a picture with margins then fits the text width of a page."""
@@ -21,10 +28,126 @@ HEIGHT_IN = 9.0
 """Largest height of the drawing area."""
 
 MARGIN_IN = 0.6
-LARGEST_PT, SMALLEST_PT = 10.0, 3.5
+LARGEST_PT, SMALLEST_PT, TITLE_PT = 10.0, 3.5, 9.0
+BESIDE_PT = ((10.0, 9.0), (-10.0, 9.0), (10.0, -9.0), (-10.0, -9.0))
+"""Where words beside a thing may be, from its middle."""
 
-Box = tuple[float, float, float, float]
-"""x0, y0, x1, y1."""
+
+def draw(drawing: Drawing, ax: Axes | None = None) -> Axes:
+    """Draw all of a drawing.
+
+    Parameters
+    ----------
+    drawing : Drawing
+        What is drawn.
+    ax : Axes, optional
+        Where; None makes a figure.
+    """
+    ax = fit_axes(ax, drawing.box)
+    add(ax, drawing.items)
+    if drawing.unit:
+        ax.set_xlabel(drawing.unit, fontsize=7, labelpad=1)
+    else:
+        ax.set_axis_off()
+    if drawing.title:
+        room = ax.get_window_extent().width * 72.0 / ax.figure.dpi
+        # What users call things is text, also with dollar signs in it.
+        said = fitted(drawable(drawing.title), TITLE_PT, room)
+        ax.set_title(said, fontsize=TITLE_PT, loc="left", pad=4, parse_math=False)
+    draw_legend(ax, drawing.legend)
+    return ax
+
+
+def add(ax: Axes, items: Iterable[Item]) -> None:
+    """Draw items on axes that show them already; their names become gids."""
+    words: list[Words] = []
+    for item in items:
+        if isinstance(item, Area):
+            dashes: dict[str, Any] = {"linestyle": (0, item.dashes)} if item.dashes else {}
+            draw_block(ax, item.loops, item.name, fill=item.fill, edgecolor=item.line,
+                       linewidth=item.width_pt, hatch=item.hatch or None, zorder=item.z,
+                       **dashes)  # fmt: skip
+        elif isinstance(item, Lines):
+            _add_lines(ax, item)
+        elif isinstance(item, Dots):
+            ax.plot(*item.points.T, linestyle="none", gid=item.name, zorder=item.z,
+                    **_marker(item))  # fmt: skip
+        else:
+            words.append(item)
+    ax.apply_aspect()
+    for one in words:
+        if one.beside:
+            _write_beside(ax, one, words)
+        else:
+            _write(ax, one)
+
+
+def _add_lines(ax: Axes, item: Lines) -> None:
+    if item.head:
+        for start, end in item.lines:
+            ax.annotate(
+                "", xy=end, xytext=start, gid=item.name,
+                arrowprops={"arrowstyle": "-|>,head_width=.35,head_length=.7", "shrinkA": 0,
+                            "shrinkB": 0, "linewidth": item.width_pt, "color": item.colour},
+            )  # fmt: skip
+        return
+    effects = [withStroke(linewidth=np.max(item.width_pt) + 1.5, foreground="white")]
+    drawn = LineCollection(
+        [np.asarray(line) for line in item.lines], colors=item.colour, linewidths=item.width_pt,
+        linestyles=(0, item.dashes) if item.dashes else "solid", gid=item.name, zorder=item.z,
+        capstyle="butt" if item.layer == "SITE" else "round",
+        path_effects=effects if item.halo else None,
+    )  # fmt: skip
+    ax.add_collection(drawn, autolim=False)
+
+
+def _marker(item: Dots) -> dict[str, Any]:
+    style: dict[str, Any] = {"color": item.colour, "marker": item.marker}
+    style |= {"markersize": item.size_pt, "markeredgewidth": 0.0}
+    if item.open or item.marker in "x+":
+        style |= {"markerfacecolor": "none", "markeredgewidth": 1.6}
+    return style
+
+
+def _write(ax: Axes, words: Words) -> None:
+    size = words.size_pt
+    if words.room is not None:
+        width, height = (side * _points_per_unit(ax) for side in words.room)
+        size = float(np.clip(letters_pt(words.text, width, height), SMALLEST_PT, LARGEST_PT))
+    ax.text(
+        *words.at, words.text, size=size, color=words.colour or text_colour(words.on), ha="center",
+        va="center_baseline", zorder=words.z, gid=words.name, clip_on=True,
+        path_effects=[withStroke(linewidth=0.12 * size, foreground=words.on)],
+    )  # fmt: skip
+
+
+def _write_beside(ax: Axes, words: Words, all_words: Iterable[Words]) -> None:
+    """Write beside a thing, away from the words on other things and from the ground."""
+
+    def on_page(points: Any) -> Loop:
+        return np.asarray(ax.transData.transform(points) * 72.0 / ax.figure.dpi)
+
+    taken = on_page(np.array([one.at for one in all_words if not one.beside]).reshape(-1, 2))
+    places = on_page(words.at) + np.array(BESIDE_PT)
+    lowest = ax.get_ylim()[0] if words.at[1] < 0 else 0.0
+    ground = on_page((0.0, lowest))[1] + 4.0
+    free = [
+        float(np.hypot(*(taken - place).T).min(initial=1e9)) if place[1] > ground else 0.0
+        for place in places
+    ]
+    ax.annotate(
+        words.text, words.at, BESIDE_PT[int(np.argmax(free))], textcoords="offset points",
+        size=words.size_pt, weight="bold", color=words.colour, ha="center", va="center",
+        zorder=words.z, gid=words.name,
+        path_effects=[withStroke(linewidth=1.4, foreground=words.on)],
+        arrowprops={"arrowstyle": "-", "linewidth": 0.6, "color": words.colour, "shrinkA": 3,
+                    "shrinkB": 0},
+    )  # fmt: skip
+
+
+def _points_per_unit(ax: Axes) -> float:
+    left, right = ax.get_xlim()
+    return float(ax.get_window_extent().width / ax.figure.dpi * 72 / (right - left))
 
 
 def fit_axes(ax: Axes | None, box: Box) -> Axes:
@@ -62,71 +185,39 @@ def draw_block(
     return patch
 
 
-def write_number(
-    ax: Axes, number: int, at: tuple[float, float], loops: Iterable[Loop], fill: str
-) -> None:
-    """Write a number on a block, as large as the block allows, readable on its colour."""
-    points = np.concatenate(list(loops))
-    width, height = np.ptp(points, axis=0) * _points_per_unit(ax)
-    # A digit is about .62 of its font's size wide; text may take some 60 % of the block's box.
-    room = min(height, width / (0.62 * len(str(number))))
-    size = min(max(0.6 * float(room), SMALLEST_PT), LARGEST_PT)
-    colour = text_colour(fill)
-    halo = [withStroke(linewidth=0.12 * size, foreground=fill)]
-    ax.text(
-        *at,
-        str(number),
-        size=size,
-        color=colour,
-        ha="center",
-        va="center_baseline",
-        path_effects=halo,
-        zorder=5,
-        clip_on=True,
-    )
-
-
-def _points_per_unit(ax: Axes) -> float:
-    """Return how many points of a font a unit of the axes is long."""
-    ax.apply_aspect()
-    left, right = ax.get_xlim()
-    return float(ax.get_window_extent().width / ax.figure.dpi * 72 / (right - left))
-
-
 def draw_ground(ax: Axes, x0: float, x1: float, depth: float) -> None:
     """Draw the ground: a line at y = 0 and hatching below."""
-    earth = Rectangle(
-        (x0, -depth),
-        x1 - x0,
-        depth,
-        facecolor="none",
-        edgecolor=GREY,
-        hatch="/////",
-        linewidth=0,
-        gid="ground",
-        zorder=0,
-    )
-    ax.add_patch(earth)
-    ax.plot([x0, x1], [0, 0], color=OUTLINE_COLOUR, linewidth=1.2, gid="ground-line", zorder=4)
+    add(ax, ground((x0, -depth, x1, 0.0)))
 
 
-def draw_legend(ax: Axes, entries: dict[str, str]) -> None:
-    """Write the meaning of the colours in rows under the axes."""
-    handles = [
-        Patch(facecolor=colour, edgecolor=OUTLINE_COLOUR, linewidth=0.4, label=text)
-        for text, colour in entries.items()
-    ]
+def draw_legend(
+    ax: Axes, entries: Mapping[str, Area | Lines | Dots], columns: int = 9, size: float = 7.0
+) -> None:
+    """Write the meaning of colours and lines in rows under all that belongs to the axes."""
+    if not entries:
+        return
     around = ax.get_tightbbox() or ax.get_window_extent()
-    anchor = ax.transAxes.inverted().transform((around.x0, around.y0 - 4))
+    ends = ax.transAxes.inverted().transform((around.x0, around.y0 - 4))
     ax.legend(
-        handles=handles,
-        loc="upper left",
-        bbox_to_anchor=(0.0, anchor[1]),
-        ncols=9,
-        fontsize=7,
-        frameon=False,
-        borderaxespad=0.0,
-        handlelength=1.0,
-        handleheight=1.0,
-        columnspacing=1.2,
-    )
+        handles=legend_handles(entries), loc="upper left", bbox_to_anchor=(0.0, ends[1]),
+        ncols=columns, fontsize=size, frameon=False, borderaxespad=0.0, handlelength=1.4,
+        handleheight=1.0, columnspacing=1.3,
+    )  # fmt: skip
+
+
+def legend_handles(entries: Mapping[str, Area | Lines | Dots]) -> list[Patch | Line2D]:
+    """Return samples of areas, lines and dots with what they mean."""
+    handles: list[Patch | Line2D] = []
+    for label, item in entries.items():
+        if isinstance(item, Area):
+            handles.append(
+                Patch(facecolor=item.fill, edgecolor=item.line, hatch=item.hatch or None,
+                      linewidth=0.4, label=label)
+            )  # fmt: skip
+        elif isinstance(item, Lines):
+            style: Any = (0, item.dashes) if item.dashes else "solid"
+            handles.append(Line2D([], [], color=item.colour, linewidth=float(np.max(item.width_pt)),
+                                  linestyle=style, label=label))  # fmt: skip
+        else:
+            handles.append(Line2D([], [], linestyle="none", label=label, **_marker(item)))
+    return handles

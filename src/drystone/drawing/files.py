@@ -51,6 +51,11 @@ def save(figure: Figure | SubFigure, path: str | Path, dpi: float = DPI) -> None
     suffix = Path(path).suffix.lower()
     if suffix not in _UNDATED:
         raise ValueError(f"{path}: pictures end in {', '.join(_UNDATED)}")
+    write_whole(Path(path), figure_bytes(figure, suffix, dpi))
+
+
+def figure_bytes(figure: Figure | SubFigure, suffix: str, dpi: float = DPI) -> bytes:
+    """Return a figure as the file of an ending; see :func:`save`."""
     whole = figure.get_figure(root=True)
     # SVG files name their parts by a hash with a random salt unless one is given.
     with mpl.rc_context({"svg.hashsalt": "drystone"}), BytesIO() as file:
@@ -63,7 +68,7 @@ def save(figure: Figure | SubFigure, path: str | Path, dpi: float = DPI) -> None
             facecolor="white",
             metadata=_UNDATED[suffix],
         )
-        write_whole(Path(path), file.getvalue())
+        return file.getvalue()
 
 
 def write_pictures(

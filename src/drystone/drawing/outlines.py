@@ -15,6 +15,9 @@ Loop = NDArray[np.float64]
 """(n, 2) corners (x, y), y up, first corner not repeated: counter-clockwise around stone,
 clockwise around holes."""
 
+Box = tuple[float, float, float, float]
+"""x0, y0, x1, y1."""
+
 UNSEEN = 1e-3
 """Share of a wall's size that nobody sees: stones settle .01 source px above the ground."""
 
@@ -115,7 +118,12 @@ def wall_regions(wall: Labels | Mapping[int, Loop]) -> tuple[Region, ...]:
     return label_regions(wall[: int(filled[-1]) + 1]) if filled.size else ()
 
 
-def regions_box(*walls: Iterable[Iterable[Loop]]) -> tuple[float, float, float, float]:
+def rectangle(x: float, y: float, width: float, height: float) -> Loop:
+    """Return the corners of a rectangle from its lower left one."""
+    return np.array([(x, y), (x + width, y), (x + width, y + height), (x, y + height)])
+
+
+def regions_box(*walls: Iterable[Iterable[Loop]]) -> Box:
     """Return x0, y0, x1, y1 of the loops of regions; a unit square when there are none."""
     loops = [loop for wall in walls for loops in wall for loop in loops]
     points = np.concatenate(loops) if loops else np.array([[0.0, 0.0], [1.0, 1.0]])

@@ -15,6 +15,9 @@ WEDGE_COLOUR = "#8b0000"
 PLAIN_COLOUR = "#cfc8bb"
 """Stones of which no cluster is known."""
 
+PALE, FIXED_COLOUR = "#efece6", "#c9c9c9"
+"""Blocks below what is drawn over them, and those that cannot move."""
+
 OUTLINE_COLOUR = "#1a1a1a"
 GREY = "#8c8c8c"
 
@@ -67,7 +70,7 @@ def text_colour(background: str) -> str:
 
 def relative_luminance(colour: str) -> float:
     """Return the luminance of ``"#rrggbb"`` as WCAG 2 defines it, 0 (black) to 1 (white)."""
-    red, green, blue = (_linear(part) for part in rgb(colour))
+    red, green, blue = (linear(part) for part in rgb(colour))
     return 0.2126 * red + 0.7152 * green + 0.0722 * blue
 
 
@@ -76,7 +79,14 @@ def rgb(colour: str) -> Rgb:
     return Rgb(*(int(colour[start : start + 2], 16) / 255 for start in (1, 3, 5)))
 
 
-def _linear(part: float) -> float:
+def linear(part: float) -> float:
+    """Return a part of an sRGB colour as light.
+
+    Examples
+    --------
+    >>> linear(0.0), linear(1.0)
+    (0.0, 1.0)
+    """
     return part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4
 
 

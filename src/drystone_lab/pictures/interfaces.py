@@ -3,14 +3,13 @@
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from drystone.drawing.canvas import draw_block, draw_ground, fit_axes
+from drystone.drawing.canvas import draw_block, draw_ground, draw_legend, fit_axes
+from drystone.drawing.drawing import Lines
 from drystone.drawing.outlines import label_regions
-from drystone.drawing.palette import GREY
+from drystone.drawing.palette import GREY, PALE
 from drystone.drawing.pictures.contacts import JOINT, NORMAL, plot_contacts
-from drystone.drawing.scene import PALE, legend_below
 from drystone.model.wall import Labels
 from drystone.statics.model import RigidBlockModel
 
@@ -55,13 +54,11 @@ def plot_boundary_edges(
     ):
         drawn = LineCollection(list(lines), colors=colour, linewidths=thick, gid=gid, zorder=4)
         ax.add_collection(drawn, autolim=False)
-    legend_below(
-        ax,
-        [
-            Line2D([], [], color=JOINT, linewidth=1.6, label="pixel edge between blocks"),
-            Line2D([], [], color=NORMAL, linewidth=0.8, label="its normal"),
-        ],
-    )
+    legend = {
+        "pixel edge between blocks": Lines("", [], JOINT, 1.6),
+        "its normal": Lines("", [], NORMAL, 0.8),
+    }
+    draw_legend(ax, legend)
     return ax
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from drystone.drawing.pictures.joints import plot_joint_paths
+from drystone.drawing.pictures.stones import plot_joint_paths
 from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
 from drystone.metrics.arrangement import SHORTEST, mean_excess

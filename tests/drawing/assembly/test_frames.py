@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from drystone.drawing.assembly.frames import Pose3d, photo_pose, wall_pose
+from drystone.model.frames3d import Pose3d, photo_pose, wall_pose
 
 ANGLES = [-180.0, -135.3, -90.0, -12.5, 0.0, 1e-7, 33.0, 90.0, 179.9]
 

@@ -10,7 +10,7 @@ import shapely
 from compas.datastructures import Mesh
 from compas.geometry import Frame, Transformation
 
-from drystone.drawing.export import compas as exporter
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
 from drystone.errors import UsageError
 from tests.drawing.export.robot_plans import METRIC, THICKNESS_M, assembly
@@ -19,8 +19,8 @@ SETTINGS = ExportSettings()
 
 
 def written(name: str, folder: Path) -> dict[str, Any]:
-    (path,) = exporter.write(assembly(name), folder, SETTINGS)
-    assert (path.name,) == exporter.files(assembly(name), SETTINGS)
+    (path,) = FORMATS["compas"].write(assembly(name), folder, SETTINGS)
+    assert (path.name,) == tuple(FORMATS["compas"].files(assembly(name), SETTINGS))
     read: dict[str, Any] = compas.json_load(str(path))
     return read
 
@@ -75,4 +75,4 @@ def test_it_is_written_again_by_compas_as_it_was_read(tmp_path: Path) -> None:
 
 def test_no_frames_without_a_scale() -> None:
     with pytest.raises(UsageError, match="E131"):
-        exporter.files(assembly("exact", None), SETTINGS)
+        FORMATS["compas"].files(assembly("exact", None), SETTINGS)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import shapely
 
-from drystone.drawing.export import csv_table
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
 from drystone.model.plan import StoneStep
 from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly
@@ -16,8 +16,8 @@ SETTINGS = ExportSettings()
 
 def rows(name: str, folder: Path, px_per_m: float | None = PX_PER_M) -> list[dict[str, str]]:
     wall = assembly(name, px_per_m)
-    (path,) = csv_table.write(wall, folder, SETTINGS)
-    assert (path.name,) == csv_table.files(wall, SETTINGS)
+    (path,) = FORMATS["csv"].write(wall, folder, SETTINGS)
+    assert (path.name,) == tuple(FORMATS["csv"].files(wall, SETTINGS))
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
@@ -69,7 +69,7 @@ def test_instructions_say_what_to_do(tmp_path: Path) -> None:
 
 
 def test_equal_runs_give_equal_bytes(tmp_path: Path) -> None:
-    (one,) = csv_table.write(assembly("exact"), tmp_path / "a", SETTINGS)
-    (other,) = csv_table.write(assembly("exact"), tmp_path / "b", SETTINGS)
+    (one,) = FORMATS["csv"].write(assembly("exact"), tmp_path / "a", SETTINGS)
+    (other,) = FORMATS["csv"].write(assembly("exact"), tmp_path / "b", SETTINGS)
     assert one.read_bytes() == other.read_bytes()
     assert b"\r" not in one.read_bytes()

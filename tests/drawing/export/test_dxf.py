@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import shapely
 
-from drystone.drawing.export import dxf
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
 from drystone.errors import UsageError
 from tests.drawing.export.drawn_walls import assembly
@@ -22,8 +22,8 @@ def wall():
 
 @pytest.fixture(scope="module")
 def doc(wall, tmp_path_factory):
-    (path,) = dxf.write(wall, tmp_path_factory.mktemp("dxf"), SETTINGS)
-    assert dxf.files(wall, SETTINGS) == (path.name,)
+    (path,) = FORMATS["dxf"].write(wall, tmp_path_factory.mktemp("dxf"), SETTINGS)
+    assert tuple(FORMATS["dxf"].files(wall, SETTINGS)) == (path.name,)
     return ezdxf.readfile(path)
 
 
@@ -49,7 +49,7 @@ def test_the_audit_finds_nothing(doc) -> None:
 def test_the_unit_is_the_metre_or_none(doc, tmp_path) -> None:
     assert doc.header["$INSUNITS"] == 6
     assert doc.header["$MEASUREMENT"] == 1
-    (path,) = dxf.write(assembly(px_per_m=None), tmp_path, SETTINGS)
+    (path,) = FORMATS["dxf"].write(assembly(px_per_m=None), tmp_path, SETTINGS)
     without = ezdxf.readfile(path)
     assert without.header["$INSUNITS"] == 0
     words = " ".join(text.dxf.text for text in on_layer(without, "SITE", "TEXT"))
@@ -127,14 +127,14 @@ def test_numbers_are_the_steps_at_the_centroids(doc, wall) -> None:
 
 def test_equal_walls_give_equal_bytes_and_ezdxf_stays_as_it_was(wall, tmp_path) -> None:
     ezdxf.options.write_fixed_meta_data_for_testing = False
-    first = dxf.write(wall, tmp_path, SETTINGS)[0].read_bytes()
-    assert dxf.write(assembly(), tmp_path, SETTINGS)[0].read_bytes() == first
+    first = FORMATS["dxf"].write(wall, tmp_path, SETTINGS)[0].read_bytes()
+    assert FORMATS["dxf"].write(assembly(), tmp_path, SETTINGS)[0].read_bytes() == first
     assert not ezdxf.options.write_fixed_meta_data_for_testing
 
 
 def test_without_ezdxf_the_extra_is_named(wall, tmp_path, monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "ezdxf", None)
     with pytest.raises(UsageError, match="not installed") as caught:
-        dxf.write(wall, tmp_path, SETTINGS)
+        FORMATS["dxf"].write(wall, tmp_path, SETTINGS)
     assert caught.value.code == "E185"
     assert "drystone[cad]" in caught.value.cure

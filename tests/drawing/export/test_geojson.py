@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 import shapely
 
-from drystone.drawing.export import geojson
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
 from tests.drawing.export.robot_plans import METRIC, PX_PER_M, assembly
 
@@ -16,8 +16,8 @@ SETTINGS = ExportSettings()
 
 def written(name: str, folder: Path, px_per_m: float | None = PX_PER_M) -> dict[str, Any]:
     wall = assembly(name, px_per_m)
-    (path,) = geojson.write(wall, folder, SETTINGS)
-    assert (path.name,) == geojson.files(wall, SETTINGS)
+    (path,) = FORMATS["geojson"].write(wall, folder, SETTINGS)
+    assert (path.name,) == tuple(FORMATS["geojson"].files(wall, SETTINGS))
     read: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     return read
 
@@ -61,6 +61,6 @@ def test_properties_are_the_row_of_the_build_list(tmp_path: Path) -> None:
 
 
 def test_equal_runs_give_equal_bytes(tmp_path: Path) -> None:
-    (one,) = geojson.write(assembly("exact"), tmp_path / "a", SETTINGS)
-    (other,) = geojson.write(assembly("exact"), tmp_path / "b", SETTINGS)
+    (one,) = FORMATS["geojson"].write(assembly("exact"), tmp_path / "a", SETTINGS)
+    (other,) = FORMATS["geojson"].write(assembly("exact"), tmp_path / "b", SETTINGS)
     assert one.read_bytes() == other.read_bytes()

@@ -1,5 +1,8 @@
-"""wall.obj, read back with trimesh."""
+"""wall.obj, wall.glb and stl/, read back with trimesh and byte by byte."""
 
+import json
+import struct
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -7,8 +10,9 @@ import pytest
 import shapely
 import trimesh
 
-from drystone.drawing.export import meshes
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.solids import material, materials
 from drystone.errors import UsageError
 from tests.drawing.export.robot_plans import METRIC, THICKNESS_M, assembly
 
@@ -16,9 +20,9 @@ SETTINGS = ExportSettings()
 
 
 @pytest.mark.parametrize("name", METRIC)
-def test_objects_are_closed_named_and_in_place(name: str, tmp_path: Path) -> None:
+def test_objects_of_obj_are_closed_named_and_in_place(name: str, tmp_path: Path) -> None:
     wall = assembly(name)
-    path, _ = meshes.write(wall, tmp_path, SETTINGS)
+    path, _ = FORMATS["obj"].write(wall, tmp_path, SETTINGS)
     scene = trimesh.load_scene(path, split_objects=True, group_material=False, process=False)
     names = [part.name for part in wall.parts]
     assert sorted(scene.geometry) == sorted(names)
@@ -36,7 +40,7 @@ def test_objects_are_closed_named_and_in_place(name: str, tmp_path: Path) -> Non
 
 def test_colours_are_those_of_the_clusters(tmp_path: Path) -> None:
     wall = assembly("exact")
-    path, colours = meshes.write(wall, tmp_path, SETTINGS)
+    path, colours = FORMATS["obj"].write(wall, tmp_path, SETTINGS)
     assert colours.name == "wall.mtl"
     scene = trimesh.load_scene(path, split_objects=True, group_material=False, process=False)
     for part in wall.parts:
@@ -49,20 +53,91 @@ def test_colours_are_those_of_the_clusters(tmp_path: Path) -> None:
 
 def test_numbers_have_all_digits(tmp_path: Path) -> None:
     wall = assembly("exact")
-    path, _ = meshes.write(wall, tmp_path, SETTINGS)
+    path, _ = FORMATS["obj"].write(wall, tmp_path, SETTINGS)
     lines = [line.split()[1:] for line in path.read_text().splitlines() if line.startswith("v ")]
     first = wall.parts[0].corners
     found = np.array(lines[: len(first)], float)
     assert (found[:, [0, 2]] == first).all()
 
 
-def test_equal_runs_give_equal_bytes(tmp_path: Path) -> None:
-    one = meshes.write(assembly("exact"), tmp_path / "a", SETTINGS)
-    other = meshes.write(assembly("exact"), tmp_path / "b", SETTINGS)
-    assert [path.read_bytes() for path in one] == [path.read_bytes() for path in other]
+@pytest.mark.parametrize("name", METRIC)
+def test_nodes_are_closed_named_and_y_is_up(name: str, tmp_path: Path) -> None:
+    wall = assembly(name)
+    (path,) = FORMATS["glb"].write(wall, tmp_path, SETTINGS)
+    scene = trimesh.load_scene(path)
+    assert sorted(scene.graph.nodes_geometry) == sorted(part.name for part in wall.parts)
+    for part in wall.parts:
+        matrix, geometry = scene.graph[part.name]
+        mesh = scene.geometry[geometry].copy()
+        assert mesh.is_watertight
+        area = shapely.Polygon(part.corners).area
+        assert mesh.volume == pytest.approx(area * THICKNESS_M, rel=1e-6)
+        mesh.apply_transform(matrix)
+        low, high = part.corners.min(axis=0), part.corners.max(axis=0)
+        # (x, y, z) of the wall is (x, z, -y) here.
+        expected = [[low[0], low[1], -THICKNESS_M], [high[0], high[1], 0.0]]
+        assert mesh.bounds == pytest.approx(np.array(expected), abs=1e-6)
 
 
-def test_no_objects_without_a_scale() -> None:
-    assert meshes.files(assembly("exact"), SETTINGS) == ("wall.obj", "wall.mtl")
+def test_nodes_have_the_poses_steps_and_colours_of_the_wall(tmp_path: Path) -> None:
+    wall = assembly("exact")
+    (path,) = FORMATS["glb"].write(wall, tmp_path, SETTINGS)
+    data = path.read_bytes()
+    assert struct.unpack("<4sII", data[:12]) == (b"glTF", 2, len(data))
+    size, kind = struct.unpack("<I4s", data[12:20])
+    assert kind == b"JSON"
+    gltf = json.loads(data[20 : 20 + size])
+    nodes = {node["name"]: node for node in gltf["nodes"]}
+    colours = materials(wall)
+    for part in wall.parts:
+        node = nodes[part.name]
+        matrix = np.reshape(node["matrix"], (4, 4)).T
+        assert matrix == pytest.approx(wall.place_pose(part).matrix, abs=1e-12)
+        assert node["extras"] == {"step": part.step}
+        (mesh,) = gltf["meshes"][node["mesh"]]["primitives"]
+        paint = gltf["materials"][mesh["material"]]
+        assert paint["name"] == material(part)
+        light = [((one + 0.055) / 1.055) ** 2.4 if one > 0.04 else one / 12.92
+                 for one in colours[material(part)]]  # fmt: skip
+        factor = paint["pbrMetallicRoughness"]["baseColorFactor"]
+        assert factor == pytest.approx([*light, 1.0], abs=0.003)
+
+
+def test_without_trimesh_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    with pytest.raises(UsageError, match="not installed") as caught:
+        FORMATS["glb"].files(assembly("exact"), SETTINGS)
+    assert caught.value.code == "E182"
+    assert "drystone[mesh]" in caught.value.cure
+
+
+@pytest.mark.parametrize("name", METRIC)
+def test_files_of_stl_are_closed_and_in_place(name: str, tmp_path: Path) -> None:
+    wall = assembly(name)
+    paths = FORMATS["stl"].write(wall, tmp_path, SETTINGS)
+    names = tuple(path.relative_to(tmp_path).as_posix() for path in paths)
+    assert names == tuple(FORMATS["stl"].files(wall, SETTINGS))
+    assert names == tuple(f"stl/{part.name}.stl" for part in wall.parts)
+    for path, part in zip(paths, wall.parts, strict=True):
+        mesh = trimesh.load_mesh(path)
+        assert mesh.is_watertight
+        area = shapely.Polygon(part.corners).area
+        assert mesh.volume == pytest.approx(area * THICKNESS_M, rel=1e-5)
+        low, high = part.corners.min(axis=0), part.corners.max(axis=0)
+        expected = [[low[0], 0.0, low[1]], [high[0], THICKNESS_M, high[1]]]
+        assert mesh.bounds == pytest.approx(np.array(expected), abs=1e-7)
+
+
+def test_the_header_says_unit_and_frame_and_is_no_text_file(tmp_path: Path) -> None:
+    path = FORMATS["stl"].write(assembly("exact"), tmp_path, SETTINGS)[0]
+    header = path.read_bytes()[:80]
+    assert header.rstrip() == b"drystone, metres: stone_005, frame W"
+    assert not header.startswith(b"solid")
+
+
+@pytest.mark.parametrize("name", ["obj", "glb", "stl"])
+def test_equal_walls_give_equal_bytes_and_none_without_a_scale(name: str) -> None:
+    one, other = (FORMATS[name].files(assembly("raster"), SETTINGS) for _ in range(2))
+    assert [made() for made in one.values()] == [made() for made in other.values()]
     with pytest.raises(UsageError, match="E131"):
-        meshes.files(assembly("exact", None), SETTINGS)
+        FORMATS[name].files(assembly("exact", None), SETTINGS)

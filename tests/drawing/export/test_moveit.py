@@ -10,7 +10,7 @@ import shapely
 import trimesh
 import yaml
 
-from drystone.drawing.export import moveit
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
 from drystone.errors import UsageError
 from tests.drawing.export.robot_plans import METRIC, THICKNESS_M, assembly
@@ -22,7 +22,7 @@ FIELDS = {"header", "id", "pose", "meshes", "mesh_poses"}
 
 
 def scene(name: str, folder: Path) -> dict[str, Any]:
-    path, _ = moveit.write(assembly(name), folder, SETTINGS)
+    path, _ = FORMATS["moveit"].write(assembly(name), folder, SETTINGS)
     read: dict[str, Any] = yaml.safe_load(path.read_text(encoding="utf-8"))
     return read
 
@@ -73,7 +73,7 @@ def test_every_object_has_a_colour(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", METRIC)
 def test_the_text_format_holds_the_same(name: str, tmp_path: Path) -> None:
     wall = assembly(name)
-    _, path = moveit.write(wall, tmp_path, SETTINGS)
+    _, path = FORMATS["moveit"].write(wall, tmp_path, SETTINGS)
     found = list(read_scene(path.read_text(encoding="utf-8")))
     assert [one[0] for one in found] == [part.name for part in wall.parts]
     for (_, matrix, vertices, faces), part in zip(found, wall.parts, strict=True):
@@ -119,6 +119,7 @@ def read_scene(text: str) -> Iterator[tuple[str, Any, Any, Any]]:
 
 
 def test_no_scene_without_a_scale() -> None:
-    assert moveit.files(assembly("exact"), SETTINGS) == ("scene.yaml", "wall.scene")
+    files = FORMATS["moveit"].files(assembly("exact"), SETTINGS)
+    assert tuple(files) == ("scene.yaml", "wall.scene")
     with pytest.raises(UsageError, match="E131"):
-        moveit.files(assembly("exact", None), SETTINGS)
+        FORMATS["moveit"].files(assembly("exact", None), SETTINGS)

@@ -8,7 +8,7 @@ import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
-from drystone.drawing.export import csv_table, parquet_table
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
 from drystone.errors import UsageError
 from tests.drawing.export.robot_plans import PX_PER_M, assembly
@@ -19,10 +19,10 @@ SETTINGS = ExportSettings()
 @pytest.mark.parametrize("px_per_m", [PX_PER_M, None])
 def test_it_holds_what_the_csv_holds(px_per_m: float | None, tmp_path: Path) -> None:
     wall = assembly("exact", px_per_m)
-    (path,) = parquet_table.write(wall, tmp_path, SETTINGS)
-    assert (path.name,) == parquet_table.files(wall, SETTINGS)
+    (path,) = FORMATS["parquet"].write(wall, tmp_path, SETTINGS)
+    assert (path.name,) == tuple(FORMATS["parquet"].files(wall, SETTINGS))
     found = parquet.read_table(path).to_pylist()
-    (other,) = csv_table.write(wall, tmp_path, SETTINGS)
+    (other,) = FORMATS["csv"].write(wall, tmp_path, SETTINGS)
     with other.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(found) == len(rows) == len(wall.parts)
@@ -36,7 +36,7 @@ def test_it_holds_what_the_csv_holds(px_per_m: float | None, tmp_path: Path) -> 
 
 
 def test_types_and_metadata(tmp_path: Path) -> None:
-    (path,) = parquet_table.write(assembly("exact"), tmp_path, SETTINGS)
+    (path,) = FORMATS["parquet"].write(assembly("exact"), tmp_path, SETTINGS)
     schema = parquet.read_schema(path)
     types = {name: schema.field(name).type for name in schema.names}
     assert types["step"] == types["under"] == types["cluster"] == pa.int64()
@@ -48,21 +48,21 @@ def test_types_and_metadata(tmp_path: Path) -> None:
 
 
 def test_without_a_scale_the_empty_column_of_masses_keeps_its_type(tmp_path: Path) -> None:
-    (path,) = parquet_table.write(assembly("raster", None), tmp_path, SETTINGS)
+    (path,) = FORMATS["parquet"].write(assembly("raster", None), tmp_path, SETTINGS)
     table = parquet.read_table(path)
     assert table.schema.field("mass_kg").type == pa.float64()
     assert table["mass_kg"].null_count == len(table)
 
 
 def test_equal_runs_give_equal_bytes(tmp_path: Path) -> None:
-    (one,) = parquet_table.write(assembly("exact"), tmp_path / "a", SETTINGS)
-    (other,) = parquet_table.write(assembly("exact"), tmp_path / "b", SETTINGS)
+    (one,) = FORMATS["parquet"].write(assembly("exact"), tmp_path / "a", SETTINGS)
+    (other,) = FORMATS["parquet"].write(assembly("exact"), tmp_path / "b", SETTINGS)
     assert one.read_bytes() == other.read_bytes()
 
 
 def test_without_pyarrow_it_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     with pytest.raises(UsageError) as caught:
-        parquet_table.files(assembly("exact"), SETTINGS)
+        FORMATS["parquet"].files(assembly("exact"), SETTINGS)
     assert caught.value.code == "E181"
     assert "drystone[io]" in caught.value.cure

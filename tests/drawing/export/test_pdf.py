@@ -8,9 +8,10 @@ import pypdfium2
 import pytest
 from PIL import Image
 
-from drystone.drawing.export import pdf
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
 from drystone.drawing.sheet.lists import drawn_factor, in_photo_order
+from drystone.drawing.sheet.pages import sheet
 from drystone.drawing.sheet.rows import Rows
 from drystone.drawing.sheet.wall import DRAWING_MM, Scale, paper_scale
 from drystone.errors import InputError
@@ -32,8 +33,8 @@ def wall(tmp_path_factory):
 @pytest.fixture(scope="module")
 def path(wall, tmp_path_factory):
     settings = ExportSettings(title="Wall $4, $5")
-    (written,) = pdf.write(wall, tmp_path_factory.mktemp("pdf"), settings)
-    assert pdf.files(wall, settings) == (written.name,)
+    (written,) = FORMATS["pdf"].write(wall, tmp_path_factory.mktemp("pdf"), settings)
+    assert tuple(FORMATS["pdf"].files(wall, settings)) == (written.name,)
     return written
 
 
@@ -143,7 +144,7 @@ def test_every_line_shows_the_photograph_of_its_stone(wall, path) -> None:
 
 def test_without_a_scale_nothing_is_to_scale(tmp_path) -> None:
     wall = assembly(px_per_m=None)
-    (path,) = pdf.write(wall, tmp_path, ExportSettings())
+    (path,) = FORMATS["pdf"].write(wall, tmp_path, ExportSettings())
     with pypdfium2.PdfDocument(path) as document:
         words = [page.get_textpage().get_text_range() for page in document]
     assert "NOT TO SCALE" in words[0]
@@ -168,18 +169,18 @@ def test_a_photograph_of_something_else_is_refused(wall, tmp_path) -> None:
     other = tmp_path / "photo.png"
     Image.new("RGB", (300, 200)).save(other)
     with pytest.raises(InputError, match="something else") as caught:
-        pdf.write(replace(wall, photo=other), tmp_path, ExportSettings())
+        FORMATS["pdf"].write(replace(wall, photo=other), tmp_path, ExportSettings())
     assert caught.value.code == "E189"
     other.write_bytes(b"no picture")
     with pytest.raises(InputError, match="cannot be read") as caught:
-        pdf.write(replace(wall, photo=other), tmp_path, ExportSettings())
+        FORMATS["pdf"].write(replace(wall, photo=other), tmp_path, ExportSettings())
     assert caught.value.code == "E189"
 
 
 def test_equal_plans_give_equal_bytes(tmp_path) -> None:
     wall = assembly(columns=2, rows=1)
-    first = pdf.write(wall, tmp_path, ExportSettings())[0].read_bytes()
-    assert pdf.write(wall, tmp_path, ExportSettings())[0].read_bytes() == first
+    first = FORMATS["pdf"].write(wall, tmp_path, ExportSettings())[0].read_bytes()
+    assert FORMATS["pdf"].write(wall, tmp_path, ExportSettings())[0].read_bytes() == first
     assert b"CreationDate" not in first
 
 
@@ -190,7 +191,7 @@ def test_no_words_of_the_first_page_lie_over_others_or_the_wall(px_per_m) -> Non
     width, height = wall.size
     scale = Scale(None, min(DRAWING_MM[0] / width, DRAWING_MM[1] / height))
     settings = ExportSettings(title=300 * "W", paper_scale=1000.0 / scale.mm_per_unit)
-    page = pdf.sheet(wall, settings)[0]
+    page = sheet(wall, settings, None)[0]
     frame = next(patch for patch in page.ax.patches if patch.get_gid() == "frame")
     inside, paper = frame.get_window_extent(), page.ax.get_window_extent()
     # Numbers of steps alone have a halo, and stand in the frame.

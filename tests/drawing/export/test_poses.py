@@ -9,7 +9,7 @@ import pytest
 import shapely
 from scipy.spatial.transform import Rotation
 
-from drystone.drawing.export import poses
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
 from drystone.errors import UsageError
 from drystone.model.plan import StoneStep
@@ -19,7 +19,7 @@ SETTINGS = ExportSettings()
 
 
 def written(name: str, folder: Path) -> dict[str, Any]:
-    (path,) = poses.write(assembly(name), folder, SETTINGS)
+    (path,) = FORMATS["poses"].write(assembly(name), folder, SETTINGS)
     assert path == folder / "poses.json"
     read: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     return read
@@ -127,16 +127,16 @@ def test_frames_units_and_provenance_are_said(tmp_path: Path) -> None:
 
 
 def test_equal_runs_give_equal_bytes(tmp_path: Path) -> None:
-    (one,) = poses.write(assembly("exact"), tmp_path / "a", SETTINGS)
-    (other,) = poses.write(assembly("exact"), tmp_path / "b", SETTINGS)
+    (one,) = FORMATS["poses"].write(assembly("exact"), tmp_path / "a", SETTINGS)
+    (other,) = FORMATS["poses"].write(assembly("exact"), tmp_path / "b", SETTINGS)
     assert one.read_bytes() == other.read_bytes()
     assert b"-0.0," not in one.read_bytes()
 
 
 def test_no_poses_without_a_scale(tmp_path: Path) -> None:
     with pytest.raises(UsageError) as caught:
-        poses.files(assembly("raster", None), SETTINGS)
+        FORMATS["poses"].files(assembly("raster", None), SETTINGS)
     assert caught.value.code == "E131"
     with pytest.raises(UsageError, match="E131"):
-        poses.write(assembly("raster", None), tmp_path, SETTINGS)
+        FORMATS["poses"].write(assembly("raster", None), tmp_path, SETTINGS)
     assert not list(tmp_path.iterdir())

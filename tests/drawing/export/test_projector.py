@@ -7,6 +7,7 @@ import pytest
 from PIL import Image
 
 from drystone.drawing.export import projector
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
 from drystone.errors import UsageError
 from tests.drawing.export.drawn_walls import assembly
@@ -30,9 +31,9 @@ def bright_box(image):
 
 def test_every_step_has_a_picture_of_the_projectors_size(tmp_path) -> None:
     wall = assembly()
-    paths = projector.write(wall, tmp_path, SETTINGS)
+    paths = FORMATS["projector"].write(wall, tmp_path, SETTINGS)
     names = [path.relative_to(tmp_path).as_posix() for path in paths]
-    assert tuple(names) == projector.files(wall, SETTINGS)
+    assert tuple(names) == tuple(FORMATS["projector"].files(wall, SETTINGS))
     assert names[0] == "projector/step_000.png"
     assert len(paths) == len(wall.parts) + 1
     for path in paths:
@@ -43,7 +44,7 @@ def test_every_step_has_a_picture_of_the_projectors_size(tmp_path) -> None:
 
 def test_the_stone_to_be_placed_is_drawn_one_to_one(tmp_path) -> None:
     wall = assembly()
-    paths = projector.write(wall, tmp_path, SETTINGS)
+    paths = FORMATS["projector"].write(wall, tmp_path, SETTINGS)
     left, bottom = (800 - 450) / 2, 84
     for part, path in zip(wall.parts, paths[1:], strict=True):
         low, high = part.corners.min(axis=0) * 500, part.corners.max(axis=0) * 500
@@ -53,7 +54,7 @@ def test_the_stone_to_be_placed_is_drawn_one_to_one(tmp_path) -> None:
 
 def test_what_stands_is_dim_and_what_is_to_come_dark(tmp_path) -> None:
     wall = assembly()
-    images = [picture(path) for path in projector.write(wall, tmp_path, SETTINGS)]
+    images = [picture(path) for path in FORMATS["projector"].write(wall, tmp_path, SETTINGS)]
     stone = wall.parts[2]
     # Its lower edge lies on the ground, which is drawn always; its right edge does not.
     x, y = (stone.corners[1] + stone.corners[2]) / 2 * 500
@@ -65,7 +66,7 @@ def test_what_stands_is_dim_and_what_is_to_come_dark(tmp_path) -> None:
 
 
 def test_the_bar_is_as_long_as_it_says(tmp_path) -> None:
-    image = picture(projector.write(assembly(), tmp_path, SETTINGS)[1])
+    image = picture(FORMATS["projector"].write(assembly(), tmp_path, SETTINGS)[1])
     strip = image[600 - 30 :, 400:]
     longest = max(int(run) for row in strip for run in runs(row > 0))
     assert longest == pytest.approx(0.1 * 500, abs=2)
@@ -79,7 +80,7 @@ def runs(lit):
 def test_the_wall_begins_where_it_is_told_to(tmp_path) -> None:
     settings = replace(SETTINGS, projector_offset_px=(20, 200))
     wall = assembly()
-    image = picture(projector.write(wall, tmp_path, settings)[1])
+    image = picture(FORMATS["projector"].write(wall, tmp_path, settings)[1])
     part = wall.parts[0]
     x0, y0, *_ = bright_box(image)
     assert (x0, y0) == pytest.approx((20 + part.corners[:, 0].min() * 500, 200), abs=3)
@@ -91,7 +92,7 @@ def test_the_wall_begins_where_it_is_told_to(tmp_path) -> None:
 ])  # fmt: skip
 def test_a_wall_that_is_not_in_the_picture_is_refused_with_the_cure(tmp_path, settings) -> None:
     with pytest.raises(UsageError) as caught:
-        projector.write(assembly(), tmp_path, settings)
+        FORMATS["projector"].write(assembly(), tmp_path, settings)
     assert caught.value.code == "E187"
     assert list(tmp_path.iterdir()) == []
 
@@ -99,14 +100,16 @@ def test_a_wall_that_is_not_in_the_picture_is_refused_with_the_cure(tmp_path, se
 def test_the_cure_is_one(tmp_path) -> None:
     settings = replace(SETTINGS, projector_px_per_m=2000.0)
     with pytest.raises(UsageError) as caught:
-        projector.write(assembly(), tmp_path, settings)
+        FORMATS["projector"].write(assembly(), tmp_path, settings)
     found = float(caught.value.cure.split("@")[1].split()[0])
-    projector.write(assembly(), tmp_path, replace(settings, projector_px_per_m=found))
+    FORMATS["projector"].write(assembly(), tmp_path, replace(settings, projector_px_per_m=found))
     with pytest.raises(UsageError):
-        projector.write(assembly(), tmp_path, replace(settings, projector_px_per_m=found + 1))
+        FORMATS["projector"].write(
+            assembly(), tmp_path, replace(settings, projector_px_per_m=found + 1)
+        )
 
 
 def test_there_is_none_without_a_scale(tmp_path) -> None:
     with pytest.raises(UsageError) as caught:
-        projector.write(assembly(px_per_m=None), tmp_path, SETTINGS)
+        FORMATS["projector"].write(assembly(px_per_m=None), tmp_path, SETTINGS)
     assert caught.value.code == "E131"

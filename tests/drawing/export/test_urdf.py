@@ -11,7 +11,7 @@ from compas.geometry import Transformation
 from compas_robots import RobotModel
 from compas_robots.resources import DefaultMeshLoader
 
-from drystone.drawing.export import urdf
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
 from drystone.drawing.export.solids import inertia, solid_of_part
 from drystone.errors import UsageError
@@ -32,9 +32,9 @@ def row(element: ET.Element | None, name: str) -> list[float]:
 def exact(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The URDF of a plan with a wedge."""
     folder = tmp_path_factory.mktemp("exact")
-    paths = urdf.write(assembly("exact"), folder, SETTINGS)
-    assert tuple(str(p.relative_to(folder).as_posix()) for p in paths) == urdf.files(
-        assembly("exact"), SETTINGS
+    paths = FORMATS["urdf"].write(assembly("exact"), folder, SETTINGS)
+    assert tuple(str(p.relative_to(folder).as_posix()) for p in paths) == tuple(
+        FORMATS["urdf"].files(assembly("exact"), SETTINGS)
     )
     return paths[0]
 
@@ -42,7 +42,7 @@ def exact(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("name", METRIC)
 def test_links_are_fixed_at_their_places(name: str, tmp_path: Path) -> None:
     wall = assembly(name)
-    path, *_ = urdf.write(wall, tmp_path, SETTINGS)
+    path, *_ = FORMATS["urdf"].write(wall, tmp_path, SETTINGS)
     robot = RobotModel.from_urdf_file(str(path))
     assert robot.root.name == "wall"
     assert [link.name for link in robot.iter_links()][1:] == [part.name for part in wall.parts]
@@ -130,11 +130,11 @@ def test_materials_of_one_name_have_one_colour(exact: Path) -> None:
 
 
 def test_equal_runs_give_equal_bytes(exact: Path, tmp_path: Path) -> None:
-    for path in urdf.write(assembly("exact"), tmp_path, SETTINGS):
+    for path in FORMATS["urdf"].write(assembly("exact"), tmp_path, SETTINGS):
         other = exact.parent.parent / path.relative_to(tmp_path)
         assert path.read_bytes() == other.read_bytes()
 
 
 def test_no_robot_without_a_scale() -> None:
     with pytest.raises(UsageError, match="E131"):
-        urdf.files(assembly("exact", None), SETTINGS)
+        FORMATS["urdf"].files(assembly("exact", None), SETTINGS)

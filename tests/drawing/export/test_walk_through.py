@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drystone.drawing.export import compas, poses
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
 from tests.drawing.export.robot_plans import assembly
 
@@ -18,8 +18,8 @@ def test_the_programs_of_the_page_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     wall = assembly("exact")
-    for exporter in (poses, compas):
-        exporter.write(wall, tmp_path / "out", ExportSettings())
+    for name in ("poses", "compas"):
+        FORMATS[name].write(wall, tmp_path / "out", ExportSettings())
     monkeypatch.chdir(tmp_path)
     programs = re.findall(r"^```py\n(.*?)^```$", PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
     assert len(programs) == 2

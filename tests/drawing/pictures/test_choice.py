@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from drystone.drawing import plot_choice, save
-from drystone.drawing.pictures.choice import COLUMNS
+from drystone.drawing.pictures.wall import COLUMNS
 from drystone.model.wall import Wall
 from drystone.planner.planner import Planner
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
@@ -25,7 +25,7 @@ def test_every_wall_has_its_picture_and_its_points(wall: Wall, count: int) -> No
     *walls, one, two = figure.axes
     assert len(walls) == count
     blocks = len(wall.placements) + len(wall.wedges)
-    assert [len(ax.patches) for ax in walls] == [blocks] * count
+    assert [len(ax.patches) for ax in walls] == [blocks + 1] * count
     assert walls[0].get_title(loc="left") == "01  F_SF 0.800  F_AV 20.0  F_AH 2.00  F_LR 0.50"
     assert (one.get_xlabel(), one.get_ylabel()) == ("F_SF", "F_LR")
     assert (two.get_xlabel(), two.get_ylabel()) == ("F_AV", "F_AH")

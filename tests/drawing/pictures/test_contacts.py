@@ -5,8 +5,8 @@ from matplotlib.colors import to_hex
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.drawing import plot_contacts
+from drystone.drawing.palette import FIXED_COLOUR, PALE
 from drystone.drawing.pictures.contacts import KIND_COLOURS, NORMAL_SHARE
-from drystone.drawing.scene import FIXED, PALE
 from tests.drawing.pictures.test_stones import patches
 from tests.statics.walls import coursed, irregular, stacked
 
@@ -41,7 +41,7 @@ def test_interfaces_lie_where_the_blocks_touch(empty_rows):
         corners = drawn[f"block-{block}"].get_path().vertices
         np.testing.assert_allclose(corners.min(axis=0), corner)
         np.testing.assert_allclose(corners.max(axis=0), opposite)
-    assert drawn["ground"].get_y() + drawn["ground"].get_height() == 0
+    assert drawn["ground"].get_path().get_extents().y1 == 0
     ends = dots(ax, "end of an interface")
     np.testing.assert_allclose(ends, [[0, 0], [20, 0], [5, 10], [20, 10]])
 
@@ -84,7 +84,7 @@ def test_the_kinds_of_a_mechanism_colour_the_points():
 def test_polygons_and_fixed_blocks():
     ax = plot_contacts(polygons_from_json(ABUTMENT), model_from_json(ABUTMENT))
     drawn = patches(ax)
-    assert to_hex(drawn["block-4"].get_facecolor()) == FIXED
+    assert to_hex(drawn["block-4"].get_facecolor()) == FIXED_COLOUR
     assert to_hex(drawn["block-9"].get_facecolor()) == PALE
     assert [[1, 0], [1, 2]] in np.sort(lines(ax, "interfaces"), axis=1).tolist()
 

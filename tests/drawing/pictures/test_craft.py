@@ -8,13 +8,13 @@ from PIL import Image
 from drystone.craft import RULES, Masonry, look
 from drystone.drawing.files import save
 from drystone.drawing.pictures.craft import (
-    BESIDE_HATCH,
+    BESIDE,
     FAULT,
-    FAULT_HATCH,
     plot_craft,
     plot_finding,
 )
 from tests.craft.walls import box, courses, stack_bond
+from tests.drawing.pictures.test_contacts import lines
 
 
 def hatched(ax):
@@ -26,23 +26,22 @@ def hatched(ax):
 def test_stones_at_fault_have_colour_and_hatch():
     loops = courses([[2.0] * 4]) | {9: box(2, 1, 1, 2)}
     ax = plot_finding(look(Masonry(loops)), "on_end")
-    assert hatched(ax) == {9: FAULT_HATCH}
+    assert hatched(ax) == {9: FAULT.hatch}
     stone = next(patch for patch in ax.patches if patch.get_gid() == "stone-9")
     assert isinstance(stone, PathPatch)
     assert stone.get_facecolor()[:3] == pytest.approx(
-        tuple(int(FAULT[k : k + 2], 16) / 255 for k in (1, 3, 5))
+        tuple(int(FAULT.fill[k : k + 2], 16) / 255 for k in (1, 3, 5))
     )
-    marks = [line for line in ax.lines if line.get_gid() == "mark-on_end"]
-    assert len(marks) == 1
-    assert np.ptp(marks[0].get_xdata()) == pytest.approx(0.0, abs=1e-9)
+    (mark,) = lines(ax, "mark-on_end")
+    assert np.ptp(mark[:, 0]) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_running_joint_is_a_line_between_hatched_stones():
     ax = plot_finding(look(Masonry(stack_bond(2, 3))), "running_joints")
-    assert hatched(ax) == dict.fromkeys(range(1, 7), BESIDE_HATCH)
-    (mark,) = [line for line in ax.lines if line.get_gid() == "mark-running_joints"]
-    assert mark.get_xdata() == pytest.approx(2.0)
-    assert (min(mark.get_ydata()), max(mark.get_ydata())) == pytest.approx((0.0, 3.0), abs=0.05)
+    assert hatched(ax) == dict.fromkeys(range(1, 7), BESIDE.hatch)
+    (mark,) = lines(ax, "mark-running_joints")
+    assert mark[:, 0] == pytest.approx(2.0)
+    assert (mark[:, 1].min(), mark[:, 1].max()) == pytest.approx((0.0, 3.0), abs=0.05)
 
 
 def test_numbers_are_steps_of_a_plan():

@@ -7,6 +7,7 @@ import pytest
 from matplotlib.colors import to_hex
 
 from drystone.drawing import save
+from drystone.drawing.palette import PALE
 from drystone.drawing.pictures.failures import (
     COMMON,
     CONCERNED,
@@ -16,7 +17,6 @@ from drystone.drawing.pictures.failures import (
     plot_failure,
     plot_failures,
 )
-from drystone.drawing.scene import PALE
 from tests.drawing.pictures.test_stones import numbers, patches
 
 SQUARE = np.array([[0, 0], [20, 0], [20, 20], [0, 20]], float)
@@ -37,7 +37,8 @@ def vertices(patch):
 
 
 def meanings(ax):
-    return [text.get_text() for text in ax.get_legend().get_texts()]
+    legend = ax.get_legend()
+    return [text.get_text() for text in legend.get_texts()] if legend else []
 
 
 def test_blocks_are_drawn_where_they_ended():

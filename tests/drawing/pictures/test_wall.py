@@ -58,7 +58,7 @@ def test_stones_stand_at_their_place_inside_the_frame():
     corners = drawn["stone-12"].get_path().vertices
     l_shape = np.array([[0, 8], [12, 8], [12, 12], [6, 12], [6, 16], [0, 16], [0, 8]]) * units
     np.testing.assert_allclose(corners, l_shape)
-    frame = drawn["frame"].get_bbox()
+    frame = drawn["frame"].get_path().get_extents()
     assert (frame.x0, frame.y0) == (0, 0)
     assert (frame.x1, frame.y1) == pytest.approx((44 * units, 20 * units))
     assert drawn["frame"].get_linestyle() not in ("-", "solid")
@@ -92,7 +92,7 @@ def test_a_wall_of_outlines_is_drawn_by_its_outlines(scale, px_per_m):
     for block, corners in made.wall.outlines.blocks:
         name = next(gid for gid in drawn if gid.endswith(f"-{block}"))
         np.testing.assert_allclose(drawn[name].get_path().vertices[:-1], corners * units)
-    frame = drawn["frame"].get_bbox()
+    frame = drawn["frame"].get_path().get_extents()
     assert (frame.x1, frame.y1) == pytest.approx((84 * units, 30 * units))
     written = numbers(plot_wall(made.wall))
     for step in made.plan.stone_steps:

@@ -6,7 +6,7 @@ import pytest
 from PIL import Image
 
 import drystone as ds
-from drystone.drawing.export.pdf import files
+from drystone.drawing.export.formats import FORMATS
 from drystone.drawing.export.settings import ExportSettings
 from drystone.errors import InputError
 from tests.drawing.report.walls import result, written
@@ -35,7 +35,10 @@ def test_both_refuse_alike(spoil, said: str, tmp_path: Path) -> None:
     folder = written(tmp_path)
     spoil(folder / "photo.jpg")
     refusals = []
-    for use in (ds.view, lambda plan: files(ds.read_assembly(plan), ExportSettings())):
+    for use in (
+        ds.view,
+        lambda plan: FORMATS["pdf"].files(ds.read_assembly(plan), ExportSettings()),
+    ):
         with pytest.raises(InputError, match=said) as caught:
             use(folder)
         refusals.append((caught.value.code, str(caught.value)))

@@ -12,7 +12,7 @@ from drystone.cli.output import make_folder, prepare_files, print_json
 from drystone.cli.scale import planned_picture_px, refuse_outside, scale_notice
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.assembly.read import read_assembly
-from drystone.drawing.export.formats import FORMATS
+from drystone.drawing.export.formats import FORMATS, write_files
 from drystone.drawing.export.settings import ExportSettings
 from drystone.errors import ExitCode, Notice, UsageError
 
@@ -40,18 +40,15 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     )
     refuse_outside(arguments.px_per_m, planned_picture_px(assembly.plan.source))
     asked = list(dict.fromkeys(arguments.to))
-    modules = {name: FORMATS[name].exporter() for name in asked}
-    for name in asked:
-        if FORMATS[name].metric:
-            assembly.require_scale(f"the format {name!r}")
+    made = {name: FORMATS[name].files(assembly, settings) for name in asked}
     folder = Path(arguments.output) if arguments.output else _beside(path)
-    names = [name for module in modules.values() for name in module.files(assembly, settings)]
+    names = [name for files in made.values() for name in files]
     refuse_inputs(files_of_wall(path), [folder / name for name in names])
     make_folder(folder)
     prepare_files([folder / name for name in names], overwrite=arguments.overwrite)
-    written: dict[str, list[str]] = {}
-    for name, module in modules.items():
-        written[name] = [str(file) for file in module.write(assembly, folder, settings)]
+    written = {
+        name: [str(file) for file in write_files(files, folder)] for name, files in made.items()
+    }
     for said in _notices(assembly, folder, names):
         print(f"drystone: {said}", file=sys.stderr)
     if any(FORMATS[name].metric for name in asked) and arguments.thickness_m is None:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from drystone.drawing.assembly.frames import DOWN, Matrix, Pose3d, Vector
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.kernels.polygons import Points
+from drystone.model.frames3d import DOWN, Matrix, Pose3d, Vector
 from drystone.model.overlap import common_parts
 
 CLEARANCE_M = 0.05

@@ -9,10 +9,10 @@ from typing import Literal
 import numpy as np
 import shapely
 
-from drystone.drawing.assembly.frames import Pose3d, photo_pose, wall_pose
 from drystone.errors import UsageError
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.kernels.raster import turn
+from drystone.model.frames3d import Pose3d, photo_pose, wall_pose
 from drystone.model.plan import Plan, Point, StoneStep, WedgeStep
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance

@@ -3,28 +3,21 @@
 It is plain JSON, so that COMPAS need not be installed to write it.
 """
 
-from pathlib import Path
 from typing import Any
 
 from drystone.drawing.assembly import handling
-from drystone.drawing.assembly.frames import Pose3d
 from drystone.drawing.assembly.parts import Assembly, Part
-from drystone.drawing.export.out import json_text, put
+from drystone.drawing.export.formats import Files
 from drystone.drawing.export.settings import ExportSettings
 from drystone.drawing.export.solids import Solid, require_solids, solid_of_part
+from drystone.drawing.export.text import json_text
+from drystone.model.frames3d import Pose3d
 
-FILE = "assembly.compas.json"
 
-
-def files(assembly: Assembly, settings: ExportSettings) -> tuple[str, ...]:  # noqa: ARG001
-    """Return the names that will be written; E131 without a scale, E180 without a solid."""
+def compas(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return assembly.compas.json; E180 without a solid."""
     require_solids(assembly)
-    return (FILE,)
-
-
-def write(assembly: Assembly, folder: Path, settings: ExportSettings) -> tuple[Path, ...]:  # noqa: ARG001
-    """Write the file."""
-    return (put(folder, FILE, json_text(to_json(assembly)) + "\n"),)
+    return {"assembly.compas.json": lambda: json_text(to_json(assembly)) + "\n"}
 
 
 def to_json(assembly: Assembly) -> dict[str, Any]:

@@ -1,17 +1,23 @@
-"""The construction as a film: a picture a step, drawn by Pillow because there are many."""
+"""build.gif and build.mp4: the construction, a picture a step, drawn by Pillow."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from io import BytesIO
+from typing import Any
 
 import numpy as np
 from PIL import Image, ImageDraw
 
-from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.assembly.parts import Assembly
+from drystone.drawing.drawing import Area, Item
+from drystone.drawing.export.formats import Files, load_extra
 from drystone.drawing.export.settings import ExportSettings
-from drystone.drawing.gif import palette_of
 from drystone.drawing.lettering import font
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PLAIN_COLOUR, WEDGE_COLOUR, rgb
+from drystone.drawing.pixels import View, gif_bytes, paint, palette_of
+from drystone.drawing.wall import drawing_of_assembly
+from drystone.errors import UsageError
 
 PLACING_COLOUR = "#f0a202"
 """Of the stone that a step places: apart from the others and the wedges in grey, too."""
@@ -28,6 +34,48 @@ HOLD_S = 3.0
 
 TINTS = 6
 """Colours between each two that smoothed edges are reduced to."""
+
+LONGEST_S = 655.0
+"""A GIF counts hundredths of a second, in 16 bits."""
+
+FRAMES_PER_S = 10
+"""Pictures of a step are repeated: players show films of one picture a second badly."""
+
+
+def gif(assembly: Assembly, settings: ExportSettings) -> Files:
+    """Return build.gif, which loops; E138 for steps that are longer than a GIF has."""
+    if settings.seconds_per_step > LONGEST_S:
+        raise UsageError(
+            "E138",
+            f"a step of {settings.seconds_per_step:g} s is too long for build.gif.",
+            where="--seconds-per-step",
+            cure=f"Give {LONGEST_S:g} s at most (seconds_per_step in Python), or export an mp4.",
+        )
+    frames = Film(assembly, settings.film_px).frames()
+    return {"build.gif": lambda: gif_bytes(frames, palette(), durations_ms(assembly, settings))}
+
+
+def mp4(assembly: Assembly, settings: ExportSettings) -> Files:
+    """Return build.mp4; E186 when PyAV is not installed."""
+    av = load_extra("av", "film", "E186", "build.mp4")
+    return {"build.mp4": lambda: _mp4_bytes(av, assembly, settings)}
+
+
+def _mp4_bytes(av: Any, assembly: Assembly, settings: ExportSettings) -> bytes:
+    film = Film(assembly, settings.film_px)
+    with BytesIO() as file:
+        # Nothing in it tells when and by what it was made: equal walls give equal bytes.
+        with av.open(file, "w", format="mp4", options={"fflags": "+bitexact"}) as out:
+            stream = out.add_stream(
+                "h264", rate=FRAMES_PER_S, options={"threads": "1", "flags": "+bitexact"}
+            )
+            stream.width, stream.height = film.size_px
+            stream.pix_fmt = "yuv420p"
+            for picture, ms in zip(film.frames(), durations_ms(assembly, settings), strict=True):
+                for _ in range(max(1, round(ms * FRAMES_PER_S / 1000))):
+                    out.mux(stream.encode(av.VideoFrame.from_image(picture)))
+            out.mux(stream.encode())
+        return file.getvalue()
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,25 +94,19 @@ class Film:
     width_px: int = 960
 
     @cached_property
-    def per_unit(self) -> float:
-        """Px in a unit of the assembly."""
+    def view(self) -> View:
+        """Where the wall is in a picture."""
         width, height = self.assembly.size
         room = self.width_px - 2 * MARGIN_PX
-        return float(min(room / width, TALLEST * room / height))
+        per_unit = min(room / width, TALLEST * room / height)
+        return View(MARGIN_PX, MARGIN_PX + float(np.ceil(height * per_unit)), per_unit)
 
     @cached_property
     def size_px(self) -> tuple[int, int]:
         """Width and height of a picture: even numbers, which the codecs of films ask for."""
-        width, height = (int(np.ceil(side * self.per_unit)) for side in self.assembly.size)
-        width = max(width, 260) + 2 * MARGIN_PX
-        height += MARGIN_PX + GROUND_PX + CAPTION_PX
+        width = max(int(np.ceil(self.assembly.size[0] * self.view.per_unit)), 260) + 2 * MARGIN_PX
+        height = int(self.view.ground_px) + GROUND_PX + CAPTION_PX
         return width + width % 2, height + height % 2
-
-    def pixels(self, part: Part) -> list[tuple[float, float]]:
-        """Return the outline of a part in a picture: px from its top left corner, y down."""
-        points = part.corners * self.per_unit
-        x, y = MARGIN_PX + points[:, 0], self._ground_px - points[:, 1]
-        return list(zip(x.tolist(), y.tolist(), strict=True))
 
     def frames(self) -> Iterator[Image.Image]:
         """Yield a picture for every step, and one of the finished wall.
@@ -74,67 +116,34 @@ class Film:
         Image
             RGB, all of one size.
         """
-        big = self._ground()
-        placed: list[Part] = []
-        count = len(self.assembly.parts)
-        for part in self.assembly.parts:
-            fresh = big.copy()
-            self._draw(fresh, part, WEDGE_COLOUR if part.kind == "wedge" else PLACING_COLOUR)
-            placed.append(part)
-            yield self._finish(fresh, placed, self._caption(part))
-            self._draw(big, part, WEDGE_COLOUR if part.kind == "wedge" else PLAIN_COLOUR)
-        stones = sum(part.kind == "stone" for part in placed)
-        yield self._finish(big, placed, f"{stones} stones, {count - stones} wedges")
-
-    def _caption(self, part: Part) -> str:
-        """Name the step; numbers in the picture are steps, so those in words are steps, too."""
-        words = f"step {part.step} of {len(self.assembly.parts)}"
-        if part.under is None:
-            return words
-        return f"{words}: wedge under {self.assembly.part(part.under).step}"
-
-    @property
-    def _ground_px(self) -> float:
-        return float(self.size_px[1] - CAPTION_PX - GROUND_PX)
-
-    def _ground(self) -> Image.Image:
+        drawing = drawing_of_assembly(self.assembly)
         width, height = self.size_px
         big = Image.new("RGB", (width * FINER, height * FINER), "white")
-        draw = ImageDraw.Draw(big)
-        y, below = self._ground_px * FINER, GROUND_PX * FINER
-        for x in range(-below, width * FINER, 8 * FINER):
-            draw.line([(x, y + below), (x + below, y)], fill=GREY, width=FINER)
-        top = self._ground_px - self.assembly.size[1] * self.per_unit
-        right = MARGIN_PX + self.assembly.size[0] * self.per_unit
-        frame = [(MARGIN_PX, self._ground_px), (MARGIN_PX, top), (right, top),
-                 (right, self._ground_px)]  # fmt: skip
-        draw.line([(x * FINER, y * FINER) for x, y in frame], fill=GREY, width=FINER)
-        draw.line([(0, y), (width * FINER, y)], fill=OUTLINE_COLOUR, width=2 * FINER)
-        return big
+        self._paint(big, drawing.layers("SITE"))
+        blocks = (item for item in drawing.items if isinstance(item, Area) and item.step)
+        numbers, parts = drawing.layers("NUMBERS"), self.assembly.parts
+        for placed, (block, part) in enumerate(zip(blocks, parts, strict=True), 1):
+            fresh = big.copy()
+            stone = part.kind == "stone"
+            self._paint(fresh, [replace(block, fill=PLACING_COLOUR) if stone else block])
+            caption = f"step {part.step} of {len(parts)}"
+            if part.under is not None:
+                # Numbers in the picture are steps, so those in words are steps, too.
+                caption += f": wedge under {self.assembly.part(part.under).step}"
+            yield self._finished(fresh, numbers[:placed], caption)
+            self._paint(big, [block])
+        stones = len(list(self.assembly.stones))
+        yield self._finished(big, numbers, f"{stones} stones, {len(parts) - stones} wedges")
 
-    def _draw(self, big: Image.Image, part: Part, fill: str) -> None:
-        draw = ImageDraw.Draw(big)
-        points = [(x * FINER, y * FINER) for x, y in self.pixels(part)]
-        draw.polygon(points, fill=fill)
-        draw.line([*points, points[0]], fill=OUTLINE_COLOUR, width=FINER + 1, joint="curve")
+    def _paint(self, big: Image.Image, items: tuple[Item, ...] | list[Area]) -> None:
+        paint(big, items, replace(self.view, finer=FINER), px_per_pt=5.0)
 
-    def _finish(self, big: Image.Image, placed: list[Part], caption: str) -> Image.Image:
+    def _finished(self, big: Image.Image, numbers: tuple[Item, ...], caption: str) -> Image.Image:
         picture = big.reduce(FINER)
-        draw = ImageDraw.Draw(picture)
-        for part in placed:
-            if part.kind == "stone":
-                self._number(draw, part)
+        paint(picture, numbers, self.view)
         place = (MARGIN_PX, self.size_px[1] - CAPTION_PX / 2)
-        draw.text(place, caption, fill=OUTLINE_COLOUR, font=font(16), anchor="lm")
+        ImageDraw.Draw(picture).text(place, caption, OUTLINE_COLOUR, font(16), anchor="lm")
         return picture
-
-    def _number(self, draw: ImageDraw.ImageDraw, part: Part) -> None:
-        width, height = np.ptp(np.array(self.pixels(part)), axis=0)
-        size = 0.6 * min(height, width / (0.62 * len(str(part.step))))
-        x, y = part.centroid
-        place = (MARGIN_PX + x * self.per_unit, self._ground_px - y * self.per_unit)
-        chosen = font(float(np.clip(size, 7.0, 20.0)))
-        draw.text(place, str(part.step), fill=OUTLINE_COLOUR, font=chosen, anchor="mm")
 
 
 def palette() -> Image.Image:

@@ -1,9 +1,11 @@
-"""The formats that there are; each is a module that is imported when it is asked for."""
+"""The formats that there are; what makes them is imported when it is asked for."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Any
+
+from drystone.errors import UsageError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -11,23 +13,12 @@ if TYPE_CHECKING:
     from drystone.drawing.assembly.parts import Assembly
     from drystone.drawing.export.settings import ExportSettings
 
+Files = Mapping[str, Callable[[], str | bytes]]
+"""What will be written by name, relative to a folder, ``/`` between folders.
 
-class Exporter(Protocol):
-    """What a module of a format has."""
-
-    def files(self, assembly: "Assembly", settings: "ExportSettings", /) -> tuple[str, ...]:
-        """Return the names that will be written, relative to a folder, ``/`` between folders.
-
-        Raises what would keep :meth:`write` from writing them, so that nothing is written when
-        one of several formats cannot be.
-        """
-        ...
-
-    def write(
-        self, assembly: "Assembly", folder: "Path", settings: "ExportSettings", /
-    ) -> "tuple[Path, ...]":
-        """Write them into a folder; return where they are."""
-        ...
+Whoever makes the mapping raises what would keep the files from being made, so that nothing is
+written when one of several formats cannot be.
+"""
 
 
 @dataclass(frozen=True)
@@ -36,8 +27,9 @@ class Format:
 
     Parameters
     ----------
-    module : str
-        Of :mod:`drystone.drawing.export`.
+    made_by : str
+        Module of :mod:`drystone.drawing.export` and, of the name of the format, its function, which
+        is given an assembly and settings and returns `Files`.
     writes : tuple of str
         The names of its files; a folder of its own ends in ``/``.
     text : str
@@ -46,43 +38,85 @@ class Format:
         Whether it means nothing without a scale (E131).
     """
 
-    module: str
+    made_by: str
     writes: tuple[str, ...]
     text: str
     metric: bool = False
 
-    def exporter(self) -> Exporter:
-        """Import the module."""
-        return cast(Exporter, import_module(f"drystone.drawing.export.{self.module}"))
+    def files(self, assembly: "Assembly", settings: "ExportSettings") -> Files:
+        """Return what will be written; raise what would keep it from being."""
+        module, _, function = self.made_by.partition(":")
+        if self.metric:
+            assembly.require_scale(f"the format {function!r}")
+        made = import_module(f"drystone.drawing.export.{module}")
+        files: Files = getattr(made, function)(assembly, settings)
+        return files
+
+    def write(
+        self, assembly: "Assembly", folder: "Path", settings: "ExportSettings"
+    ) -> "tuple[Path, ...]":
+        """Write its files into a folder; return where they are."""
+        return write_files(self.files(assembly, settings), folder)
+
+
+def write_files(files: Files, folder: "Path") -> "tuple[Path, ...]":
+    """Write files with the folders that they lie in; PlanError (E206) when one cannot be."""
+    from drystone.whole_files import write_whole  # noqa: PLC0415 - the options need names alone
+
+    for name, made in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        data = made()
+        write_whole(folder / name, data.encode() if isinstance(data, str) else data)
+    return tuple(folder / name for name in files)
+
+
+def load_extra(module: str, extra: str, code: str, where: str) -> Any:
+    """Return a module that not every installation has.
+
+    Raises
+    ------
+    UsageError
+        Of this code, with what to install.
+    """
+    try:
+        return import_module(module)
+    except ImportError as error:
+        raise UsageError(
+            code,
+            f"{module.partition('.')[0]} is not installed, and it writes this.",
+            where=where,
+            cure=f'Install it with `pip install "drystone[{extra}]"`, or choose another format.',
+        ) from error
 
 
 FORMATS: Mapping[str, Format] = {
-    "poses": Format("poses", ("poses.json",), "pick and place poses, grasps, masses", metric=True),
-    "compas": Format("compas", ("assembly.compas.json",), "COMPAS frames and meshes", metric=True),
+    "poses": Format("poses:poses", ("poses.json",), "pick and place poses, grasps, masses", True),
+    "compas": Format("compas:compas", ("assembly.compas.json",), "COMPAS frames and meshes", True),
     "moveit": Format(
-        "moveit",
-        ("scene.yaml", "wall.scene"),
-        "collision objects for MoveIt, in order",
-        metric=True,
+        "moveit:moveit", ("scene.yaml", "wall.scene"),
+        "collision objects for MoveIt, in order", True,
     ),
-    "urdf": Format("urdf", ("urdf/",), "a URDF with mesh and inertia of every part", metric=True),
-    "obj": Format(
-        "meshes", ("wall.obj", "wall.mtl"), "extruded stones, named objects", metric=True
+    "urdf": Format("urdf:urdf", ("urdf/",), "a URDF with mesh and inertia of every part", True),
+    "obj": Format("meshes:obj", ("wall.obj", "wall.mtl"), "extruded stones, named objects", True),
+    "glb": Format("meshes:glb", ("wall.glb",), "the same as glTF", True),
+    "stl": Format("meshes:stl", ("stl/",), "one file a part", True),
+    "csv": Format("tables:csv", ("steps.csv",), "the build list"),
+    "parquet": Format("tables:parquet", ("steps.parquet",), "the build list"),
+    "geojson": Format("tables:geojson", ("wall.geojson",), "polygons with their steps"),
+    "dxf": Format(
+        "drawings:dxf", ("wall.dxf",), "R2010, layers STONES WEDGES CONTACTS FORCES MECHANISM"
     ),
-    "glb": Format("meshes_glb", ("wall.glb",), "the same as glTF", metric=True),
-    "stl": Format("meshes_stl", ("stl/",), "one file a part", metric=True),
-    "csv": Format("csv_table", ("steps.csv",), "the build list"),
-    "parquet": Format("parquet_table", ("steps.parquet",), "the build list"),
-    "geojson": Format("geojson", ("wall.geojson",), "polygons with their steps"),
-    "dxf": Format("dxf", ("wall.dxf",), "R2010, layers STONES WEDGES CONTACTS FORCES MECHANISM"),
-    "svg": Format("svg", ("wall.svg",), "every stone defined once and placed by a transform"),
-    "png": Format("png", ("wall-numbered.png",), "the wall with step numbers"),
-    "gif": Format("gif", ("build.gif",), "the construction"),
-    "mp4": Format("mp4", ("build.mp4",), "the construction"),
+    "svg": Format(
+        "drawings:svg", ("wall.svg",), "every stone defined once and placed by a transform"
+    ),
+    "png": Format("drawings:png", ("wall-numbered.png",), "the wall with step numbers"),
+    "gif": Format("film:gif", ("build.gif",), "the construction"),
+    "mp4": Format("film:mp4", ("build.mp4",), "the construction"),
     "pdf": Format(
-        "pdf", ("build-sheet.pdf",), "drawing to scale, every stone in order, fetch list"
+        "drawings:pdf", ("build-sheet.pdf",),
+        "drawing to scale, every stone in order, fetch list",
     ),
     "projector": Format(
-        "projector", ("projector/",), "a frame a step, 1:1 on the wall", metric=True
+        "projector:projector", ("projector/",), "a frame a step, 1:1 on the wall", True
     ),
-}
+}  # fmt: skip

@@ -5,33 +5,25 @@ format that MoveIt and its RViz plugin import.  Objects come in the order of bui
 """
 
 from collections.abc import Iterator
-from pathlib import Path
 
-from drystone.drawing.assembly.frames import Pose3d
 from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.export.out import number, put
+from drystone.drawing.export.formats import Files
 from drystone.drawing.export.settings import ExportSettings
 from drystone.drawing.export.solids import Solid, colour, require_solids, solid_of_part
-
-FILE = "scene.yaml"
-TEXT_FILE = "wall.scene"
+from drystone.drawing.export.text import number
+from drystone.model.frames3d import Pose3d
 
 FRAME_ID = "wall"
 """Name of the frame W in ROS; a static transform says where it is."""
 
 
-def files(assembly: Assembly, settings: ExportSettings) -> tuple[str, ...]:  # noqa: ARG001
-    """Return the names that will be written; E131 without a scale, E180 without a solid."""
+def moveit(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return both files; E180 without a solid."""
     require_solids(assembly)
-    return FILE, TEXT_FILE
-
-
-def write(assembly: Assembly, folder: Path, settings: ExportSettings) -> tuple[Path, ...]:  # noqa: ARG001
-    """Write both files."""
-    return (
-        put(folder, FILE, "\n".join(yaml_lines(assembly)) + "\n"),
-        put(folder, TEXT_FILE, "\n".join(scene_lines(assembly)) + "\n"),
-    )
+    return {
+        "scene.yaml": lambda: "\n".join(yaml_lines(assembly)) + "\n",
+        "wall.scene": lambda: "\n".join(scene_lines(assembly)) + "\n",
+    }
 
 
 def yaml_lines(assembly: Assembly) -> Iterator[str]:

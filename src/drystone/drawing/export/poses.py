@@ -1,20 +1,18 @@
 """poses.json: where every part is picked and placed, how it is held, what it weighs."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from drystone.drawing.assembly import handling
-from drystone.drawing.assembly.frames import Matrix, Pose3d, Vector
 from drystone.drawing.assembly.handling import Approach, Grasp
 from drystone.drawing.assembly.parts import Assembly, Part
-from drystone.drawing.export.out import json_text, put
+from drystone.drawing.export.formats import Files
 from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.text import json_text
+from drystone.model.frames3d import Matrix, Pose3d, Vector
 
 SCHEMA = "drystone-poses/1"
-
-FILE = "poses.json"
 
 FRAMES = {
     "convention": "Right-handed, metres. A matrix is 4x4, rows first, and maps points of the part "
@@ -47,15 +45,9 @@ FRAMES = {
 }
 
 
-def files(assembly: Assembly, settings: ExportSettings) -> tuple[str, ...]:  # noqa: ARG001
-    """Return the names that will be written; E131 without a scale."""
-    assembly.require_scale("poses")
-    return (FILE,)
-
-
-def write(assembly: Assembly, folder: Path, settings: ExportSettings) -> tuple[Path, ...]:  # noqa: ARG001
-    """Write poses.json."""
-    return (put(folder, FILE, json_text(to_json(assembly)) + "\n"),)
+def poses(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return poses.json."""
+    return {"poses.json": lambda: json_text(to_json(assembly)) + "\n"}
 
 
 def to_json(assembly: Assembly) -> dict[str, Any]:

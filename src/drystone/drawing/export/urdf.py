@@ -5,15 +5,14 @@ them at their places.  Meshes are binary STL in metres, named relative to the UR
 """
 
 import math
-from pathlib import Path
+from functools import partial
 from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from drystone.drawing.assembly.frames import Pose3d
 from drystone.drawing.assembly.parts import Assembly, Part
-from drystone.drawing.export.meshes_stl import stl_bytes
-from drystone.drawing.export.out import number, put
+from drystone.drawing.export.formats import Files
+from drystone.drawing.export.meshes import stl_bytes
 from drystone.drawing.export.settings import ExportSettings
 from drystone.drawing.export.solids import (
     Inertia,
@@ -23,28 +22,26 @@ from drystone.drawing.export.solids import (
     require_solids,
     solid_of_part,
 )
-
-FILE = "urdf/wall.urdf"
+from drystone.drawing.export.text import number
+from drystone.model.frames3d import Pose3d
 
 BASE = "wall"
 """Name of the link whose frame is W."""
 
 
-def files(assembly: Assembly, settings: ExportSettings) -> tuple[str, ...]:  # noqa: ARG001
-    """Return the names that will be written; E131 without a scale, E180 without a solid."""
+def urdf(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return the description and a mesh a part; E180 without a solid."""
     require_solids(assembly)
-    return FILE, *(f"urdf/{_mesh(part)}" for part in assembly.parts)
-
-
-def write(assembly: Assembly, folder: Path, settings: ExportSettings) -> tuple[Path, ...]:  # noqa: ARG001
-    """Write the description and a mesh a part."""
-    text = ET.tostring(robot(assembly), encoding="unicode")
-    meshes = (
-        put(folder, f"urdf/{_mesh(part)}",
-            stl_bytes(solid_of_part(assembly, part), f"{part.name}, frame S"))
-        for part in assembly.parts
-    )  # fmt: skip
-    return put(folder, FILE, f'<?xml version="1.0"?>\n{text}\n'), *meshes
+    head = '<?xml version="1.0"?>\n'
+    return {
+        "urdf/wall.urdf": lambda: f"{head}{ET.tostring(robot(assembly), encoding='unicode')}\n",
+        **{
+            f"urdf/{_mesh(part)}": partial(
+                stl_bytes, solid_of_part(assembly, part), f"{part.name}, frame S"
+            )
+            for part in assembly.parts
+        },
+    }
 
 
 def robot(assembly: Assembly) -> ET.Element:

@@ -13,9 +13,9 @@ from matplotlib.transforms import Bbox
 from PIL import Image, PngImagePlugin
 
 from drystone.drawing.canvas import block_path
-from drystone.drawing.gif import gif_bytes, palette_of
 from drystone.drawing.outlines import Loop
 from drystone.drawing.pictures.mechanism import COLOURS, Motion, motion_of, plot_mechanism
+from drystone.drawing.pixels import gif_bytes, palette_of
 from drystone.model.wall import Labels
 from drystone.statics.model import Direction
 from drystone.statics.result import Mechanism

@@ -1,16 +1,15 @@
 """The contacts of a rigid block model: interfaces, their ends and normals (Pic-to-Ri)."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from drystone.drawing.canvas import draw
+from drystone.drawing.drawing import Area, Dots, Drawing, Lines
 from drystone.drawing.outlines import Loop, wall_regions
-from drystone.drawing.scene import legend_below, pale_wall, wall_size
+from drystone.drawing.wall import pale_wall, size_of
 from drystone.model.wall import Labels
 from drystone.statics.failing.kinematics import ContactKind
 from drystone.statics.model import Interface, RigidBlockModel
@@ -66,25 +65,24 @@ def plot_contacts(
     if kinds is not None and len(kinds) != model.contact_count:
         raise ValueError(f"{len(kinds)} kinds for {model.contact_count} contact points")
     regions = wall_regions(wall)
-    ax, size = pale_wall(regions, model, ax), wall_size(regions)
+    pale, size = pale_wall(regions, model), size_of(regions)
     lines = [interface.points for interface in model.interfaces if len(interface.points) > 1]
     normals = [_normal(interface, NORMAL_SHARE * size) for interface in model.interfaces]
-    handles = [
-        _draw_lines(ax, lines, JOINT, 1.3, "interface"),
-        _draw_lines(ax, normals, NORMAL, 0.8, "normal"),
-    ]
     points = np.concatenate([np.empty((0, 2)), *(i.points for i in model.interfaces)])
     counts = np.array([len(interface.points) for interface in model.interfaces], np.int64)
     alone = np.repeat(counts == 1, counts)
     if kinds is None:
-        handles.append(_draw_dots(ax, points[~alone], JOINT, 2.4, "end of an interface"))
-        handles.append(_draw_dots(ax, points[alone], POINT, 4.0, "contact at a point"))
+        dots = [
+            Dots("end of an interface", points[~alone], JOINT, 2.4),
+            Dots("contact at a point", points[alone], POINT, 4.0),
+        ]
     else:
         told = np.array(kinds, str)
-        for kind, colour in KIND_COLOURS.items():
-            handles.append(_draw_dots(ax, points[told == kind], colour, 3.6, kind))
-    legend_below(ax, handles)
-    return ax
+        dots = [Dots(kind, points[told == kind], c, 3.6) for kind, c in KIND_COLOURS.items()]
+    faces, inward = Lines("interfaces", lines, JOINT, 1.3), Lines("normals", normals, NORMAL, 0.8)
+    legend: dict[str, Area | Lines | Dots]
+    legend = {"interface": faces, "normal": inward, **{one.name: one for one in dots}}
+    return draw(Drawing((*pale.items, faces, inward, *dots), pale.box, legend=legend), ax)
 
 
 def _normal(interface: Interface, longest: float) -> Floats:
@@ -92,20 +90,3 @@ def _normal(interface: Interface, longest: float) -> Floats:
     middle = interface.points.mean(axis=0)
     length = min(longest, max(0.5 * interface.length, longest / 3.0))
     return np.array([middle, middle + length * np.array(interface.normal)])
-
-
-def _draw_lines(ax: Axes, lines: Sequence[Floats], colour: str, width: float, label: str) -> Line2D:
-    drawn = LineCollection(lines, colors=colour, linewidths=width, gid=f"{label}s", zorder=3)
-    ax.add_collection(drawn, autolim=False)
-    return Line2D([], [], color=colour, linewidth=width, label=label)
-
-
-def _draw_dots(ax: Axes, points: Floats, colour: str, size: float, label: str) -> Line2D:
-    style: dict[str, Any] = {
-        "color": colour,
-        "marker": "o",
-        "markersize": size,
-        "markeredgewidth": 0.0,
-    }
-    ax.plot(*points.T, linestyle="none", gid=label, zorder=4, **style)
-    return Line2D([], [], linestyle="none", label=label, **style)

@@ -1,26 +1,25 @@
 """What masons' rules find in a wall: one panel a rule."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
-from matplotlib.patheffects import withStroke
 
 from drystone.craft.finding import Finding, Verdict
 from drystone.craft.look import UNSEEN, CraftReport
 from drystone.craft.masonry import Masonry
-from drystone.drawing.canvas import draw_block, draw_ground, fit_axes, write_number
-from drystone.drawing.palette import GREY, OUTLINE_COLOUR, WEDGE_COLOUR
-from drystone.drawing.scene import PALE
+from drystone.drawing.canvas import add, draw_legend, fit_axes, legend_handles
+from drystone.drawing.drawing import Area, Item, Lines, Words, ground
+from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PALE, WEDGE_COLOUR
 
-FAULT, BESIDE, MARK = "#f0a848", "#dcebf7", "#0b3d66"
+FAULT = Area("", (), "#f0a848", "#8a5a10", hatch="////")
+BESIDE = Area("", (), "#dcebf7", "#7fa6c4", hatch="....")
+MARK = "#0b3d66"
 """Stones that do not keep a rule, stones beside a joint that does not, and the joint or edge."""
 
-FAULT_HATCH, BESIDE_HATCH = "////", "...."
 MARKS: Mapping[Verdict, str] = {"good": "✓", "fair": "~", "broken": "✗", "not judged": "-"}
 INKS: Mapping[Verdict, str] = {
     "good": "#00573b", "fair": "#6b4e00", "broken": "#8b0000", "not judged": "#5a5a5a",
@@ -56,17 +55,15 @@ def plot_finding(report: CraftReport, name: str, ax: Axes | None = None) -> Axes
     ax.set_axis_off()
     x0, y0, x1, _ = _view(masonry)
     if masonry.stones and y0 < 0 and masonry.box[1] <= NEAR * masonry.mean_height:
-        draw_ground(ax, x0, x1, -0.8 * y0)
-    _draw_stones(ax, masonry, finding)
-    halo = [withStroke(linewidth=3.4, foreground="white")]
-    for case in finding.cases:
-        for line in case.lines:
-            ax.plot(*line.T, color=MARK, linewidth=1.9, solid_capstyle="round", zorder=6,
-                    path_effects=halo, gid=f"mark-{name}")  # fmt: skip
+        add(ax, ground((x0, 0.8 * y0, x1, 0.0)))
+    marks = (
+        Lines(f"mark-{name}", case.lines, MARK, 1.9, halo=True, z=6.0)
+        for case in finding.cases if case.lines
+    )  # fmt: skip
+    add(ax, [*_stones(masonry, finding), *marks])
     ax.set_title(_title(finding), loc="left", fontsize=8.5, pad=3, color=INKS[finding.verdict])
     if alone:
-        ax.legend(handles=_legend(masonry), loc="upper left", bbox_to_anchor=(0.0, -0.02),
-                  ncols=4, fontsize=7, frameon=False, borderaxespad=0.0)  # fmt: skip
+        draw_legend(ax, _legend(masonry))
     return ax
 
 
@@ -93,8 +90,9 @@ def plot_craft(report: CraftReport) -> Figure:
     left = 2 * EDGE_IN + PANEL_IN  # beside the last panel: there is an odd number of rules
     figure.text(left / width, (LEGEND_IN + EDGE_IN + panel) / height, fill(UNSEEN, 80), fontsize=8,
                 va="top", color=INKS["not judged"])  # fmt: skip
-    figure.legend(handles=_legend(report.masonry), loc="lower left", ncols=4, fontsize=8,
-                  frameon=False, bbox_to_anchor=(EDGE_IN / width, 0.02 / height))  # fmt: skip
+    handles = legend_handles(_legend(report.masonry))
+    figure.legend(handles=handles, loc="lower left", ncols=4, fontsize=8, frameon=False,
+                  bbox_to_anchor=(EDGE_IN / width, 0.02 / height))  # fmt: skip
     return figure
 
 
@@ -108,28 +106,25 @@ def _view(masonry: Masonry) -> tuple[float, float, float, float]:
     return x0 - pad, y0 - pad, x1 + pad, y1 + pad
 
 
-def _draw_stones(ax: Axes, masonry: Masonry, finding: Finding) -> None:
+def _stones(masonry: Masonry, finding: Finding) -> list[Item]:
     fault = {i for case in finding.cases for i in case.stones[: case.at_fault]}
     beside = {i for case in finding.cases for i in case.stones if not case.at_fault}
+    items: list[Item] = []
     for stone, loop in masonry.loops.items():
-        colour, hatch = PALE, None
-        if stone in fault:
-            colour, hatch = FAULT, FAULT_HATCH
-        elif stone in beside:
-            colour, hatch = BESIDE, BESIDE_HATCH
+        found = FAULT if stone in fault else BESIDE if stone in beside else None
         wedge = stone in masonry.wedge_ids
-        if wedge and stone not in fault:
-            colour = WEDGE_COLOUR
-        draw_block(ax, (loop,), f"stone-{stone}", fill=colour, linewidth=0.5,
-                   edgecolor=OUTLINE_COLOUR if hatch else GREY, zorder=2 + 2 * wedge)  # fmt: skip
-        if hatch:
-            draw_block(ax, (loop,), f"found-{stone}", linewidth=0.0, hatch=hatch,
-                       edgecolor="#8a5a10" if hatch == FAULT_HATCH else "#7fa6c4",
-                       zorder=2.5 + 2 * wedge)  # fmt: skip
+        fill = WEDGE_COLOUR if wedge and stone not in fault else found.fill if found else PALE
+        area = Area(f"stone-{stone}", (loop,), fill, OUTLINE_COLOUR if found else GREY,
+                    width_pt=0.5, z=4.0 if wedge else 2.0)  # fmt: skip
+        items.append(area)
+        if found:
+            items.append(replace(area, name=f"found-{stone}", fill="none", line=found.line,
+                                 width_pt=0.0, hatch=found.hatch, z=area.z + 0.5))  # fmt: skip
         if not wedge:
-            middle = 0.5 * (loop.min(axis=0) + loop.max(axis=0))
-            number = masonry.steps.get(stone, stone)
-            write_number(ax, number, (float(middle[0]), float(middle[1])), (loop,), colour)
+            x, y = (0.5 * (loop.min(axis=0) + loop.max(axis=0))).tolist()
+            number = str(masonry.steps.get(stone, stone))
+            items.append(Words(f"number-{stone}", number, (x, y), area.room, fill))
+    return items
 
 
 def _title(finding: Finding) -> str:
@@ -143,14 +138,12 @@ def _title(finding: Finding) -> str:
     return f"{said}, {finding.amount}   {limits}"
 
 
-def _legend(masonry: Masonry) -> list[Patch | Line2D]:
-    handles: list[Patch | Line2D] = [
-        Patch(facecolor=FAULT, edgecolor="#8a5a10", hatch=FAULT_HATCH, linewidth=0.4,
-              label="does not keep the rule"),
-        Patch(facecolor=BESIDE, edgecolor="#7fa6c4", hatch=BESIDE_HATCH, linewidth=0.4,
-              label="beside such a joint"),
-        Line2D([], [], color=MARK, linewidth=1.9, label="the joint, lap, bed or edge"),
-    ]  # fmt: skip
+def _legend(masonry: Masonry) -> dict[str, Area | Lines]:
+    legend: dict[str, Area | Lines] = {
+        "does not keep the rule": FAULT,
+        "beside such a joint": BESIDE,
+        "the joint, lap, bed or edge": Lines("", [], MARK, 1.9),
+    }
     if masonry.wedge_ids:
-        handles.append(Patch(facecolor=WEDGE_COLOUR, label="wedge"))
-    return handles
+        legend["wedge"] = Area("", (), WEDGE_COLOUR)
+    return legend

@@ -6,26 +6,17 @@ from dataclasses import dataclass, field
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, Rectangle
 
-from drystone.drawing.canvas import (
-    MARGIN_IN,
-    WIDTH_IN,
-    Box,
-    draw_block,
-    draw_ground,
-    fit_axes,
-    write_number,
-)
-from drystone.drawing.outlines import Loop, Region, polygon_regions, regions_box
-from drystone.drawing.palette import GREY, OUTLINE_COLOUR
-from drystone.drawing.scene import PALE, points_down
+from drystone.drawing.canvas import MARGIN_IN, WIDTH_IN, draw
+from drystone.drawing.drawing import Area, Drawing, Item, Lines, Words, ground
+from drystone.drawing.outlines import Box, Loop, polygon_regions, rectangle, regions_box
+from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PALE
 
 CONCERNED = "#f0a030"
 PLANNED = "#0050a0"
 PLANNED_PALE = "#90b0d8"
 COMMON = "#c00020"
+DASHES, DOTS = (4.0, 2.0), (1.0, 1.65)
 
 NOTICEABLE = 4e-3
 """Blocks that have moved by this share of the wall's height are shown where they were planned."""
@@ -116,89 +107,51 @@ def plot_failure(view: FailureView, ax: Axes | None = None) -> Axes:
     ax : Axes
         Wall frame, source px.
     """
-    box = view.box
-    ax = fit_axes(ax, box)
-    ax.set_axis_off()
-    draw_ground(ax, box[0], box[2], -box[1])
-    if view.size:
-        ax.add_patch(
-            Rectangle((0, 0), *view.size, fill=False, edgecolor=GREY, linestyle=":", gid="site")
-        )
+    items: list[Item] = [*ground(view.box)]
+    legend: dict[str, Area | Lines] = {}
+    if view.concerned:
+        legend["fails"] = Area("", (), CONCERNED)
     ended = polygon_regions({**view.planned, **view.ended})
-    concerned = set(view.concerned)
-    # Blocks that fail are drawn last, over those that they lie in.
-    for region in sorted(ended, key=lambda region: region.id in concerned):
-        _draw_ended(ax, region, fails=region.id in concerned)
-    dashed = _draw_planned(ax, view)
-    for number, loop in enumerate(view.common):
-        draw_block(
-            ax, [loop], f"common-{number}", fill=COMMON, edgecolor=COMMON, linewidth=0.8, zorder=4
-        )
-    ax.set_title(view.title, size=9, loc="left")
-    _draw_meaning(ax, view, dashed=dashed)
-    return ax
+    for region in ended:
+        # Blocks that fail lie over those that they have got into, and over their numbers.
+        fails = region.id in view.concerned
+        fill = CONCERNED if fails else PALE
+        area = Area(
+            f"block-{region.id}", region.loops, fill, OUTLINE_COLOUR if fails else GREY,
+            width_pt=0.8 if fails else 0.5, z=2.0 if fails else 1.0,
+        )  # fmt: skip
+        number = Words(
+            f"number-{region.id}", str(region.id), region.centroid, area.room, fill,
+            colour="" if fails else GREY, z=5.0 if fails else 1.5,
+        )  # fmt: skip
+        items += [area, number]
+    moved = _planned(view)
+    if moved:
+        legend["where it was planned"] = Lines("", [], PLANNED, 1.0, DASHES)
+    common = [
+        Area(f"common-{number}", (loop,), COMMON, COMMON, width_pt=0.8, z=4.0)
+        for number, loop in enumerate(view.common)
+    ]
+    if common:
+        legend["claimed by two"] = common[0]
+    items += [*moved, *common]
+    if view.size:
+        site = rectangle(0.0, 0.0, *view.size)
+        items.append(Area("site", (site,), line=GREY, width_pt=1.0, dashes=DOTS))
+        legend["wall that was to be built"] = Lines("", [], GREY, 1.5, DOTS)
+    return draw(Drawing(tuple(items), view.box, title=view.title, legend=legend), ax)
 
 
-def _draw_ended(ax: Axes, region: Region, *, fails: bool) -> None:
-    fill = CONCERNED if fails else PALE
-    draw_block(
-        ax,
-        region.loops,
-        f"block-{region.id}",
-        fill=fill,
-        edgecolor=OUTLINE_COLOUR if fails else GREY,
-        linewidth=0.8 if fails else 0.5,
-        zorder=2 if fails else 1,
-    )
-    write_number(ax, region.id, region.centroid, region.loops, fill)
-    ax.texts[-1].set_gid(f"number-{region.id}")
-    if not fails:
-        # Whatever lies over it hides its number too.
-        ax.texts[-1].set(color=GREY, zorder=1.5)
-
-
-def _draw_planned(ax: Axes, view: FailureView) -> bool:
-    """Draw where blocks that moved were planned; say whether there are any."""
+def _planned(view: FailureView) -> list[Area]:
+    """Return where blocks that have moved were planned."""
     _, y0, _, y1 = regions_box([loop] for loop in view.planned.values())
-    drawn = False
+    drawn = []
     for block, loop in view.planned.items():
         way = np.hypot(*(view.ended[block] - loop).T).max() if block in view.ended else 0.0
         if way > NOTICEABLE * (y1 - y0):
             fails = block in view.concerned
-            draw_block(
-                ax,
-                [loop],
-                f"planned-{block}",
-                edgecolor=PLANNED if fails else PLANNED_PALE,
-                linewidth=1.0 if fails else 0.5,
-                linestyle=(0, (4, 2)),
-                zorder=3,
-            )
-            drawn = True
+            drawn.append(
+                Area(f"planned-{block}", (loop,), line=PLANNED if fails else PLANNED_PALE,
+                     width_pt=1.0 if fails else 0.5, dashes=DASHES, z=3.0)
+            )  # fmt: skip
     return drawn
-
-
-def _draw_meaning(ax: Axes, view: FailureView, *, dashed: bool) -> None:
-    """Write what colours and lines mean in a row under the axes."""
-    handles: list[Line2D | Patch] = []
-    if view.concerned:
-        handles.append(Patch(facecolor=CONCERNED, edgecolor=OUTLINE_COLOUR, label="fails"))
-    if dashed:
-        line = Line2D([], [], color=PLANNED, linewidth=1.0, linestyle=(0, (4, 2)))
-        line.set_label("where it was planned")
-        handles.append(line)
-    if view.common:
-        handles.append(Patch(facecolor=COMMON, edgecolor=COMMON, label="claimed by two"))
-    if view.size:
-        dotted = Line2D([], [], color=GREY, linestyle=":", label="wall that was to be built")
-        handles.append(dotted)
-    ax.legend(
-        handles=handles,
-        loc="upper left",
-        bbox_to_anchor=(0.0, 0.0),
-        bbox_transform=ax.transAxes + points_down(ax, 4.0),
-        ncols=4,
-        fontsize=7,
-        frameon=False,
-        borderaxespad=0.0,
-    )

@@ -6,12 +6,13 @@ from math import floor, log10
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
-from matplotlib.lines import Line2D
+from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
+from drystone.drawing.canvas import draw, draw_legend
+from drystone.drawing.drawing import Dots, Drawing, Lines
 from drystone.drawing.outlines import Loop, wall_regions
-from drystone.drawing.scene import legend_below, pale_wall, points_down, wall_size
+from drystone.drawing.wall import pale_wall, size_of
 from drystone.model.wall import Labels
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 
@@ -146,22 +147,24 @@ def plot_forces(
     acting, regions = resultants(model, forces), wall_regions(wall)
     largest = max((one.size for one in acting), default=0.0)
     if largest == 0.0:
-        return pale_wall(regions, model, ax)
-    per_weight = LONGEST_SHARE * wall_size(regions) / largest
-    lines = [_line(one, per_weight) for one in acting]
-    ax = pale_wall(regions, model, ax, lines)
+        return draw(pale_wall(regions, model), ax)
+    per_weight = LONGEST_SHARE * size_of(regions) / largest
+    halves = [0.5 * per_weight * one.force for one in acting]
+    lines = [
+        np.array([r.point - half, r.point + half]) for r, half in zip(acting, halves, strict=True)
+    ]
+    pale = pale_wall(regions, model, lines)
     paths, widths = _network(model, acting)
-    _draw_lines(ax, paths, NETWORK, WIDEST_PT * widths / largest, "thrust")
-    _draw_lines(ax, lines, RESULTANT, np.full(len(lines), RESULTANT_PT), "resultants")
     seen = np.array([one.point for one in acting if one.size >= VISIBLE_SHARE * largest])
-    ax.plot(*seen.T, "o", color=RESULTANT, markersize=1.8, gid="points-of-action", zorder=4)
+    items = (
+        *pale.items,
+        Lines("thrust", paths, NETWORK, (WIDEST_PT * widths / largest).tolist()),
+        Lines("resultants", lines, RESULTANT, RESULTANT_PT),
+        Dots("points-of-action", seen, RESULTANT, 1.8),
+    )
+    ax = draw(Drawing(items, pale.box), ax)
     _draw_scale(ax, model, per_weight, largest)
     return ax
-
-
-def _line(one: Resultant, per_weight: float) -> Floats:
-    half = 0.5 * per_weight * one.force
-    return np.array([one.point - half, one.point + half])
 
 
 def _network(model: RigidBlockModel, acting: tuple[Resultant, ...]) -> tuple[list[Floats], Floats]:
@@ -176,13 +179,6 @@ def _network(model: RigidBlockModel, acting: tuple[Resultant, ...]) -> tuple[lis
     return paths, np.array([one.size for one in acting])
 
 
-def _draw_lines(ax: Axes, lines: list[Floats], colour: str, widths: Floats, gid: str) -> None:
-    drawn = LineCollection(
-        lines, colors=colour, linewidths=widths, gid=gid, capstyle="round", zorder=3
-    )
-    ax.add_collection(drawn, autolim=False)
-
-
 def _draw_scale(ax: Axes, model: RigidBlockModel, per_weight: float, largest: float) -> None:
     """Draw a bar for a round number of mean block weights, as long and as wide as its force."""
     weights = [block.weight for block in model.blocks if not block.fixed]
@@ -191,7 +187,7 @@ def _draw_scale(ax: Axes, model: RigidBlockModel, per_weight: float, largest: fl
     force = count * mean
     left = ax.get_xlim()[0]
     right = left + per_weight * force
-    below = ax.get_xaxis_transform() + points_down(ax, 9.0)
+    below = ax.get_xaxis_transform() + ScaledTranslation(0.0, -0.125, ax.figure.dpi_scale_trans)
     for colour, width, gid in (
         (NETWORK, WIDEST_PT * force / largest, "scale-width"),
         (RESULTANT, RESULTANT_PT, "scale-length"),
@@ -211,11 +207,11 @@ def _draw_scale(ax: Axes, model: RigidBlockModel, per_weight: float, largest: fl
     ax.annotate(
         text, (right, 0.0), (6, 0), xycoords=below, textcoords="offset points", size=7, va="center"
     )
-    handles = [
-        Line2D([], [], color=NETWORK, linewidth=4.0, label="thrust, as wide as the force"),
-        Line2D([], [], color=RESULTANT, linewidth=RESULTANT_PT, label="resultant, as long"),
-    ]
-    legend_below(ax, handles, down_pt=18.0)
+    legend = {
+        "thrust, as wide as the force": Lines("", [], NETWORK, 4.0),
+        "resultant, as long": Lines("", [], RESULTANT, RESULTANT_PT),
+    }
+    draw_legend(ax, legend)
 
 
 def round_number(most: float) -> float:

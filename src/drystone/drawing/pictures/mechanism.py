@@ -10,9 +10,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize, to_hex
 from numpy.typing import NDArray
 
-from drystone.drawing.canvas import draw_block, draw_ground, fit_axes, write_number
+from drystone.drawing.canvas import draw
+from drystone.drawing.drawing import Area, Drawing, Item, Lines, Words, ground
 from drystone.drawing.outlines import Loop, Region, regions_box, stands_on_ground, wall_regions
-from drystone.drawing.palette import GREY, OUTLINE_COLOUR
+from drystone.drawing.palette import GREY
 from drystone.model.wall import Labels
 from drystone.statics.model import Direction
 from drystone.statics.result import Mechanism
@@ -158,30 +159,47 @@ def plot_mechanism(
     x0, y0, x1, y1 = regions_box((region.loops for region in motion.regions), moved)
     pad = 0.02 * (x1 - x0)
     depth = 0.035 * max(y1 - y0, 0.2 * (x1 - x0))
-    ax = fit_axes(ax, (x0 - pad, y0 - depth, x1 + pad, y1 + 3.5 * depth))
-    ax.set_axis_off()
+    box = (x0 - pad, y0 - depth, x1 + pad, y1 + 3.5 * depth)
+    items: list[Item] = []
     if stands_on_ground(motion.regions):
-        draw_ground(ax, x0 - pad, x1 + pad, depth)
-    _draw_blocks(ax, motion, moved, numbers=numbers)
-    _draw_load(ax, y1 + 2 * depth, direction, _caption(direction, alpha, load), arrow=not load)
+        items += ground((box[0], -depth, box[2], 0.0))
+    items += _blocks(motion, moved, numbers=numbers)
+    y, middle, half = y1 + 2 * depth, (x0 + x1) / 2, 0.06 * (x1 - x0 + 2 * pad)
+    if direction is None:
+        half = 1.2 * depth
+    reach = {"left": (-half, 0.0), "right": (half, 0.0), None: (0.0, -half)}[direction]
+    if not load:
+        arrow = np.array([(middle, y)] * 2) + np.array([-np.array(reach), reach])
+        items.append(
+            Lines("live-load" if direction else "own-weight", [arrow], width_pt=2.2, head=True)
+        )
+    ax = draw(Drawing(tuple(items), box), ax)
+    # In points from the arrow, which is short over low walls.
+    ax.annotate(
+        _caption(direction, alpha, load), (middle if load else middle + abs(reach[0]), y),
+        (0.0 if load else 10.0, 0.0), textcoords="offset points", size=8,
+        ha="center" if load else "left", va="center",
+    )  # fmt: skip
     _draw_scale(ax)
     return ax
 
 
-def _draw_blocks(
-    ax: Axes, motion: Motion, moved: tuple[tuple[Loop, ...], ...], *, numbers: bool
-) -> None:
+def _blocks(motion: Motion, moved: tuple[tuple[Loop, ...], ...], *, numbers: bool) -> list[Item]:
     share, centroids = motion.share, motion.centroids(1.0)
+    items: list[Item] = []
     # The blocks that move most are drawn last: dilatancy opens joints, rounding may close some.
     for index in np.argsort(share, kind="stable"):
         fill, number = to_hex(COLOURS(float(share[index]))), motion.regions[index].id
-        draw_block(ax, moved[index], f"moved-{number}", fill=fill, zorder=1)
+        area = Area(f"moved-{number}", moved[index], fill)
+        items.append(area)
         if numbers:
-            write_number(ax, number, centroids[index], moved[index], fill)
-            ax.texts[-1].set_gid(f"number-{number}")
-    for region in motion.regions:
-        gid = f"before-{region.id}"
-        draw_block(ax, region.loops, gid, edgecolor=GREY, linewidth=0.5, zorder=2)
+            at = centroids[index]
+            items.append(Words(f"number-{number}", str(number), at, area.room, fill))
+    items += [
+        Area(f"before-{region.id}", region.loops, line=GREY, width_pt=0.5, z=2.0)
+        for region in motion.regions
+    ]
+    return items
 
 
 def _velocities(regions: tuple[Region, ...], mechanism: Mechanism) -> Floats:
@@ -222,40 +240,6 @@ def _caption(direction: Direction | None, alpha: float | None, load: str) -> str
         return "falls under its own weight"
     value = "" if alpha is None else rf", $\alpha$ = {alpha:.3f}"
     return (load or rf"live load, $\alpha$ times the weight, to the {direction}") + value
-
-
-def _draw_load(
-    ax: Axes, y: float, direction: Direction | None, caption: str, *, arrow: bool
-) -> None:
-    left, right = ax.get_xlim()
-    x, half = (left + right) / 2, 0.06 * (right - left)
-    if direction is None:
-        half = 0.8 * (ax.get_ylim()[1] - y)
-    reach = {"left": (-half, 0.0), "right": (half, 0.0), None: (0.0, -half)}[direction]
-    if arrow:
-        ax.annotate(
-            "",
-            xy=(x + reach[0], y + reach[1]),
-            xytext=(x - reach[0], y - reach[1]),
-            gid="live-load" if direction else "own-weight",
-            arrowprops={
-                "arrowstyle": "-|>,head_width=.35,head_length=.7",
-                "linewidth": 2.2,
-                "color": OUTLINE_COLOUR,
-                "shrinkA": 0,
-                "shrinkB": 0,
-            },
-        )
-    # In points from the arrow, which is short over low walls.
-    ax.annotate(
-        caption,
-        (x + abs(reach[0]) if arrow else x, y),
-        (10.0 if arrow else 0.0, 0.0),
-        textcoords="offset points",
-        size=8,
-        ha="left" if arrow else "center",
-        va="center",
-    )
 
 
 def _draw_scale(ax: Axes) -> None:

@@ -1,13 +1,16 @@
-"""Stones as they lie in the source image, and label images."""
+"""Stones as they lie in the source image, label images, and ways along joints."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
-from drystone.drawing.canvas import draw_block, draw_legend, fit_axes, write_number
+from drystone.drawing.canvas import draw
+from drystone.drawing.drawing import Area, Drawing, Item, Lines, Words
 from drystone.drawing.outlines import label_regions
-from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
+from drystone.drawing.palette import GREY, PALE, PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour
+from drystone.drawing.wall import cluster_legend
 from drystone.model.stone import Stone, StoneSet
 from drystone.model.wall import Labels
 
@@ -45,20 +48,17 @@ def plot_stones(
     top = max(corners[s.id][1] + s.mask.shape[0] for s in stone_set)
     if not source.files:
         right, top = max(right, source.width_px), max(top, source.height_px)
-    pad = 0.01 * right
-    ax = fit_axes(ax, (-pad, -pad, right + pad, top + pad))
+    items: list[Item] = []
     for stone in stone_set:
         x, y = corners[stone.id]
         centroid = (x + stone.local_centroid[0], y + stone.local_centroid[1])
         fill = PLAIN_COLOUR if clusters is None else cluster_colour(clusters[stone.id])
-        loops = [stone.outline + centroid]
-        draw_block(ax, loops, f"stone-{stone.id}", fill=fill)
-        write_number(ax, stone.id, centroid, loops, fill)
-    ax.set_xlabel("px", fontsize=7, labelpad=1)
-    if clusters is not None:
-        used = sorted({clusters[stone.id] for stone in stone_set})
-        draw_legend(ax, {f"cluster {number}": cluster_colour(number) for number in used})
-    return ax
+        area = Area(f"stone-{stone.id}", (stone.outline + centroid,), fill)
+        items += [area, Words(f"number-{stone.id}", str(stone.id), centroid, area.room, fill)]
+    legend = cluster_legend(clusters[stone.id] for stone in stone_set) if clusters else {}
+    pad = 0.01 * right
+    box = (-pad, -pad, right + pad, top + pad)
+    return draw(Drawing(tuple(items), box, "px", legend=legend), ax)
 
 
 def _rows(stones: StoneSet) -> dict[int, tuple[float, float]]:
@@ -104,12 +104,47 @@ def plot_labels(labels: Labels, ax: Axes | None = None, *, title: str = "") -> A
     """
     height, width = labels.shape
     pad = 0.01 * width
-    ax = fit_axes(ax, (-pad, -pad, width + pad, height + pad))
+    items: list[Item] = []
     for rank, region in enumerate(label_regions(labels), 1):
         fill = cluster_colour(rank)
-        draw_block(ax, region.loops, f"block-{region.id}", fill=fill)
-        write_number(ax, region.id, region.centroid, region.loops, fill)
-    ax.set_xlabel("px", fontsize=7, labelpad=1)
-    if title:
-        ax.set_title(title, fontsize=9, loc="left")
-    return ax
+        area = Area(f"block-{region.id}", region.loops, fill)
+        number = Words(f"number-{region.id}", str(region.id), region.centroid, area.room, fill)
+        items += [area, number]
+    box = (-pad, -pad, width + pad, height + pad)
+    return draw(Drawing(tuple(items), box, "px", title), ax)
+
+
+def plot_joint_paths(
+    labels: Labels, paths: Sequence[NDArray[np.integer]], ax: Axes | None = None
+) -> Axes:
+    """Draw the paths of the alignment factors F_AV and F_AH over the stones (Fig. 17).
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        The wall; row 0 at the top.
+    paths : sequence of (n, 2) integer arrays
+        Pixels (row, col) of each path; rows and columns just outside of the image are allowed.
+    ax : Axes, optional
+        Where to draw; None makes a figure.
+
+    Returns
+    -------
+    ax : Axes
+        In px, y up from the image's bottom edge.
+    """
+    height, width = labels.shape
+    blocks = (
+        Area(f"block-{region.id}", region.loops, PALE, line=GREY, width_pt=0.4)
+        for region in label_regions(labels)
+    )
+    ways = (
+        Lines(
+            f"path-{number}",
+            [np.asarray((path[:, ::-1] + 0.5) * (1, -1) + (0, height))],
+            WEDGE_COLOUR,
+            1.6,
+        )
+        for number, path in enumerate(map(np.asarray, paths), 1)
+    )
+    return draw(Drawing((*blocks, *ways), (-2, -3, width + 2, height + 2), "px"), ax)

@@ -1,21 +1,25 @@
-"""The wall as planned: clusters, order of placement, wedges."""
+"""The wall as planned: clusters, order of placement, wedges; and walls to choose from."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import Rectangle
+from matplotlib.figure import Figure
 
-from drystone.drawing.canvas import (
-    draw_block,
-    draw_ground,
-    draw_legend,
-    fit_axes,
-    write_number,
-)
-from drystone.drawing.outlines import Loop, label_regions, wall_outlines
-from drystone.drawing.palette import GREY, PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour
-from drystone.model.wall import Group, Wall
+from drystone.drawing.canvas import add, draw, fit_axes
+from drystone.drawing.drawing import Area
+from drystone.drawing.outlines import Loop
+from drystone.drawing.palette import CLUSTER_COLOURS
+from drystone.drawing.wall import drawing_of_wall
+from drystone.model.wall import Wall
+
+COLUMNS = 3
+PANEL_IN = 3.2
+"""Width of the picture of a wall to choose."""
+
+AXES = (("F_SF", "F_LR"), ("F_AV", "F_AH"))
+"""What is drawn against what."""
+
+Figures = Mapping[str, float | None]
 
 
 def plot_wall(
@@ -49,73 +53,60 @@ def plot_wall(
     ax : Axes
         In the plan's units: source px, or metres when the site has a scale.
     """
-    site = wall.site
-    width, height = site.width_px * site.units_per_px, site.height_px * site.units_per_px
-    margin, depth = 0.015 * width, 0.035 * max(height, 0.2 * width)
-    ax = fit_axes(ax, (-margin, -depth, width + margin, height + margin))
-    draw_ground(ax, -margin, width + margin, depth)
-    frame = Rectangle(
-        (0, 0),
-        width,
-        height,
-        fill=False,
-        edgecolor=GREY,
-        linewidth=0.9,
-        linestyle=(0, (5, 4)),
-        gid="frame",
-        zorder=3,
+    return draw(drawing_of_wall(wall, clusters, outlines, title), ax)
+
+
+def plot_choice(walls: Sequence[Wall], figures: Sequence[Figures]) -> Figure:
+    """Draw walls with their figures of merit, numbered from 1, and these against each other.
+
+    Parameters
+    ----------
+    walls : sequence of Wall
+        At least one, all of one size.
+    figures : sequence of mapping of str to float or None
+        F_SF, F_AV, F_AH and F_LR of each.
+
+    Returns
+    -------
+    figure : Figure
+        Its axes are those of the walls, then F_LR over F_SF and F_AH over F_AV.
+    """
+    rows = -(-len(walls) // COLUMNS)
+    site = walls[0].site
+    wall_in = max(0.6, PANEL_IN * site.height_px / site.width_px) + 0.45
+    figure = Figure(figsize=(COLUMNS * PANEL_IN, rows * wall_in + PANEL_IN), layout="constrained")
+    parts = figure.subfigures(2, 1, squeeze=False, height_ratios=(rows * wall_in, PANEL_IN))
+    above, below = parts[:, 0]
+    panels = above.subplots(rows, COLUMNS, squeeze=False).ravel().tolist()
+    for number, (ax, wall, values) in enumerate(zip(panels, walls, figures, strict=False), 1):
+        drawing = drawing_of_wall(wall)
+        x0, _, x1, y1 = drawing.box
+        fit_axes(ax, (x0, -0.01 * y1, x1, y1)).set_axis_off()
+        areas = [item for item in drawing.items if isinstance(item, Area) and not item.hatch]
+        add(ax, areas)
+        ax.set_title(f"{number:02}  {_words(values)}", fontsize=7, loc="left", pad=3)
+    for ax in panels[len(walls) :]:
+        ax.remove()
+    for ax, (across, up) in zip(below.subplots(1, len(AXES)), AXES, strict=True):
+        _draw_figures(ax, figures, across, up)
+    return figure
+
+
+def _draw_figures(ax: Axes, figures: Sequence[Figures], across: str, up: str) -> None:
+    for number, values in enumerate(figures, 1):
+        x, y = values[across], values[up]
+        if x is None or y is None:
+            continue
+        ax.plot([x], [y], "o", color=CLUSTER_COLOURS[0], markersize=4)
+        ax.annotate(f"{number:02}", (x, y), xytext=(3, 3), textcoords="offset points", fontsize=7)
+    ax.set_xlabel(across, fontsize=8)
+    ax.set_ylabel(up, fontsize=8)
+    ax.tick_params(labelsize=7)
+
+
+def _words(values: Figures) -> str:
+    digits = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 2}
+    return "  ".join(
+        f"{name} {'-' if values[name] is None else format(values[name], f'.{count}f')}"
+        for name, count in digits.items()
     )
-    ax.add_patch(frame)
-    loops = wall_loops(wall, outlines)
-    step = 1
-    for group in wall.groups:
-        _draw_group(ax, wall, group, loops, clusters, step)
-        step += 1 + len(group.wedges)
-    ax.set_xlabel("m" if site.px_per_m else "px", fontsize=7, labelpad=1)
-    if title:
-        ax.set_title(title, fontsize=9, loc="left", pad=4)
-    legend = _legend(wall, clusters)
-    if legend:
-        draw_legend(ax, legend)
-    return ax
-
-
-def wall_loops(
-    wall: Wall, outlines: Mapping[int, Loop] | None = None
-) -> dict[int, tuple[Loop, ...]]:
-    """Return the boundary of every stone and wedge in the plan's units."""
-    if outlines is None and wall.outlines is not None:
-        outlines = wall_outlines(wall)
-    if outlines is not None:
-        return {label: (np.asarray(points, float),) for label, points in outlines.items()}
-    units = wall.site.units_per_px
-    return {
-        region.id: tuple(loop * units for loop in region.loops)
-        for region in label_regions(wall.labels)
-    }
-
-
-def _draw_group(
-    ax: Axes,
-    wall: Wall,
-    group: Group,
-    loops: Mapping[int, tuple[Loop, ...]],
-    clusters: Mapping[int, int] | None,
-    step: int,
-) -> None:
-    placement, units = group.placement, wall.site.units_per_px
-    stone_id = placement.stone_id
-    x, y = placement.centroid(wall.site.height_px)
-    fill = PLAIN_COLOUR if clusters is None else cluster_colour(clusters[stone_id])
-    draw_block(ax, loops[stone_id], f"stone-{stone_id}", fill=fill, zorder=1)
-    write_number(ax, step, (x * units, y * units), loops[stone_id], fill)
-    for wedge in group.wedges:
-        draw_block(ax, loops[wedge.id], f"wedge-{wedge.id}", fill=WEDGE_COLOUR, zorder=2)
-
-
-def _legend(wall: Wall, clusters: Mapping[int, int] | None) -> dict[str, str]:
-    used = sorted({clusters[p.stone_id] for p in wall.placements}) if clusters else []
-    entries = {f"cluster {number}": cluster_colour(number) for number in used}
-    if wall.wedges:
-        entries["wedge"] = WEDGE_COLOUR
-    return entries

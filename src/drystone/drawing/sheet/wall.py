@@ -5,10 +5,12 @@ import json
 from dataclasses import dataclass
 
 from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.export.png import draw_parts
+from drystone.drawing.canvas import add
+from drystone.drawing.drawing import placed
 from drystone.drawing.export.settings import ExportSettings
 from drystone.drawing.palette import GREY, WEDGE_COLOUR
 from drystone.drawing.sheet.page import EDGE_MM, LARGE_PT, PLAIN_PT, SMALL_PT, Page
+from drystone.drawing.wall import drawing_of_assembly
 from drystone.io.plan_json import plan_to_json
 
 USUAL_SCALES = (1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 250.0, 500.0, 1000.0)
@@ -90,7 +92,8 @@ def first_page(assembly: Assembly, settings: ExportSettings, title: str) -> Page
                color=WEDGE_COLOUR if loud else "black")  # fmt: skip
     _earth(page, left, bottom, width)
     page.box(left, bottom, width, height, edgecolor=GREY, linestyle=(0, (5, 4)), gid="frame")
-    draw_parts(page.ax, assembly, scale.mm_per_unit, (left, bottom))
+    blocks = drawing_of_assembly(assembly).layers("STONES", "WEDGES", "NUMBERS")
+    add(page.ax, placed(blocks, scale.mm_per_unit, (left, bottom)))
     _dimensions(page, assembly, (left, bottom), (width, height))
     _title_block(page, assembly, settings, scale)
     return page

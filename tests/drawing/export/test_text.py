@@ -1,14 +1,12 @@
-"""Text and files on the way out."""
+"""Numbers and JSON on the way out."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 
-from drystone.drawing.export.out import json_text, number, put
-from drystone.errors import PlanError
+from drystone.drawing.export.text import json_text, number
 
 
 def test_json_is_json_of_any_shape() -> None:
@@ -36,11 +34,3 @@ def test_numbers_are_floats_for_every_reader(value: float) -> None:
     assert type(found) is float
     assert found == value == float(number(value))
     assert not number(value + 0.0).startswith("-0.0")
-
-
-def test_a_file_that_cannot_be_written_is_an_error_with_a_code(tmp_path: Path) -> None:
-    (tmp_path / "taken").mkdir()
-    with pytest.raises(PlanError) as caught:
-        put(tmp_path, "taken", "text")
-    assert caught.value.code == "E206"
-    assert put(tmp_path, "a/b.txt", b"x").read_bytes() == b"x"

@@ -1,39 +1,13 @@
-"""Files on the way out: whole or not there, equal for equal assemblies."""
+"""Numbers and JSON as text, equal for equal assemblies."""
 
 import json
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from drystone.whole_files import write_whole
-
 LINE = 320
 """Characters; a matrix of 16 numbers with all digits is shorter."""
-
-
-def put(folder: Path, name: str, data: str | bytes) -> Path:
-    """Write one file, with the folders it lies in.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the export.
-    name : str
-        Relative to it, with ``/`` between folders.
-    data : str or bytes
-        Text is written as UTF-8.
-
-    Raises
-    ------
-    PlanError
-        E206 when it cannot be written.
-    """
-    path = folder / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, data.encode() if isinstance(data, str) else data)
-    return path
 
 
 def json_text(value: Any, depth: int = 0) -> str:

@@ -1,0 +1,169 @@
+"""wall.svg, wall.dxf, wall-numbered.png and build-sheet.pdf: one drawing of a planned wall.
+
+The SVG is in millimetres, or px of the source image when there is no scale; the DXF in metres, or
+without a unit.  Both have layers: SITE, STONES, WEDGES, NUMBERS, and, not shown at first,
+CONTACTS, FORCES-LEFT and -RIGHT, MECHANISM-LEFT and -RIGHT.
+"""
+
+import numpy as np
+
+from drystone.drawing import dxf as dxf_end
+from drystone.drawing import svg as svg_end
+from drystone.drawing.assembly.parts import Assembly
+from drystone.drawing.canvas import draw
+from drystone.drawing.drawing import Area, Dots, Drawing, Item, Lines, placed
+from drystone.drawing.export.formats import Files, load_extra
+from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.files import figure_bytes
+from drystone.drawing.lettering import one_line
+from drystone.drawing.pictures.contacts import JOINT
+from drystone.drawing.pictures.forces import LONGEST_SHARE, RESULTANT, resultants
+from drystone.drawing.pictures.mechanism import motion_of
+from drystone.drawing.sheet.pages import sheet, sheet_bytes
+from drystone.drawing.sheet.photo import read_photo
+from drystone.drawing.wall import drawing_of_assembly
+from drystone.statics.result import LimitResult
+
+SMALLEST_SHARE = 0.005
+"""Arrows of smaller forces over the largest one would be dots."""
+
+STILL = 1e-4
+"""Motions of less than this share of the wall's width are none that is seen."""
+
+MOVED_COLOUR = "#d55e00"
+
+
+def svg(assembly: Assembly, settings: ExportSettings) -> Files:
+    """Return wall.svg."""
+    plan, metric = assembly.plan, assembly.unit == "m"
+    factor = 1000.0 if metric else 1.0
+    width, height = (side * factor for side in assembly.size)
+    scale = "1 unit = 1 mm" if metric else "1 unit = 1 px of the source; no scale"
+    about = (
+        f"{scale}. Wall frame: x from the left end, y from the ground; here y runs down from the "
+        f"top, {height:g} units above the ground. drystone {plan.version}, seed {plan.seed}."
+    )
+
+    def made() -> bytes:
+        drawing = with_statics(assembly)
+        there = Drawing(
+            tuple(placed(drawing.items, factor)), drawing.box, hidden=drawing.hidden,
+            notes=drawing.notes,
+        )  # fmt: skip
+        unit = "mm" if metric else "px"
+        return svg_end.svg_bytes(there, (width, height), unit, _name(assembly, settings), about)
+
+    return {"wall.svg": made}
+
+
+def dxf(assembly: Assembly, settings: ExportSettings) -> Files:
+    """Return wall.dxf; E185 when ezdxf is not installed."""
+    ezdxf = load_extra("ezdxf", "cad", "E185", "wall.dxf")
+    plan, metric = assembly.plan, assembly.unit == "m"
+    unit = "Unit: 1 metre" if metric else "Not to scale: the unit is 1 px of the source image"
+    about = (
+        one_line(_name(assembly, settings)),
+        f"{unit}. x from the left end, y from the ground.",
+        f"drystone {plan.version}, seed {plan.seed}. Numbers are steps of construction.",
+    )
+    return {
+        "wall.dxf": lambda: dxf_end.dxf_bytes(
+            ezdxf, with_statics(assembly), assembly.size, metric=metric, about=about
+        )
+    }
+
+
+def png(assembly: Assembly, settings: ExportSettings) -> Files:
+    """Return wall-numbered.png."""
+    drawing = drawing_of_assembly(assembly, settings.title)
+    return {"wall-numbered.png": lambda: figure_bytes(draw(drawing).figure, ".png")}
+
+
+def pdf(assembly: Assembly, settings: ExportSettings) -> Files:
+    """Return build-sheet.pdf; E189 when the photograph of the stones cannot be used."""
+    photo = read_photo(assembly)
+    return {"build-sheet.pdf": lambda: sheet_bytes(sheet(assembly, settings, photo))}
+
+
+def with_statics(assembly: Assembly) -> Drawing:
+    """Describe a planned wall with its contacts, forces and mechanisms, which are hidden."""
+    drawing = drawing_of_assembly(assembly)
+    items, notes = contacts(assembly), dict[str, str]()
+    for result in (assembly.resistance.left, assembly.resistance.right):
+        side, says = result.direction.upper(), _says(result)
+        arrows, length = forces(assembly, result)
+        if arrows is not None:
+            items.append(arrows)
+            unit = "m" if assembly.unit == "m" else "px"
+            scale = f"a line of {length:.4g} {unit} is the mean weight of a part"
+            notes[f"FORCES-{side}"] = f"Forces {says}; {scale}"
+        moved = failed(assembly, result)
+        if moved:
+            items += moved
+            notes[f"MECHANISM-{side}"] = f"How the wall fails {says}; motion enlarged"
+    hidden = tuple(sorted({item.layer for item in items}))
+    return Drawing((*drawing.items, *items), drawing.box, hidden=hidden, notes=notes)
+
+
+def contacts(assembly: Assembly) -> list[Item]:
+    """Return where parts touch."""
+    names = {0: "ground"} | {part.id: part.name for part in assembly.parts}
+    items: list[Item] = []
+    for face in assembly.model.interfaces:
+        note = f"{names[face.block]} on {names[face.other]}"
+        if len(face.points) > 1:
+            ends = face.points[[0, -1]]
+            items.append(Lines(note, [ends], JOINT, 0.9, layer="CONTACTS"))
+        else:
+            items.append(Dots(note, face.points, JOINT, 1.8, layer="CONTACTS"))
+    return items
+
+
+def forces(assembly: Assembly, result: LimitResult) -> tuple[Lines | None, float]:
+    """Return the forces at the greatest load to one side, and the length for a mean weight.
+
+    An arrow acts in its middle, where the parts touch.  None where there are none.
+    """
+    acting = () if result.forces is None else resultants(assembly.model, result.forces)
+    largest = max((one.size for one in acting), default=0.0)
+    if largest == 0.0:
+        return None, 0.0
+    mean = float(np.mean([block.weight for block in assembly.model.blocks if not block.fixed]))
+    width, height = assembly.size
+    length = LONGEST_SHARE * max(height, 0.2 * width) / largest
+    seen = [one for one in acting if one.size >= SMALLEST_SHARE * largest]
+    halves = [0.5 * length * one.force for one in seen]
+    arrows = Lines(
+        f"forces-{result.direction}",
+        [np.array([r.point - half, r.point + half]) for r, half in zip(seen, halves, strict=True)],
+        RESULTANT, head=True, layer=f"FORCES-{result.direction.upper()}",
+        notes=[f"{one.size / mean:.6g} mean weights" for one in seen],
+    )  # fmt: skip
+    return arrows, length * mean
+
+
+def failed(assembly: Assembly, result: LimitResult) -> list[Area]:
+    """Return the parts that a mechanism moves, after its motion, which is scaled for pictures."""
+    if result.mechanism is None:
+        return []
+    motion = motion_of({part.id: part.corners for part in assembly.parts}, result.mechanism)
+    return [
+        Area(assembly.part(region.id).name, loops, line=MOVED_COLOUR,
+             layer=f"MECHANISM-{result.direction.upper()}")
+        for region, loops in zip(motion.regions, motion.at(1.0), strict=True)
+        if np.abs(loops[0] - region.loops[0]).max() > STILL * assembly.size[0]
+    ]  # fmt: skip
+
+
+def _says(result: LimitResult) -> str:
+    """Say at which load the forces of a direction act and the wall fails."""
+    if result.alpha is None:
+        return f"to the {result.direction}: {result.status.value}"
+    return (
+        f"to the {result.direction}: at a lateral load of alpha = {result.alpha:.4f} times the "
+        "weight (adequacy factor)"
+    )
+
+
+def _name(assembly: Assembly, settings: ExportSettings) -> str:
+    return settings.title or str(assembly.plan.source.get("path") or "dry-stone wall")

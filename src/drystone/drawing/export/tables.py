@@ -1,0 +1,170 @@
+"""steps.csv, steps.parquet and wall.geojson: the build list, one row a step."""
+
+import csv as csv_writer
+import io
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from drystone.drawing.assembly import handling
+from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.export.formats import Files, load_extra
+from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.text import json_text
+from drystone.model.plan import StoneStep
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column.
+
+    Parameters
+    ----------
+    name : str
+        With the unit of the assembly.
+    type : type
+        Of its values, apart from None; `list` is one of ids.
+    values : tuple
+        One a step.
+    """
+
+    name: str
+    type: type
+    values: tuple[Any, ...]
+
+
+def columns(assembly: Assembly) -> tuple[Column, ...]:
+    """Return the build list by columns.
+
+    x and y are the plan's: x along the wall, y up. Width and height are those of the bounding
+    box as a stone lies in the source image.
+    """
+    unit, parts = assembly.unit, assembly.parts
+    stones = [part.plan_step if isinstance(part.plan_step, StoneStep) else None for part in parts]
+    metric = unit == "m"
+
+    def column(name: str, kind: type, values: list[Any]) -> Column:
+        return Column(name, kind, tuple(values))
+
+    return (
+        column("step", int, [part.step for part in parts]),
+        column("kind", str, [part.kind for part in parts]),
+        column("id", int, [part.id for part in parts]),
+        column("name", str, [part.name for part in parts]),
+        column("under", int, [part.under for part in parts]),
+        column("side", str, [stone and stone.side for stone in stones]),
+        column("cluster", int, [part.cluster for part in parts]),
+        column("angle_deg", float, [part.angle_deg for part in parts]),
+        column(f"x_{unit}", float, [part.centroid[0] for part in parts]),
+        column(f"y_{unit}", float, [part.centroid[1] for part in parts]),
+        column("source_x_px", float, [stone and stone.source_centroid[0] for stone in stones]),
+        column("source_y_px", float, [stone and stone.source_centroid[1] for stone in stones]),
+        column(f"width_{unit}", float, [part.size[0] for part in parts]),
+        column(f"height_{unit}", float, [part.size[1] for part in parts]),
+        column(f"area_{unit}2", float, [part.area for part in parts]),
+        column("mass_kg", float, [assembly.mass_kg(part) if metric else None for part in parts]),
+        column("neighbours", list, [handling.touched_when_placed(assembly, p) for p in parts]),
+        column("alpha_left", float, [part.plan_step.alpha_left for part in parts]),
+        column("alpha_right", float, [part.plan_step.alpha_right for part in parts]),
+        column("instruction", str, [instruction(assembly, part) for part in parts]),
+    )
+
+
+def instruction(assembly: Assembly, part: Part) -> str:
+    """Return what to do in a step, in words."""
+    x, y = (_length(value, assembly.unit) for value in part.centroid)
+    if part.kind == "wedge":
+        return f"Push wedge {part.id} in under stone {part.under}, {x} from the left, {y} up."
+    angle = round(part.angle_deg)
+    way = "clockwise" if angle < 0 else "counter-clockwise"
+    turned = f"turned {abs(angle)} degrees {way}" if angle else "not turned"
+    return f"Stone {part.id}, {turned}, middle {x} from the left, {y} up."
+
+
+def _length(value: float, unit: str) -> str:
+    return f"{value:.3f} m" if unit == "m" else f"{value:.1f} px"
+
+
+def csv(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return steps.csv: UTF-8, nothing where there is no value, blanks between ids."""
+
+    def cell(value: Any) -> Any:
+        if isinstance(value, tuple):
+            return " ".join(map(str, value))
+        return value + 0.0 if isinstance(value, float) else value
+
+    def made() -> str:
+        table, text = columns(assembly), io.StringIO()
+        writer = csv_writer.writer(text, lineterminator="\n")
+        writer.writerow([column.name for column in table])
+        writer.writerows(zip(*(map(cell, column.values) for column in table), strict=True))
+        return text.getvalue()
+
+    return {"steps.csv": made}
+
+
+def parquet(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return steps.parquet, units and scale in its metadata; E181 without pyarrow."""
+    arrow = load_extra("pyarrow", "io", "E181", "steps.parquet")
+    writer = load_extra("pyarrow.parquet", "io", "E181", "steps.parquet")
+
+    def made() -> bytes:
+        plan = assembly.plan
+        about = {
+            "drystone": plan.version,
+            "source": str(plan.source.get("path") or ""),
+            "sha256": str(plan.source.get("sha256") or ""),
+            "unit": assembly.unit,
+            "px_per_m": str(assembly.px_per_m or ""),
+            "thickness": repr(assembly.thickness),
+            "density_kg_m3": repr(assembly.density_kg_m3),
+        }
+        types = {int: arrow.int64(), float: arrow.float64(), str: arrow.string(),
+                 list: arrow.list_(arrow.int64())}  # fmt: skip
+        table = columns(assembly)
+        fields = [(column.name, types[column.type]) for column in table]
+        arrays = [arrow.array(column.values, types[column.type]) for column in table]
+        data = io.BytesIO()
+        schema = arrow.schema(fields, metadata=about)
+        writer.write_table(arrow.Table.from_arrays(arrays, schema=schema), data)
+        return data.getvalue()
+
+    return {"steps.parquet": made}
+
+
+def geojson(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
+    """Return wall.geojson."""
+    return {"wall.geojson": lambda: json_text(feature_collection(assembly)) + "\n"}
+
+
+def feature_collection(assembly: Assembly) -> dict[str, Any]:
+    """Return the outlines in the wall frame; properties are the columns of the build list.
+
+    Rings are closed and counter-clockwise, as RFC 7946 wants them.  Its coordinates are those of
+    the earth; these are lengths in the wall, which foreign members say.
+    """
+    table = columns(assembly)
+    rows = zip(*(column.values for column in table), strict=True)
+    names = [column.name for column in table]
+    width, height = assembly.size
+    return {
+        "type": "FeatureCollection",
+        "unit": assembly.unit,
+        "frame": "wall: x to the right from its left end, y up from the ground; not longitude "
+        "and latitude",
+        "wall": {"width": width, "height": height},
+        "px_per_m": assembly.px_per_m,
+        "features": [
+            {
+                "type": "Feature",
+                "id": part.name,
+                "properties": dict(zip(names, row, strict=True)),
+                "geometry": {
+                    "type": "Polygon",
+                    "coordinates": [np.concatenate([part.corners, part.corners[:1]]).tolist()],
+                },
+            }
+            for part, row in zip(assembly.parts, rows, strict=True)
+        ],
+    }

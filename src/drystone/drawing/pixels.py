@@ -1,0 +1,123 @@
+"""Drawings by Pillow, where there are many of one wall, and the GIFs that they make."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from io import BytesIO
+
+import numpy as np
+from numpy.typing import ArrayLike
+from PIL import Image, ImageDraw
+
+from drystone.drawing.drawing import Area, Item, Lines, Point, Words, letters_pt
+from drystone.drawing.lettering import font
+from drystone.drawing.palette import OUTLINE_COLOUR
+
+HATCH_PX = 8
+"""Between the strokes of a hatched area."""
+
+SMALLEST_PX, LARGEST_PX = 7.0, 20.0
+"""Of numbers."""
+
+
+@dataclass(frozen=True)
+class View:
+    """Where a wall is in a picture.
+
+    Parameters
+    ----------
+    left_px, ground_px : float
+        Its lower left corner, from the picture's upper left corner.
+    per_unit : float
+        Px in a unit of the wall.
+    finer : int
+        The picture is drawn this many times finer than it will be.
+    """
+
+    left_px: float
+    ground_px: float
+    per_unit: float
+    finer: int = 1
+
+    def pixels(self, points: ArrayLike) -> list[Point]:
+        """Return points of the wall in the picture, y down."""
+        x, y = np.asarray(points, float).reshape(-1, 2).T * self.per_unit
+        there = np.column_stack([self.left_px + x, self.ground_px - y]) * self.finer
+        return [(float(x), float(y)) for x, y in there]
+
+
+def paint(picture: Image.Image, items: Iterable[Item], view: View, px_per_pt: float = 1.0) -> None:
+    """Draw areas, lines and numbers on a picture; what is written beside things is left out."""
+    draw = ImageDraw.Draw(picture)
+
+    def width(points: float) -> int:
+        return max(1, round(points * px_per_pt))
+
+    for item in items:
+        if isinstance(item, Area) and item.hatch:
+            _hatch(draw, view.pixels(item.loops[0]), item.line, view.finer)
+        elif isinstance(item, Area):
+            for loop in item.loops:
+                points = view.pixels(loop)
+                if item.fill != "none":
+                    draw.polygon(points, fill=item.fill)
+                draw.line([*points, points[0]], item.line, width(item.width_pt), joint="curve")
+        elif isinstance(item, Lines):
+            for line in item.lines:
+                draw.line(view.pixels(line), item.colour, width(float(np.max(item.width_pt))))
+        elif isinstance(item, Words) and item.room is not None and not item.beside:
+            size = letters_pt(item.text, *(side * view.per_unit for side in item.room))
+            chosen = font(float(np.clip(size, SMALLEST_PX, LARGEST_PX)))
+            (at,) = view.pixels(item.at)
+            draw.text(at, item.text, OUTLINE_COLOUR, chosen, anchor="mm")
+
+
+def _hatch(draw: ImageDraw.ImageDraw, corners: list[Point], colour: str, finer: int) -> None:
+    (left, top), (right, low) = np.min(corners, axis=0), np.max(corners, axis=0)
+    deep = low - top
+    for x in np.arange(left, right - deep, HATCH_PX * finer):
+        draw.line([(x, low), (x + deep, top)], colour, finer)
+
+
+def palette_of(colours: ArrayLike) -> Image.Image:
+    """Return the palette that pictures are reduced to.
+
+    Parameters
+    ----------
+    colours : (n, 3) float array-like
+        Red, green and blue in [0, 1]; at most 256 of them.
+    """
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(np.rint(255 * np.asarray(colours, float)).astype(np.uint8).tobytes())
+    return palette
+
+
+def gif_bytes(
+    pictures: Iterable[Image.Image], palette: Image.Image, duration_ms: int | Sequence[int]
+) -> bytes:
+    """Return a GIF that loops.
+
+    Parameters
+    ----------
+    pictures : iterable of Image
+        RGB, all of one size.
+    palette : Image
+        Of :func:`palette_of`.  One palette for all frames: colours chosen from a picture would
+        tint its black lines, and differ from frame to frame.
+    duration_ms : int or sequence of int
+        How long a frame is shown; of all frames, or of each.
+
+    Examples
+    --------
+    >>> two = [Image.new("RGB", (4, 4), colour) for colour in ("black", "white")]
+    >>> gif_bytes(two, palette_of([[0, 0, 0], [1, 1, 1]]), 80)[:6]
+    b'GIF89a'
+    """
+    first, *others = (
+        picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures
+    )
+    with BytesIO() as file:
+        first.save(
+            file, format="GIF", save_all=True, append_images=others, duration=duration_ms, loop=0,
+            disposal=1, optimize=False,
+        )  # fmt: skip
+        return file.getvalue()
