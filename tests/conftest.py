@@ -25,3 +25,13 @@ def data_dir() -> Path:
     if not folder.is_dir():
         pytest.skip("published stone sets are absent (set DRYSTONE_DATA to their folder)")
     return folder
+
+
+@pytest.fixture(scope="session")
+def trust_dir() -> Path:
+    """Folder of files that once hung, ran or crashed the readers; skip when it is absent."""
+    default = Path(__file__).resolve().parents[2] / "shared" / "cases"
+    folder = Path(os.environ.get("DRYSTONE_CASES", default)) / "trust"
+    if not folder.is_dir():
+        pytest.skip("failing inputs are absent (set DRYSTONE_CASES to their folder)")
+    return folder
