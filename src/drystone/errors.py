@@ -14,6 +14,7 @@ class ExitCode(IntEnum):
     BAD_INPUT = 3
     INCOMPLETE = 4
     CHECK_FAILED = 5
+    OWN_FAULT = 70
     INTERRUPTED = 130
     TERMINATED = 143
 
@@ -82,6 +83,12 @@ class UsageError(DrystoneError):
     """Options or parameters that make no sense together."""
 
     exit_code = ExitCode.USAGE
+
+
+class OwnFaultError(DrystoneError):
+    """What no user can cause: the last net of the command line says so."""
+
+    exit_code = ExitCode.OWN_FAULT
 
 
 class PlanError(DrystoneError):

@@ -1,6 +1,7 @@
 """Bad input gives a coded error with the place and the cure, exit code 3, and nothing written."""
 
 import json
+import os
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +29,57 @@ def inputs(tmp_path: Path, rubble: Path) -> Path:
     blocks = {"blocks_xywh": [[0, 0, 2, 2], [1, 1, 2, 2]]}
     (folder / "overlap.json").write_text(json.dumps(blocks), encoding="utf-8")
     return folder
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "code"),
+    [
+        (("wall", "width"), 1e308, "E205"),
+        (("wall", "width"), 1e9, "E121"),
+        (("steps", 0, "centroid"), [1e308, 1e308], "E205"),
+        (("settings", "mu"), "x", "E205"),
+        (("settings", "mu"), 1e308, "E205"),
+        (("settings", "settle"), 3, "E205"),
+        (("metrics", "F_SF"), 1e308, "E205"),
+        (("stopped",), ["deep"], "E132"),
+    ],
+)
+def test_numbers_of_a_plan_that_none_can_have(
+    path: tuple[str | int, ...], value: object, code: str, plan_copy: Path, run: Run
+) -> None:
+    plan = json.loads((plan_copy / "plan.json").read_text())
+    at = plan
+    for name in path[:-1]:
+        at = at[name]
+    at[path[-1]] = value
+    text = json.dumps(plan).replace('["deep"]', "[" * 900 + "]" * 900)
+    (plan_copy / "plan.json").write_text(text)
+    ran = run("measure", plan_copy)
+    assert (ran.code, ran.out) == (2 if code == "E121" else 3, "")
+    assert ran.err.startswith(f"drystone: {code} ")
+    checked = run("check", plan_copy, "--stones", plan_copy / "rubble.png")
+    assert checked.err.startswith(f"drystone: {'E203' if code == 'E132' else 'E2'}")
+    assert "Warning" not in ran.err + checked.err
+
+
+def test_friction_from_which_forces_would_overflow(run: Run, plan_copy: Path) -> None:
+    ran = run("measure", plan_copy, "--mu", "1e308")
+    assert (ran.code, ran.err.startswith("drystone: E302 mu")) == (3, True)
+
+
+@pytest.mark.parametrize("command", ["stones", "measure", "segment", "check", "plan"])
+def test_pipes_are_not_waited_for(command: str, tmp_path: Path, run: Run, rubble: Path) -> None:
+    pipe = tmp_path / "pipe.png"
+    os.mkfifo(pipe)
+    given = [*WALL, "-o", tmp_path / "out"] if command == "plan" else []
+    if command == "segment":
+        given = ["-o", tmp_path / "out"]
+    ran = run(command, pipe, *given)
+    assert (ran.code, ran.out) == (3, "")
+    assert "it is a pipe, and no regular file" in ran.err
+    if command == "plan":
+        ran = run(command, rubble, *given, "--settings", pipe)
+        assert (ran.code, "E128" in ran.err) == (3, True)
 
 
 @pytest.mark.parametrize(

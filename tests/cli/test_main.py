@@ -66,13 +66,36 @@ def test_debug_shows_the_traceback(run: Run) -> None:
         run("stones", "nowhere.png", "--debug")
 
 
-def test_a_bug_is_not_hidden(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fault_of_drystone_says_so_in_one_line(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(_: object) -> int:
-        raise ZeroDivisionError
+        raise ZeroDivisionError("by\nnought")
 
     monkeypatch.setattr(command, "run", fail)
+    ran = run("stones", "x.png")
+    assert (ran.code, ran.out) == (70, "")
+    assert ran.err == (
+        "drystone: E155 stones: this is a fault of drystone (ZeroDivisionError: by nought). "
+        "Please report it with the input; --debug shows the traceback.\n"
+    )
     with pytest.raises(ZeroDivisionError):
-        run("stones", "x.png")
+        run("stones", "x.png", "--debug")
+
+
+@pytest.mark.parametrize(
+    ("name", "closed", "code"),
+    [("stones", ">&-", 0), ("stones", ">&- 2>&-", 0), ("none", "2>&-", 3), ("none", ">&-", 3)],
+)
+def test_a_closed_output_is_no_error(
+    name: str, closed: str, code: int, rubble: Path, tmp_path: Path
+) -> None:
+    given = rubble if name == "stones" else tmp_path / "none.png"
+    shell = f"exec {sys.executable} -m drystone stones {given} {closed}"
+    done = subprocess.run(["sh", "-c", shell], capture_output=True, text=True, check=False)  # noqa: S603, S607
+    assert (done.returncode, done.stdout) == (code, "")
+    assert done.stderr == (
+        "" if code == 0 or "2>" in closed else done.stderr.splitlines()[0] + "\n"
+    )
+    assert "Traceback" not in done.stderr
 
 
 def test_names_are_printed_where_there_are_no_such_letters(

@@ -110,6 +110,8 @@ def test_wrong_values_are_blamed_on_their_option(
         ("[stop]\nfilling = 2.0", " [stop]", "E123 {}: filling must be in (0, 1]"),
         ("[stop]\nfailures = 'five'", "", "E123 {}: stop.failures = 'five' has the wrong type."),
         ("orientations = 'north'", "", "E122 {}: 'north' is no set of orientations."),
+        ("mu = 1e308", "", "E123 {}: mu must be a finite number up to 1e12"),
+        ("mu = 1e7", "", "E123 {}: mu must be at most 1e+06. Change mu."),
     ],
 )
 def test_wrong_values_of_a_file_are_blamed_on_the_file(
@@ -133,9 +135,11 @@ def test_a_settings_file_may_have_a_byte_order_mark_but_no_abyss(
 ) -> None:
     toml = tmp_path / "mine.toml"
     asked = ("plan", rubble, *WALL, "--settings", toml, "-o", tmp_path / "out")
-    toml.write_text("mu = " + "[" * 100_000, encoding="utf-8")
-    ran = run(*asked)
-    assert (ran.code, "E128" in ran.err) == (3, True)
+    for text in ("[" * 100_000, "7" * 5000, "[" * 900 + "]" * 900, "0.5 #" + " " * 1_000_000):
+        toml.write_text(f"mu = {text}", encoding="utf-8")
+        ran = run(*asked)
+        assert (ran.code, ran.err.count("\n")) == (3, 1)
+        assert ran.err.startswith("drystone: E128")
     toml.write_text("mu = 0.5\n", encoding="utf-8-sig")
     assert run(*asked).code in (0, 4)
 

@@ -116,7 +116,7 @@ def test_equal_plans_give_equal_bytes(tmp_path: Path) -> None:
 
 
 @repeatable(60)
-@given(st.floats(allow_nan=False, allow_infinity=False), st.floats(1e-300, 1e300))
+@given(st.floats(-1e9, 1e9), st.floats(1e-9, 1e9))
 def test_floats_keep_full_precision(angle_deg: float, width: float) -> None:
     one = plan(steps=(stone_step(angle_deg=angle_deg),), width=width)
     found = plan_from_json(json.loads(json.dumps(plan_to_json(one))))
@@ -290,6 +290,8 @@ def test_more_about_the_source_is_kept() -> None:
         ('{"schema": "drystone-plan/1", "seed": NaN}', "E203"),
         ('{"schema": "drystone-plan/1", "schema": "drystone-plan/1"}', "E203"),
         ("[" * 100_000, "E203"),
+        ('{"schema": ' + "[" * 400 + "]" * 400 + "}", "E203"),
+        ('{"schema": "drystone-plan/1", "seed": ' + "7" * 5000 + "}", "E203"),
         ("[]", "E204"),
         ("{}", "E204"),
         ('{"schema": "drystone-plan/2"}', "E204"),

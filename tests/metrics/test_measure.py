@@ -80,7 +80,9 @@ def test_a_pebble_is_too_small_for_paths_and_says_none():
     assert metrics.F_AH is None
 
 
-@pytest.mark.parametrize("size", [(0.0, 80.0), (280.0, -1.0), (np.nan, 80.0), (280.0, np.inf)])
+@pytest.mark.parametrize(
+    "size", [(0.0, 80.0), (280.0, -1.0), (np.nan, 80.0), (280.0, np.inf), (1e9, 80.0)]
+)
 def test_a_wall_without_room(size):
     with pytest.raises(UsageError, match="E121"):
         measure_labels(bricks(2, 2, 5, 8), wall_px=size)

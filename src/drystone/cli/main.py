@@ -4,9 +4,18 @@ import os
 import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
+from pathlib import Path
 
 from drystone.cli.parser import build_parser
-from drystone.errors import NO_ROOM, DrystoneError, ExitCode, InputError, UsageError, not_written
+from drystone.errors import (
+    NO_ROOM,
+    DrystoneError,
+    ExitCode,
+    InputError,
+    OwnFaultError,
+    UsageError,
+    not_written,
+)
 from drystone.kernels.backend import CHOICES, VARIABLE, fault
 from drystone.search.interrupts import Terminated, terminable
 
@@ -22,8 +31,8 @@ _SMALLER = {
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit code (DESIGN 2).
 
-    0 done, 2 usage, 3 bad input, 4 wall incomplete, 5 a check failed, 130 interrupted, 143
-    terminated.
+    0 done, 2 usage, 3 bad input, 4 wall incomplete, 5 a check failed, 70 a fault of drystone
+    itself, 130 interrupted, 143 terminated.  With ``--debug`` errors are raised.
     """
     with terminable() as terminated:
         code = _called(argv)
@@ -32,9 +41,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _called(argv: Sequence[str] | None) -> int:
     """Do what the command line says, and turn what went wrong into an exit code."""
-    if isinstance(sys.stdout, TextIOWrapper):
-        # Names of stones are in any script, terminals and files on some systems are not.
-        sys.stdout.reconfigure(errors="backslashreplace")
+    _prepare_output()
     if os.environ.get(VARIABLE) and (wrong := fault()) is not None:
         error = UsageError(
             "E143",
@@ -56,7 +63,7 @@ def _called(argv: Sequence[str] | None) -> int:
         how = "terminated" if isinstance(error, Terminated) else "interrupted"
         print(f"drystone: {how}", file=sys.stderr)
         return int(ExitCode.INTERRUPTED)
-    except (DrystoneError, OSError, MemoryError) as error:
+    except Exception as error:
         if arguments.debug:
             raise
         coded = _coded(error, arguments.command)
@@ -65,20 +72,39 @@ def _called(argv: Sequence[str] | None) -> int:
     return code
 
 
-def _coded(error: DrystoneError | OSError | MemoryError, command: str) -> DrystoneError:
+def _prepare_output() -> None:
+    """Make stdout take any name; what is printed where the shell closed it is thrown away."""
+    # As in `drystone stones X >&-`: the next file that is opened would take its number.
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115
+    if isinstance(sys.stdout, TextIOWrapper):
+        # Names of stones are in any script, terminals and files on some systems are not.
+        sys.stdout.reconfigure(errors="backslashreplace")
+
+
+def _coded(error: Exception, command: str) -> DrystoneError:
     """Return an error with a code; what the system refuses has none of its own."""
     if isinstance(error, DrystoneError):
         return error
     if isinstance(error, MemoryError):
         less = _SMALLER.get(command, "wall or picture")
         return InputError("E142", "the memory is not large enough.", cure=f"Use a smaller {less}.")
-    if error.errno in NO_ROOM:
+    if isinstance(error, OSError) and error.errno in NO_ROOM:
         return not_written(error)
-    return InputError(
-        "E141",
-        f"the system refuses this: {error.strerror or error}.",
-        where=str(error.filename or ""),
-        cure="Check the path, your right to write there, and the space that is left.",
+    if isinstance(error, OSError):
+        return InputError(
+            "E141",
+            f"the system refuses this: {error.strerror or error}.",
+            where=str(error.filename or ""),
+            cure="Check the path, your right to write there, and the space that is left.",
+        )
+    said = " ".join(str(error).split())
+    return OwnFaultError(
+        "E155",
+        f"this is a fault of drystone ({type(error).__name__}{said and f': {said}'}).",
+        where=command,
+        cure="Please report it with the input; --debug shows the traceback.",
     )
 
 

@@ -8,9 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import InputError, UsageError
+from drystone.io.file_bytes import file_bytes
+from drystone.io.foreign import foreign
 from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.settings import METHODS, PlannerSettings, method_settings
 from drystone.selection.policies.registry import rule_of
+
+MOST_TOML_BYTES = 1_000_000
+"""Larger settings are refused; all that there are have 3 kB."""
 
 SECONDS_A_STONE = 1 / 3
 """How long better walls are looked for when nothing is said."""
@@ -190,8 +195,17 @@ def _check_geometry(geometry: str, arguments: argparse.Namespace) -> None:
 
 def read_toml(path: Path) -> dict[str, Any]:
     """Read a TOML file; a missing or broken one is an InputError (E128)."""
+
+    def no_toml(why: str) -> InputError:
+        return InputError(
+            "E128",
+            f"is no TOML: {why}.",
+            where=str(path),
+            cure="`drystone plan` writes the settings of a plan as settings.toml: start from that.",
+        )
+
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        data = file_bytes(path, MOST_TOML_BYTES)
     except OSError as error:
         raise InputError(
             "E128",
@@ -199,10 +213,5 @@ def read_toml(path: Path) -> dict[str, Any]:
             where=str(path),
             cure="Give a TOML file, such as the settings.toml that is written with every plan.",
         ) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise InputError(
-            "E128",
-            f"is no TOML: {error}.",
-            where=str(path),
-            cure="`drystone plan` writes the settings of a plan as settings.toml: start from that.",
-        ) from None
+    with foreign(no_toml):
+        return tomllib.loads(data.decode("utf-8-sig"))

@@ -1,7 +1,6 @@
 """Rigid block models of label images (Pic-to-Ri, §4.2; DESIGN 4.8)."""
 
 from dataclasses import dataclass
-from math import isfinite
 
 import numpy as np
 
@@ -13,6 +12,9 @@ from drystone.kernels.patches import Part, painted_patch
 from drystone.model.placement import Placement, Wedge
 from drystone.model.wall import Labels
 from drystone.statics.model import Block, RigidBlockModel
+
+LARGEST_MU = 1e300
+"""A coefficient of friction from which forces do not overflow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,8 +129,8 @@ def model_with(
 
 
 def check_mu(mu: float) -> None:
-    """Raise InputError (E302) unless mu is a finite number >= 0."""
-    if not (isfinite(mu) and mu >= 0):
+    """Raise InputError (E302) unless mu is a number >= 0 that forces can be multiplied by."""
+    if not 0 <= mu <= LARGEST_MU:
         raise InputError(
             "E302",
             f"a coefficient of friction of {mu} makes no sense.",

@@ -1,6 +1,5 @@
 """Pictures that are no label images are told apart and refused (users' table of bad input)."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,8 @@ from scipy import ndimage
 
 from drystone.errors import InputError, LabelImageError
 from drystone.io.census import Census
+from drystone.io.file_bytes import file_bytes
+from drystone.io.json_text import json_of
 from drystone.kernels.ids import counted
 
 RARE_PX = 10
@@ -30,8 +31,8 @@ _CLEAN_EXPORT = "Export the ids as PNG or TIFF, without anti-aliasing or resampl
 def check_no_plan(folder: Path, where: str) -> None:
     """Refuse the folder of a plan (E113), whose pictures are no masks of stones."""
     try:
-        content = json.loads((folder / "plan.json").read_bytes())
-    except (OSError, ValueError, RecursionError):
+        content = json_of(file_bytes(folder / "plan.json").decode("utf-8-sig"))
+    except (OSError, ValueError):
         return
     if isinstance(content, dict) and "steps" in content and "source" in content:
         raise InputError(

@@ -1,12 +1,13 @@
 """The photograph of the stones, beside their label image and beside a plan."""
 
 import hashlib
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from drystone.errors import UsageError
+from drystone.io.file_bytes import file_bytes
+from drystone.io.json_text import json_of
 from drystone.io.photo_sidecar import LABELS, SIDECAR, read_sidecar
 from drystone.whole_files import refuse_existing, write_whole
 
@@ -111,10 +112,10 @@ def _is_ours(photo: Path) -> bool:
     if (photo.parent / SIDECAR).exists():
         return False  # it belongs to the label image that `drystone segment` wrote there
     try:
-        plan = json.loads((photo.parent / "plan.json").read_bytes())
+        plan = json_of(file_bytes(photo.parent / "plan.json").decode("utf-8-sig"))
         record = plan["source"][RECORD]
         name, digest = record["name"], record["sha256"]
-    except (OSError, ValueError, LookupError, TypeError, RecursionError):
+    except (OSError, ValueError, LookupError, TypeError):
         return False
     found = photo.name, hashlib.sha256(photo.read_bytes()).hexdigest()
     return found == (str(name), str(digest))

@@ -1,13 +1,15 @@
 """What stands beside the label image of a photograph: its scale, and where it came from."""
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from drystone.errors import InputError
+from drystone.io.file_bytes import file_bytes
+from drystone.io.json_text import json_of
+from drystone.io.read_settings import MOST_PX_PER_M
 from drystone.whole_files import write_whole
 
 SCHEMA = "drystone-photo/1"
@@ -74,11 +76,11 @@ def read_sidecar(labels: Path) -> PhotoSidecar | None:
     if not path.is_file():
         return None
     try:
-        data = json.loads(path.read_text(encoding="utf-8-sig"))
+        data = json_of(file_bytes(path).decode("utf-8-sig"))
         if not isinstance(data, dict) or data.get("schema") != SCHEMA:
             return None
         scale = data["px_per_m"]
-        if scale is not None and not 0.0 < float(scale) < math.inf:
+        if scale is not None and not 0.0 < float(scale) <= MOST_PX_PER_M:
             raise ValueError(f"px_per_m is {scale}")
         return PhotoSidecar(
             int(data["width_px"]),
@@ -86,7 +88,7 @@ def read_sidecar(labels: Path) -> PhotoSidecar | None:
             None if scale is None else float(scale),
             str(data.get("photo", "")),
         )
-    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+    except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
         raise InputError(
             "E112",
             f"what it says of the photograph cannot be used ({error}).",

@@ -9,9 +9,13 @@ from typing import Any
 import numpy as np
 
 from drystone.errors import PlanError
+from drystone.io.file_bytes import file_bytes
 from drystone.io.plan_schema import parse_plan, validate_plan
 from drystone.model.plan import SCHEMA, Plan, PlanMetrics, Point, StoneStep, WedgeStep
 from drystone.whole_files import write_whole
+
+MOST_PLAN_BYTES = 100_000_000
+"""Larger plans are refused: of a hundred thousand stones, and their wedges."""
 
 _INDEX_NAMES = ("SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC")
 _METRIC_NAMES = tuple(PlanMetrics.__dataclass_fields__)
@@ -56,7 +60,7 @@ def read_plan(path: str | Path) -> Plan:
     if path.is_dir():
         path /= "plan.json"
     try:
-        data = path.read_bytes()
+        data = file_bytes(path, MOST_PLAN_BYTES)
     except OSError as error:
         raise PlanError(
             "E202",

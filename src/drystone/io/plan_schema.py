@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib import resources
@@ -10,6 +11,8 @@ from typing import Any
 import jsonschema
 
 from drystone.errors import PlanError
+from drystone.io.foreign import foreign
+from drystone.io.json_text import json_of
 from drystone.model.plan import SCHEMA
 
 _LONGEST_MESSAGE = 240
@@ -28,19 +31,19 @@ def parse_plan(data: bytes, where: str) -> Any:
 
     Stricter than Python's reader: NaN, infinities and repeated keys are refused.
     """
-    try:
-        return json.loads(
+
+    def no_json(why: str) -> PlanError:
+        return PlanError(
+            "E203", f"the file is no JSON ({why}).", where=where,
+            cure="Give the plan.json that `drystone plan -o` wrote; it may be cut short.",
+        )  # fmt: skip
+
+    with foreign(no_json):
+        return json_of(
             data.decode("utf-8-sig"),
             parse_constant=_refuse_constant,
             object_pairs_hook=_without_repeats,
         )
-    except (ValueError, RecursionError) as error:
-        raise PlanError(
-            "E203",
-            f"the file is no JSON ({error}).",
-            where=where,
-            cure="Give the plan.json that `drystone plan -o` wrote; it may be cut short.",
-        ) from error
 
 
 def _refuse_constant(name: str) -> Any:
@@ -50,8 +53,7 @@ def _refuse_constant(name: str) -> Any:
 def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) < len(pairs):
-        names = [name for name, _ in pairs]
-        twice = next(name for name in names if names.count(name) > 1)
+        twice, _ = Counter(name for name, _ in pairs).most_common(1)[0]
         raise ValueError(f"{twice!r} is given twice in one object")
     return found
 

@@ -1,6 +1,5 @@
 """What the user may say about a picture of stones."""
 
-import math
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args
 
@@ -9,6 +8,11 @@ from drystone.errors import UsageError
 Pieces = Literal["auto", "keep-largest", "split", "error"]
 Holes = Literal["fill", "keep"]
 Unit = Literal["", "px", "mm", "cm", "m", "in", "ft"]
+
+MOST_PX_PER_M = 1e9
+"""A larger scale is none: a px would be less than a nanometre."""
+
+_MOST_MPX = 1e6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,10 +86,12 @@ class ReadSettings:
                 )
         if self.min_area_px is not None and self.min_area_px < 1:
             raise _usage(f"min_area_px is {self.min_area_px}", "Use 1 or more.")
-        if not self.max_image_mpx > 0:
-            raise _usage(f"max_image_mpx is {self.max_image_mpx}", "Use a positive number.")
-        if self.px_per_m is not None and not 0.0 < self.px_per_m < math.inf:
-            raise _usage(f"px_per_m is {self.px_per_m}", "Use a positive number.")
+        if not 0.0 < self.max_image_mpx <= _MOST_MPX:
+            raise _usage(
+                f"max_image_mpx is {self.max_image_mpx}", "Use a number above 0, up to 1e6."
+            )
+        if self.px_per_m is not None and not 0.0 < self.px_per_m <= MOST_PX_PER_M:
+            raise _usage(f"px_per_m is {self.px_per_m}", "Use a number above 0, up to 1e9.")
 
 
 def _usage(what: str, cure: str) -> UsageError:

@@ -48,7 +48,7 @@ _BACK = {
 
 _MOST_PAGES = 10_000
 _MOST_BYTES_A_PX = 8
-_EXPANDS = 2**28
+_EXPANDS = 2**26
 """Bytes that packed ones may become before it is looked at what they do become."""
 
 

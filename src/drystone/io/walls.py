@@ -1,6 +1,5 @@
 """Reading what `analyse` and `measure` are given: a label image, a plan, or a block model."""
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,6 +13,9 @@ from drystone.contacts.given import polygons_from_json
 from drystone.contacts.given_parts import read_mu
 from drystone.errors import InputError, Notice, UsageError
 from drystone.io.blocks_json import BLOCKS
+from drystone.io.file_bytes import file_bytes
+from drystone.io.foreign import foreign
+from drystone.io.json_text import json_of
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
 from drystone.kernels.label_runs import label_runs
@@ -249,10 +251,12 @@ def _ids(plan: Plan) -> list[int]:
 def _read_json(
     path: Path, cure: str = "Give a label image, the plan.json of a plan, or a block model."
 ) -> Any:
+    def refused(what: str) -> InputError:
+        return InputError("E132", what, where=str(path), cure=cure)
+
     try:
-        return json.loads(path.read_text(encoding="utf-8-sig"))
+        data = file_bytes(path)
     except OSError as error:
-        what = f"cannot be read ({error.strerror})."
-    except (ValueError, RecursionError) as error:
-        what = f"is no JSON ({error})."
-    raise InputError("E132", what, where=str(path), cure=cure)
+        raise refused(f"cannot be read ({error.strerror}).") from error
+    with foreign(lambda why: refused(f"is no JSON ({why}).")):
+        return json_of(data.decode("utf-8-sig"))

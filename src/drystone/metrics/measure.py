@@ -16,6 +16,9 @@ from drystone.metrics.level import level_deviation
 from drystone.metrics.sizes import stone_sizes
 from drystone.model.wall import Labels
 
+MOST_PX = 200_000_000
+"""Of the picture that is measured, with what is missing of the wall at its ends."""
+
 
 @dataclass(frozen=True)
 class WallMetrics:
@@ -83,7 +86,7 @@ def measure_labels(
     LabelImageError
         E104 when there is no stone in the image; E301 when the array is no picture of ids.
     UsageError
-        E121 when the wall's width or height is not positive and finite.
+        E121 when the wall's width or height is not positive and finite, or fills the memory.
 
     Examples
     --------
@@ -101,6 +104,14 @@ def measure_labels(
             cure="Give a wall with a positive, finite width and height.",
         )
     labels = _ids(labels)
+    if wall_px is not None and wall_px[0] * labels.shape[0] > MOST_PX:
+        raise UsageError(
+            "E121",
+            f"a wall of {wall_px[0]:g} x {wall_px[1]:g} px is too wide for its picture of "
+            f"{labels.shape[1]} x {labels.shape[0]} px.",
+            where="--wall",
+            cure="Give the wall in px of the picture that is measured.",
+        )
     frame = frame_wall(labels, None if wall_px is None else wall_px[0])
     if wall_px is None:
         wall_px = (float(frame.labels.shape[1]), float(frame.labels.shape[0]))

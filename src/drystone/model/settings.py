@@ -21,6 +21,7 @@ _KINDS: Mapping[Any, str] = types.MappingProxyType(
     }
 )
 
+_LARGEST = 1e12
 _MOST = 2**63 - 1
 """What arrays hold; Python reads longer ones from files and options."""
 
@@ -81,13 +82,16 @@ def _to_change(message: str, given: list[str], prefix: str) -> str:
 
 
 def check_finite(settings: Any) -> None:
-    """Raise ValueError when a number in settings, or in settings within them, is not finite."""
+    """Raise ValueError when a number in settings, or in settings within them, is not finite.
+
+    One beyond 1e12 is as good as that: its square is no length or cost that can be compared.
+    """
     for field in dataclasses.fields(settings):
         value = getattr(settings, field.name)
         if dataclasses.is_dataclass(value):
             check_finite(value)
-        elif isinstance(value, float) and not math.isfinite(value):
-            raise ValueError(f"{field.name} must be a finite number, not {value}")
+        elif isinstance(value, float) and not abs(value) <= _LARGEST:
+            raise ValueError(f"{field.name} must be a finite number up to 1e12, not {value}")
 
 
 def _checked(value: Any, hint: Any, where: str) -> Any:

@@ -21,6 +21,9 @@ from drystone.selection.scored import ScoreSettings
 from drystone.settle.settings import SettleSettings
 from drystone.stabilise.settings import StabiliseSettings
 
+MOST_MU = 1e6
+"""A larger coefficient of friction is none; forces are multiplied by it."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class StopSettings:
@@ -128,6 +131,8 @@ class PlannerSettings:
             raise ValueError(f"ban and pin name the same stones: {', '.join(map(str, both))}")
         if not self.mu > 0:
             raise ValueError("mu must be positive")
+        if self.mu > MOST_MU:
+            raise ValueError(f"mu must be at most {MOST_MU:g}")
 
     def _check_rule(self) -> None:
         # Whether there is such a policy is asked where it chooses: a plan can be checked without

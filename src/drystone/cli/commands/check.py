@@ -12,6 +12,7 @@ from drystone.cli.inputs import files_of, files_of_wall, refuse_among_masks, ref
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_of
 from drystone.errors import ExitCode, InputError, PlanError
+from drystone.io.file_bytes import file_bytes
 from drystone.io.plan_json import read_plan
 from drystone.io.read_stones import read_stones
 from drystone.io.walls import read_blocks_of, read_image_of
@@ -95,7 +96,7 @@ def _find_stones(plan: Plan, folder: Path) -> Path:
     places = [folder, folder.parent, folder / "..", Path()]
     found = [place / name for place in places if name and (place / name).exists()]
     for path in found:
-        if not digest or path.is_dir() or sha256(path.read_bytes()).hexdigest() == digest:
+        if not digest or path.is_dir() or sha256(file_bytes(path)).hexdigest() == digest:
             return path
     if not name:
         raise PlanError(

@@ -41,7 +41,7 @@ def _changes(items: list[str], settings_type: type[Any]) -> dict[str, Any]:
         text = re.sub(r"^\s*([+-]?)\.(?=\d)", r"\g<1>0.", text)
         try:
             changes[name] = tomllib.loads(f"value = {text}")["value"]
-        except tomllib.TOMLDecodeError:
+        except (ValueError, RecursionError):  # also numbers of thousands of digits
             sign = ""
         if not sign:
             known = ", ".join(field.name for field in fields(settings_type))

@@ -96,13 +96,13 @@ class _Walk:
             return
         # Definitions of attributes are not drawn, only the attributes of the block reference.
         entities = [entity for entity in block if entity.dxftype() != "ATTDEF"]
+        self._count(place, insert.mcount)
         for one in insert.multi_insert() if insert.mcount > 1 else [insert]:
-            self._count(place)
             matrix = one.matrix44() @ place.matrix
             yield from self.drawn(entities, _Place(matrix, place.layer, place.depth))
 
-    def _count(self, place: _Place) -> None:
-        self.count += 1
+    def _count(self, place: _Place, number: int = 1) -> None:
+        self.count += number
         if self.count > _MOST or place.depth > _DEEPEST:
             raise damaged(self.where, "blocks are in each other too often or too deeply")
 

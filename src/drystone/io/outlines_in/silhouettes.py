@@ -11,7 +11,7 @@ from drystone.io.outlines_in.model import Area
 from drystone.kernels.polygons import Points
 
 _MOST_CROSSINGS = 2000
-_MOST_PAIRS = 1_000_000
+_MOST_PAIRS = 200_000
 _AT_ONCE = 256
 
 

@@ -40,7 +40,7 @@ _DEEPEST = 64
 _MOST = 100_000
 _MOST_ELEMENTS = 1_000_000
 _MOST_CORNERS = 10_000_000
-_MOST_TEXT = 5_000_000
+_MOST_TEXT = 2_000_000
 """Of attributes of what is drawn, beside two times what the file has: a use draws things again."""
 _VISIBLE = {"visible": True, "hidden": False, "collapse": False}
 

@@ -17,7 +17,7 @@ CORNERS_OF_CURVE = 128
 NUMBER = r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?"
 """A number of SVG, as a regular expression."""
 
-_MOST_CORNERS = 2_000_000
+_MOST_CORNERS = 1_000_000
 """Of a path; a stone has some hundred."""
 
 _COMMAND = re.compile(r"([MmZzLlHhVvCcSsQqTtAa])")

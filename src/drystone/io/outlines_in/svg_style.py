@@ -10,7 +10,7 @@ from drystone.io.outlines_in.model import damaged
 from drystone.io.outlines_in.svg_sheet import Rule, Sheets, Step, Weight, declared
 
 _SHOWN = 8
-_MOST_STEPS = 500_000
+_MOST_STEPS = 300_000
 """Comparisons of an element with a step of a selector: each takes some microseconds."""
 
 

@@ -1,0 +1,263 @@
+"""Files that once started a program, never ended, filled the memory or ended in a traceback.
+
+One of each kind, made of a few bytes: nothing of the files themselves that were found.
+"""
+
+import base64
+import io
+import json
+import struct
+import zipfile
+import zlib
+from collections.abc import Callable
+from typing import Any
+
+import ezdxf
+import numpy as np
+from PIL import Image
+
+from drystone.io.read_settings import ReadSettings
+from tests.io.pictures import two_stones
+
+EPS = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 60 36\n%%EndComments\n(x) print\n%%EOF\n"
+STONE = '<rect width="9" height="9"/>'
+LIMIT = 10**6
+
+
+def png(width: int, height: int) -> bytes:
+    """A PNG of one bit a pixel, of which most is missing."""
+    header = struct.pack(">IIBBBBB", width, height, 1, 0, 0, 0, 0)
+    chunks = [(b"IHDR", header), (b"IDAT", zlib.compress(bytes(9))), (b"IEND", b"")]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        for kind, data in chunks
+    )
+
+
+def tiff_of(tags: dict[int, int] | None = None, *, following: int = 0, big: bool = False) -> bytes:
+    """A TIFF of 6 x 4 px, with some tags of other values; all values are longs."""
+    pixels = bytes(range(24))
+    start, count, entry = (16, 8, 20) if big else (8, 2, 12)
+    usual = {256: 6, 257: 4, 258: 8, 259: 1, 262: 1, 273: 0, 277: 1, 278: 4, 279: 24}
+    table = dict(sorted((usual | (tags or {})).items()))
+    data_at = start + count + entry * len(table) + (8 if big else 4)
+    table[273] = (tags or {}).get(273, data_at)
+    kind = "<HHQQ" if big else "<HHII"
+    entries = b"".join(struct.pack(kind, tag, 4, 1, value) for tag, value in table.items())
+    head = b"II+\0" + struct.pack("<HHQ", 8, 0, 16) if big else b"II*\0" + struct.pack("<I", 8)
+    number = struct.pack("<Q" if big else "<H", len(table))
+    return head + number + entries + struct.pack("<Q" if big else "<I", following) + pixels
+
+
+def npy(shape: str, descr: str = "<u4") -> bytes:
+    """The header of an array, and 4 bytes of it."""
+    text = f"{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
+    return b"\x93NUMPY\x01\0" + struct.pack("<H", len(text)) + text.encode() + bytes(4)
+
+
+def npz(members: dict[str, bytes], compression: int = zipfile.ZIP_DEFLATED) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", compression) as archive:
+        for name, data in members.items():
+            archive.writestr(name, data)
+    return buffer.getvalue()
+
+
+def saved(array: np.ndarray) -> bytes:
+    np.save(buffer := io.BytesIO(), array)
+    return buffer.getvalue()
+
+
+def gif(width: int, height: int) -> bytes:
+    """A GIF of 6 x 4 px whose frame has another size."""
+    Image.fromarray(np.ones((4, 6), np.uint8)).save(buffer := io.BytesIO(), "GIF")
+    frame = struct.pack("<HHHH", 0, 0, 6, 4)
+    assert buffer.getvalue().count(frame) == 1
+    return buffer.getvalue().replace(frame, struct.pack("<HHHH", 0, 0, width, height))
+
+
+def svg(body: str, **attributes: str) -> bytes:
+    said = " ".join(f'{name}="{value}"' for name, value in attributes.items())
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {said}>{body}</svg>'.encode()
+
+
+def labelme(mask: bytes) -> bytes:
+    shape = {"label": "1", "points": [[0, 0], [9, 9]], "shape_type": "mask"}
+    shape["mask"] = base64.b64encode(mask).decode()
+    return json.dumps({"shapes": [shape], "imageWidth": 60, "imageHeight": 36}).encode()
+
+
+def coco(*segmentations: Any, side: int = 60) -> bytes:
+    annotations = [
+        {"id": i, "image_id": 1, "iscrowd": 0, "segmentation": one}
+        for i, one in enumerate(segmentations, start=1)
+    ]
+    image = {"id": 1, "width": side, "height": side}
+    return json.dumps({"images": [image], "annotations": annotations}).encode()
+
+
+def runs(side: int) -> dict[str, Any]:
+    return {"size": [side, side], "counts": [1, side * side - 1]}
+
+
+def dxf(draw: Callable[[Any], None]) -> bytes:
+    document, text = ezdxf.new(units=4), io.StringIO()
+    draw(document)
+    document.write(text)
+    return text.getvalue().encode()
+
+
+def polygon(*corners: tuple[float, float]) -> Callable[[Any], None]:
+    return lambda document: document.modelspace().add_lwpolyline(corners, close=True)
+
+
+def far_away(document: Any) -> None:
+    for left in range(0, 200, 20):
+        polygon((left, 0), (left + 15, 0), (left + 15, 10))(document)
+    polygon((0, 20), (1200, 20), (0, 1200))(document)
+
+
+def in_rows(document: Any) -> None:
+    document.blocks.new("NOTHING")
+    reference = document.modelspace().add_blockref("NOTHING", (0, 0))
+    reference.dxf.row_count = reference.dxf.column_count = 30_000
+    reference.dxf.row_spacing = reference.dxf.column_spacing = 1.0
+
+
+def nested(document: Any) -> None:
+    for side in range(700, 0, -1):
+        polygon((-side, -side), (side, -side), (side, side), (-side, side))(document)
+
+
+def high_degree(document: Any) -> None:
+    points = [(float(x), float(y), 0.0) for x, y in np.random.default_rng(0).random((90, 2))]
+    document.modelspace().add_open_spline(points, degree=89)
+
+
+def stl(corners: np.ndarray) -> bytes:
+    facets = np.zeros(len(corners), [("n", "<f4", 3), ("c", "<f4", (3, 3)), ("a", "<u2")])
+    facets["c"] = corners
+    return bytes(80) + struct.pack("<I", len(corners)) + facets.tobytes()
+
+
+RANDOM = np.random.default_rng(0).random
+CROSSING = [(float(x), float(y)) for x, y in RANDOM((600, 2))]
+CORNERS = "\n".join(f"v {x} {y} 0" for x, y in CROSSING)
+FACE = f"f {' '.join(map(str, range(1, 601)))}"
+SLATES = [[[i, 0, 0], [i + 1, 0, 0], [i, 0, 1]] for i in range(0, 99, 2)]
+
+PLY = (
+    b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+    b"property float z\nelement face %s\nproperty list uchar int vertex_indices\nend_header\n"
+    b"0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+)
+
+
+def inflated() -> bytes:
+    """A TIFF whose strip becomes more than a million times as large as the picture."""
+    strip = zlib.compress(bytes(90_000_000), 1)
+    return tiff_of({259: 8, 273: 200, 279: len(strip)}).ljust(200, b"\0") + strip
+
+
+def parens(depth: int) -> str:
+    return "(" * depth + ")" * depth
+
+
+def groups(selectors: str) -> bytes:
+    return svg(f"<style>{selectors}{{opacity:0}}</style>{'<g>' * 50}{STONE}{'</g>' * 50}")
+
+
+def used(length: int) -> bytes:
+    return svg(f"<defs><path id='p' class='{'x' * length}'/></defs>" + "<use href='#p'/>" * 999)
+
+
+SETTINGS = {
+    "far.dxf": ReadSettings(px_per_m=10_000.0),
+    "together.json": ReadSettings(max_image_mpx=1.0),
+    "packed.npz": ReadSettings(max_image_mpx=0.5),
+}
+"""With which some files are as bad as larger ones are without."""
+
+FILES: dict[str, tuple[Callable[[], bytes], str]] = {
+    # a program that is started
+    "eps.json": (lambda: labelme(EPS), "E114 .*is no picture"),
+    # no end
+    "circle.tif": (lambda: tiff_of(following=8), "E106 .*in a circle"),
+    "circle_big.tif": (lambda: tiff_of(following=16, big=True), "E106 .*in a circle"),
+    "selectors.svg": (lambda: groups(".z " + "g " * 12 + "rect"), ""),
+    "rules.svg": (
+        lambda: svg(f"<style>{'*{opacity:1}' * 3000}</style>{STONE * 3000}"),
+        "E114 .*too many elements",
+    ),
+    "digits.svg": (lambda: svg(STONE, width=f"{'1' * 60_000}!"), "E114 .*no length"),
+    "spaces.svg": (lambda: svg(f'<path d="M1 1{" " * 60_000}!"/>'), "E114 .*no number"),
+    "turn.svg": (lambda: svg(f'<g transform="{" " * 60_000}!"/>'), "E114 .*no transform"),
+    "not.svg": (lambda: svg(f"<style>rect:not({parens(60_000)}){{x:1}}</style>{STONE}"), ""),
+    "crossing.dxf": (lambda: dxf(polygon(*CROSSING)), "E114 .*cross themselves more than"),
+    "crossing.obj": (f"{CORNERS}\n{FACE}".encode, "E114 .*cross themselves more than"),
+    "rows.dxf": (lambda: dxf(in_rows), "E114 .*too often"),
+    "nested.dxf": (lambda: dxf(nested), "E114 .*in each other too often"),
+    "degree.dxf": (lambda: dxf(high_degree), "E114 .*degree is 89"),
+    "pile.stl": (lambda: stl(RANDOM((900, 3, 3))), "E110 .*over each other"),
+    # a memory that is filled
+    "large.json": (lambda: coco(runs(2400), side=2400), ""),
+    "largest.json": (lambda: coco(runs(46_340)), "E110 .*46340 x 46340"),
+    "together.json": (lambda: coco(*[runs(990)] * 3, side=990), "E110 .*million px together"),
+    "apart.json": (
+        lambda: coco([[0, 0, 5, 0, 5, 5], [1e8, 1e8, 1e8, 1e8 + 5, 1e8 + 5, 1e8]]),
+        "E110 .*far away",
+    ),
+    "up_and_down.json": (
+        lambda: coco([[v for x, y in CROSSING for v in (x, y * 900)]]),
+        "E110 .*up and down",
+    ),
+    "bomb.json": (lambda: labelme(png(20_000, 20_000)), "E110 .*20000 x 20000"),
+    "far.dxf": (lambda: dxf(far_away), "E110 .*reaches over .*far away"),
+    "far.stl": (
+        lambda: stl(np.array([*SLATES, [[0, 0, 2], [90, 0, 2], [0, 0, 99]]])),
+        "E110 .*far away",
+    ),
+    "curves.svg": (lambda: svg(f'<path d="M1 1t{"1 1 " * 10_000}z"/>'), "E114 .*corners"),
+    "used.svg": (lambda: used(10_000), "E110 .*used too often"),
+    "frame.gif": (lambda: gif(60_000, 60_000), "E110"),
+    "strips.tif": (inflated, "E106 .*larger than the picture"),
+    "packed.npz": (
+        lambda: npz({f"{i}.npy": saved(np.zeros((700, 700))) for i in range(2)}),
+        "E110",
+    ),
+    # tracebacks
+    "compression.tif": (lambda: tiff_of({259: 364}), "E107 .*compression 364"),
+    "no_rows.tif": (lambda: tiff_of({278: 0, 259: 8}), "E106"),
+    "no_tiles.tif": (lambda: tiff_of({322: 0, 323: 0}), "E10"),
+    "no_bits.tif": (lambda: tiff_of({258: 0}), "E107"),
+    "no_channels.tif": (lambda: tiff_of({277: 0}), "E10"),
+    "channels.tif": (lambda: tiff_of({277: 60_000}), "E109 .*60000 channels"),
+    "wide.tif": (lambda: tiff_of({256: 2**32 - 1, 257: 2**32 - 1}), "E110"),
+    "planes.tif": (lambda: tiff_of({32997: 9}), "E109 .*9 planes"),
+    "predictor.tif": (lambda: tiff_of({317: 77, 259: 8}), "E106"),
+    "shape.npy": (lambda: npy(f"({2**62}, {2**62})"), "E106"),
+    "negative.npy": (lambda: npy("(-1, 4)"), "E10"),
+    "width.npy": (lambda: npy("(2160,)", "|S1000000000"), "E106"),
+    "digits.npy": (lambda: npy(f"({'9' * 60}, 0)"), "E106"),
+    "lzma.npz": (lambda: npz({"a.npy": saved(two_stones())}, zipfile.ZIP_LZMA), "E106"),
+    "bzip2.npz": (lambda: npz({"a.npy": saved(two_stones())}, zipfile.ZIP_BZIP2), "E106"),
+    "other.npz": (lambda: npz({"a.npy": saved(two_stones()), "b.txt": b"stones"}), "E106"),
+    "infinite.dxf": (
+        lambda: dxf(polygon((0, 0), (9, 0), (9, 9))).replace(b"9.0", b"1e999"),
+        "E1",
+    ),
+    "infinite.obj": (lambda: b"v 0 0 0\nv 1e999 0 0\nv 0 0 1\nf 1 2 3\n", "E114"),
+    "faces.ply": (lambda: PLY % (b"9" * 5000), "E1"),
+    "side.json": (
+        lambda: json.dumps({"shapes": [], "imageWidth": 10**400, "imageHeight": 36}).encode(),
+        "E114 .*more than 1e9 px",
+    ),
+    "levels.json": (lambda: b'{"shapes":' + b"[" * 400 + b"]" * 400 + b"}", "E113 .*100 levels"),
+    "levels.geojson": (
+        lambda: b'{"type":"GeometryCollection","geometries":[' * 99 + b"]}" * 99,
+        "E113 .*100 levels",
+    ),
+    "quotes.json": (lambda: b'["' + b'\\"' * 300_000, "E113"),
+    "arc.svg": (lambda: svg('<path d="M0 0A9e11 9e11 0 0 0 1e-300 0z"/>'), "E1"),
+}
+"""What makes a file, and what it ends with; nothing when it is read."""
