@@ -5,6 +5,7 @@ python examples/researcher.py --full     # the masons' stones, twenty seeds
 """
 
 import argparse
+import os
 import shutil
 import sys
 import tempfile
@@ -64,7 +65,8 @@ def one_episode() -> None:
 def walk(folder: Path, *, full: bool) -> Walk:
     """Do all steps in a folder."""
     place = installed(folder)
-    one = Walk(folder, {"PYTHONPATH": str(place)})
+    known = filter(None, (str(place), os.environ.get("PYTHONPATH")))
+    one = Walk(folder, {"PYTHONPATH": os.pathsep.join(known)})
     one.drystone("bench", "--list", lines=80)
     suite = ["--suite", "masons"] if full else ["--suite", "bricks", "--only", "bricks 2:1"]
     seeds = 20 if full else 1

@@ -37,7 +37,6 @@ GENERATORS: Mapping[str, tuple[type[Any], Callable[[Any, Generator], StoneSet]]]
 """By name: settings, and what makes stones from them."""
 
 __all__ = [
-    "GENERATORS",
     "BrickSettings",
     "FourierSettings",
     "PolygonSettings",
