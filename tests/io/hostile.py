@@ -76,6 +76,24 @@ def gif(width: int, height: int) -> bytes:
     return buffer.getvalue().replace(frame, struct.pack("<HHHH", 0, 0, width, height))
 
 
+def bmp(width: int) -> bytes:
+    """A BMP of one row of run lengths, which goes two rows up before its first pixel."""
+    Image.fromarray(np.ones((4, 6), np.uint8)).save(buffer := io.BytesIO(), "BMP")
+    data = bytearray(buffer.getvalue())
+    data[18:34] = struct.pack("<iiHHI", width, 1, 1, 8, 1)
+    start = int.from_bytes(data[10:14], "little")
+    return bytes(data[:start]) + b"\0\2\0\xff" * 9
+
+
+def jpeg(scans: int) -> bytes:
+    """A progressive JPEG whose last scan comes again and again."""
+    values = np.full((40, 60), 7, np.uint8)
+    Image.fromarray(values).save(buffer := io.BytesIO(), "JPEG", progressive=True)
+    data = buffer.getvalue()
+    last = data.rindex(b"\xff\xda")
+    return data[:last] + data[last:-2] * scans + data[-2:]
+
+
 def svg(body: str, **attributes: str) -> bytes:
     said = " ".join(f'{name}="{value}"' for name, value in attributes.items())
     return f'<svg xmlns="http://www.w3.org/2000/svg" {said}>{body}</svg>'.encode()
@@ -219,6 +237,9 @@ FILES: dict[str, tuple[Callable[[], bytes], str]] = {
     ),
     "curves.svg": (lambda: svg(f'<path d="M1 1t{"1 1 " * 10_000}z"/>'), "E114 .*corners"),
     "used.svg": (lambda: used(10_000), "E110 .*used too often"),
+    "scans.jpg": (lambda: jpeg(500), "E106 .*more than 100 scans"),
+    "few_scans.jpg": (lambda: jpeg(50), "E104"),
+    "side.bmp": (lambda: bmp(150_000_000), "E110 .*of a side"),
     "frame.gif": (lambda: gif(60_000, 60_000), "E110"),
     "strips.tif": (inflated, "E106 .*larger than the picture"),
     "packed.npz": (

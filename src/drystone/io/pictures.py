@@ -5,6 +5,7 @@ which one format starts another program, and its guard against huge pictures is 
 """
 
 import io
+import re
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 
@@ -28,6 +29,13 @@ _FORMATS: tuple[tuple[str, tuple[bytes, ...], type[ImageFile.ImageFile]], ...] =
     ("BMP", (b"BM",), BmpImagePlugin.BmpImageFile),
     ("JPEG", (b"\xff\xd8\xff",), JpegImagePlugin.JpegImageFile),
 )
+
+_JPEG_MARKER = re.compile(rb"\xff++([^\x00\xd0-\xd7])")
+_MOST_SCANS = 100
+"""Progressive pictures have about ten."""
+
+_MOST_SIDE_PX = 1_000_000
+"""Decoders fill whole rows at once, also such as are not there."""
 
 _CURE = (
     "Reduce the picture (nearest neighbour, so that ids survive) or crop it; only in Python can "
@@ -65,6 +73,8 @@ def opened(data: bytes, where: str, check: Callable[[int, int], None]) -> Iterat
             "E107", f"this is no picture ({', '.join(name for name, _, _ in _FORMATS)}).",
             where=where, cure="Export it as PNG.",
         )  # fmt: skip
+    if kind == "JPEG" and _scans(data) > _MOST_SCANS:
+        raise damaged(f"it has more than {_MOST_SCANS} scans", where)
     with ExitStack() as around:
         around.enter_context(foreign(lambda why: damaged(why, where)))
         if kind == "TIFF":
@@ -77,6 +87,17 @@ def opened(data: bytes, where: str, check: Callable[[int, int], None]) -> Iterat
             raise InputError("E110", f"{error}.", where=where, cure=_CURE) from error
 
 
+def _scans(data: bytes) -> int:
+    """Count how often a JPEG goes over the whole picture, which takes as long each time."""
+    place = count = 0
+    while count <= _MOST_SCANS and (found := _JPEG_MARKER.search(data, place + 2)):
+        if found[1] == b"\xd9":  # what follows the end is no part of it
+            break
+        count += found[1] == b"\xda"
+        place = found.end() + int.from_bytes(data[found.end() : found.end() + 2], "big") - 2
+    return count
+
+
 def damaged(why: str, where: str) -> InputError:
     """Make the error for bytes that are not what their format says (E106)."""
     return InputError(
@@ -87,11 +108,11 @@ def damaged(why: str, where: str) -> InputError:
 
 def check_size(width: int, height: int, where: str, max_px: int, cure: str = _CURE) -> None:
     """Refuse pictures that would fill the memory (E110)."""
-    if width * height > max_px:
+    if width * height > max_px or max(width, height) > _MOST_SIDE_PX:
         raise InputError(
             "E110",
             f"{width} x {height} px are {width * height / 1e6:.0f} million; the limit is "
-            f"{max_px / 1e6:g} million.",
+            f"{max_px / 1e6:g} million, and {_MOST_SIDE_PX} of a side.",
             where=where,
             cure=cure,
         )

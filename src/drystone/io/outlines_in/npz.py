@@ -19,7 +19,6 @@ from drystone.io.outlines_in.model import (
     damaged,
     number_in,
 )
-from drystone.io.pictures import check_size
 
 _LABELS = "labels"
 _BYTES_PER_PX = 8
@@ -60,7 +59,13 @@ def _members(data: bytes, where: str, max_px: int) -> dict[str, bytes]:
     with foreign(lambda why: _broken(why, where)):
         archive = zipfile.ZipFile(io.BytesIO(data))
         entries = archive.infolist()
-    check_size(sum(entry.file_size for entry in entries) // _BYTES_PER_PX, 1, where, max_px)
+    total, most = sum(entry.file_size for entry in entries), _BYTES_PER_PX * max_px
+    if total > most:
+        raise InputError(
+            "E110", f"its arrays have {total / 1e6:.0f} MB; the limit is {most / 1e6:g} MB.",
+            where=where, cure="Give arrays of fewer or smaller values; only in Python can the "
+            "limit be raised (max_image_mpx).",
+        )  # fmt: skip
     found = {}
     for entry in entries:
         # Of others zipfile unpacks all that there is, whatever size they name.
