@@ -12,7 +12,7 @@ import pytest
 import shapely
 from PIL import Image, ImageDraw
 
-from drystone.drawing.report import view_of_result, view_of_wall, write_report
+from drystone.drawing import view_of_result, view_of_wall, write_report
 from drystone.drawing.report.embedding import json_in_html, viewer_page, viewer_script, viewer_style
 from drystone.statics.contacts.blocks import model_from_labels
 from drystone.statics.contacts.given import model_from_json

@@ -11,14 +11,14 @@ import shapely
 from PIL import Image, ImageDraw
 
 import drystone as ds
+from drystone.drawing import view_of_assembly, view_of_result, view_of_wall, write_report
 from drystone.drawing.assembly.read import read_assembly
 from drystone.drawing.palette import cluster_colour
-from drystone.drawing.report import view_of_assembly, view_of_result, view_of_wall, write_report
-from drystone.drawing.report.content import Card
 from drystone.drawing.report.crops import LONGEST_PX, photo_crops
-from drystone.drawing.report.masons import WALLS, masons_wall, masons_words
 from drystone.drawing.report.view_parts import PATTERNS, turned
 from drystone.drawing.report.view_statics import scaled_resistance
+from drystone.drawing.words.content import Card
+from drystone.drawing.words.masons import WALLS, masons_wall, masons_words
 from drystone.io.published_sets import SETS
 from drystone.model.plan import StoneStep
 from drystone.statics.contacts.blocks import model_from_labels

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.outlines import regions_box, wall_regions
-from drystone.drawing.report import content
 from drystone.drawing.report.crops import photo_crops
-from drystone.drawing.report.masons import masons_words
 from drystone.drawing.report.view_parts import given_parts, part_digits, planned_parts
 from drystone.drawing.report.view_statics import Statics, contacts, mechanisms, rounded
+from drystone.drawing.words import content
+from drystone.drawing.words.masons import masons_words
 from drystone.errors import Notice
 from drystone.model.wall import Labels
 from drystone.statics.failing.wording import Noun
