@@ -13,6 +13,8 @@ True
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from drystone.shown import show_by
+
 if TYPE_CHECKING:
     from drystone import generate as generate
     from drystone.contacts.blocks import model_from_labels as model_from_labels
@@ -73,6 +75,13 @@ _HOMES = {
 }
 
 __all__ = ["generate", *_HOMES]  # noqa: PLE0604 - the keys are strings
+
+
+def _plan_as_html(result: Any) -> str:
+    return str(import_module("drystone.drawing.report.notebook").frame_of_result(result))
+
+
+show_by("plan", _plan_as_html)
 
 
 def __getattr__(name: str) -> Any:

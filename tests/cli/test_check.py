@@ -13,11 +13,11 @@ import shapely
 from matplotlib.image import imread
 from PIL import Image
 
-from drystone.cli import check_physics, check_picture
-from drystone.cli.check_physics import PhysicsCard
-from drystone.cli.check_picture import views_of
-from drystone.cli.checked import Checked
+from drystone.cli import check_physics
 from drystone.cli.main import main
+from drystone.drawing.pictures import check as check_picture
+from drystone.drawing.pictures.check import views_of
+from drystone.drawing.words.checked import NOTEWORTHY_PX, Checked, PhysicsCard
 from drystone.io.plan_json import read_plan
 from drystone.physics.building import (
     ROUNDED,
@@ -329,7 +329,7 @@ def test_the_engine_is_told_how_deep_outlines_overlap(
     monkeypatch.setattr(check_physics, "tilt_of", lambda _: None)
     change(plan_copy, push)
     depth = run("check", plan_copy, "--json").json()["overlap_depth"]
-    assert depth > check_physics.NOTEWORTHY_PX
+    assert depth > NOTEWORTHY_PX
     assert "what overlaps cannot stay where it is" in run("check", plan_copy, "--physics").out
 
 

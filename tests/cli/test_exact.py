@@ -12,7 +12,7 @@ import pytest
 import shapely
 from PIL import Image
 
-from drystone.cli import check_picture
+from drystone.drawing.pictures import check as check_picture
 from drystone.io.blocks_json import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.planner.events import Callbacks, Step

@@ -95,7 +95,7 @@ def test_json_names_every_file(run: Run, plan: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", METRIC)
 def test_nothing_for_robots_without_a_scale(run: Run, plan: Path, name: str) -> None:
     before = tree(plan.parent)
-    ran = run("export", plan, "--to", "csv", name, "--px-per-m", 200)
+    ran = run("export", plan, "--to", "csv", name)
     assert ran.code == 2
     assert "E131" in ran.err
     for way in ("--px-per-m", "--ruler", "markers"):

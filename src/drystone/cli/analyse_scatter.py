@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from drystone.cli.modelling import Modelled
 from drystone.cli.output import prepare_files
 from drystone.cli.progress import counting_bar
+from drystone.drawing.words.analysis import ModelledWall
 from drystone.errors import UsageError
 from drystone.io.walls import GivenWall
 from drystone.statics.result import LimitStatus
@@ -140,7 +140,7 @@ def wants_scatter(arguments: argparse.Namespace) -> bool:
 
 
 def scatter_of(
-    wall: Modelled, arguments: argparse.Namespace, unit: Unit, folder: Path | None
+    wall: ModelledWall, arguments: argparse.Namespace, unit: Unit, folder: Path | None
 ) -> ScatterCard:
     """Shake the wall and analyse it each time; draw the distribution into the folder."""
     settings = ScatterSettings(

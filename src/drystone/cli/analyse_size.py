@@ -5,9 +5,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from drystone.cli.modelling import Modelled, Shapes
 from drystone.cli.scale import refuse_outside, scale_with, wall_picture_px
 from drystone.contacts.scarce import scarce_contacts
+from drystone.drawing.words.analysis import ModelledWall, Shapes
 from drystone.errors import Notice
 from drystone.io.walls import GivenWall
 
@@ -49,7 +49,7 @@ def size_words(shapes: Shapes, per_unit_m: float | None) -> str | None:
     return f"{width * per_unit_m:.2f} m wide, {height * per_unit_m:.2f} m high"
 
 
-def scarcity(wall: Modelled, per_unit_m: float | None) -> Notice | None:
+def scarcity(wall: ModelledWall, per_unit_m: float | None) -> Notice | None:
     """Name the stones with fewer than two contact points (W305)."""
     few = scarce_contacts(wall.model, wall.shapes)
     if not few:

@@ -2,13 +2,9 @@
 
 import argparse
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from drystone.cli.loads import is_plain, is_range, load_case
 from drystone.contacts.blocks import ImageModel, model_from_labels
@@ -17,47 +13,17 @@ from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.contacts.settled import SETBACK
-from drystone.errors import InputError, Notice, UsageError
+from drystone.drawing.words.analysis import ModelledWall
+from drystone.errors import InputError, UsageError
 from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
-from drystone.statics.failing.wording import Noun
 from drystone.statics.joints import with_head_friction
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 
-Shapes = Labels | Mapping[int, NDArray[np.float64]]
 
-
-@dataclass(frozen=True, eq=False)
-class Modelled:
-    """A wall as blocks and contacts, and what it looks like.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and contacts.
-    shapes : label image or polygons by id
-        To draw.
-    noun : {"stone", "block"}
-        What a block is called.
-    wedge_ids : frozenset of int
-        Blocks that are wedges.
-    notices : tuple of Notice
-        What the user should know.
-    remarks : mapping
-        Lines for the card, such as what closing gaps changes.
-    """
-
-    model: RigidBlockModel
-    shapes: Shapes
-    noun: Noun
-    wedge_ids: frozenset[int] = frozenset()
-    notices: tuple[Notice, ...] = ()
-    remarks: Mapping[str, str] = field(default_factory=dict)
-
-
-def modelled(wall: GivenWall, arguments: argparse.Namespace) -> Modelled:
+def modelled(wall: GivenWall, arguments: argparse.Namespace) -> ModelledWall:
     """Make the model that the options ask for."""
     mu = _mu(wall, arguments)
     if wall.blocks is not None:
@@ -90,7 +56,7 @@ def _mu(wall: GivenWall, arguments: argparse.Namespace) -> float:
 
 def _given(
     wall: GivenWall, blocks: dict[str, Any], mu: float, arguments: argparse.Namespace
-) -> Modelled:
+) -> ModelledWall:
     if arguments.close_gaps is not None or arguments.contacts != "pixels":
         what = "a block model has no pixels to take contacts from."
         cure = "Leave --close-gaps and --contacts out."
@@ -106,7 +72,7 @@ def _given(
     bare = None if wall.plan is None else wall.plan.metrics.F_LR_no_setback
     if bare is not None and arguments.mu is None and _as_planned(arguments):
         remarks["contacts"] = f"set back; F_LR {bare:.3f} with contacts up to the ends of faces"
-    return Modelled(
+    return ModelledWall(
         model_from_json(blocks),
         polygons_from_json(blocks),
         "block" if wall.plan is None else "stone",
@@ -115,12 +81,14 @@ def _given(
     )
 
 
-def _drawn(wall: GivenWall, labels: Labels, mu: float, arguments: argparse.Namespace) -> Modelled:
+def _drawn(
+    wall: GivenWall, labels: Labels, mu: float, arguments: argparse.Namespace
+) -> ModelledWall:
     if arguments.close_gaps is not None:
         return _with_closed_gaps(wall, labels, mu, arguments)
     picture = model_from_labels(labels, mu)
     if arguments.contacts == "pixels":
-        return Modelled(picture.model, labels, "stone", wall.wedge_ids, picture.notices)
+        return ModelledWall(picture.model, labels, "stone", wall.wedge_ids, picture.notices)
     outlines = outlines_of_labels(labels[: picture.ground_row])
     # What a picture weighs it weighs by its pixels, not by what smoothing made of them.
     bare = replace(model_from_outlines(outlines, mu), blocks=picture.model.blocks)
@@ -130,7 +98,7 @@ def _drawn(wall: GivenWall, labels: Labels, mu: float, arguments: argparse.Names
         strength = lateral_resistance(bare).value
         with_ends = "falls" if strength is None else f"F_LR {strength:.3f}"
         said += f"; {with_ends} with contacts up to the ends of faces"
-    return Modelled(
+    return ModelledWall(
         replace(bare, interfaces=found.interfaces),
         outlines,
         "stone",
@@ -147,7 +115,7 @@ def _as_planned(arguments: argparse.Namespace) -> bool:
 
 def _with_closed_gaps(
     wall: GivenWall, labels: Labels, mu: float, arguments: argparse.Namespace
-) -> Modelled:
+) -> ModelledWall:
     if arguments.contacts != "pixels":
         raise UsageError("E138", "--close-gaps goes with --contacts pixels only.")
     reach = _reach(arguments.close_gaps)
@@ -163,7 +131,7 @@ def _with_closed_gaps(
     drawn = labels if reach is not None else _labels(wall)
     spread = closed_gap_spread(drawn, reach, mu, partial(_resistance, arguments))
     remarks = {"gaps": f"{done}{spread.words()}"}
-    return Modelled(picture.model, labels, "stone", wall.wedge_ids, picture.notices, remarks)
+    return ModelledWall(picture.model, labels, "stone", wall.wedge_ids, picture.notices, remarks)
 
 
 def _resistance(arguments: argparse.Namespace, model: RigidBlockModel) -> LateralResistance:

@@ -233,8 +233,11 @@ def write_result(
     """Write plan.json, settings.toml, wall.png, the pictures and the report."""
     write_plan_folder(result, folder)
     # Drawing loads matplotlib, which takes as long as a small plan.
-    from drystone.drawing import write_pictures  # noqa: PLC0415
-    from drystone.drawing.report import view_of_result, write_report  # noqa: PLC0415
+    from drystone.drawing import (  # noqa: PLC0415
+        view_of_result,
+        write_pictures,
+        write_report,
+    )
 
     write_pictures(folder, result.wall, result.clusters, resistance=result.resistance)
     view = view_of_result(result, photo=photo, notices=(*stones.notices, *result.notices))

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from importlib import import_module
 from importlib.metadata import version
 from typing import Any
 
@@ -24,6 +23,7 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.search.goal import usable_area_px
 from drystone.search.notices import missing_stones
+from drystone.shown import html_of
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
@@ -108,9 +108,8 @@ class PlanResult:
         placed, stones = len(self.plan.stone_steps), self.plan.source.get("stones", "?")
         return f"<PlanResult {self.status}: {placed} of {stones} stones, {self.metrics}>"
 
-    def _repr_html_(self) -> str:
-        # By name, as the package itself loads its rooms: the report lies above the search.
-        return str(import_module("drystone.drawing.report.notebook").frame_of_result(self))
+    def _repr_html_(self) -> str | None:
+        return html_of("plan", self)
 
 
 def finish(

@@ -10,17 +10,16 @@ import numpy as np
 import pytest
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.drawing import write_pictures
-from drystone.drawing.report import view_of_result, view_of_wall, write_report
-from drystone.drawing.report.content import (
+from drystone.drawing import view_of_result, view_of_wall, write_pictures, write_report
+from drystone.drawing.report.embedding import viewer_frame, viewer_page, viewer_script, viewer_style
+from drystone.drawing.report.notebook import Shown
+from drystone.drawing.words.content import (
     assumptions,
     cards,
     flat_settings,
     number,
     weaker_direction,
 )
-from drystone.drawing.report.embedding import viewer_frame, viewer_page, viewer_script, viewer_style
-from drystone.drawing.report.notebook import Shown
 from drystone.errors import Notice, PlanError
 from drystone.model.plan import PlanMetrics
 from drystone.statics.limit import lateral_resistance

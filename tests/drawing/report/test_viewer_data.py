@@ -13,14 +13,14 @@ from PIL import Image, ImageDraw
 import drystone as ds
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
+from drystone.drawing import view_of_assembly, view_of_result, view_of_wall, write_report
 from drystone.drawing.assembly.read import read_assembly
 from drystone.drawing.palette import cluster_colour
-from drystone.drawing.report import view_of_assembly, view_of_result, view_of_wall, write_report
-from drystone.drawing.report.content import Card
-from drystone.drawing.report.crops import LONGEST_PX, photo_crops
-from drystone.drawing.report.masons import WALLS, masons_wall, masons_words
+from drystone.drawing.photo import VIEWER_PX, Photo
 from drystone.drawing.report.view_parts import PATTERNS, turned
 from drystone.drawing.report.view_statics import scaled_resistance
+from drystone.drawing.words.content import Card
+from drystone.drawing.words.masons import WALLS, masons_wall, masons_words
 from drystone.io.published_sets import SETS
 from drystone.model.plan import StoneStep
 from drystone.statics.limit import lateral_resistance
@@ -319,24 +319,23 @@ def test_the_same_stones_are_said_to_be_so():
 
 
 @pytest.mark.parametrize("shrink", [1, 2])
-def test_crops_show_their_stone(tmp_path, shrink):
+def test_crops_show_their_stone(shrink):
     picture = Image.new("RGB", (400, 300), "#305030")
     pen = ImageDraw.Draw(picture)
     pen.rectangle((40, 60, 119, 99), fill="#e0e0e0")
     pen.rectangle((300, 200, 399, 299), fill="#c02020")
-    path = tmp_path / "photo.jpg"
-    picture.resize((400 // shrink, 300 // shrink)).save(path, quality=95)
+    picture = picture.resize((400 // shrink, 300 // shrink))
     squares = {
         5: np.array([[40, 200], [120, 200], [120, 240], [40, 240.0]]),
         9: np.array([[300, 0], [400, 0], [400, 100], [300, 100.0]]),
         11: np.array([[500, 0], [600, 0], [600, 100.0]]),
     }
-    crops = photo_crops(path, (400.0, 300.0), squares)
+    crops = Photo(picture, 400.0, 300.0).viewer_crops(squares)
     assert sorted(crops) == [5, 9]
     for stone, colour in ((5, (224, 224, 224)), (9, (192, 32, 32))):
         data = crops[stone]["data"].removeprefix("data:image/jpeg;base64,")
         image = Image.open(io.BytesIO(base64.b64decode(data)))
-        assert max(image.size) <= LONGEST_PX
+        assert max(image.size) <= VIEWER_PX
         middle = image.getpixel((image.width // 2, image.height // 2))
         assert middle == pytest.approx(colour, abs=12)
         x0, y0, x1, y1 = crops[stone]["box"]

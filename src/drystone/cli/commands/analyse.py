@@ -3,37 +3,25 @@
 import argparse
 import hashlib
 import sys
-from collections.abc import Mapping
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
-from drystone.cli.analyse_pictures import REPORT, clear, draw, draw_friction, prepare
+from drystone.cli.analyse_pictures import REPORT, clear, prepare
 from drystone.cli.analyse_scatter import noise_unit, scatter_of, wants_scatter
 from drystone.cli.analyse_size import metres_per_unit, scarcity, size_words
-from drystone.cli.analyse_tables import write_tables
-from drystone.cli.card import Card, RangeCard
 from drystone.cli.loads import is_plain, is_range, load_case
-from drystone.cli.modelling import Modelled, modelled
+from drystone.cli.modelling import modelled
 from drystone.cli.output import print_json, print_table
+from drystone.drawing.words.analysis import Card, ModelledWall, RangeCard, analysis_of
+from drystone.drawing.words.tables import write_tables
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.walls import read_wall, unsupported
-from drystone.statics.failing.mechanism import Failure, describe_mechanism
-from drystone.statics.failing.wording import Names
-from drystone.statics.flow.nonassociative import (
-    NonassociativeResult,
-    nonassociative_resistance,
-)
 from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import Loads
 from drystone.statics.lp.program import assemble
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
-from drystone.statics.sensitivity import friction_sensitivity
-from drystone.statics.squeeze import held_by_upright_faces
-
-CLEARLY_LESS = 0.99
-"""Share of the associative load multiplier; above it the mechanisms are mostly the same."""
+from drystone.statics.result import LimitStatus
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -59,7 +47,10 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     loose = None if resistance.stable else unsupported(model)
     if loose is not None:
         print(f"drystone: {loose}", file=sys.stderr)
-    card = _card(wall, loads, resistance, arguments)
+    card = analysis_of(
+        wall, loads, resistance, _sha256(arguments),
+        associative_only=arguments.associative_only, solver=arguments.solver,
+    )  # fmt: skip
     if folder is not None:
         _write_all(folder, pictures, wall, card, loads, per_unit_m)
     unit = noise_unit(given)
@@ -78,17 +69,21 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 def _write_all(
     folder: Path,
     pictures: list[Path],
-    wall: Modelled,
+    wall: ModelledWall,
     card: Card,
     loads: Loads,
     per_unit_m: float | None,
 ) -> None:
     """Write pictures, tables and the report."""
-    from drystone.cli.analyse_report import write_analysis  # noqa: PLC0415 - slow import
+    from drystone.drawing.report.analysis import (  # noqa: PLC0415 - slow import
+        draw_analysis,
+        draw_friction,
+        write_analysis,
+    )
 
     ends = (card.resistance.left, card.resistance.right)
     clear(folder)
-    draw(pictures, wall, loads, ends)
+    draw_analysis(pictures, wall, loads, ends)
     write_tables(folder, card.model, ends, per_unit_m)
     curve = draw_friction(folder, card.model, loads)
     write_analysis(folder / REPORT, wall, card, per_unit_m, curve)
@@ -98,44 +93,9 @@ def _many(model: RigidBlockModel) -> str:
     return f"{len(model.blocks)} block{'' if len(model.blocks) == 1 else 's'}"
 
 
-def _with_size(wall: Modelled, per_unit_m: float | None) -> Modelled:
+def _with_size(wall: ModelledWall, per_unit_m: float | None) -> ModelledWall:
     words = size_words(wall.shapes, per_unit_m)
     return wall if words is None else replace(wall, remarks={**wall.remarks, "size": words})
-
-
-def _card(
-    wall: Modelled,
-    loads: Loads,
-    resistance: LateralResistance,
-    arguments: argparse.Namespace,
-) -> Card:
-    both = (resistance.left, resistance.right)
-    sensitivity: dict[str, float] = {
-        result.direction: friction_sensitivity(wall.model, result, loads).of_model(wall.model)
-        for result in both
-        if result.success
-    }
-    without = None
-    if not arguments.associative_only:
-        without = nonassociative_resistance(wall.model, loads=loads)
-    return Card(
-        model=wall.model,
-        load_case=loads.name,
-        resistance=resistance,
-        nonassociative=without,
-        failures=_failures(wall, both),
-        loose={} if without is None else _loose(wall, both, (without.left, without.right)),
-        upright=(
-            held_by_upright_faces(wall.model, loads, solver=arguments.solver)
-            if resistance.stable
-            else None
-        ),
-        names=Names(wall.noun, wall.wedge_ids),
-        sensitivity=sensitivity,
-        sha256=_sha256(arguments),
-        version=version("drystone"),
-        remarks=wall.remarks,
-    )
 
 
 def _sha256(arguments: argparse.Namespace) -> str:
@@ -144,43 +104,9 @@ def _sha256(arguments: argparse.Namespace) -> str:
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
-def _failures(wall: Modelled, results: tuple[LimitResult, ...]) -> Mapping[str, Failure]:
-    return {
-        result.direction: describe_mechanism(
-            wall.model,
-            result.mechanism,
-            falls=result.status is LimitStatus.UNSTABLE,
-            noun=wall.noun,
-            wedges=wall.wedge_ids,
-        )
-        for result in results
-        if result.mechanism is not None
-    }
-
-
-def _loose(
-    wall: Modelled,
-    associative: tuple[LimitResult, LimitResult],
-    without: tuple[NonassociativeResult, NonassociativeResult],
-) -> Mapping[str, Failure]:
-    """Describe what moves without dilatancy where it needs clearly less load."""
-    return {
-        result.direction: describe_mechanism(
-            wall.model,
-            result.mechanism,
-            falls=result.status is LimitStatus.UNSTABLE,
-            noun=wall.noun,
-            wedges=wall.wedge_ids,
-        )
-        for result, bound in zip(without, associative, strict=True)
-        if result.mechanism is not None
-        and (
-            result.alpha is None or bound.alpha is None or result.alpha < CLEARLY_LESS * bound.alpha
-        )
-    }
-
-
-def _print_range(wall: Modelled, arguments: argparse.Namespace, pictures: list[Path]) -> ExitCode:
+def _print_range(
+    wall: ModelledWall, arguments: argparse.Namespace, pictures: list[Path]
+) -> ExitCode:
     model, loads = load_case(arguments, wall.model)
     wall = replace(wall, model=model)
     found = load_range(model, loads, mechanism=True, solver=arguments.solver)
@@ -189,14 +115,16 @@ def _print_range(wall: Modelled, arguments: argparse.Namespace, pictures: list[P
         found=found,
         mu=model.mu,
         load_case=loads.name,
-        failures=_failures(wall, ends),
+        failures=wall.failures(ends),
         sha256=_sha256(arguments),
         version=version("drystone"),
         remarks=wall.remarks,
     )
     if pictures:
+        from drystone.drawing.report.analysis import draw_analysis  # noqa: PLC0415 - slow import
+
         clear(pictures[0].parent)
-        draw(pictures, wall, loads, ends)
+        draw_analysis(pictures, wall, loads, ends)
     if arguments.json:
         print_json(card.report())
     else:

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from drystone.cli.check_physics import physics_of
-from drystone.cli.checked import PICTURE, Checked
 from drystone.cli.inputs import files_of, files_of_wall, refuse_among_masks, refuse_inputs
 from drystone.cli.output import prepare_picture, print_json, print_table
 from drystone.cli.reading import reading_of
+from drystone.drawing.words.checked import PICTURE, Checked
 from drystone.errors import ExitCode, InputError, PlanError
 from drystone.io.file_bytes import file_bytes
 from drystone.io.plan_json import read_plan
@@ -22,7 +22,7 @@ from drystone.verify.check import check_plan
 from drystone.verify.outlines import plan_polygons
 
 if TYPE_CHECKING:
-    from drystone.cli.check_picture import Drawn
+    from drystone.drawing.pictures.check import Drawn
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -71,7 +71,7 @@ def _picture(checked: Checked, arguments: argparse.Namespace, folder: Path) -> "
     """Draw what fails beside the plan, or whatever there is where it was asked for."""
     if checked.ok and not arguments.picture:
         return None
-    from drystone.cli.check_picture import draw_asked, draw_failures  # noqa: PLC0415 - slow import
+    from drystone.drawing.pictures.check import draw_asked, draw_failures  # noqa: PLC0415 - slow import
 
     if arguments.picture:
         return draw_asked(checked, Path(arguments.picture))

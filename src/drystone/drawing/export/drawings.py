@@ -16,11 +16,11 @@ from drystone.drawing.export.formats import Files, load_extra
 from drystone.drawing.export.settings import ExportSettings
 from drystone.drawing.files import figure_bytes
 from drystone.drawing.lettering import one_line
+from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.contacts import JOINT
 from drystone.drawing.pictures.forces import LONGEST_SHARE, RESULTANT, resultants
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.sheet.pages import sheet, sheet_bytes
-from drystone.drawing.sheet.photo import read_photo
 from drystone.drawing.wall import drawing_of_assembly
 from drystone.statics.result import LimitResult
 

@@ -4,7 +4,6 @@ import base64
 from pathlib import Path
 
 from drystone.drawing.files import MECHANISMS, PICTURE
-from drystone.drawing.report import content
 from drystone.drawing.report.embedding import (
     POLICY,
     environment,
@@ -13,6 +12,7 @@ from drystone.drawing.report.embedding import (
     viewer_style,
 )
 from drystone.drawing.report.viewer_data import View
+from drystone.drawing.words import content
 from drystone.whole_files import write_whole
 
 

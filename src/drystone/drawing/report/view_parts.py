@@ -8,8 +8,8 @@ import numpy as np
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.outlines import Region
 from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour, text_colour
-from drystone.drawing.report.content import number
 from drystone.drawing.report.view_statics import rounded
+from drystone.drawing.words.content import number
 from drystone.kernels.polygons import Points
 from drystone.model.plan import StoneStep
 from drystone.statics.model import RigidBlockModel

@@ -7,7 +7,6 @@ model) and y up from the ground.
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -15,11 +14,11 @@ from numpy.typing import NDArray
 
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.outlines import regions_box, wall_regions
-from drystone.drawing.report import content
-from drystone.drawing.report.crops import photo_crops
-from drystone.drawing.report.masons import masons_words
+from drystone.drawing.photo import read_photo
 from drystone.drawing.report.view_parts import given_parts, part_digits, planned_parts
 from drystone.drawing.report.view_statics import Statics, contacts, mechanisms, rounded
+from drystone.drawing.words import content
+from drystone.drawing.words.masons import masons_words
 from drystone.errors import Notice
 from drystone.model.wall import Labels
 from drystone.statics.failing.wording import Noun
@@ -65,6 +64,9 @@ def view_of_assembly(
     wedges = frozenset(part.id for part in assembly.wedges)
     statics = Statics(shapes, assembly.model, assembly.resistance, "stone", wedges)
     source = plan.source
+    photo = read_photo(assembly) if source.get("width_px") and source.get("height_px") else None
+    lying = {part.id: assembly.source_corners(part) for part in assembly.stones if photo}
+    crops = photo.viewer_crops(lying) if photo else {}
     return {
         **_beginning(
             f"Dry-stone wall from {source.get('path') or 'stones'}", "stone", assembly.unit
@@ -76,7 +78,7 @@ def view_of_assembly(
         "method": plan.method,
         "seed": plan.seed,
         "steps": len(plan.steps),
-        "parts": planned_parts(assembly, _crops(assembly), digits),
+        "parts": planned_parts(assembly, crops, digits),
         "unused": list(plan.unused),
         **_of_statics(statics, {part.id: part.centroid for part in assembly.parts}, digits),
         "index_meanings": dict(content.INDICES),
@@ -224,12 +226,3 @@ def _box(
     corners = np.concatenate([frame, *outlines])
     box: list[float] = rounded((*corners.min(axis=0), *corners.max(axis=0)), digits)
     return box
-
-
-def _crops(assembly: Assembly) -> dict[int, dict[str, Any]]:
-    photo: Path | None = assembly.photo
-    source = assembly.plan.source
-    if photo is None or not source.get("width_px") or not source.get("height_px"):
-        return {}
-    outlines = {part.id: assembly.source_corners(part) for part in assembly.stones}
-    return photo_crops(photo, (float(source["width_px"]), float(source["height_px"])), outlines)

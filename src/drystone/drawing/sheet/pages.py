@@ -9,9 +9,9 @@ from matplotlib.backends.backend_pdf import PdfPages
 
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.photo import Photo
 from drystone.drawing.sheet.lists import list_pages
 from drystone.drawing.sheet.page import Page
-from drystone.drawing.sheet.photo import Photo
 from drystone.drawing.sheet.rows import Rows
 from drystone.drawing.sheet.wall import first_page, plan_sha256
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.palette import GREY, PLAIN_COLOUR, WEDGE_COLOUR
+from drystone.drawing.photo import Photo
 from drystone.drawing.sheet.page import A4_MM, EDGE_MM, PLAIN_PT, SMALL_PT, Page
-from drystone.drawing.sheet.photo import Photo
 from drystone.drawing.sheet.words import (
     beside_words,
     length_words,

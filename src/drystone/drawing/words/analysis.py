@@ -1,20 +1,82 @@
 """What `drystone analyse` says: a card that an engineer can quote, or JSON."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from importlib.metadata import version
 from math import atan, degrees, isfinite
 from typing import Any
 
-from drystone.cli.output import number
-from drystone.statics.failing.mechanism import Failure
-from drystone.statics.failing.wording import Names
-from drystone.statics.flow.nonassociative import NonassociativeResistance, NonassociativeResult
+import numpy as np
+from numpy.typing import NDArray
+
+from drystone.drawing.words.content import number
+from drystone.errors import Notice
+from drystone.model.wall import Labels
+from drystone.statics.failing.mechanism import Failure, describe_mechanism
+from drystone.statics.failing.wording import Names, Noun
+from drystone.statics.flow.nonassociative import (
+    NonassociativeResistance,
+    NonassociativeResult,
+    nonassociative_resistance,
+)
+from drystone.statics.loads import Loads
+from drystone.statics.lp.extremes import Solver
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus, LoadRange
+from drystone.statics.sensitivity import friction_sensitivity
+from drystone.statics.squeeze import held_by_upright_faces
+
+CLEARLY_LESS = 0.99
+"""Share of the associative load multiplier; above it the mechanisms are mostly the same."""
 
 ASSUMPTIONS = (
     "2D, rigid blocks, no tension, no crushing, Coulomb friction at the ends of every contact"
 )
+
+
+Shapes = Labels | Mapping[int, NDArray[np.float64]]
+
+
+@dataclass(frozen=True, eq=False)
+class ModelledWall:
+    """A wall as blocks and contacts, and what it looks like.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Blocks and contacts.
+    shapes : label image or polygons by id
+        To draw.
+    noun : {"stone", "block"}
+        What a block is called.
+    wedge_ids : frozenset of int
+        Blocks that are wedges.
+    notices : tuple of Notice
+        What the user should know.
+    remarks : mapping
+        Lines for the card, such as what closing gaps changes.
+    """
+
+    model: RigidBlockModel
+    shapes: Shapes
+    noun: Noun
+    wedge_ids: frozenset[int] = frozenset()
+    notices: tuple[Notice, ...] = ()
+    remarks: Mapping[str, str] = field(default_factory=dict)
+
+    def failures(self, results: Iterable[LimitResult | NonassociativeResult]) -> dict[str, Failure]:
+        """Describe the mechanisms that are known, by direction."""
+        return {
+            result.direction: describe_mechanism(
+                self.model,
+                result.mechanism,
+                falls=result.status is LimitStatus.UNSTABLE,
+                noun=self.noun,
+                wedges=self.wedge_ids,
+            )
+            for result in results
+            if result.mechanism is not None
+        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,6 +243,59 @@ class Card:
             "answers_right": list(right.answers),
             "words": {direction: failure.words for direction, failure in self.loose.items()},
         }
+
+
+def analysis_of(
+    wall: ModelledWall,
+    loads: Loads,
+    resistance: LateralResistance,
+    sha256: str = "",
+    *,
+    associative_only: bool = False,
+    solver: Solver = "auto",
+) -> Card:
+    """Find out what there is to say of a wall beside its load multipliers.
+
+    Parameters
+    ----------
+    wall : ModelledWall
+        The wall.
+    loads : Loads
+        Dead and live loads.
+    resistance : LateralResistance
+        Under these loads, with mechanisms.
+    sha256 : str
+        Of the input file.
+    associative_only : bool
+        Leave out the analysis without dilatancy.
+    solver : str, optional
+        See :func:`drystone.statics.limit.lateral_resistance`.
+    """
+    model, both = wall.model, (resistance.left, resistance.right)
+    without = None if associative_only else nonassociative_resistance(model, loads=loads)
+    # What moves without dilatancy is of interest where it needs clearly less load.
+    loose = [] if without is None else [
+        result for result, bound in zip((without.left, without.right), both, strict=True)
+        if result.alpha is None or bound.alpha is None or result.alpha < CLEARLY_LESS * bound.alpha
+    ]  # fmt: skip
+    return Card(
+        model=model,
+        load_case=loads.name,
+        resistance=resistance,
+        nonassociative=without,
+        failures=wall.failures(both),
+        loose=wall.failures(loose),
+        upright=held_by_upright_faces(model, loads, solver=solver) if resistance.stable else None,
+        names=Names(wall.noun, wall.wedge_ids),
+        sensitivity={
+            result.direction: friction_sensitivity(model, result, loads).of_model(model)
+            for result in both
+            if result.success
+        },
+        sha256=sha256,
+        version=version("drystone"),
+        remarks=wall.remarks,
+    )
 
 
 @dataclass(frozen=True, eq=False)

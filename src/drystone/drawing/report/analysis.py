@@ -1,19 +1,29 @@
-"""The report of `drystone analyse`: the card, the wall to look around in, what friction changes."""
+"""A wall that was analysed: pictures, and the report with the wall to look around in."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
-from drystone.cli.card import Card
-from drystone.cli.modelling import Modelled, Shapes
 from drystone.drawing.assembly.read import scaled
+from drystone.drawing.files import save
 from drystone.drawing.outlines import Loop, wall_regions
-from drystone.drawing.report import content, write_report
+from drystone.drawing.pictures.animation import save_mechanism_animation
+from drystone.drawing.pictures.contacts import plot_contacts
+from drystone.drawing.pictures.forces import plot_forces
+from drystone.drawing.pictures.friction import plot_friction
+from drystone.drawing.pictures.mechanism import plot_mechanism
+from drystone.drawing.report.html import write_report
 from drystone.drawing.report.view_statics import scaled_resistance
 from drystone.drawing.report.viewer_data import view_of_wall
+from drystone.drawing.words import content
+from drystone.drawing.words.analysis import Card, ModelledWall, Shapes
 from drystone.kernels.polygons import area_and_centroid
-from drystone.statics.friction_curve import AtFriction
+from drystone.statics.friction_curve import AtFriction, friction_curve
+from drystone.statics.loads import Loads
 from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LimitResult, LimitStatus
+
+FRICTION = "friction.png"
 
 CITATION = (
     "drystone {version} (MIT licence), limit analysis of rigid blocks as in Wang, dos Santos and "
@@ -24,7 +34,7 @@ CITATION = (
 
 def write_analysis(
     path: Path,
-    wall: Modelled,
+    wall: ModelledWall,
     card: Card,
     per_unit_m: float | None,
     curve: Sequence[AtFriction],
@@ -35,7 +45,7 @@ def write_analysis(
     ----------
     path : Path
         The file; pictures of mechanisms that lie beside it are put into it.
-    wall : Modelled
+    wall : ModelledWall
         What was looked at.
     card : Card
         What was found out.
@@ -79,7 +89,7 @@ def in_metres(
     return outer, scaled(model, per_unit_m)
 
 
-def _unit(wall: Modelled, per_unit_m: float | None) -> Literal["px", "m", "units"]:
+def _unit(wall: ModelledWall, per_unit_m: float | None) -> Literal["px", "m", "units"]:
     if per_unit_m is not None:
         return "m"
     return "units" if wall.noun == "block" else "px"
@@ -114,3 +124,41 @@ def _friction_rows(curve: Sequence[AtFriction]) -> Iterator[tuple[str, str]]:
     for at in curve:
         left, right = content.number(at.alpha_left), content.number(at.alpha_right)
         yield f"with mu = {at.mu:g}", f"load multipliers: left {left}, right {right}"
+
+
+def draw_analysis(
+    paths: list[Path], wall: ModelledWall, loads: Loads, ends: Sequence[LimitResult]
+) -> None:
+    """Draw the contacts, and forces, mechanism and its motion for both ends, left first."""
+    contacts, *others = paths
+    save(plot_contacts(wall.shapes, wall.model).figure, contacts)
+    for end, files in zip(ends, (others[:3], others[3:]), strict=True):
+        _draw_direction(files, wall, loads, end)
+
+
+def draw_friction(folder: Path, model: RigidBlockModel, loads: Loads) -> tuple[AtFriction, ...]:
+    """Analyse the wall at usual coefficients of friction, and draw that."""
+    curve = friction_curve(model, loads)
+    axes = plot_friction(curve, model.mu, slides_at_mu=loads.name == content.TILTING)
+    save(axes.figure, folder / FRICTION)
+    return curve
+
+
+def _draw_direction(
+    files: list[Path], wall: ModelledWall, loads: Loads, result: LimitResult
+) -> None:
+    for path in files:
+        # One that an earlier run left would belong to another wall.
+        path.unlink(missing_ok=True)
+    mechanism, forces, motion = files
+    if result.forces is not None:
+        save(plot_forces(wall.shapes, wall.model, result.forces).figure, forces)
+    if result.mechanism is None:
+        return
+    falls = result.status is LimitStatus.UNSTABLE
+    direction = None if falls else result.direction
+    load = "" if falls or loads.name.startswith("tilting table") else loads.name.split(" (")[0]
+    moving = (wall.shapes, result.mechanism, direction, result.alpha)
+    # The card names blocks by their ids.
+    save(plot_mechanism(*moving, load=load, numbers=True).figure, mechanism)
+    save_mechanism_animation(motion, *moving, load=load, numbers=True)

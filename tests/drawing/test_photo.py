@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from drystone.drawing.sheet.photo import CROP_PX, Photo, read_photo
+from drystone.drawing.photo import CROP_PX, Photo, read_photo
 from tests.drawing.export.drawn_walls import assembly
 
 

@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from drystone.cli.checked import PICTURE, Checked
 from drystone.drawing.files import save
 from drystone.drawing.outlines import Loop
 from drystone.drawing.pictures.failures import FailureView, plot_failures
 from drystone.drawing.pictures.mechanism import motion_of
+from drystone.drawing.words.checked import PICTURE, Checked
 from drystone.errors import PlanError
 from drystone.statics.limit import lateral_resistance
 from drystone.verify.outlines import common_areas

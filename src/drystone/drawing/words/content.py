@@ -4,9 +4,9 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
-from drystone.model.plan import Plan
+from drystone.model.plan import Plan, PlanMetrics
 from drystone.settle.settings import SettleSettings
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
@@ -53,38 +53,6 @@ ASSUMPTIONS = (
 Better = Literal["higher", "lower", ""]
 
 
-class Strength(Protocol):
-    """What is said of a wall's strength; a plan's metrics say it too."""
-
-    @property
-    def F_LR(self) -> float | None:  # noqa: N802 - the paper's name
-        """Lateral resistance."""
-
-    @property
-    def F_LR_half(self) -> float | None:  # noqa: N802
-        """At half the contact tolerance; None where there is none."""
-
-    @property
-    def F_LR_double(self) -> float | None:  # noqa: N802
-        """At twice the contact tolerance; None where there is none."""
-
-    @property
-    def F_LR_no_setback(self) -> float | None:  # noqa: N802
-        """With contacts up to the ends of faces; None where there is none."""
-
-    @property
-    def F_LR_coulomb(self) -> float | None:  # noqa: N802
-        """Without dilatancy; None where it is not known."""
-
-    @property
-    def alpha_left(self) -> float | None:
-        """Load multiplier to the left."""
-
-    @property
-    def alpha_right(self) -> float | None:
-        """Load multiplier to the right."""
-
-
 @dataclass(frozen=True)
 class Resisted:
     """The strength of a wall that was not planned."""
@@ -101,6 +69,10 @@ class Resisted:
     def of(cls, resistance: LateralResistance) -> "Resisted":
         """Take it from a limit analysis."""
         return cls(resistance.value, resistance.left.alpha, resistance.right.alpha)
+
+
+Strength = PlanMetrics | Resisted
+"""What is said of a wall's strength."""
 
 
 @dataclass(frozen=True)

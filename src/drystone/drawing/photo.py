@@ -1,6 +1,10 @@
-"""Pieces of the photograph of the stones, for a build sheet."""
+"""Pieces of the photograph that the stones lie on, for build sheets and the viewer."""
 
+import base64
+from collections.abc import Mapping
 from dataclasses import dataclass
+from io import BytesIO
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,9 +12,14 @@ from PIL import Image
 
 from drystone.drawing.assembly.parts import Assembly
 from drystone.io.photo_picture import read_photo_picture
+from drystone.kernels.polygons import Points
 
 CROP_PX = 240
 """Longer side of a piece: 200 px an inch on paper, and small files."""
+
+VIEWER_PX, VIEWER_MARGIN, QUALITY = 96, 0.08, 72
+"""Of the viewer's pieces: enough to know a stone by, and 100 of them are a few hundred kB; what is
+around the box of an outline over its longer side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,25 +38,31 @@ class Photo:
     width_px: float
     height_px: float
 
-    def crop(self, box: tuple[float, float, float, float]) -> NDArray[np.uint8]:
+    def crop(
+        self, box: tuple[float, float, float, float], longest_px: int = CROP_PX
+    ) -> NDArray[np.uint8]:
         """Return a piece as an (h, w, 3) array.
 
         Parameters
         ----------
         box : (x0, y0, x1, y1)
             In the source image, px, y up; what lies outside the photograph is white.
+        longest_px : int
+            Longer side of the piece at most.
         """
         across, down = self.image.width / self.width_px, self.image.height / self.height_px
         x0, y0, x1, y1 = box
         left, right = x0 * across, x1 * across
         top, bottom = (self.height_px - y1) * down, (self.height_px - y0) * down
-        shrink = min(1.0, CROP_PX / max(right - left, bottom - top))
+        shrink = min(1.0, longest_px / max(right - left, bottom - top))
         size = max(1, round((right - left) * shrink)), max(1, round((bottom - top) * shrink))
         # An affine map, so that the piece shows the very box and not the px that it cuts.
         step_x, step_y = (right - left) / size[0], (bottom - top) / size[1]
         source = self.image
         if shrink < 1.0:
-            source, left, top, step_x, step_y = _reduced(source, left, top, step_x, step_y)
+            source, left, top, step_x, step_y = _reduced(
+                source, left, top, step_x, step_y, longest_px
+            )
         piece = source.transform(
             size,
             Image.Transform.AFFINE,
@@ -56,6 +71,31 @@ class Photo:
             fillcolor="white",
         )
         return np.asarray(piece)
+
+    def viewer_crops(self, outlines: Mapping[int, Points]) -> dict[int, dict[str, Any]]:
+        """Cut stones out, by their outlines in the source image, for the viewer.
+
+        Returns
+        -------
+        crops : dict
+            By id: ``data``, a JPEG as data URL, and ``box``, what it shows (x0, y0, x1, y1;
+            source px, y up).  Stones outside of the picture have none.
+        """
+        crops = {}
+        for stone, corners in sorted(outlines.items()):
+            margin = VIEWER_MARGIN * float(np.ptp(corners, axis=0).max())
+            x0, y0 = np.maximum(corners.min(axis=0) - margin, 0.0).tolist()
+            reach = (self.width_px, self.height_px)
+            x1, y1 = np.minimum(corners.max(axis=0) + margin, reach).tolist()
+            if x1 <= x0 or y1 <= y0:
+                continue
+            written = BytesIO()
+            piece = Image.fromarray(self.crop((x0, y0, x1, y1), VIEWER_PX))
+            piece.save(written, "JPEG", quality=QUALITY, optimize=True)
+            data = base64.b64encode(written.getvalue()).decode("ascii")
+            box = [round(value, 2) for value in (x0, y0, x1, y1)]
+            crops[stone] = {"data": f"data:image/jpeg;base64,{data}", "box": box}
+        return crops
 
 
 def read_photo(assembly: Assembly) -> Photo | None:
@@ -75,14 +115,14 @@ def read_photo(assembly: Assembly) -> Photo | None:
 
 
 def _reduced(
-    image: Image.Image, left: float, top: float, step_x: float, step_y: float
+    image: Image.Image, left: float, top: float, step_x: float, step_y: float, longest_px: int
 ) -> tuple[Image.Image, float, float, float, float]:
     """Return a photograph of about the px that are wanted: sampling it would leave px out."""
     factor = max(1, int(min(step_x, step_y)))
     if factor == 1:
         return image, left, top, step_x, step_y
     x0, y0 = max(0, int(left) - factor), max(0, int(top) - factor)
-    x1 = min(image.width, int(left + step_x * CROP_PX) + 2 * factor)
-    y1 = min(image.height, int(top + step_y * CROP_PX) + 2 * factor)
+    x1 = min(image.width, int(left + step_x * longest_px) + 2 * factor)
+    y1 = min(image.height, int(top + step_y * longest_px) + 2 * factor)
     small = image.crop((x0, y0, x1, y1)).reduce(factor)
     return small, (left - x0) / factor, (top - y0) / factor, step_x / factor, step_y / factor

@@ -1,0 +1,221 @@
+"""Everything that `drystone check` found out about a plan."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from drystone.drawing.words.content import number
+from drystone.model.plan import Plan, PlanMetrics
+from drystone.model.stone import StoneSet
+from drystone.physics.building import BlockMove, BuildUp
+from drystone.physics.scatter import TiltResult
+from drystone.verify.engine import check_engine
+from drystone.verify.outlines import Group
+from drystone.verify.report import CheckReport, Problem
+
+PICTURE = "check.png"
+"""Beside a plan of which something fails."""
+
+NOT_BUILT = "not built there, as a step of the plan places nothing"
+
+NOTEWORTHY_PX = 0.01
+"""Overlaps below this, in source px, round to nothing and are not spoken of."""
+
+
+@dataclass(frozen=True, eq=False)
+class PhysicsCard:
+    """What the engine says of a plan.
+
+    Parameters
+    ----------
+    plan : Plan
+        The plan.
+    built : BuildUp
+        Its wall in the engine.
+    overlap_px : float
+        How deep outlines overlap by the plan itself.
+    tilts : (TiltResult, TiltResult) or None
+        To the left and to the right; None for a wall that fell or did not come to rest.
+    metrics : PlanMetrics or None
+        What the limit analysis says of the wall, to stand beside.
+    """
+
+    plan: Plan
+    built: BuildUp
+    tilts: tuple[TiltResult, TiltResult] | None
+    metrics: PlanMetrics | None
+    overlap_px: float = 0.0
+
+    @property
+    def problems(self) -> list[Problem]:
+        """What contradicts the plan."""
+        return check_engine(self.plan, self.built, self.tilts)
+
+    @property
+    def first_fall(self) -> int | None:
+        """Number of the step after which the first block had fallen, its wedges placed."""
+        return None if self.built.first_fall is None else self._step(self.built.first_fall)
+
+    def rows(self) -> list[tuple[str, str]]:
+        """Return names and values, one a line."""
+        rows = [("in the engine", self._outcome())]
+        rows += [("  falls", self._words(move)) for move in self.built.moves if move.fell]
+        deepest = max(self.built.moves, key=lambda move: move.overlap_px, default=None)
+        if deepest is not None and deepest.overlap_px >= NOTEWORTHY_PX:
+            said = f"up to {deepest.overlap_px:.2f} source px deep ({self._name(deepest.id)})"
+            overlaps = self.overlap_px >= NOTEWORTHY_PX
+            why = "what overlaps cannot stay where it is" if overlaps else "others had moved there"
+            rows.append(("  pushed apart", f"{said}: {why}"))
+        if self.built.restless:
+            steps = ", ".join(str(self._step(group)) for group in self.built.restless)
+            of = f"step{'s' if len(self.built.restless) > 1 else ''} {steps}"
+            rows.append(("  restless", f"blocks still moved when the time of {of} was up"))
+        for name in ("left", "right"):
+            rows.append((f"  tilted to the {name}", self._tilted(name)))
+        return rows
+
+    def report(self) -> dict[str, Any]:
+        """Return the same as JSON."""
+        furthest, fullest = self._furthest(), max((m.turn_deg for m in self.built.moves), default=0)
+        return {
+            "fallen": list(self.built.fallen),
+            "first_fall": self.first_fall,
+            "largest_move": furthest.move_px if furthest else 0.0,
+            "largest_move_at": furthest.id if furthest else None,
+            "largest_share": max((move.share for move in self.built.moves), default=0.0),
+            "largest_turn_deg": fullest,
+            "largest_drift": max(self.built.found_moved_px, default=0.0),
+            "overlap_depth": max((move.overlap_px for move in self.built.moves), default=0.0),
+            "restless": [self._step(group) for group in self.built.restless],
+            "tilt_left": self._alpha("left"),
+            "tilt_right": self._alpha("right"),
+            "alpha_left": self.metrics.alpha_left if self.metrics else None,
+            "alpha_right": self.metrics.alpha_right if self.metrics else None,
+            "moves": [
+                {"id": m.id, "move": m.move_px, "share": m.share, "turn_deg": m.turn_deg,
+                 "overlap": m.overlap_px, "fell": m.fell}
+                for m in self.built.moves
+            ],
+        }  # fmt: skip
+
+    def _outcome(self) -> str:
+        furthest = self._furthest()
+        if furthest is None:
+            return "nothing was built"
+        if self.built.stands:
+            said = f"{self._name(furthest.id)}, {furthest.share:.1%} of its size"
+            return f"stands; nothing moves by more than {furthest.move_px:.2f} source px ({said})"
+        fallen, all_ = len(self.built.fallen), len(self.built.moves)
+        return f"{fallen} of {all_} blocks fall, the first after step {self.first_fall}"
+
+    def _tilted(self, name: str) -> str:
+        predicted = None
+        if self.metrics is not None:
+            predicted = self.metrics.alpha_left if name == "left" else self.metrics.alpha_right
+        said = f"limit analysis {number(predicted)}"
+        if self.tilts is None:
+            return f"not tilted, as it does not stand at rest; {said}"
+        if self.tilts[name == "right"].fell_at_rest:
+            return f"does not come to rest again, so it is not tilted; {said}"
+        found = self._alpha(name)
+        fell = "never falls" if found is None else f"falls at alpha = {found:.3f}"
+        return f"{fell}; {said}"
+
+    def _alpha(self, name: str) -> float | None:
+        if self.tilts is None:
+            return None
+        return self.tilts[name == "right"].alpha
+
+    def _words(self, move: BlockMove) -> str:
+        moved = f"moved {move.move_px:.1f} source px, {move.share:.0%} of its size"
+        if move.id in self._wedges():
+            moved = f"moved {move.move_px:.1f} source px, {move.share:.0%} of its stone's size"
+        return f"{self._name(move.id)}: {moved}, turned {move.turn_deg:.1f} degrees"
+
+    def _name(self, block: int) -> str:
+        return f"{'wedge' if block in self._wedges() else 'stone'} {block}"
+
+    def _wedges(self) -> set[int]:
+        return {step.id for step in self.plan.wedge_steps}
+
+    def _step(self, group: int) -> int:
+        return self.plan.stone_steps[group - 1].step
+
+    def _furthest(self) -> BlockMove | None:
+        return max(self.built.moves, key=lambda move: move.move_px, default=None)
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """A plan and what was found.
+
+    Parameters
+    ----------
+    plan : Plan
+        What was checked.
+    stones : StoneSet
+        Its stones.
+    report : CheckReport
+        What does not hold.
+    groups : sequence of Group
+        The polygons of its stones and wedges.
+    asked_physics : bool
+        The engine was asked for.
+    physics : PhysicsCard or None
+        What the engine says; None when it was not asked, or the wall cannot be built there.
+    """
+
+    plan: Plan
+    stones: StoneSet
+    report: CheckReport
+    groups: Sequence[Group]
+    asked_physics: bool = False
+    physics: PhysicsCard | None = None
+
+    @property
+    def falls(self) -> bool:
+        """Something falls in the engine."""
+        return self.physics is not None and not self.physics.built.stands
+
+    @property
+    def problems(self) -> list[Problem]:
+        """What does not hold by the plan, then what the engine contradicts."""
+        engine = [] if self.physics is None else self.physics.problems
+        return [*self.report.problems, *engine]
+
+    @property
+    def ok(self) -> bool:
+        """The plan holds and, when that was asked, the engine does not contradict it."""
+        return not self.problems
+
+    @property
+    def verdict(self) -> str:
+        """In words."""
+        if not self.report.ok:
+            return "does not hold"
+        if self.falls:
+            return "holds, but falls in the engine"
+        return "holds" if self.ok else "holds, but not in the engine"
+
+    def rows(self) -> list[tuple[str, str]]:
+        """Return names and values, one a line."""
+        plan, report = self.plan, self.report
+        rows = [
+            ("stones", f"{len(plan.stone_steps)} placed, {len(plan.wedge_steps)} wedges"),
+            ("overlap", f"{report.overlap_depth:.2f} source px deep by the outlines"),
+            ("area", f"the pixels of a stone miss its area by {report.area_error:.1%} at most"),
+            ("buried", ", ".join(map(str, report.buried)) or "none"),
+        ]
+        if self.asked_physics:
+            found = self.physics
+            rows += [("in the engine", NOT_BUILT)] if found is None else found.rows()
+        rows += [("note", note) for note in report.notes]
+        return rows + [("problem", str(problem)) for problem in self.problems]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the same as JSON."""
+        problems = [asdict(problem) for problem in self.problems]
+        found = {**self.report.as_dict(), "ok": self.ok, "problems": problems}
+        if self.asked_physics:
+            found["physics"] = None if self.physics is None else self.physics.report()
+        return found
