@@ -33,6 +33,7 @@ DIRECTIVES = {
     "cdivision": True,
     "initializedcheck": False,
     "autotestdict": False,
+    "infer_types": True,
 }
 
 

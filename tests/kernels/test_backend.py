@@ -47,6 +47,8 @@ def test_the_description_names_what_is_missing(monkeypatch: pytest.MonkeyPatch) 
     assert backend.fault() == "gone: not compiled here"
     with pytest.raises(ImportError, match="not compiled here"):
         backend.require_nothing_compiled()
+    monkeypatch.setattr(backend, "kernel_names", lambda: ["gone"])
+    assert backend.fault() == "nothing is compiled here"
     monkeypatch.setattr(backend, "kernel_names", lambda: ["here"])
     assert backend.describe() == "compiled"
     assert backend.fault() is None

@@ -81,6 +81,8 @@ def fault() -> str | None:
         missing = missing_kernels() if choice() == "compiled" else []
     except ImportError as error:
         return str(error)
+    if missing and missing == kernel_names():
+        return "nothing is compiled here"
     return f"{', '.join(missing)}: not compiled here" if missing else None
 
 

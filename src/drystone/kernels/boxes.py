@@ -57,7 +57,6 @@ def nearest_joints(boxes: BoxTable, box: Box, leftmost: float, rightmost: float)
     left, right, bottom, top = box
     low: cython.double = leftmost
     high: cython.double = rightmost
-    k: cython.Py_ssize_t
     one: cython.Py_ssize_t = -1
     two: cython.Py_ssize_t = -1
     rise: cython.longlong
@@ -105,7 +104,6 @@ def left_neighbour(boxes: BoxTable, box: Box) -> int:
     bottom: cython.longlong
     top: cython.longlong
     left, right, bottom, top = box
-    k: cython.Py_ssize_t
     best: cython.Py_ssize_t = -1
     shared: cython.longlong
     smaller: cython.longlong

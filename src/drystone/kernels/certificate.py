@@ -114,15 +114,12 @@ def figures(
     check.forces, check.loaded = doubles(forces), len(forces) > 0
     check.velocity = doubles(velocity)
     check.left = new_doubles(rows + 1)
-    i: cython.Py_ssize_t
     for i in range(rows):
         check.left[i] = 0.0
     heavy: cython.p_double = doubles(weights)
     new_heavy: cython.p_double = doubles(added.weights)
     closed: cython.p_int = ints(added.closed)
-    gone: cython.Py_ssize_t
     column: cython.Py_ssize_t = 0
-    stop: cython.Py_ssize_t
     entries: cython.p_double = doubles(wall.entries)
     first: cython.p_int = ints(wall.first)
     second: cython.p_int = ints(wall.second)
@@ -137,7 +134,6 @@ def figures(
     largest: cython.double = 0.0
     live: cython.double = 0.0
     rhs: cython.double = 0.0
-    weight: cython.double
     load: cython.double = alpha
     for i in range(rows // 3):
         weight = heavy[i] if i < n else new_heavy[i - n]
@@ -188,12 +184,6 @@ def check_columns(
     """Go through some of so many columns; their forces come next."""
     velocity: cython.p_double = check.velocity
     left: cython.p_double = check.left
-    column: cython.Py_ssize_t
-    one: cython.Py_ssize_t
-    two: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    x: cython.double
-    power: cython.double
     for column in range(start, stop):
         one, two = 3 * first[column], 3 * second[column]
         power = entries[column] * velocity[one]

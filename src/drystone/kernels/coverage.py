@@ -70,16 +70,10 @@ def coverage(corners: Points) -> tuple[Grid, int, int]:
         raise ValueError(f"a polygon has three corners (x, y) or more, not {corners.shape}")
     at: cython.p_double = doubles(corners)
     end: cython.Py_ssize_t = 2 * len(corners)
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
     left: cython.double = INFINITY
     bottom: cython.double = INFINITY
     right: cython.double = -INFINITY
     top: cython.double = -INFINITY
-    x0: cython.double
-    y0: cython.double
-    x1: cython.double
-    y1: cython.double
     for i in range(0, end, 2):
         if not (isfinite(at[i]) and isfinite(at[i + 1])):
             raise ValueError("a corner is not a finite number")
@@ -117,16 +111,9 @@ def cut_at_rows(
 ) -> cython.void:
     """Note an edge, from its lower to its upper end, in every row of cells that it crosses."""
     first: cython.double = floor(foot_y)
-    row: cython.double
-    start: cython.double
-    stop: cython.double
-    start_x: cython.double
-    stop_x: cython.double
     rises: cython.double = head_y - foot_y
     run: cython.double = head_x - foot_x
     count: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, ceil(head_y) - first)
-    step: cython.Py_ssize_t
-    at: cython.Py_ssize_t
     for step in range(count):
         row = first + step
         start, stop = max(foot_y, row), min(head_y, row + 1.0)
@@ -153,11 +140,6 @@ def cut_at_columns(
     column: cython.double = floor(low)
     at: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, column)
     count: cython.Py_ssize_t = max(cython.cast(cython.Py_ssize_t, ceil(high) - column), 1)
-    start: cython.double
-    stop: cython.double
-    middle: cython.double
-    share: cython.double
-    step: cython.Py_ssize_t
     for step in range(count):  # noqa: B007 - typed
         start, stop = max(low, column), min(high, column + 1.0)
         share = drop * ((stop - start) / (high - low)) if count > 1 else drop
@@ -177,9 +159,6 @@ def add_up(
     shares: cython.p_double, width: cython.Py_ssize_t, height: cython.Py_ssize_t
 ) -> cython.void:
     """Sum along the rows, and leave no rounding near 0 and 1."""
-    row: cython.Py_ssize_t
-    at: cython.Py_ssize_t
-    share: cython.double
     for row in range(height):
         share = 0.0
         for at in range(row * width, (row + 1) * width):
@@ -233,10 +212,7 @@ def newly_filled(total: Grid, shares: Grid, row: int, col: int) -> tuple[Mask, i
     left: cython.Py_ssize_t = width
     bottom: cython.Py_ssize_t = -1
     right: cython.Py_ssize_t = -1
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
     at: cython.Py_ssize_t = 0
-    was: cython.double
     all_filled = np.zeros((height, width), bool)
     filled: cython.p_uchar = flags_out(all_filled)
     for i in range(height):

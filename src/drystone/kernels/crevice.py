@@ -95,7 +95,6 @@ def _crevice(stone: Points, around: Polygons, clearance: cython.double) -> tuple
     corners: cython.p_double = doubles(stone)
     left: cython.double = corners[0]
     right: cython.double = corners[0]
-    i: cython.Py_ssize_t
     for i in range(2, 2 * len(stone), 2):
         left, right = min(left, corners[i]), max(right, corners[i])
     lid: Corners
@@ -275,7 +274,6 @@ def as_array(chain: Corners):
     """Return the corners of a chain."""
     points = np.empty((chain.count, 2))
     into: cython.p_double = doubles_out(points)
-    i: cython.Py_ssize_t
     for i in range(2 * chain.count):
         into[i] = chain.at[i]
     return points
@@ -285,7 +283,6 @@ def as_array(chain: Corners):
 @cython.exceptval(check=False)
 def flip(at: cython.p_double, end: cython.Py_ssize_t) -> cython.void:
     """Turn points upside down."""
-    i: cython.Py_ssize_t
     for i in range(1, end, 2):
         at[i] = -at[i]
 
@@ -328,10 +325,6 @@ def boundaries(stone: Points, around: Polygons, reach: cython.double) -> tuple:
     lids: Segments = Segments(size + 2)
     edges: Segments = Segments(room)
     bottom: cython.p_int = new_ints(room)
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    run: cython.double
     left: cython.double = corners[0]
     right: cython.double = corners[0]
     top: cython.double = corners[1]
@@ -434,13 +427,7 @@ def raised(
     joined straight.
     """
     edges: Segments = Segments(2 * chain.count)
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
     points: cython.Py_ssize_t = 0
-    low: cython.double
-    high: cython.double
-    before: cython.double
-    after: cython.double
     if clearance != 0.0:
         moved(chain, clearance, edges)
     else:
@@ -479,17 +466,8 @@ def moved(chain: Corners, clearance: cython.double, out: Segments):
     at: cython.p_double = chain.at
     one: cython.double[2] = [0.0, 0.0]
     two: cython.double[2] = [0.0, 0.0]
-    i: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    x: cython.double
-    y: cython.double
-    sine: cython.double
-    cosine: cython.double
-    before: cython.double = 0.0
-    after: cython.double
-    end_x: cython.double
-    end_y: cython.double
     joint: cython.bint
+    before: cython.double = 0.0
     direction(at, 0, one)
     for i in range(edges):
         k = 2 * i
@@ -533,11 +511,6 @@ def direction(at: cython.p_double, k: cython.Py_ssize_t, out: cython.p_double) -
 @cython.exceptval(check=False)
 def highest(edges: Segments, cuts: Slabs) -> cython.void:
     """Find the highest segment of each slab, not above its ceiling."""
-    i: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    low: cython.Py_ssize_t
-    half: cython.Py_ssize_t
-    y: cython.double
     at: cython.p_double = edges.at
     for k in range(cuts.count):
         cuts.best[k], cuts.which[k] = -INFINITY, -1
@@ -562,11 +535,6 @@ def chained(picked: Segments, cuts: Slabs) -> Corners:
     """Return the chain of segments that are given for each slab."""
     out: Corners = Corners(2 * cuts.count)
     i: cython.Py_ssize_t = 0
-    stop: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    end: cython.int
-    x: cython.double
-    y: cython.double
     last_x: cython.double = 0.0
     last_y: cython.double = 0.0
     while i < cuts.count:
@@ -592,11 +560,9 @@ def slice_up(
 ) -> cython.void:
     """Make slabs between the first numbers, without those that are the same, and two limits."""
     x: cython.p_double = cuts.x
-    i: cython.Py_ssize_t
     inside: cython.Py_ssize_t = 0
     kept: cython.Py_ssize_t = 0
     last: cython.double = 0.0
-    value: cython.double
     for i in range(count):
         if x[i] > left + NEAR and x[i] < right - NEAR:
             x[inside] = x[i]

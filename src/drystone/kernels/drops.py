@@ -329,8 +329,6 @@ def _dropped(profile, stones, terms, constants, numbers, most, few):
     size: cython.Py_ssize_t = len(constants)
     columns: cython.Py_ssize_t = len(profile.tops)
     widest: cython.Py_ssize_t = 1
-    at: cython.Py_ssize_t
-    turn: cython.Py_ssize_t
     number: cython.p_longlong = longs(numbers)
     first: cython.p_longlong = longs(stones.first)
     for at in range(size):
@@ -400,12 +398,6 @@ def keep(
     group: cython.longlong,
 ) -> cython.void:
     """Take in the drops of a stone where they are among the cheapest; the limit may fall."""
-    row: cython.Py_ssize_t
-    at: cython.Py_ssize_t
-    of_group: cython.Py_ssize_t
-    dearest: cython.Py_ssize_t
-    dearest_of_group: cython.Py_ssize_t
-    out: cython.Py_ssize_t
     if kept.most <= 0:
         return
     for row in range(start, start + 4 * count, 4):
@@ -446,8 +438,6 @@ def take(
 ) -> cython.Py_ssize_t:
     """Write the cheapest places that are so many columns apart; return how many there are."""
     taken: cython.Py_ssize_t = 0
-    at: cython.Py_ssize_t
-    near: cython.Py_ssize_t
     if not terms.rising:
         for at in range(found.count):
             if found.cost[at] < INFINITY:
@@ -476,9 +466,6 @@ def cheapest(wall: Wall, terms: Terms, limit: cython.double, found: Places) -> c
     -1 when it costs more than the limit.  Places that are dearer already than that, or than
     another one at last, are left as they are: they only become dearer.
     """
-    at: cython.Py_ssize_t
-    best: cython.Py_ssize_t
-    stage: cython.int
     for stage in range(1, STAGES + 1):
         # What costs least so far does not cost much more at last.
         best = least(found)
@@ -500,7 +487,6 @@ def cheapest(wall: Wall, terms: Terms, limit: cython.double, found: Places) -> c
 @cython.exceptval(check=False)
 def least(found: Places) -> cython.Py_ssize_t:
     """Return the place that costs least so far; of equal ones the lower, then the first."""
-    at: cython.Py_ssize_t
     best: cython.Py_ssize_t = 0
     cost: cython.p_double = found.cost
     lift: cython.p_double = found.lift
@@ -516,8 +502,6 @@ def least(found: Places) -> cython.Py_ssize_t:
 @cython.exceptval(check=False)
 def rise(wall: Wall) -> cython.void:
     """Find the next higher column to the right of each; past the last where there is none."""
-    at: cython.Py_ssize_t
-    further: cython.Py_ssize_t
     for at in range(wall.columns - 1, -1, -1):
         further = at + 1
         while further < wall.columns and wall.tops[further] <= wall.tops[at]:
@@ -530,9 +514,6 @@ def rise(wall: Wall) -> cython.void:
 @cython.exceptval(check=False)
 def add_up(wall: Wall, widest: cython.Py_ssize_t) -> cython.void:
     """Sum up as many columns as may be under a stone, but for its last one."""
-    at: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    row: cython.Py_ssize_t
     columns: cython.Py_ssize_t = wall.columns
     tops: cython.p_double = wall.tops
     sums: cython.p_double = wall.sums
@@ -551,9 +532,6 @@ def lay_down(wall: Wall, terms: Terms, constant: cython.double, found: Places) -
     """Drop the stone everywhere: what that costs without a look around."""
     before: cython.Py_ssize_t = found.columns - 1
     count: cython.Py_ssize_t = found.count
-    at: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    free: cython.Py_ssize_t
     hollow: cython.double = 0.0
     cell: cython.double = terms.cell
     width: cython.double = found.right - found.left
@@ -567,9 +545,6 @@ def lay_down(wall: Wall, terms: Terms, constant: cython.double, found: Places) -
     of_height: cython.double = terms.of_height
     of_void: cython.double = terms.of_void
     of_headroom: cython.double = terms.of_headroom
-    y: cython.double
-    void: cython.double
-    price: cython.double
     lift: cython.p_double = found.lift
     cost: cython.p_double = found.cost
     tops: cython.p_double = wall.tops
@@ -595,15 +570,8 @@ def lay_down(wall: Wall, terms: Terms, constant: cython.double, found: Places) -
 @cython.exceptval(check=False)
 def land(found: Places, tops: cython.p_double) -> cython.void:
     """Find where the stone touches at all places: four of its columns at a time."""
-    at: cython.Py_ssize_t
-    k: cython.Py_ssize_t
     j: cython.Py_ssize_t = 0
     count: cython.Py_ssize_t = found.count
-    one: cython.double
-    two: cython.double
-    three: cython.double
-    four: cython.double
-    high: cython.double
     bottoms: cython.p_double = found.bottoms
     lift: cython.p_double = found.lift
     for at in range(count):
@@ -672,7 +640,6 @@ def with_room(
     full: cython.double = terms.mean_area / terms.cell
     to_left: cython.Py_ssize_t = at - 1
     to_right: cython.Py_ssize_t = end
-    free: cython.Py_ssize_t
     while to_left >= 0 and wall.tops[to_left] < middle and area < full:
         area += top - max(wall.tops[to_left], bottom)
         to_left -= 1
@@ -695,10 +662,7 @@ def step(
 ) -> cython.double:
     """Return how far the top is from level with the left neighbour's (Eq. 6)."""
     boxes: cython.p_double = wall.boxes
-    k: cython.Py_ssize_t
     nearest: cython.Py_ssize_t = -1
-    shared: cython.double
-    smaller: cython.double
     for k in range(0, 4 * wall.shown, 4):
         if not 2.0 * boxes[k + 2] <= left + right:
             continue
@@ -730,10 +694,6 @@ def joint(
     ratios: cython.double = 0.0
     least_one: cython.double = INFINITY
     least_two: cython.double = INFINITY
-    away: cython.double
-    rise_: cython.double
-    distance: cython.double
-    k: cython.Py_ssize_t
     one: cython.Py_ssize_t = -1
     two: cython.Py_ssize_t = -1
     if min(left, terms.width - right) < terms.narrowest:
@@ -774,8 +734,6 @@ def leaning(wall: Wall, terms: Terms, found: Places, at: cython.Py_ssize_t) -> c
     lift: cython.double = found.lift[at]
     width: cython.double = found.right - found.left
     limit: cython.double = TOUCHING * terms.cell
-    left: cython.double
-    right: cython.double
     # One column at least touches.
     while start < end and (lift + bottoms[first + start]) - tops[at + start] >= limit:
         start += 1

@@ -118,10 +118,7 @@ def enough_rows(work, count):
 
 def arm_of(corners, count, x, y):
     """Return the distance of the furthest corner from a point."""
-    dx: cython.double
-    dy: cython.double
     most: cython.double = 0.0
-    i: cython.Py_ssize_t
     for i in range(count):
         dx, dy = corners[2 * i] - x, corners[2 * i + 1] - y
         dx = dx * dx + dy * dy
@@ -143,17 +140,11 @@ def firmness(stone, x, y, arm, mu, tolerance, steep, work):
     gain: cython.double[3] = [0.0, -1.0, 0.0]
     most: cython.double[3] = [1.0, 1.0, 1.0]
     found: cython.double[3] = [0.0, 0.0, 0.0]
-    gx: cython.double
-    gy: cython.double
     least: cython.double = FIRMEST
-    grip: cython.double
     gaps: cython.p_double = stone.gaps
     rows: cython.p_double
     scratch: cython.p_double
-    i: cython.Py_ssize_t
-    k: cython.Py_ssize_t
     count: cython.Py_ssize_t = 0
-    sign: cython.int
     enough_rows(work, 2 * stone.found + 2)
     rows, scratch = work.rows, work.scratch
     for k in range(0, 7 * stone.found, 7):

@@ -189,9 +189,6 @@ def stone_of(corners, edges):
 
 def measure(body):
     """Fill in the box of a body."""
-    i: cython.Py_ssize_t
-    x: cython.double
-    y: cython.double
     body.left = body.right = body.corners[0]
     body.low = body.high = body.corners[1]
     for i in range(1, body.count):
@@ -215,10 +212,6 @@ def select(heap: Heap, i: cython.Py_ssize_t) -> cython.void:
 
 def find_gaps(stone, heap, reach, corner):
     """List the gaps of a stone to a heap, the ground and the ends of the wall."""
-    i: cython.Py_ssize_t
-    x: cython.double
-    y: cython.double
-    room: cython.double
     stone.found = 0
     for i in range(heap.size):
         if stone.left > heap.boxes[4 * i + 2] + reach or stone.right < heap.boxes[4 * i] - reach:
@@ -301,22 +294,12 @@ def one_way(
     low: cython.double = max(a.low, b.low) - reach
     right: cython.double = min(a.right, b.right) + reach
     high: cython.double = min(a.high, b.high) + reach
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
-    e: cython.Py_ssize_t
     near: cython.Py_ssize_t = 0
+    inside: cython.int
     nearest: cython.Py_ssize_t = 0
     ca: cython.p_double = a.corners
     cb: cython.p_double = b.corners
     edges: cython.p_double = b.edges
-    vx: cython.double
-    vy: cython.double
-    dx: cython.double
-    dy: cython.double
-    s: cython.double
-    t: cython.double
-    deep: cython.double
-    inside: cython.int
     if left > right or low > high:
         return 0
     room_for(out, b.count)
@@ -387,11 +370,6 @@ def at_corner(
     p: cython.Py_ssize_t = edge_before(b, e)
     edges: cython.p_double = b.edges
     face: cython.double[2] = [0.0, 0.0]
-    s: cython.double
-    sp: cython.double
-    d: cython.double
-    nx: cython.double
-    ny: cython.double
     # Is it beyond the end of the edge before as well?
     ex: cython.double = vx - b.corners[2 * p]
     ey: cython.double = vy - b.corners[2 * p + 1]
@@ -424,7 +402,6 @@ def at_corner(
 @cython.exceptval(check=False)
 def edge_before(b: Body, e: cython.Py_ssize_t) -> cython.Py_ssize_t:
     """Return the edge before one, past those without length."""
-    i: cython.Py_ssize_t
     p: cython.Py_ssize_t = e
     for i in range(b.count):  # noqa: B007 - typed
         p = p - 1 if p > b.first else b.first + b.count - 1
@@ -444,12 +421,7 @@ def face_between(
     before_b: cython.Py_ssize_t = edge_before(b, e)
     dx: cython.double = a.corners[2 * i] - b.corners[2 * e]
     dy: cython.double = a.corners[2 * i + 1] - b.corners[2 * e + 1]
-    mx: cython.double
-    my: cython.double
-    s: cython.double
     best: cython.double = -SAME
-    k: cython.int
-    p: cython.Py_ssize_t
     for k in range(4):
         if k < 2:
             p = before_b if k == 0 else e
@@ -481,12 +453,7 @@ def along(a: Body, e: cython.Py_ssize_t, mx: cython.double, my: cython.double) -
 @cython.exceptval(check=False)
 def contains(body: Body, x: cython.double, y: cython.double) -> cython.bint:
     """Say whether a point lies in a polygon (even-odd rule)."""
-    i: cython.Py_ssize_t
     j: cython.Py_ssize_t = body.first + body.count - 1
-    ax: cython.double
-    ay: cython.double
-    bx: cython.double
-    by: cython.double
     inside: cython.bint = False
     for i in range(body.first, body.first + body.count):
         ax, ay = body.corners[2 * i], body.corners[2 * i + 1]
@@ -499,7 +466,6 @@ def contains(body: Body, x: cython.double, y: cython.double) -> cython.bint:
 
 def crosses(stone, heap):
     """Say whether a stone lies over any polygon of a heap."""
-    i: cython.Py_ssize_t
     for i in range(heap.size):
         select(heap, i)
         if over(stone, heap):
@@ -512,11 +478,6 @@ def crosses(stone, heap):
 @cython.exceptval(-1)
 def over(a: Stone, b: Body) -> cython.int:
     """Say whether edges of two polygons cross, or one lies in the other."""
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    e: cython.Py_ssize_t
-    f: cython.Py_ssize_t
     near: cython.Py_ssize_t = 0
     last: cython.Py_ssize_t = b.first + b.count - 1
     if a.left > b.right or a.right < b.left or a.low > b.high or a.high < b.low:

@@ -45,8 +45,6 @@ def pixel_hull(mask: Mask) -> NDArray[np.int64]:
     pixels: cython.p_uchar = flags(mask)
     chain: cython.p_longlong = longs_out(corners)
     count: cython.Py_ssize_t = 0
-    row: cython.Py_ssize_t
-    col: cython.Py_ssize_t
     for row in range(height - 1, -1, -1):
         col = width
         while col > 0 and not pixels[row * width + col - 1]:
@@ -71,7 +69,6 @@ def put(
     at: cython.p_longlong, count: cython.Py_ssize_t, x: cython.longlong, y: cython.longlong
 ) -> cython.Py_ssize_t:
     """Add a point to the chain of corners (Andrew's); return how many there are then."""
-    k: cython.Py_ssize_t
     x1: cython.longlong
     y1: cython.longlong
     while count > 1:

@@ -176,7 +176,6 @@ def meetings(corners: Points, around: Polygons, tolerance: float, setback: float
     first: cython.p_int = ints(around.first)
     count: cython.Py_ssize_t = len(around)
     most: cython.Py_ssize_t = 4
-    k: cython.Py_ssize_t
     for k in range(count):
         most = max(most, first[k + 1] - first[k])
     mine: Sides = Sides(len(corners))
@@ -204,8 +203,6 @@ def _told(found: Contacts) -> Meetings:
     point: cython.p_double = doubles_out(points)
     normal: cython.p_double = doubles_out(normals)
     at: cython.p_double = found.at
-    i: cython.Py_ssize_t
-    k: cython.Py_ssize_t
     for i in range(count):
         k = NUMBERS * i
         other[i] = cython.cast(cython.int, at[k + OTHER])
@@ -290,7 +287,6 @@ def meet_all(
     reach: cython.double = BESIDE * tolerance
     beyond: cython.double = 1.0 + 4.0 * tolerance
     ground: cython.double[8] = [0.0, -beyond, 0.0, -beyond, 0.0, 0.0, 0.0, 0.0]
-    k: cython.Py_ssize_t
     set_sides(mine, corners, 0)
     left: cython.double = mine.left[0]
     bottom: cython.double = mine.bottom[0]
@@ -324,14 +320,7 @@ def meet_all(
 def set_sides(sides: Sides, corners: cython.p_double, first: cython.Py_ssize_t) -> cython.void:
     """Prepare the sides of a polygon."""
     n: cython.Py_ssize_t = sides.count
-    k: cython.Py_ssize_t
-    at: cython.Py_ssize_t
     before: cython.Py_ssize_t = n - 1
-    x: cython.double
-    y: cython.double
-    step_x: cython.double
-    step_y: cython.double
-    length: cython.double
     for k in range(n):
         at = first + 2 * k
         sides.x[k], sides.y[k] = corners[at], corners[at + 1]
@@ -366,13 +355,7 @@ def meet(
     q_bottom: cython.double = q.bottom[0]
     q_right: cython.double = q.right[0]
     q_top: cython.double = q.top[0]
-    left: cython.double
-    bottom: cython.double
-    right: cython.double
-    top: cython.double
     begin: cython.Py_ssize_t = found.count
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
     for j in range(1, q.count):
         q_left, q_bottom = min(q_left, q.left[j]), min(q_bottom, q.bottom[j])
         q_right, q_top = max(q_right, q.right[j]), max(q_top, q.top[j])
@@ -408,7 +391,6 @@ def meet(
 @cython.exceptval(check=False)
 def copy(at: cython.p_double, one: cython.Py_ssize_t, to: cython.Py_ssize_t) -> cython.void:
     """Copy a contact to another place."""
-    k: cython.Py_ssize_t
     for k in range(NUMBERS):
         at[NUMBERS * to + k] = at[NUMBERS * one + k]
 
@@ -456,16 +438,8 @@ def facing_edges(
     """Add the contact along edges that face each other; one point where it is short."""
     c: cython.double[6] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     part: cython.double[2] = [0.0, 0.0]
-    at_low: cython.double
-    at_high: cython.double
-    reach: cython.double
-    over: cython.double
-    share: cython.double
-    nx: cython.double
-    ny: cython.double
-    length: cython.double
-    count: cython.int = 2
     low_first: cython.bint
+    count: cython.int = 2
     ux: cython.double = p.along_x[i]
     uy: cython.double = p.along_y[i]
     if not common(p, i, q, j, tolerance, c):
@@ -559,14 +533,7 @@ def corner_on_corner(
     apart: cython.double[4] = [0.0, 0.0, 0.0, 0.0]
     level: cython.double[4] = [0.0, 0.0, 0.0, 0.0]
     separates: cython.bint[4] = [False, False, False, False]
-    i_before: cython.Py_ssize_t
-    j_before: cython.Py_ssize_t
     edge: cython.Py_ssize_t = i
-    face: cython.Py_ssize_t
-    place: cython.int
-    x: cython.double
-    y: cython.double
-    along: cython.double
     start: cython.double = 0.0
     if not (p.convex[i] and q.convex[j] and are_beside(p, i, q, j, tolerance)):
         return 0
@@ -626,10 +593,7 @@ def set_back_by(
 @cython.exceptval(check=False)
 def area(s: Sides) -> cython.double:
     """Return the area of a polygon."""
-    k: cython.Py_ssize_t
     doubled: cython.double = 0.0
-    x: cython.double
-    y: cython.double
     for k in range(1, s.count - 1):
         x, y = s.x[k] - s.x[0], s.y[k] - s.y[0]
         doubled += x * (s.y[k + 1] - s.y[0]) - y * (s.x[k + 1] - s.x[0])
@@ -653,8 +617,6 @@ def set_back(
     ux: cython.double = p.along_x[edge]
     uy: cython.double = p.along_y[edge]
     start: cython.double = at[k + START]
-    end: cython.double
-    across: cython.double
     if at[k + COUNT] == 2.0:
         end = start + (at[k + X1] - at[k + X0]) * ux + (at[k + Y1] - at[k + Y0]) * uy
         across = projected(q, facing, at[k + X0], at[k + Y0])
@@ -703,10 +665,7 @@ def runs_on(
 ) -> cython.double:
     """Return how far a face goes on from a point of edge `i`, at most `enough`."""
     run: cython.double = s.length[i] - along if sense > 0 else along
-    dot: cython.double
-    away: cython.double
     edge: cython.Py_ssize_t = i
-    k: cython.Py_ssize_t
     for k in range(s.count - 1):  # noqa: B007 - typed
         if run >= enough:
             return enough
@@ -729,8 +688,6 @@ def without_repeats(
     found: Contacts, begin: cython.Py_ssize_t, tolerance: cython.double
 ) -> cython.void:
     """Leave out points that are told already, and sort the others, from a place on."""
-    k: cython.Py_ssize_t
-    other: cython.Py_ssize_t
     kept: cython.Py_ssize_t = begin
     at: cython.p_double = found.at
     spare: cython.Py_ssize_t = found.count
@@ -798,9 +755,6 @@ def common(
     """
     dot: cython.double = p.along_x[i] * q.along_x[j] + p.along_y[i] * q.along_y[j]
     cross: cython.double = p.along_x[i] * q.along_y[j] - p.along_y[i] * q.along_x[j]
-    end: cython.Py_ssize_t
-    x: cython.double
-    y: cython.double
     if dot >= 0.0 or abs(cross) > LEAN * -dot:
         return False
     end = j + 1 if j + 1 < q.count else 0
@@ -826,7 +780,6 @@ def within(
     part: cython.p_double,
 ) -> cython.bint:
     """Find the part from low to high on which a value is at most `reach` from 0."""
-    limit: cython.double
     if min(at_low, at_high) > reach or max(at_low, at_high) < -reach:
         return False
     part[0], part[1] = low, high
@@ -901,7 +854,6 @@ def best(
     equal: cython.double,
 ) -> cython.int:
     """Return which of four faces separates most, the most level of equals; -1 when none does."""
-    place: cython.int
     chosen: cython.int = -1
     most: cython.double = 0.0
     for place in range(4):

@@ -259,8 +259,6 @@ def sweep_all(
     columns: cython.Py_ssize_t,
 ) -> cython.void:
     """Take in all edges of a polygon."""
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
     for j in range(columns):
         bottoms[j], tops[j] = INFINITY, -INFINITY
     for i in range(0, 2 * size, 2):
@@ -291,15 +289,10 @@ def sweep(
     """Take in the edge from one corner to another that is not left of it."""
     run: cython.double = end_x - start_x
     slope: cython.double = (end_y - start_y) / run if run > 0.0 else 0.0
-    one: cython.double
-    two: cython.double
-    left: cython.double
-    right: cython.double
     # Compared as floats: what is far away does not fit into an integer.
     first: cython.double = floor(start_x / cell + SHARE)
     last: cython.double = ceil(end_x / cell - SHARE) - 1.0
     most: cython.double = columns - 1
-    j: cython.Py_ssize_t
     if last < 0.0 or first > most or not first <= last:
         return
     for j in range(

@@ -74,15 +74,6 @@ def solve3(rows, count, gain, most, scratch, x):
     six more.
     """
     state: cython.ulonglong = 88172645463325252
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    e: cython.Py_ssize_t
-    f: cython.Py_ssize_t
-    g: cython.Py_ssize_t
-    kf: cython.double
-    kg: cython.double
-    b0: cython.double
     gain2: cython.double[2] = [0.0, 0.0]
     most2: cython.double[2] = [0.0, 0.0]
     y: cython.double[2] = [0.0, 0.0]
@@ -131,13 +122,6 @@ def solve3(rows, count, gain, most, scratch, x):
 
 def solve2(rows, count, gain, most, x):
     """Maximise gain . x over rows (a, b) with a . x <= b, and |x| <= most, in two unknowns."""
-    i: cython.Py_ssize_t
-    j: cython.Py_ssize_t
-    e: cython.Py_ssize_t
-    f: cython.Py_ssize_t
-    k: cython.double
-    b0: cython.double
-    z: cython.double
     between: cython.double[2] = [0.0, 0.0]
     for j in range(2):
         x[j] = outermost(gain[j], most[j])
@@ -191,7 +175,6 @@ def outermost(gain: cython.double, most: cython.double) -> cython.double:
 @cython.exceptval(check=False)
 def cut(a: cython.double, b: cython.double, between: cython.p_double) -> cython.bint:
     """Narrow an interval by a x <= b; False when no x fulfils that."""
-    v: cython.double
     if abs(a) < PARALLEL:
         return b >= -EMPTY
     v = b / a

@@ -157,7 +157,6 @@ def settle(
     status: cython.int = OVERLAPS
     margin: cython.double = -1.0
     touching: cython.Py_ssize_t = 0
-    k: cython.Py_ssize_t
     with cython.nogil:
         look(here, way, heap)
         if here.least >= -way.overlap and isfinite(way.arm + here.x + here.y + here.turn):
@@ -195,9 +194,6 @@ def look(state: State, way: Way, heap: Heap) -> cython.int:
     """Turn and move the outline to the pose of a state, and find the gaps there."""
     c: cython.double = cos(state.turn)
     s: cython.double = sin(state.turn)
-    x: cython.double
-    y: cython.double
-    i: cython.Py_ssize_t
     for i in range(way.count):
         x, y = way.corners[2 * i], way.corners[2 * i + 1]
         state.corners[2 * i] = c * x - s * y + state.x
@@ -251,10 +247,9 @@ def descend(
     """Go down step by step until nothing is gained; say why it stopped."""
     start_x: cython.double = here.x
     start_turn: cython.double = here.turn
+    better: cython.bint
     radius: cython.double = way.near
     half: cython.double = 0.5 * way.clearance
-    gained: cython.double
-    better: cython.bint
     move: cython.double[3] = [0.0, 0.0, 0.0]
     while made[0] < way.steps:
         if way.stop >= 0.0 and here.least >= half and margin_of(way, here, work) >= way.stop:
@@ -296,7 +291,6 @@ def tried(
 ) -> cython.int:
     """Make a move; False when it leads nowhere."""
     half: cython.double = 0.5 * way.clearance
-    small: cython.double
     back: cython.double[3] = [0.0, 0.0, 0.0]
     there.x, there.y = here.x + move[0], here.y + move[1]
     there.turn = here.turn + move[2] / way.arm
@@ -335,15 +329,6 @@ def best_move(
     gaps: cython.p_double = state.gaps
     rows: cython.p_double
     reach: cython.double = SPREAD * radius + way.clearance
-    room: cython.double
-    lift: cython.double
-    nx: cython.double
-    ny: cython.double
-    k: cython.Py_ssize_t
-    i: cython.Py_ssize_t
-    pivot: cython.Py_ssize_t
-    attempt: cython.int
-    sign: cython.int
     enough_rows(work, state.found + 2)
     rows = work.rows
     for attempt in range(2):

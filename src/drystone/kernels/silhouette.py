@@ -93,10 +93,6 @@ def silhouette(mask: Mask) -> Silhouette:
     found: cython.p_int = ints_out(runs)
     lowest: cython.p_int = ints_out(bottom)
     areas: cython.p_int = ints_out(area_from)
-    row: cython.Py_ssize_t
-    col: cython.Py_ssize_t
-    start: cython.Py_ssize_t
-    at: cython.Py_ssize_t
     n: cython.Py_ssize_t = 0
     area: cython.int = 0
     for row in range(height - 1, -1, -1):
@@ -126,11 +122,6 @@ def _rays(mask: Mask) -> RayPattern:
     found: cython.p_int = ints_out(runs)
     left: cython.p_int = ints_out(first)
     under: cython.p_uchar = flags_out(above)
-    row: cython.Py_ssize_t
-    col: cython.Py_ssize_t
-    start: cython.Py_ssize_t
-    last: cython.Py_ssize_t
-    at: cython.Py_ssize_t
     n: cython.Py_ssize_t = 0
     area: cython.Py_ssize_t = 0
     for row in range(height):
