@@ -307,6 +307,7 @@ class LocalAnalysis(IncrementalAnalysis):
         by_highs = self.by_highs.extended(model)
         if added is None:
             return by_highs
+        assert isinstance(by_highs, HighsAnalysis)  # noqa: S101 - it goes on as what it is
         assert model.added is not None  # noqa: S101 - or nothing would be added
         result = _result_between(model, self._bounds(model, added))
         return self._of(by_highs, result, self.program.appended(model.added, added))
@@ -396,10 +397,6 @@ class HighsAnalysis(IncrementalAnalysis):
             return IncrementalResult(lateral_resistance(model))
         least, greatest, _, _ = _both_extremes(program, starts)
         return _highs_result(model, program, least, greatest)
-
-    def extended(self, model: RigidBlockModel) -> "HighsAnalysis":
-        """See :meth:`IncrementalAnalysis.extended`."""
-        return self if model is self.model else self._extended_to(model)
 
     def _extended_to(self, model: RigidBlockModel) -> "HighsAnalysis":
         return self._of(model, self.units, *self.prepared(model))
