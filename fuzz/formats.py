@@ -24,8 +24,8 @@ _READINGS = (
     *(ReadSettings(pieces="split"), ReadSettings(mask=True), ReadSettings(px_per_m=300.0)),
     *(ReadSettings(max_image_mpx=0.01), ReadSettings(background=7, skip=(9,))),
 )
-_FEW_PX = 20_000
-"""Photographs of more are read, but no stones are looked for in them."""
+_FEW_PX, _SEGMENTED = 20_000, 0.03
+"""Stones are looked for in photographs of so few px only, and in few of them: it takes a second."""
 
 _EXPORTS = ("csv", "geojson", "svg", "dxf", "poses", "obj", "stl", "urdf", "moveit")
 
@@ -46,7 +46,7 @@ def _beside(path: Path, rng: Random) -> None:
 def _photo(path: Path, rng: Random) -> None:
     photo = read_photo(path)
     width, height = photo.size_px
-    if width * height <= _FEW_PX and rng.random() < 0.2:
+    if width * height <= _FEW_PX and rng.random() < _SEGMENTED:
         segment_photo(photo.values, rng.choice((None, 100.0)))
 
 
