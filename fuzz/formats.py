@@ -112,8 +112,8 @@ FORMATS = (
             ("npz", pictures.npzs, "npz", 30), ("labelme", drawings.labelme, "json", 40),
             ("coco", drawings.coco, "json", 40), ("sam", drawings.sam, "json", 20),
             ("geojson", drawings.geojson, "json", 40), ("dxf", drawings.dxf, "dxf", 10),
-            ("svg", drawings.svg, "svg", 20), ("obj", drawings.obj, "obj", 20),
-            ("ply", drawings.ply, "ply", 20), ("stl", drawings.stl, "stl", 20),
+            ("svg", drawings.svg, "svg", 20), ("obj", drawings.obj, "obj", 8),
+            ("ply", drawings.ply, "ply", 8), ("stl", drawings.stl, "stl", 8),
         )
     ),
     Format("masks", pictures.folders, _stones, folder=True),

@@ -127,7 +127,7 @@ class Sandbox:
         for category in _SILENT:
             warnings.simplefilter("ignore", category)
         warnings.showwarning = self._on_warning
-        logging.getLogger().addHandler(_Handler(self))
+        logging.lastResort = _Handler(self)  # prints what nobody else takes
         tempfile.tempdir = str(folder)
         os.chdir(folder)
         _limit(limits)
@@ -206,7 +206,7 @@ class Sandbox:
 
 
 class _Handler(logging.Handler):
-    """Notes what would be printed of foreign logs."""
+    """Notes what would be printed of logs."""
 
     def __init__(self, sandbox: Sandbox) -> None:
         super().__init__(logging.WARNING)
