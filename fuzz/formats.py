@@ -25,8 +25,8 @@ _READINGS = (
     *(ReadSettings(pieces="split"), ReadSettings(mask=True), ReadSettings(px_per_m=300.0)),
     *(ReadSettings(max_image_mpx=0.01), ReadSettings(background=7, skip=(9,))),
 )
-_FEW_PX = 20_000
-"""Photographs of more are read, but no stones are looked for in them."""
+_FEW_PX, _SEGMENTED = 20_000, 0.03
+"""Stones are looked for in photographs of so few px only, and in few of them: it takes a second."""
 
 _EXPORTS = ("csv", "geojson", "svg", "dxf", "poses", "obj", "stl", "urdf", "moveit")
 
@@ -47,7 +47,7 @@ def _beside(path: Path, rng: Random) -> None:
 def _photo(path: Path, rng: Random) -> None:
     photo = read_photo(path)
     width, height = photo.size_px
-    if width * height <= _FEW_PX and rng.random() < 0.2:
+    if width * height <= _FEW_PX and rng.random() < _SEGMENTED:
         segment_photo(photo.values, rng.choice((None, 100.0)))
 
 
@@ -113,8 +113,8 @@ FORMATS = (
             ("npz", pictures.npzs, "npz", 30), ("labelme", drawings.labelme, "json", 40),
             ("coco", drawings.coco, "json", 40), ("sam", drawings.sam, "json", 20),
             ("geojson", drawings.geojson, "json", 40), ("dxf", drawings.dxf, "dxf", 10),
-            ("svg", drawings.svg, "svg", 20), ("obj", drawings.obj, "obj", 20),
-            ("ply", drawings.ply, "ply", 20), ("stl", drawings.stl, "stl", 20),
+            ("svg", drawings.svg, "svg", 20), ("obj", drawings.obj, "obj", 8),
+            ("ply", drawings.ply, "ply", 8), ("stl", drawings.stl, "stl", 8),
         )
     ),
     Format("masks", pictures.folders, _stones, folder=True),
