@@ -7,9 +7,11 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from scipy import ndimage
 
+from drystone.errors import LabelImageError
 from drystone.io.census import take_census
 from drystone.io.necks import neck_width_px
 from drystone.io.patches import cut, enclosed
+from drystone.io.read_stones import read_stones
 from tests.io.pictures import discs
 from tests.naive import io as naive
 
@@ -64,6 +66,20 @@ def test_a_neck_in_a_coarser_picture():
     mask[80:120, 150:210] = False
     mask[99:100, 150:210] = True  # hit or missed, it is not thicker than a pixel of 4 px
     assert neck_width_px(mask, 72_000 // 16) == 4
+
+
+def test_noise_is_no_picture_of_stones():
+    mask = np.zeros((900, 900), np.uint8)
+    mask[3:-3:2, 3:-3:2] = 255  # 200,000 pixels apart from each other
+    with pytest.raises(LabelImageError, match="E110 array: there are more than 100000 pieces"):
+        read_stones(mask)
+    ids = np.where(mask > 0, 7, 0).astype(np.uint16)
+    ids[10:40, 10:60] = 300
+    with pytest.raises(LabelImageError, match="E110 7: there are more than 100000 pieces"):
+        read_stones(ids)
+    halves = np.where(mask > 0, 7 + np.indices(mask.shape)[0] // 300, 0)
+    with pytest.raises(LabelImageError, match="E110 array: there are more than 100000 pieces"):
+        read_stones(halves)
 
 
 def test_stones_without_a_neck():

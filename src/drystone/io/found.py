@@ -6,6 +6,7 @@ from drystone.errors import LabelImageError, Notice
 from drystone.io.necks import suspect_necks
 from drystone.io.patches import (
     Patch,
+    check_count,
     filled,
     in_one_piece,
     piece_numbers,
@@ -27,6 +28,10 @@ class Found:
 
 def stone_set(found: Found, source: Source, settings: ReadSettings) -> StoneSet:
     """Put patches in order and make stones of them; every decision becomes a notice."""
+    pieces_so_far = 0
+    for patch in found.patches:
+        pieces_so_far += len(patch.piece_areas_px)
+        check_count(pieces_so_far, found.where)
     numbers = piece_numbers(found.patches, settings)
     known = {patch.id for patch in found.patches}.union(*numbers.values())
     unknown = sorted(set(settings.skip) - known)

@@ -22,6 +22,9 @@ MIN_AREA_PX = 10
 _WHOLE = np.ones((3, 3), bool)
 _SHOWN = 8
 
+MOST_PIECES = 100_000
+"""Of all stones of a picture: more are no stones but noise, and fill the memory."""
+
 
 @dataclass(frozen=True, eq=False)
 class Patch:
@@ -62,6 +65,7 @@ class Patch:
         found, count = ndimage.label(self.mask, _WHOLE)
         if count == 1:
             return (self.area_px,)
+        check_count(count, str(self))
         return tuple(np.bincount(found.ravel())[1:].tolist())
 
     def pieces(self) -> list["Patch"]:
@@ -88,6 +92,23 @@ class Patch:
         """Make the stone, in the frame of the picture (y up from its bottom edge)."""
         bottom = self.picture_height - self.row - self.mask.shape[0]
         return Stone(self.id, self.mask, self.col, bottom, self.name)
+
+
+def check_count(count: int, where: str) -> None:
+    """Refuse more pieces than a picture of stones can have (E110).
+
+    Raises
+    ------
+    LabelImageError
+        E110.
+    """
+    if count > MOST_PIECES:
+        raise LabelImageError(
+            "E110",
+            f"there are more than {MOST_PIECES} pieces of stones: this looks like noise.",
+            where=where,
+            cure="Clean the picture (a median filter takes out specks), or crop it.",
+        )
 
 
 def cut(index: NDArray[Any], ids: NDArray[np.int64], name: str = "") -> list[Patch]:

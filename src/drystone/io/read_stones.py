@@ -27,7 +27,7 @@ from drystone.io.masks import BinaryMask, check_mask, components, find_mask
 from drystone.io.outlines_in.detect import outline_reader
 from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.outlines_in.npz import is_npz, read_npz
-from drystone.io.patches import Patch, cut
+from drystone.io.patches import Patch, check_count, cut
 from drystone.io.photo_sidecar import LABELS, SIDECAR, PhotoSidecar, read_sidecar
 from drystone.io.read_outlines import check_no_image, check_unit, stones_of
 from drystone.io.read_settings import ReadSettings
@@ -160,10 +160,12 @@ def _read_picture(picture: Picture, source: Source, settings: ReadSettings) -> S
     census = take_census(image.ids)
     binary = _check(image, census, picture.lossy, settings, where)
     if binary is None:
+        check_count(len(census.values) - 1, where)
         ids = _stone_ids(census.values, image.background, where)
         found = Found(cut(census.index, ids), list(image.notices), where)
     else:
         labels, count = components(binary.mask)
+        check_count(count, where)
         patches = cut(labels, np.arange(1, count + 1))
         found = Found(patches, [_mask_notice(binary, count)], where)
     reading = _of_px(settings, where)

@@ -121,6 +121,7 @@ def _move(ax: Axes, motion: Motion, amplitude: float) -> None:
 def _picture(figure: Figure, box: Bbox, dpi: float) -> Image.Image:
     with BytesIO() as file:
         figure.savefig(file, format="png", dpi=dpi, bbox_inches=box, facecolor="white")
+        file.seek(0)
         return PngImagePlugin.PngImageFile(file).convert("RGB")
 
 
