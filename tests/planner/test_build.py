@@ -12,7 +12,7 @@ from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
-from drystone.search.plan_wall import run_to_end
+from drystone.search.whole_search import run_to_end
 from drystone.statics.growing import GrowingAnalysis, Grown
 from drystone.statics.growing_simplex import NAME, SimplexGrowth
 from drystone.statics.limit import lateral_resistance

@@ -6,7 +6,6 @@ import pytest
 from drystone.errors import DrystoneError
 from drystone.experiments.runs.outcome import Outcome, execute
 from drystone.experiments.runs.store import RunStore
-from drystone.io import atomic
 from tests.experiments.runs.bricks import run
 
 
@@ -34,7 +33,7 @@ def test_files_are_whole_or_not_there(
         raise OSError(28, "No space left on device")
 
     store = RunStore(tmp_path)
-    monkeypatch.setattr(atomic.os, "replace", full)
+    monkeypatch.setattr("os.replace", full)
     with pytest.raises(DrystoneError, match="No space left") as caught:
         store.put(outcome)
     assert caught.value.code == "E206"
