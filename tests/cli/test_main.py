@@ -3,6 +3,7 @@
 import io
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -13,7 +14,7 @@ import pytest
 from drystone.cli import main
 from drystone.cli.commands import generate
 from drystone.cli.commands import stones as command
-from drystone.errors import UsageError
+from drystone.errors import ExitCode, UsageError
 from tests.cli.conftest import Run
 from tests.statics.walls import stacked
 
@@ -28,6 +29,7 @@ from tests.statics.walls import stacked
         ),
         (PermissionError(13, "Permission denied", "/there"), 3, "E141 /there: the system refuses"),
         (OSError("odd"), 3, "E141 the system refuses this: odd."),
+        (OSError(28, "No space left on device", "a.png"), 3, "E206 a.png: the file cannot be"),
         (MemoryError(), 3, "E142 the memory is not large enough."),
         (KeyboardInterrupt(), 130, "interrupted"),
     ],
@@ -43,6 +45,26 @@ def test_errors_become_exit_codes(
     assert (ran.code, ran.out) == (code, "")
     assert ran.err.startswith(f"drystone: {said}")
     assert ran.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("left", [True, False])
+def test_termination_ends_with_its_own_code_whatever_becomes_of_the_interrupt(
+    left: bool, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = signal.getsignal(signal.SIGTERM)
+
+    def stop(_: object) -> int:
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        except KeyboardInterrupt:
+            if left:
+                raise
+        return ExitCode.INTERRUPTED
+
+    monkeypatch.setattr(command, "run", stop)
+    ran = run("stones", "x.png")
+    assert (ran.code, ran.err) == (143, "drystone: terminated\n" if left else "")
+    assert signal.getsignal(signal.SIGTERM) == before
 
 
 def test_a_cure_names_options_that_the_command_has(

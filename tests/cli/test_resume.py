@@ -1,13 +1,21 @@
 """An interrupt and the time limit keep what is built, and --resume goes on from there."""
 
+import signal
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import cast
 
 import pytest
 
+from drystone.cli import keeping, main
+from drystone.io.checkpoint import CHECKPOINT
+from drystone.io.folder_lock import LOCK, locked
 from drystone.io.plan_json import read_plan
+from drystone.model.plan import Plan
 from drystone.planner.deadline import Deadline
-from drystone.planner.events import Callbacks, Step
-from tests.cli.conftest import WALL, Run
+from drystone.planner.events import Callbacks, Incumbent, Step
+from tests.cli.conftest import WALL, Ran, Run
+from tests.cli.test_keeping import Killed, killed_at
 from tests.planner.scenes import after_looks
 
 
@@ -186,3 +194,226 @@ def test_time_that_nobody_asked_for_does_not_cut_the_first_wall_short(
     assert run(*plan, tmp_path / "one", "--budget", 1).code == ran.code
     plans = [(tmp_path / name / "plan.json").read_bytes() for name in ("by default", "one")]
     assert plans[0] == plans[1]
+
+
+SMALL = "[search]\nbudget = 13\npasses = 3\nchains = 2\nshare_every = 2\ncycle = 3\n"
+"""A search that does everything within thirteen walls."""
+
+
+@dataclass(frozen=True)
+class Search:
+    """A command that searches; what its whole plan is, and how it is called."""
+
+    stones: Path
+    arguments: tuple[str, ...]
+    whole: Path
+    run: Run
+
+    def __call__(self, folder: Path, *more: object) -> Ran:
+        return self.run(*self.arguments, folder, *more)
+
+    def holds(self, folder: Path) -> bool:
+        """Say whether `check` accepts what is in a folder."""
+        return self.run("check", folder, "--stones", self.stones).code == 0
+
+
+@pytest.fixture(scope="module")
+def searched(rubble: Path, tmp_path_factory: pytest.TempPathFactory) -> Search:
+    """The folder of the whole search, not to be changed."""
+    folder = tmp_path_factory.mktemp("search")
+    (folder / "small.toml").write_text(SMALL)
+    plan = ("plan", str(rubble), "--wall", "100x36", "--scale", "1", "--seed", "1")
+    arguments = (*plan, "--settings", str(folder / "small.toml"), "-o")
+    assert main([*arguments, str(folder / "whole")]) in (0, 4)
+    return Search(rubble, arguments, folder / "whole", cast(Run, None))
+
+
+@pytest.fixture
+def search(searched: Search, run: Run) -> Search:
+    """The same, to be called."""
+    return replace(searched, run=run)
+
+
+def kill(search: Search, folder: Path, walls: int, monkeypatch: pytest.MonkeyPatch) -> Plan:
+    """Kill a search once it has built some walls; return the plan that is there."""
+    with monkeypatch.context() as patch:
+        patch.setattr(keeping, "EVERY_S", 0.0)
+        patch.setattr(keeping, "SHARE", 1.0)
+        patch.setattr(Callbacks, "on_walls", killed_at(walls))
+        with pytest.raises(Killed):
+            search(folder)
+    plan = read_plan(folder)
+    assert plan.stopped == "interrupted"
+    assert search.holds(folder)
+    return plan
+
+
+def same(folder: Path, whole: Path) -> bool:
+    """Say whether two folders have the same plan, and nothing of a search is left."""
+    names = ("plan.json", "blocks.json", "wall.png", "picture.png", "settings.toml")
+    left = {path.name for path in folder.iterdir()}
+    return left == {path.name for path in whole.iterdir()} and all(
+        (folder / name).read_bytes() == (whole / name).read_bytes() for name in names
+    )
+
+
+@pytest.mark.usefixtures("interruptible")
+@pytest.mark.parametrize(
+    ("sent", "walls", "stood"),
+    [
+        (signal.SIGINT, 1, None),
+        (signal.SIGTERM, 3, 2),
+        (signal.SIGINT, 13, 11),
+    ],
+)
+def test_a_search_that_is_interrupted_goes_on_to_the_same_plan(
+    sent: int,
+    walls: int,
+    stood: int | None,
+    search: Search,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def on_walls(_: Callbacks, found: Incumbent) -> None:
+        if found.walls == walls:
+            signal.raise_signal(sent)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Callbacks, "on_walls", on_walls)
+        ran = search(tmp_path)
+    assert ran.code == {signal.SIGINT: 130, signal.SIGTERM: 143}[sent]
+    assert ran.out.startswith("interrupted: --resume goes on from here")
+    part = read_plan(tmp_path)
+    assert (part.stopped, part.settings["search"]["budget"]) == ("interrupted", walls)
+    assert search.holds(tmp_path)
+    assert (tmp_path / "report.html").exists()
+    assert (tmp_path / CHECKPOINT).exists() == (stood is not None)
+    ran = search(tmp_path, "--resume")
+    after = f"{len(part.stone_steps)} stones" if stood is None else f"{stood} walls"
+    assert ran.err.startswith(f"drystone: going on after {after}\n")
+    assert same(tmp_path, search.whole)
+
+
+@pytest.mark.usefixtures("interruptible")
+@pytest.mark.parametrize("signals", [(signal.SIGINT,), (signal.SIGTERM, signal.SIGINT)])
+def test_signals_while_the_end_is_written_lose_nothing(
+    signals: tuple[int, ...], search: Search, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def write_film(*_: object) -> None:
+        for one in signals:
+            signal.raise_signal(one)
+
+    with monkeypatch.context() as patch:
+        patch.setattr("drystone.cli.planning.write_film", write_film)
+        ran = search(tmp_path)
+    assert ran.code == {signal.SIGINT: 130, signal.SIGTERM: 143}[signals[0]]
+    assert "F_LR_coulomb" in ran.out
+    assert "wrote" in ran.err
+    assert read_plan(tmp_path) == read_plan(search.whole)
+    assert not (tmp_path / CHECKPOINT).exists()
+
+
+@pytest.mark.parametrize(("walls", "stood"), [(2, None), (9, 7)])
+def test_a_search_that_is_killed_goes_on_from_its_checkpoint(
+    walls: int,
+    stood: int | None,
+    search: Search,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    part = kill(search, tmp_path, walls, monkeypatch)
+    assert "E129" in search(tmp_path).err
+    ran = search(tmp_path, "--resume")
+    after = f"{len(part.stone_steps)} stones" if stood is None else f"{stood} walls"
+    assert ran.err.startswith(f"drystone: going on after {after}\n")
+    assert same(tmp_path, search.whole)
+
+
+def test_of_a_plan_that_was_killed_before_anything_was_kept_there_is_nothing_to_go_on_with(
+    rubble: Path, finished: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def on_step(_: Callbacks, __: Step) -> None:
+        raise Killed
+
+    plan = ("plan", rubble, *WALL, "--seed", 1, "-o", tmp_path)
+    with monkeypatch.context() as patch:
+        patch.setattr(Callbacks, "on_step", on_step)
+        with pytest.raises(Killed):
+            run(*plan)
+    assert [path.name for path in tmp_path.iterdir()] == [CHECKPOINT]
+    (tmp_path / f".plan.json.{32 * 'a'}.part").write_bytes(b"half")
+    (tmp_path / LOCK).write_bytes(b"")
+    other = run(*plan, "--resume", "--seed", 2)
+    assert (other.code, "E136" in other.err, "--seed" in other.err) == (2, True, True)
+    ran = run(*plan, "--resume")
+    assert ran.err.startswith("drystone: nothing to go on with yet, planning begins anew\n")
+    assert {path.name for path in tmp_path.iterdir()} == {path.name for path in finished.iterdir()}
+    assert (tmp_path / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()
+
+
+def test_a_plan_whose_end_was_not_written_is_not_finished(
+    search: Search, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def write_pictures(*_: object, **__: object) -> None:
+        raise Killed
+
+    with monkeypatch.context() as patch:
+        patch.setattr("drystone.plotting.write_pictures", write_pictures)
+        with pytest.raises(Killed):
+            search(tmp_path)
+    assert read_plan(tmp_path) == read_plan(search.whole)
+    assert not (tmp_path / "report.html").exists()
+    ran = search(tmp_path, "--resume")
+    assert "finished" not in ran.err
+    assert same(tmp_path, search.whole)
+
+
+def test_beside_the_checkpoint_of_a_new_plan_an_earlier_one_is_not_gone_on_with(
+    rubble: Path, finished: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan = ("plan", rubble, *WALL, "-o", tmp_path)
+    assert run(*plan, "--seed", 3).code in (0, 4)
+
+    def on_step(_: Callbacks, __: Step) -> None:
+        raise Killed
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Callbacks, "on_step", on_step)
+        with pytest.raises(Killed):
+            run(*plan, "--seed", 1, "--overwrite")
+    assert read_plan(tmp_path).seed == 3
+    assert run(*plan, "--seed", 1, "--resume").code in (0, 4)
+    assert (tmp_path / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()
+
+
+def test_a_damaged_checkpoint_is_set_aside_and_the_partial_plan_gone_on_from(
+    search: Search, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    part, path = kill(search, tmp_path, 9, monkeypatch), tmp_path / CHECKPOINT
+    path.write_bytes(path.read_bytes()[:-20])
+    told: list[float] = []
+    with monkeypatch.context() as patch:
+        patch.setattr(Callbacks, "on_walls", lambda _, found: told.append(found.F_SF))
+        ran = search(tmp_path, "--resume")
+    assert ran.code in (0, 4)
+    notice, going, *_ = ran.err.splitlines()
+    assert notice.startswith(f"drystone: W129 {path}: the search cannot go on from it: ")
+    assert going == f"drystone: going on after {len(part.stone_steps)} stones"
+    assert told[0] == pytest.approx(part.metrics.F_SF, abs=0.02)
+    assert search.holds(tmp_path)
+    assert not path.exists()
+
+
+def test_two_runs_do_not_write_into_one_folder(
+    rubble: Path, finished: Path, tmp_path: Path, run: Run
+) -> None:
+    plan = ("plan", rubble, *WALL, "--seed", 1, "-o", tmp_path / "out")
+    (tmp_path / "out").mkdir()
+    with locked(tmp_path / "out"):
+        for more in ((), ("--overwrite",), ("--resume",)):
+            ran = run(*plan, *more)
+            assert (ran.code, "E149" in ran.err) == (2, True)
+        assert "E149" in run("demo", "-o", tmp_path / "out").err
+        assert [path.name for path in (tmp_path / "out").iterdir()] == [LOCK]
+    assert run(*plan).code in (0, 4)
+    assert (tmp_path / "out" / "plan.json").read_bytes() == (finished / "plan.json").read_bytes()

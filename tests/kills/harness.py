@@ -33,7 +33,10 @@ KEPT_S = 5.0
 """What a search with a time limit has found so long before it is killed is kept."""
 
 LOGGED = """
-import sys, time
+import signal, sys, time
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell may ignore
+
 from drystone.cli import keeping, main
 from drystone.planner.events import Callbacks
 

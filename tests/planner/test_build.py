@@ -13,7 +13,7 @@ from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
-from drystone.search.plan_wall import run_to_end
+from drystone.search.whole_search import run_to_end
 from drystone.statics.incremental import (
     SIMPLEX,
     HighsAnalysis,

@@ -27,7 +27,8 @@ from drystone.model.wall import outlined
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_result import PlanResult
-from drystone.search.plan_wall import plan_wall, run_to_end
+from drystone.search.plan_wall import plan_wall
+from drystone.search.whole_search import run_to_end
 from drystone.settle.rest import placed_outline
 from drystone.verify import check_plan
 from tests.planner.scenes import WITH_WEDGES, few_stones, finish, greedy, outlines, rubble, same

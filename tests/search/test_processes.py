@@ -51,6 +51,22 @@ def test_an_interrupt_while_they_end_waits_until_they_have(
         workers.submit(int)
 
 
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="there are no masks here")
+def test_processes_hear_no_interrupt_from_their_very_beginning() -> None:
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    with processes(2) as workers:
+        assert workers is not None
+        heard = workers.submit(heard_here).result()
+    assert heard == ({signal.SIGINT, signal.SIGTERM} | before, [signal.SIG_IGN] * 2)
+    assert signal.pthread_sigmask(signal.SIG_BLOCK, ()) == before
+
+
+def heard_here() -> tuple[set[int], list[object]]:
+    """Return which signals are kept back here, and what is done at those of the keyboard."""
+    mask = set(signal.pthread_sigmask(signal.SIG_BLOCK, ()))
+    return mask, [signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM)]
+
+
 ASKING = """
 import time
 from loky.backend.resource_tracker import _resource_tracker

@@ -16,6 +16,8 @@ from drystone.planner.planner import Planner
 from drystone.planner.replay import Replayed
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
+from drystone.search.found import Found
+from drystone.search.packed import Packed, found_again
 from drystone.search.plan_wall import plan_wall
 from drystone.search.warm_start import begin_with
 from drystone.verify.check import check_plan
@@ -129,6 +131,19 @@ def test_what_stands_out_further_than_now_allowed_is_taken_out() -> None:
     assert before[out.index(furthest)] in gone
     planner = new(old.settings.updated({"settle": {"beyond_px": furthest}}))
     assert begin_with(planner, old.build.wall, {}) == ()
+
+
+def test_outlines_are_those_of_this_search_whatever_those_of_the_plan_were() -> None:
+    """They are packed as their poses, and would be others when they are built again."""
+    old = finish(new(greedy({"settle": {"outline_px": 0.5}})))
+    planner = new(greedy())
+    begin_with(planner, old.build.wall, {})
+    assert len(planner.build.actions) > 3
+    assert {*outlines(planner)} - {*outlines(old)}
+    again = new(greedy())
+    packed = Packed.of(Found.of(planner))
+    again.build = found_again(packed, again.workshop, again.settings).build
+    assert outlines(again) == outlines(planner)
 
 
 def test_in_a_given_order_only_what_ascends_is_used() -> None:

@@ -79,10 +79,10 @@ def _one_of(kinds: Sequence[Any], data: Any) -> Any:
 
 
 def _tuple(kinds: Sequence[Any], data: Any) -> Any:
-    if not isinstance(data, list):
-        raise ValueError("this is no list")
-    if kinds[-1] is Ellipsis:
+    if isinstance(data, list) and kinds[-1] is Ellipsis:
         return tuple(_read(kinds[0], item) for item in data)
+    if not isinstance(data, list) or len(data) != len(kinds):
+        raise ValueError(f"this is no list of {len(kinds)} values")
     return tuple(_read(kind, item) for kind, item in zip(kinds, data, strict=True))
 
 

@@ -62,6 +62,22 @@ def held() -> Iterator[None]:
             signal.raise_signal(came[0])
 
 
+@contextmanager
+def blocked() -> Iterator[None]:
+    """Have the system keep interrupts and termination back, from what is started meanwhile too.
+
+    Where it can: elsewhere nothing changes.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _may_set() -> bool:
     """Say whether handlers may be set here, and those that are there can be put back."""
     return threading.current_thread() is threading.main_thread() and not any(

@@ -11,7 +11,7 @@ from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from typing import Any
 
-from drystone.search.interrupts import held
+from drystone.search.interrupts import SIGNALS, blocked, held
 
 MUCH_MEMORY = {"LOKY_MAX_MEMORY_LEAK_SIZE": "4e9"}
 """Variables that let a process keep what it has prepared, B.
@@ -68,8 +68,14 @@ def process_pool(count: int, env: Mapping[str, str]) -> Any:
     """
     from loky import ProcessPoolExecutor  # noqa: PLC0415 - most plans do without
 
+    class Pool(ProcessPoolExecutor):  # type: ignore[misc]
+        def submit(self, *args: Any, **kwargs: Any) -> Any:
+            # Processes are started here, and are not to hear an interrupt before they leave it.
+            with blocked():
+                return super().submit(*args, **kwargs)
+
     far, near = Pipe(duplex=False)
-    executor = ProcessPoolExecutor(count, initializer=_begin, initargs=(far,), env=env)
+    executor = Pool(count, initializer=_begin, initargs=(far,), env=env)
     # Nobody else has the near end, and nothing is ever sent: it is at an end when this process is.
     weakref.finalize(executor, near.close)
     return executor
@@ -77,8 +83,8 @@ def process_pool(count: int, env: Mapping[str, str]) -> Any:
 
 def _begin(asking: Connection) -> None:
     """Leave signals to the process that asks for work, and end with it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    for one in SIGNALS:
+        signal.signal(one, signal.SIG_IGN)
     threading.Thread(target=_end_with, args=(asking,), daemon=True).start()
 
 

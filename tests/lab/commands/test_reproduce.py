@@ -8,6 +8,7 @@ import pytest
 
 from drystone.cli.parser import build_parser
 from drystone.errors import ExitCode, InputError, UsageError
+from drystone.io.folder_lock import LOCK, locked
 from drystone_lab.commands import reproduce
 from drystone_lab.reproduce.driver import Made
 from drystone_lab.reproduce.item import Item
@@ -161,3 +162,20 @@ def test_an_item_of_the_paper(run: Run, tmp_path: Path) -> None:
     assert ran.code == 3
     assert "fig5: E100 almeida/PR.png" in ran.err
     assert "clusters of the stones PR" in (tmp_path / "out" / "index.html").read_text("utf-8")
+
+
+def test_two_runs_do_not_write_into_one_folder(run_items: RunItems, tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir()
+    with locked(tmp_path / "out"), pytest.raises(UsageError, match="E149"):
+        run_items("beta", "-o", tmp_path / "out", "--quick")
+    # What a run that was killed has left makes no folder another's.
+    (tmp_path / "out" / LOCK).write_bytes(b"")
+    part = tmp_path / "out" / "runs" / f".a.json.{32 * 'a'}.part"
+    part.parent.mkdir()
+    part.write_bytes(b"half")
+    (tmp_path / "out" / "reproduce.json").write_text(
+        '{"schema": "drystone-reproduce/1", "misses": {}}'
+    )
+    assert run_items("beta", "-o", tmp_path / "out", "--quick").code == ExitCode.DONE
+    assert not part.exists()
+    assert not (tmp_path / "out" / LOCK).exists()

@@ -2,12 +2,13 @@
 
 import csv
 import sqlite3
+from contextlib import closing
 from dataclasses import replace
 from importlib.util import find_spec
 
 import pytest
 
-from drystone.errors import InputError
+from drystone.errors import InputError, PlanError, UsageError
 from drystone_lab.public.history import drawn_history, history_table, medians_of
 from drystone_lab.public.store import COLUMNS, BenchStore, KeptRun
 
@@ -69,6 +70,35 @@ def test_a_file_that_is_no_database(tmp_path):
     with pytest.raises(InputError) as caught:
         BenchStore(tmp_path).runs()
     assert caught.value.code == "E401"
+
+
+def test_a_database_that_another_run_writes_to(tmp_path, monkeypatch):
+    store, connect = BenchStore(tmp_path), sqlite3.connect
+    store.put([RUN])
+    monkeypatch.setattr(sqlite3, "connect", lambda path: connect(path, timeout=0.0))
+    with closing(connect(tmp_path / "bench.sqlite")) as other:
+        other.execute("BEGIN EXCLUSIVE")
+        with pytest.raises(UsageError) as caught:
+            store.put([RUN])
+    assert caught.value.code == "E149"
+    assert store.runs() == (RUN,)
+
+
+def test_a_database_on_a_full_disk(tmp_path, monkeypatch):
+    store, connect = BenchStore(tmp_path), sqlite3.connect
+    store.put([RUN])
+
+    def full(path):
+        connection = connect(path)
+        connection.execute("PRAGMA max_page_count = 1")
+        return connection
+
+    monkeypatch.setattr(sqlite3, "connect", full)
+    with pytest.raises(PlanError) as caught:
+        store.put([replace(RUN, run_key=str(k), wall="w" * 1000) for k in range(100)])
+    assert caught.value.code == "E206"
+    assert caught.value.where == str(tmp_path / "bench.sqlite")
+    assert store.runs() == (RUN,)
 
 
 HISTORY = [

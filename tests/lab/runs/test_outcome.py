@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from drystone.planner.planner import Planner
-from drystone.search import plan_wall as plan_wall_module
+from drystone.search import whole_search
 from drystone.search.plan_wall import plan_wall
 from drystone_lab.runs.outcome import FIGURES, execute
 from drystone_lab.runs.source import generated
@@ -65,13 +65,13 @@ def test_an_interrupted_wall_is_no_outcome(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_an_interrupted_search_is_no_outcome(monkeypatch: pytest.MonkeyPatch) -> None:
-    searching = plan_wall_module.searching
+    searching = whole_search.searching
 
     def interrupted(*args: Any, **kwargs: Any) -> Iterator[Any]:
         yield next(searching(*args, **kwargs))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(plan_wall_module, "searching", interrupted)
+    monkeypatch.setattr(whole_search, "searching", interrupted)
     with pytest.raises(KeyboardInterrupt):
         execute(endless(), None)
 

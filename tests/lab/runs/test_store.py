@@ -1,5 +1,4 @@
 import json
-import os
 from pathlib import Path
 
 import pytest
@@ -34,7 +33,7 @@ def test_files_are_whole_or_not_there(
         raise OSError(28, "No space left on device")
 
     store = RunStore(tmp_path)
-    monkeypatch.setattr(os, "replace", full)
+    monkeypatch.setattr("os.replace", full)
     with pytest.raises(DrystoneError, match="No space left") as caught:
         store.put(outcome)
     assert caught.value.code == "E206"

@@ -1,0 +1,225 @@
+"""A search goes on from a file to the walls that it would have found; a bad file is refused."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from drystone.errors import PlanError
+from drystone.io import checkpoint
+from drystone.io.checkpoint import CHECKPOINT, Checkpoint, read_checkpoint, write_checkpoint
+from drystone.model.site import Site
+from drystone.model.stone import StoneSet
+from drystone.planner.planner import Planner
+from drystone.planner.settings import PlannerSettings
+from drystone.search.anytime import searching
+from drystone.search.found import Found
+from drystone.search.packed import Packed
+from drystone.search.standing import Chains, Progress, Standing
+from drystone.search.whole_search import run_to_end
+from tests.planner.scenes import RUBBLE_SITE, WITH_WEDGES, few_stones, finish, greedy, rubble
+
+SMALL = {"budget": 13, "passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
+
+CASES: dict[str, tuple[StoneSet, Site, dict[str, Any]]] = {
+    "exact": (rubble(), RUBBLE_SITE, {"geometry": "exact"}),
+    "raster": (rubble(), RUBBLE_SITE, {"geometry": "raster"}),
+    "exact, wedges": (few_stones(), Site(90, 30), {"geometry": "exact", **WITH_WEDGES}),
+    "raster, wedges": (few_stones(), Site(90, 30), {"geometry": "raster", **WITH_WEDGES}),
+}
+
+
+def searched(planner: Planner, start: Found | Standing | None = None) -> list[Progress]:
+    begin = start or Found.of(planner)
+    return list(searching(begin, planner.workshop, planner.settings, planner.seed))
+
+
+def planner_of(case: str) -> Planner:
+    stones, site, changes = CASES[case]
+    return finish(Planner(stones, site, seed=2, settings=greedy({**changes, "search": SMALL})))
+
+
+def standings(found: list[Progress]) -> list[Standing]:
+    return [one.standing for one in found if one.standing is not None]
+
+
+def again(standing: Standing, folder: Path, planner: Planner) -> Standing:
+    """Write where a search stands, and read it."""
+    made_of = {"stones": "abc", "settings": {"mu": 0.58}}
+    write_checkpoint(Checkpoint(made_of, standing), folder)
+    ids = [stone.id for stone in planner.workshop.stones]
+    read = read_checkpoint(folder, ids, planner.settings.search)
+    assert read is not None
+    assert read.made_of == made_of
+    assert read.standing is not None
+    return read.standing
+
+
+def wedges(walls: tuple[Packed, ...]) -> int:
+    return sum(len(group.wedges) for wall in walls for group in wall.groups)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_search_goes_on_from_a_file_to_the_same_walls(case: str, tmp_path: Path) -> None:
+    planner = planner_of(case)
+    whole = searched(planner)
+    stood = standings(whole)
+    assert [one.walls for one in stood] == [2, 3, 5, 7, 9, 11, 13]
+    assert wedges(whole[-1].kept) > 0 or "wedges" not in case
+    for standing in stood[:-1:2]:
+        read = again(standing, tmp_path, planner)
+        found = searched(planner, read)
+        assert found[-1].walls == whole[-1].walls
+        assert found[-1].best.groups == whole[-1].best.groups
+        assert found[-1].solves == whole[-1].solves
+        assert [(w.groups, w.figures, w.merit, w.courses) for w in found[-1].kept] == [
+            (w.groups, w.figures, w.merit, w.courses) for w in whole[-1].kept
+        ]
+        first = (tmp_path / CHECKPOINT).read_bytes()
+        again(read, tmp_path, planner)
+        assert (tmp_path / CHECKPOINT).read_bytes() == first
+
+
+def test_without_a_search_it_says_what_is_planned(tmp_path: Path) -> None:
+    search = greedy().search
+    assert read_checkpoint(tmp_path, [], search) is None
+    write_checkpoint(Checkpoint({"--seed": 1}), tmp_path)
+    read = read_checkpoint(tmp_path, [], search)
+    assert read is not None
+    assert (read.made_of, read.standing) == ({"--seed": 1}, None)
+    (tmp_path / CHECKPOINT).unlink()
+    (tmp_path / CHECKPOINT).mkdir()
+    assert read_checkpoint(tmp_path, [], search) is None
+
+
+@pytest.fixture(scope="module")
+def stood() -> tuple[Standing, Planner]:
+    """Where chains stand, in the second round, with what they are of."""
+    stones, site, changes = CASES["exact"]
+    search = {**SMALL, "budget": 24, "patience": 1}
+    settings = greedy({**changes, "search": search})
+    planner = finish(Planner(stones, site, seed=4, settings=settings))
+    standing = standings(searched(planner))[-1]
+    assert standing.number > 0
+    assert standing.chains is not None
+    return standing, planner
+
+
+def refused(folder: Path, planner: Planner, ids: list[int] | None = None) -> str:
+    known = [stone.id for stone in planner.workshop.stones] if ids is None else ids
+    with pytest.raises(PlanError, match="E207") as caught:
+        read_checkpoint(folder, known, planner.settings.search)
+    assert caught.value.where == str(folder / CHECKPOINT)
+    return caught.value.what
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda data: data[:0],
+        lambda data: data[: len(data) // 2],
+        lambda data: data.replace(b'"number":1', b'"number":2', 1),
+        lambda data: data.replace(b"0.", b"1.", 1),
+        lambda data: data.replace(b"{", b"[", 1),
+        lambda _: b"[" * 100_000,
+        lambda _: b"\xff\xfe",
+        lambda _: b"[]",
+        lambda _: b'{"sha256": 1, "data": {}}',
+        lambda _: b'{"sha256": "", "data": ' + b"9" * 5000 + b"}",
+    ],
+)
+def test_a_damaged_file_is_refused(
+    damage: Callable[[bytes], bytes], stood: tuple[Standing, Planner], tmp_path: Path
+) -> None:
+    standing, planner = stood
+    again(standing, tmp_path, planner)
+    path = tmp_path / CHECKPOINT
+    whole = path.read_bytes()
+    path.write_bytes(damage(whole))
+    assert path.read_bytes() != whole
+    assert refused(tmp_path, planner)
+
+
+def test_a_file_that_is_too_large_or_of_another_version_is_refused(
+    stood: tuple[Standing, Planner], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    standing, planner = stood
+    with monkeypatch.context() as patch:
+        patch.setattr(checkpoint, "version", lambda _: "0.0.1")
+        again(standing, tmp_path, planner)
+    assert "of drystone 0.0.1" in refused(tmp_path, planner)
+    again(standing, tmp_path, planner)
+    monkeypatch.setattr(checkpoint, "LARGEST_BYTES", 1000)
+    assert "too large" in refused(tmp_path, planner)
+
+
+def chains_of(standing: Standing) -> Chains:
+    assert standing.chains is not None
+    return standing.chains
+
+
+CHANGES: dict[str, Callable[[Standing], Standing]] = {
+    "rounds": lambda one: replace(one, number=0),
+    "round": lambda one: replace(one, before=None),
+    "first": lambda one: replace(one, chains=None),
+    "both": lambda one: replace(one, found=chains_of(one).reached.kept),
+    "links": lambda one: replace(one, chains=replace(chains_of(one), links=())),
+    "turn": lambda one: replace(one, chains=replace(chains_of(one), turn=3)),
+    "ends": lambda one: with_best(one, ends=(0, 99)),
+    "order": lambda one: with_best(one, ends=(3, 1)),
+}
+
+
+def with_best(standing: Standing, ends: tuple[int, ...]) -> Standing:
+    chains = chains_of(standing)
+    planned = next(w for w in chains.reached.kept if w.courses is not None)
+    assert planned.courses is not None
+    wall = replace(planned, courses=replace(planned.courses, ends=ends))
+    return replace(standing, chains=replace(chains, reached=replace(chains.reached, best=wall)))
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_search_that_cannot_be_is_refused(
+    change: str, stood: tuple[Standing, Planner], tmp_path: Path
+) -> None:
+    standing, planner = stood
+    write_checkpoint(Checkpoint({}, CHANGES[change](standing)), tmp_path)
+    assert refused(tmp_path, planner)
+
+
+def test_a_search_of_other_stones_is_refused(
+    stood: tuple[Standing, Planner], tmp_path: Path
+) -> None:
+    standing, planner = stood
+    write_checkpoint(Checkpoint({}, standing), tmp_path)
+    assert "other stones" in refused(tmp_path, planner, ids=[1, 2])
+
+
+def test_a_forged_search_whose_walls_do_not_stand_has_a_code(
+    stood: tuple[Standing, Planner],
+) -> None:
+    standing, planner = stood
+    chains = chains_of(standing)
+    now = chains.links[0].now
+    high = replace(now.groups[0], place=(20.0, 30.0))
+    floating = replace(now, groups=(high, *now.groups[1:]))
+    links = tuple(replace(link, now=floating) for link in chains.links)
+    forged = replace(standing, chains=replace(chains, links=links, turn=0))
+    settings: PlannerSettings = planner.settings.updated({"search": {"budget": 60}})
+    start = Planner(planner.workshop.stones, planner.workshop.site, settings=settings)
+    with pytest.raises(PlanError, match="E207"):
+        run_to_end(start, start=forged)
+
+
+def test_the_file_is_plain_json(stood: tuple[Standing, Planner], tmp_path: Path) -> None:
+    standing, planner = stood
+    again(standing, tmp_path, planner)
+
+    def no_constant(name: str) -> None:
+        raise AssertionError(name)
+
+    data = json.loads((tmp_path / CHECKPOINT).read_text("ascii"), parse_constant=no_constant)
+    assert list(data["data"]) == ["schema", "version", "made_of", "search"]
