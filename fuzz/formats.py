@@ -6,10 +6,9 @@ from importlib import import_module
 from pathlib import Path
 from random import Random
 
-from drystone.export.formats import FORMATS as EXPORTERS
-
 from drystone.cli.parser import build_parser
 from drystone.cli.settings import recorded_method, settings_from
+from drystone.drawing.export.formats import FORMATS as EXPORTERS
 from drystone.io.photo_beside import photo_beside, photo_of
 from drystone.io.photo_file import read_photo
 from drystone.io.photo_picture import read_photo_picture
@@ -66,14 +65,14 @@ _parser = cache(build_parser)
 for _name in ("measure", "analyse", "craft", "check", "export"):
     import_module(f"drystone.cli.commands.{_name}")
 for _name in _EXPORTS:
-    EXPORTERS[_name].exporter()
+    import_module(f"drystone.drawing.export.{EXPORTERS[_name].made_by.partition(':')[0]}")
 
 
 def command(*words: object) -> None:
     """Run a command of drystone as its shell does, up to what it makes of errors."""
     arguments = _parser().parse_args(list(map(str, words)))
     try:
-        import_module(f"drystone.cli.commands.{arguments.command}").run(arguments)
+        arguments.run(arguments)
     except OSError as error:
         if error.errno is None:  # what the system says itself has a code (E141)
             raise

@@ -56,11 +56,11 @@ def test_drawn_paths_run_along_joints_for_as_long_as_is_told(output, joint):
     (picture,) = output.pictures
     across, upright = picture.figure.axes
     for ax, count, way in ((across, 3, "horizontal"), (upright, 7, "vertical")):
-        lines = [line for line in ax.lines if str(line.get_gid()).startswith("path-")]
+        lines = [one for one in ax.collections if str(one.get_gid()).startswith("path-")]
         assert len(lines) == count
         told = [row for row in rows(output, "paths") if row["way"] == way]
         for line, row in zip(lines, told, strict=False):
-            x, y = line.get_xydata().T
+            x, y = line.get_paths()[0].vertices.T
             rows_at = joint.shape[0] - 3 - (y + 0.5) + 1
             assert joint[rows_at.astype(int), (x - 0.5).astype(int) + 1].all()
             length = np.hypot(np.diff(x), np.diff(y)).sum()
