@@ -329,6 +329,16 @@ def test_a_search_that_is_killed_goes_on_from_its_checkpoint(
     assert same(tmp_path, search.whole)
 
 
+def test_a_search_that_was_cut_off_ends_where_it_is_with_a_smaller_budget(
+    search: Search, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kill(search, tmp_path / "killed", 9, monkeypatch)
+    ran = search(tmp_path / "killed", "--resume", "--budget", 1)
+    assert ran.code in (0, 4)
+    assert search(tmp_path / "seven", "--budget", 7).code == ran.code
+    assert same(tmp_path / "killed", tmp_path / "seven")
+
+
 def test_of_a_plan_that_was_killed_before_anything_was_kept_there_is_nothing_to_go_on_with(
     rubble: Path, finished: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:

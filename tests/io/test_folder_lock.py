@@ -56,12 +56,15 @@ def test_a_lock_ends_with_its_process(tmp_path: Path) -> None:
 
 def test_what_a_killed_run_was_writing_goes(tmp_path: Path) -> None:
     part = f".plan.json.{32 * 'a'}.part"
-    for place in (tmp_path, tmp_path / "pareto", tmp_path / "pareto" / "01"):
-        place.mkdir(exist_ok=True)
+    ours, other = tmp_path / "pareto" / "01", tmp_path / "another run"
+    for place in (tmp_path, ours, other):
+        place.mkdir(parents=True, exist_ok=True)
         (place / part).write_bytes(b"half")
         (place / "mine.part").write_bytes(b"whole")
-    enter(tmp_path)
-    assert {path.name for path in tmp_path.rglob("*.part")} == {"mine.part"}
+    with locked(tmp_path, "pareto/*/"):
+        left = {path.parent for path in tmp_path.rglob(part)}
+    assert left == {other}
+    assert len(list(tmp_path.rglob("mine.part"))) == 3
 
 
 def test_a_lock_that_is_removed_while_it_is_taken_is_taken_again(

@@ -1,6 +1,6 @@
 """Commands that are killed at some moment: nothing runs on, nothing is half, nothing is lost.
 
-A command runs in a session of its own, so whatever it starts is found by the number of the session.
+A command runs in a group of its own, so whatever it starts is found by the number of the group.
 """
 
 import io
@@ -197,18 +197,18 @@ def killed(
     return found
 
 
-def _left_after(session: int) -> list[str]:
-    """Return the processes of a session that are at work after some patience."""
+def _left_after(group: int) -> list[str]:
+    """Return the processes of a group that are at work after some patience."""
     until = time.monotonic() + PATIENCE_S
     while True:
         said = subprocess.run(
-            ["ps", "-eo", "sess=,stat=,args="],  # noqa: S607
+            ["ps", "-A", "-o", "pgid=", "-o", "stat=", "-o", "args="],  # noqa: S607
             capture_output=True,
             text=True,
             check=True,
         ).stdout.splitlines()
         rows = [line.split(maxsplit=2) for line in said]
-        left = [row[-1] for row in rows if row[0] == str(session) and row[1][0] != "Z"]
+        left = [row[-1] for row in rows if row[0] == str(group) and row[1][0] != "Z"]
         if not left or time.monotonic() > until:
             return left
         time.sleep(0.2)

@@ -10,6 +10,9 @@ from drystone.search.plan_result import PlanResult
 from drystone.whole_files import refuse_existing
 
 FOLDER, PICTURE = "pareto", "pareto.png"
+PLACES = f"{FOLDER}/[0-9][0-9]/"
+"""Pattern of the folders of the walls."""
+
 FIGURES = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 3}
 """Figures of merit of the table, with their digits."""
 

@@ -58,8 +58,17 @@ def prepare_folder(path: Path, names: Sequence[str], *, overwrite: bool) -> Path
 
 
 @contextmanager
-def working_in(path: Path, names: Sequence[str], *, overwrite: bool) -> Iterator[None]:
+def working_in(
+    path: Path, names: Sequence[str], *, overwrite: bool, within: str = ""
+) -> Iterator[None]:
     """Prepare a folder (:func:`prepare_folder`), and keep other runs out of it meanwhile.
+
+    Parameters
+    ----------
+    path, names, overwrite
+        See there.
+    within : str
+        See :func:`~drystone.io.folder_lock.locked`.
 
     Raises
     ------
@@ -69,7 +78,7 @@ def working_in(path: Path, names: Sequence[str], *, overwrite: bool) -> Iterator
         E206.
     """
     make_folder(path)
-    with locked(path):
+    with locked(path, within):
         prepare_folder(path, names, overwrite=overwrite)
         yield
 

@@ -15,6 +15,7 @@ from drystone.cli.announce import (
 )
 from drystone.cli.beginning import plan_to_begin_with
 from drystone.cli.choice import (
+    PLACES,
     choice_summary,
     clear_choice,
     prepare_choice,
@@ -87,7 +88,8 @@ def plan_and_write(
         prepare_choice(folder)
     overwrite = arguments.overwrite or earlier.begun
     names = (*WRITTEN, CHECKPOINT)
-    with nullcontext() if prepared else working_in(folder, names, overwrite=overwrite):
+    ready = working_in(folder, names, overwrite=overwrite, within=PLACES)
+    with nullcontext() if prepared else ready:
         keeper = Keeper(folder, made_of(stones, wall, arguments, settings), photo)
         keeper.begin(earlier.standing)
         result = _planned(stones, wall, arguments, settings, earlier, begin, keeper)

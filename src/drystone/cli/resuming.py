@@ -101,7 +101,8 @@ def earlier_run(
         kept = read_checkpoint(folder, [stone.id for stone in stones], settings.search)
     except PlanError as error:
         cure = "The partial plan is gone on from." if plan is not None else "Planning begins anew."
-        print(f"drystone: {Notice('W129', f'{error.where}: {error.what}', cure)}", file=sys.stderr)
+        notice = Notice("W129", f"{error.where}: {error.what}", cure)
+        print(f"drystone: {notice}", file=sys.stderr)
         kept = None
     if kept is None:
         if plan is not None:

@@ -23,16 +23,18 @@ _TAKEN = (errno.EACCES, errno.EAGAIN, errno.EDEADLK)
 
 
 @contextmanager
-def locked(folder: Path) -> Iterator[None]:
+def locked(folder: Path, within: str = "") -> Iterator[None]:
     """Keep other runs out of a folder, as long as the block lasts.
 
-    Files that a killed run was writing there, or up to two folders below, are removed.  Where the
-    file system knows no locks there is none.
+    Files that a killed run was writing there are removed.  Where the file system knows no locks
+    there is none.
 
     Parameters
     ----------
     folder : Path
         That files can be written to.
+    within : str
+        Pattern of the folders in it that belong to it, and in which no other run may be.
 
     Raises
     ------
@@ -44,7 +46,7 @@ def locked(folder: Path) -> Iterator[None]:
     path = folder / LOCK
     file = _taken(path)
     try:
-        for place in (folder, *folder.glob("*/"), *folder.glob("*/*/")):
+        for place in (folder, *(folder.glob(within) if within else ())):
             remove_parts(place)
         yield
     finally:

@@ -120,10 +120,13 @@ class _Round:
 
     @property
     def search(self) -> SearchSettings:
-        """Settings with the budget that is left to this round."""
+        """Settings with the budget that is left to this round.
+
+        A search may go on with a smaller budget than it had, which ends it.
+        """
         search = self.settings.search
         spent = self.before.walls if self.before else 0
-        return replace(search, budget=search.budget - spent)
+        return replace(search, budget=max(1, search.budget - spent))
 
     def again(self, at: Standing) -> Progress:
         """Say what a search had come to that goes on from where it stood."""

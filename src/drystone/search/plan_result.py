@@ -74,10 +74,9 @@ class PlanResult:
         or 1.
     notices : tuple of Notice
         W120 when pinned stones are missing, W121 when stones of the wall that was begun with were
-        taken out, W122 when a process died, W125 when the search or what follows it was
-        interrupted, W126 when a wall that was built already does not stand, W128 when the time
-        limit cut the first wall short; W303 when the solver gave up on some candidates, which were
-        then passed over.
+        taken out, W122 when a process died, W125 when what follows a search was cut short, W126
+        when a wall that was built already does not stand, W128 when the time limit cut the first
+        wall short; W303 when the solver gave up on some candidates, which were then passed over.
     profile : Profile
         Where the time went.
     solves : Solves

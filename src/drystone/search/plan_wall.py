@@ -88,7 +88,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     course_heights_px: Mapping[int, float] | None = None,
     begin: Wall | None = None,
     choice: bool = False,
-    keep: Callable[[SoFar], None] = lambda _: None,
+    keep: Callable[[SoFar], None] | None = None,
     standing: Standing | None = None,
 ) -> PlanResult:
     """Plan a wall.
@@ -155,6 +155,8 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
     UsageError
         E138: the seed is negative, or both `built` and `begin` are given; E123: the budget is less
         than 1; E120 to E127, E137, E145: the wall, the scale or the stones make no sense together.
+    PlanError
+        E207: a wall of `standing` cannot be built again.
 
     Examples
     --------
@@ -215,7 +217,7 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
                 grace_s=grace_s,
                 first_whole=first_whole,
                 executor=workers,
-                told=lambda progress: keep(SoFar(progress, lambda: asked.cut_off(first, progress))),
+                told=lambda one: (keep or _untold)(SoFar(one, lambda: asked.cut_off(first, one))),
             )
         asked = asked.after(time.perf_counter())
         if ended.stopped is not INTERRUPTED:
@@ -311,6 +313,10 @@ class _Asked:
             for wall in kept:
                 planner, stopped = as_found(first, wall, until)
                 yield self.plan(ended._replace(planner=planner, stopped=stopped), until)
+
+
+def _untold(_: SoFar) -> None:
+    """Keep nothing."""
 
 
 def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> PlannerSettings:

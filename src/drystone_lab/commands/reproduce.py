@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace, items: "Mapping[str, Item] | None" = None
     from drystone_lab.runs.workers import work_of  # noqa: PLC0415
 
     done = []
-    with locked(folder), work_of(arguments.jobs, arguments.dask) as work:
+    with locked(folder, "*/"), work_of(arguments.jobs, arguments.dask) as work:
         for made in reproduce(names, folder, _options(arguments, work), items):
             done.append(made)
             if made.error is not None:
