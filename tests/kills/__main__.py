@@ -1,13 +1,16 @@
 """Many kills at random moments, and a table of what became of them.
 
-``python -m tests.kills --kills 120`` takes about an hour; nothing else has to be done.
+``python -m tests.kills --kills 120`` takes about an hour; nothing else has to be done.  With
+``--keep FILE`` it goes on where it was, should somebody kill it too.
 """
 
 import argparse
+import json
 import sys
 import tempfile
 import time
 from collections.abc import Sequence
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 
@@ -15,34 +18,45 @@ import numpy as np
 
 from tests.kills.harness import SIGNALS, Killed, cases, killed, lost, run_whole
 
+FAULTS = {
+    "orphans": ("orphans",),
+    "odd ends": ("exit code", "traceback", "does not end"),
+    "invalid": ("half", "check"),
+    "lost": ("does not go on", "left behind", "another result", "merit"),
+}
+"""Columns of the table, and how the faults begin that are counted there."""
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Kill, go on, and print; return 1 when anything was left, half or lost."""
     parser = argparse.ArgumentParser(prog="python -m tests.kills", description=__doc__)
     parser.add_argument("--kills", type=int, default=120, help="in all")
     parser.add_argument("--seed", type=int, default=0, help="of the moments")
-    parser.add_argument("--only", nargs="*", default=[], help="names of commands")
+    parser.add_argument("--keep", type=Path, metavar="FILE", help="of what was done, a line each")
     asked = parser.parse_args(argv)
-    rng, done = np.random.default_rng(asked.seed), []
+    lines = asked.keep.read_text().splitlines() if asked.keep and asked.keep.exists() else []
+    done = [Killed(**json.loads(line)) for line in lines]
     with tempfile.TemporaryDirectory(prefix="drystone-kills-") as place:
         folder = Path(place)
-        chosen = [case for case in cases(folder) if not asked.only or case.name in asked.only]
-        known = {}
-        for case in chosen:
+        chosen, known = cases(folder), {}
+        for case in chosen if len(done) < asked.kills else ():
             seconds = run_whole(case, folder / case.name)
             result = None if case.result is None else case.result(folder / case.name)
             known[case.name] = seconds, result
             say(f"{case.name}: {seconds:.1f} s")
-        for number in range(asked.kills):
+        for number in range(len(done), asked.kills):
             case = chosen[number % len(chosen)]
             sent = SIGNALS[number // len(chosen) % len(SIGNALS)]
             seconds, result = known[case.name]
+            rng = np.random.default_rng([asked.seed, number])
             at, group = seconds * rng.uniform(0.05, 1.0), bool(rng.integers(2)) and sent != "KILL"
-            here = folder / f"kill{number}"
-            end = time.monotonic() + at
+            here, end = folder / f"kill{number}", time.monotonic() + at
             one = killed(case, sent, here, partial(passed, end), group=group)
             one.faults += lost(case, here, result)
             done.append(one)
+            if asked.keep:
+                with asked.keep.open("a") as file:
+                    file.write(f"{json.dumps(asdict(one))}\n")
             said = "; ".join(one.faults) or "nothing lost"
             whom = "all" if group else "one"
             say(f"{number + 1} {case.name}, {sent} to {whom} after {at:.1f} s: {one.code}, {said}")
@@ -62,20 +76,13 @@ def say(text: str) -> None:
 
 def table(done: Sequence[Killed]) -> str:
     """Return what became of the kills, by command and signal."""
-    rows = ["| command | signal | kills | orphans | odd ends | invalid | lost |"]
-    rows.append("|" + " --- |" * 7)
-    kinds = {
-        "orphans": ("orphans",),
-        "odd ends": ("exit code", "traceback", "does not end"),
-        "invalid": ("half", "check"),
-        "lost": ("does not go on", "left behind", "another result", "merit"),
-    }
+    rows = [f"| command | signal | kills | {' | '.join(FAULTS)} |", "|" + " --- |" * 7]
     for case in dict.fromkeys(one.case for one in done):
         for sent in SIGNALS:
             mine = [one for one in done if (one.case, one.sent) == (case, sent)]
             counts = [
                 sum(any(fault.startswith(words) for fault in one.faults) for one in mine)
-                for words in kinds.values()
+                for words in FAULTS.values()
             ]
             rows.append(f"| {case} | {sent} | {len(mine)} | {' | '.join(map(str, counts))} |")
     return "\n".join(rows)
