@@ -49,6 +49,20 @@ def tiff_of(tags: dict[int, int] | None = None, *, following: int = 0, big: bool
     return head + number + entries + struct.pack("<Q" if big else "<I", following) + pixels
 
 
+def many_entries() -> bytes:
+    """A BigTIFF with more entries than offsets can count."""
+    data = bytearray(tiff_of(big=True))
+    data[16:24] = struct.pack("<Q", 2**63)
+    return bytes(data)
+
+
+def signalling() -> np.ndarray:
+    """An array with a NaN that arithmetic warns of, as few others do."""
+    values = two_stones(7, 9, np.float32)
+    values.view(np.uint32)[0, 0] = 0x7F800001
+    return values
+
+
 def npy(shape: str, descr: str = "<u4") -> bytes:
     """The header of an array, and 4 bytes of it."""
     text = f"{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
@@ -256,6 +270,8 @@ FILES: dict[str, tuple[Callable[[], bytes], str]] = {
     "wide.tif": (lambda: tiff_of({256: 2**32 - 1, 257: 2**32 - 1}), "E110"),
     "planes.tif": (lambda: tiff_of({32997: 9}), "E109 .*9 planes"),
     "predictor.tif": (lambda: tiff_of({317: 77, 259: 8}), "E106"),
+    "entries.tif": (many_entries, "E106"),
+    "signalling.npy": (lambda: saved(signalling()), "E108 .*not finite"),
     "shape.npy": (lambda: npy(f"({2**62}, {2**62})"), "E106"),
     "negative.npy": (lambda: npy("(-1, 4)"), "E10"),
     "width.npy": (lambda: npy("(2160,)", "|S1000000000"), "E106"),

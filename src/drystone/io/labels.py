@@ -125,11 +125,13 @@ def _whole_numbers(values: NDArray[Any], where: str) -> NDArray[Any]:
     if values.dtype.itemsize < 4:
         # The largest id is beyond what 16 bits can be compared with.
         values = values.astype(np.float32)
-    for name, bad in (
-        ("not finite (NaN or infinite)", ~np.isfinite(values)),
-        ("no whole numbers", values != np.floor(values)),
-        ("not from 0 to 2^32-1", np.abs(values) > MAX_ID),
-    ):
+    with np.errstate(invalid="ignore"):  # some NaNs are warned of, and all are refused
+        found = (
+            ("not finite (NaN or infinite)", ~np.isfinite(values)),
+            ("no whole numbers", values != np.floor(values)),
+            ("not from 0 to 2^32-1", np.abs(values) > MAX_ID),
+        )
+    for name, bad in found:
         if bad.any():
             raise _not_ids(f"{int(bad.sum())} px are {name}", bad, where)
     return values.astype(np.int64)

@@ -179,7 +179,7 @@ def _count_pages(data: bytes, where: str) -> int:
             (entries,) = struct.unpack_from(f"{order}{count}", data, place)
             place += struct.calcsize(f"{order}{count}") + entry * entries
             (place,) = struct.unpack_from(f"{order}{offset}", data, place)
-    except struct.error:  # cut short: what there is may be enough
+    except (struct.error, OverflowError):  # cut short: what there is may be enough
         pass
     return len(seen)
 
