@@ -122,7 +122,7 @@ def test_a_full_disk_ends_no_search_and_is_told_once(
     ("place", "more"),
     [
         ("drystone.cli.planning.write_plan_folder", ()),
-        ("drystone.plotting.write_pictures", ("--json",)),
+        ("drystone.drawing.write_pictures", ("--json",)),
         ("drystone.cli.planning.write_film", ()),
     ],
 )

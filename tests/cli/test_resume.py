@@ -368,7 +368,7 @@ def test_a_plan_whose_end_was_not_written_is_not_finished(
         raise Killed
 
     with monkeypatch.context() as patch:
-        patch.setattr("drystone.plotting.write_pictures", write_pictures)
+        patch.setattr("drystone.drawing.write_pictures", write_pictures)
         with pytest.raises(Killed):
             search(tmp_path)
     assert read_plan(tmp_path) == read_plan(search.whole)
