@@ -28,19 +28,16 @@ from tests.planner.scenes import (
     rubble,
 )
 
-RASTER = greedy({"geometry": "raster", **WITH_WEDGES})
 EXACT = greedy(WITH_WEDGES)
 PLAIN = pytest.mark.parametrize(
     "settings", [greedy(), greedy({"geometry": "raster"})], ids=["exact", "raster"]
 )
-BOTH = pytest.mark.parametrize("settings", [EXACT, RASTER], ids=["exact", "raster"])
 
 
-def wedged_wall(settings: PlannerSettings) -> Planner:
+def wedged_wall() -> Planner:
     """A wall with wedges, and all states on the way."""
-    settings = settings.updated({"search": {"budget": 2}})
-    scale = 0.5 if settings.geometry == "exact" else 1.0
-    site = Site.from_source(84.0, 34.0, scale)
+    settings = EXACT.updated({"search": {"budget": 2}})
+    site = Site.from_source(84.0, 34.0, 0.5)
     return finish(Planner(few_stones(), site, seed=3, settings=settings))
 
 
@@ -66,10 +63,9 @@ def figures(build: Build) -> list[tuple[object, ...]]:
     return told
 
 
-@BOTH
 @pytest.mark.parametrize("kept", [0, 2])
-def test_what_is_taken_down_is_built_again_as_it_was(settings: PlannerSettings, kept: int) -> None:
-    planner = wedged_wall(settings)
+def test_what_is_taken_down_is_built_again_as_it_was(kept: int) -> None:
+    planner = wedged_wall()
     build = planner.build
     states = build.states()
     assert sum(len(g.wedges) for g in build.wall.groups[kept:]) > 0
@@ -101,9 +97,8 @@ def test_turned_stones_of_both_sides_are_built_again_as_they_were(
     assert figures(again) == figures(build)
 
 
-@BOTH
-def test_states_are_kept_when_they_are_asked_for(settings: PlannerSettings) -> None:
-    planner = wedged_wall(settings)
+def test_states_are_kept_when_they_are_asked_for() -> None:
+    planner = wedged_wall()
     groups = planner.build.wall.groups
     again, _, _ = replayed(
         planner.build.states()[0], groups, {}, planner.workshop, planner.settings, keep=False
@@ -112,9 +107,8 @@ def test_states_are_kept_when_they_are_asked_for(settings: PlannerSettings) -> N
     assert again.states() == (again,)
 
 
-@BOTH
-def test_wedges_are_numbered_in_the_order_in_which_they_come_now(settings: PlannerSettings) -> None:
-    planner = wedged_wall(settings)
+def test_wedges_are_numbered_in_the_order_in_which_they_come_now() -> None:
+    planner = wedged_wall()
     wall, empty = planner.build.wall, planner.build.states()[0]
     groups = [
         replace(g, wedges=tuple(replace(w, id=w.id + 100) for w in g.wedges)) for g in wall.groups

@@ -50,9 +50,9 @@ WALLS = {
 LOOPS = {name for names in WALLS.values() for name in names}
 
 
-def first(budget: int, geometry: str = "exact", seed: int = 1, patience: int = 12) -> Planner:
+def first(budget: int, seed: int = 1, patience: int = 12) -> Planner:
     search = {"budget": budget, "patience": patience, **SMALL}
-    settings = greedy({"geometry": geometry, "search": search})
+    settings = greedy({"search": search})
     return finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=settings))
 
 
@@ -77,9 +77,8 @@ def same(one: Packed, other: Packed) -> bool:
     ]
 
 
-@pytest.mark.parametrize("geometry", ["raster", "exact"])
-def test_walls_get_better_and_are_complete(geometry: str) -> None:
-    planner = first(12, geometry, seed=2)
+def test_walls_get_better_and_are_complete() -> None:
+    planner = first(12, seed=2)
     found = searched(planner)
     assert found[0].walls == 1
     assert found[0].best.merit == judged(planner).merit
@@ -96,11 +95,8 @@ def test_walls_get_better_and_are_complete(geometry: str) -> None:
     assert again.merit == best.merit
 
 
-@pytest.mark.parametrize("geometry", ["raster", "exact"])
-def test_the_best_first_wall_counts_though_chains_begin_with_what_promises_more(
-    geometry: str,
-) -> None:
-    found = searched(first(9, geometry, seed=5))
+def test_the_best_first_wall_counts_though_chains_begin_with_what_promises_more() -> None:
+    found = searched(first(9, seed=5))
     assert all(a.best.merit <= b.best.merit for a, b in pairwise(found))
 
 
@@ -181,14 +177,13 @@ def test_a_part_of_several_rounds_is_a_search_with_a_smaller_budget() -> None:
         assert again.solves == part.solves
 
 
-@pytest.mark.parametrize("geometry", ["raster", "exact"])
-def test_what_was_built_in_time_counts_even_where_a_wall_was_cut_off(geometry: str) -> None:
+def test_what_was_built_in_time_counts_even_where_a_wall_was_cut_off() -> None:
     clock = Ticks()
-    assert searched(first(9, geometry), until=Deadline(math.inf, clock))[-1].walls == 9
+    assert searched(first(9), until=Deadline(math.inf, clock))[-1].walls == 9
     reached = set()
     for looks in range(0, clock.count, clock.count // 8):
-        timed = searched(first(1000, geometry), until=after_looks(looks))[-1]
-        again = searched(first(timed.walls, geometry))[-1]
+        timed = searched(first(1000), until=after_looks(looks))[-1]
+        again = searched(first(timed.walls))[-1]
         assert again.walls == timed.walls
         # There is no time to judge a first wall by both flow rules: its merit is then known less.
         best = again.best if looks else replace(again.best, merit=timed.best.merit)
@@ -298,11 +293,8 @@ def test_an_interrupt_keeps_the_best_wall_so_far() -> None:
     assert told[-1].stones == len(best.groups)
 
 
-@pytest.mark.parametrize("geometry", ["raster", "exact"])
-def test_a_search_goes_on_from_where_it_stood_to_the_walls_that_it_would_have_found(
-    geometry: str,
-) -> None:
-    planner = first(25, geometry, seed=4, patience=1)
+def test_a_search_goes_on_from_where_it_stood_to_the_walls_that_it_would_have_found() -> None:
+    planner = first(25, seed=4, patience=1)
     whole = searched(planner)
     stood = [k for k, one in enumerate(whole) if one.standing is not None]
     rounds = {standing(whole[k]).number for k in stood}
@@ -381,8 +373,6 @@ def test_cycles_double() -> None:
         ({"orientations": "90deg"}, False),
         ({"orientations": "sf"}, False),
         ({"orientations": "40deg"}, False),
-        ({"geometry": "raster"}, True),
-        ({"geometry": "raster", "placement": {"clearance_px": 1}}, False),
         ({"two_sided": False}, False),
         ({"order": "given"}, False),
     ],
@@ -407,12 +397,9 @@ def test_a_process_that_dies_ends_the_search_with_the_best_so_far() -> None:
     assert check_plan(result.plan, stones, wall_labels=result.wall.labels).problems == ()
 
 
-@pytest.mark.parametrize("geometry", ["raster", "exact"])
 @pytest.mark.parametrize("orientations", ["45deg", "90deg"])
-def test_walls_of_other_orientations_hold(geometry: str, orientations: str) -> None:
-    settings = greedy(
-        {"geometry": geometry, "orientations": orientations, "search": {"budget": 8, **SMALL}}
-    )
+def test_walls_of_other_orientations_hold(orientations: str) -> None:
+    settings = greedy({"orientations": orientations, "search": {"budget": 8, **SMALL}})
     stones = polygon_stones(PolygonSettings(count=8, noise=0.5), np.random.default_rng(4))
     result = plan_wall(stones, 400, 200, scale=0.2, seed=1, settings=settings)
     report = check_plan(result.plan, stones, wall_labels=result.wall.labels)

@@ -32,9 +32,9 @@ from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
 Change = Callable[[Found, Workshop, PlannerSettings, Generator], Found | None]
 
 
-@pytest.fixture(scope="module", params=["exact", "raster"])
-def settings(request: pytest.FixtureRequest) -> PlannerSettings:
-    return greedy({"geometry": request.param, "search": {"budget": 2}})
+@pytest.fixture(scope="module")
+def settings() -> PlannerSettings:
+    return greedy({"search": {"budget": 2}})
 
 
 @pytest.fixture(scope="module")

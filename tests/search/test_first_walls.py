@@ -30,7 +30,7 @@ def wall(merit: float, planned: bool) -> Packed:
 def numbers(search: SearchSettings) -> list[list[int]]:
     """Batches of a search each of whose walls is better than the one before it."""
     found, batches = [wall(0.0, planned=True)], []
-    while (batch := next_batch(found, search, "exact")) is not None:
+    while (batch := next_batch(found, search)) is not None:
         batches.append(list(batch[0]))
         found += [wall(float(number), planned=True) for number in batch[0]]
     return batches
@@ -51,24 +51,23 @@ def test_a_batch_goes_on_as_it_began() -> None:
     found = [wall(float(k % 3), planned=k % 2 > 0) for k in range(3 * BATCH)]
     search = SearchSettings(budget=60)
     for begun in range(0, len(found), BATCH):
-        numbers, share = next_batch(found[:begun], search, "exact") or (range(0), 0.0)
+        numbers, share = next_batch(found[:begun], search) or (range(0), 0.0)
         for done in range(begun + 1, begun + BATCH):
             rest = range(done, numbers.stop)
-            assert next_batch(found[:done], search, "exact") == (rest, share)
+            assert next_batch(found[:done], search) == (rest, share)
 
 
-@pytest.mark.parametrize("geometry", ["exact", "raster"])
-def test_nothing_is_known_of_a_single_wall(geometry: str) -> None:
-    assert planned_share([wall(1.0, planned=False)], geometry) == SHARE[geometry]
+def test_nothing_is_known_of_a_single_wall() -> None:
+    assert planned_share([wall(1.0, planned=False)]) == SHARE
 
 
 def test_the_share_follows_the_better_half() -> None:
     planned_win = [wall(k, planned=k >= 4) for k in range(8)]
     greedy_win = [wall(k, planned=k < 4) for k in range(8)]
-    usual = SHARE["exact"] * WEIGHT
-    assert planned_share(planned_win, "exact") == (4 + usual) / (4 + WEIGHT)
-    assert planned_share(greedy_win, "exact") == usual / (4 + WEIGHT)
-    assert planned_share(planned_win[::-1], "exact") == planned_share(planned_win, "exact")
+    usual = SHARE * WEIGHT
+    assert planned_share(planned_win) == (4 + usual) / (4 + WEIGHT)
+    assert planned_share(greedy_win) == usual / (4 + WEIGHT)
+    assert planned_share(planned_win[::-1]) == planned_share(planned_win)
 
 
 def test_planned_walls_are_worth_more_than_they_are_yet() -> None:
@@ -79,7 +78,7 @@ def test_planned_walls_are_worth_more_than_they_are_yet() -> None:
     assert promised(other) == promised(other, 0.5) == 1.0
     # In the better half by their promise alone.
     behind = [wall(1.0, planned=False), wall(1.1 - PROMISE, planned=True)] * 4
-    assert planned_share(behind, "exact") > SHARE["exact"]
+    assert planned_share(behind) > SHARE
 
 
 def test_first_walls_end_when_they_beat_none_that_was_not_planned() -> None:
@@ -90,8 +89,8 @@ def test_first_walls_end_when_they_beat_none_that_was_not_planned() -> None:
     assert not stale(level[:-1])
     # It is looked at when a batch begins; one that is begun is built to its end.
     more = [wall(0.3, planned=False)] * (BATCH - len(level) % BATCH)
-    assert next_batch(level, SearchSettings(budget=60), "exact") is not None
-    assert next_batch([*level, *more], SearchSettings(budget=60), "exact") is None
+    assert next_batch(level, SearchSettings(budget=60)) is not None
+    assert next_batch([*level, *more], SearchSettings(budget=60)) is None
     assert not stale([*level, wall(2.0, planned=False)])
     assert not stale([*level, wall(2.0, planned=True), *level[1:]])
     # A planned wall that is a little behind promises more.

@@ -30,9 +30,8 @@ def test_the_walls_that_are_kept_depend_on_the_budget_alone() -> None:
         assert kept(searched(first(part.walls, seed=4))[-1]) == kept(part)
 
 
-@pytest.mark.parametrize("geometry", ["raster", "exact"])
-def test_the_best_is_among_them_and_none_beats_another(geometry: str) -> None:
-    found = searched(first(12, geometry, seed=4))
+def test_the_best_is_among_them_and_none_beats_another() -> None:
+    found = searched(first(12, seed=4))
     assert max(len(progress.kept) for progress in found) > 1
     for progress in found:
         assert same(progress.kept[0], progress.best)
@@ -106,9 +105,8 @@ def test_a_missing_pinned_stone_makes_a_wall_incomplete() -> None:
     assert ", ".join(map(str, missing)) in notice.message
 
 
-@pytest.mark.parametrize("geometry", ["raster", "exact"])
-def test_a_search_keeps_a_given_order(geometry: str) -> None:
-    settings = greedy({"geometry": geometry, "order": "given", "search": {"budget": 12, **SMALL}})
+def test_a_search_keeps_a_given_order() -> None:
+    settings = greedy({"order": "given", "search": {"budget": 12, **SMALL}})
     planner = finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
     found = searched(planner)
     assert found[-1].best.merit > found[0].best.merit

@@ -14,9 +14,9 @@ from drystone.search.ruin import RUINS, taken_down, with_all_above
 from tests.planner.scenes import RUBBLE_SITE, blocks, finish, greedy, rubble
 
 
-@pytest.fixture(scope="module", params=["raster", "exact"])
-def planner(request: pytest.FixtureRequest) -> Planner:
-    settings = greedy({"geometry": request.param, "search": {"budget": 2}})
+@pytest.fixture(scope="module")
+def planner() -> Planner:
+    settings = greedy({"search": {"budget": 2}})
     return finish(Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings))
 
 

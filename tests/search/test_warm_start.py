@@ -35,8 +35,8 @@ from tests.planner.scenes import (
 from tests.search.test_anytime import SMALL
 
 
-def built(geometry: str = "exact") -> Planner:
-    settings = greedy({"geometry": geometry})
+def built() -> Planner:
+    settings = greedy()
     return finish(Planner(rubble(), RUBBLE_SITE, seed=3, settings=settings))
 
 
@@ -44,9 +44,8 @@ def new(settings: PlannerSettings) -> Planner:
     return Planner(rubble(), RUBBLE_SITE, seed=1, settings=settings)
 
 
-@pytest.mark.parametrize("geometry", ["raster", "exact"])
-def test_the_wall_is_as_it_was(geometry: str) -> None:
-    old = built(geometry)
+def test_the_wall_is_as_it_was() -> None:
+    old = built()
     planner = new(old.settings)
     assert begin_with(planner, old.build.wall, {}) == ()
     assert order(planner) == order(old)
@@ -54,13 +53,12 @@ def test_the_wall_is_as_it_was(geometry: str) -> None:
     assert planner.build.wall.labels.tobytes() == old.build.wall.labels.tobytes()
 
 
-@pytest.mark.parametrize("geometry", ["raster", "exact"])
-def test_banned_stones_are_taken_out_with_what_falls_then(geometry: str) -> None:
-    old = built(geometry)
+def test_banned_stones_are_taken_out_with_what_falls_then() -> None:
+    old = built()
     before = [action.stone_id for action in old.build.actions]
     fell, stayed = set(), set()
     for banned in before:
-        planner = new(greedy({"geometry": geometry, "ban": [banned]}))
+        planner = new(greedy({"ban": [banned]}))
         gone = begin_with(planner, old.build.wall, {})
         used = [action.stone_id for action in planner.build.actions]
         assert gone[0] == banned

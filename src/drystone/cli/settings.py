@@ -21,7 +21,7 @@ SECONDS_A_STONE = 1 / 3
 """How long better walls are looked for when nothing is said."""
 
 
-_PLAIN = ("geometry", "sampling", "two_sided", "orientations", "mu", "skip_too_large")
+_PLAIN = ("sampling", "two_sided", "orientations", "mu", "skip_too_large")
 """Settings that have an option of their own name."""
 
 _Asked = tuple[str, dict[str, Any]]
@@ -92,7 +92,11 @@ def _blamed(error: UsageError, where: str) -> UsageError:
 def _plain(arguments: argparse.Namespace) -> list[_Asked]:
     """Return what options ask for that set one value each."""
     given = {name: getattr(arguments, name) for name in _PLAIN}
-    return [
+    placed: dict[str, Any] = {"geometry": arguments.geometry}
+    if arguments.geometry == "raster":
+        placed["search"] = {"budget": 1}  # better walls are looked for on outlines alone
+    geometry = [] if arguments.geometry is None else [("--geometry", placed)]
+    return geometry + [
         (f"--{name.replace('_', '-')}", {name: value})
         for name, value in given.items()
         if value is not None
@@ -145,6 +149,8 @@ def _search(settings: PlannerSettings, arguments: argparse.Namespace) -> dict[st
         return {"budget": 1}
     if arguments.budget is not None:
         search["budget"] = arguments.budget
+    elif (arguments.geometry or settings.geometry) == "raster":
+        return search
     elif search_seconds(settings, 0, arguments) is not None:
         search["budget"] = UNLIMITED
     return search

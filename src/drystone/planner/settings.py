@@ -141,6 +141,11 @@ class PlannerSettings:
             raise ValueError(
                 f"unknown selection rule {self.selection_rule!r}; the paper's is 'algorithm2'"
             )
+        if self.geometry == "raster" and self.search.budget > 1:
+            raise ValueError(
+                "better walls are looked for on outlines alone: "
+                "geometry must be 'exact', or search.budget 1"
+            )
         if self.by_policy and self.search.budget > 1:
             raise ValueError(
                 f"the policy {self.selection_rule!r} builds a single wall: search.budget must be 1"

@@ -138,9 +138,9 @@ class _Round:
 
         None where time is up.
         """
-        search, geometry = self.search, self.settings.geometry
+        search = self.search
         reached = _together(found) if found else None
-        while (batch := next_batch(found, search, geometry)) is not None:
+        while (batch := next_batch(found, search)) is not None:
             numbers, share = batch
             tasks = [(self.job, self.number * search.passes + k, share) for k in numbers]
             for wall in _mapped(self.executor, one_pass, tasks):

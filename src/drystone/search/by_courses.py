@@ -21,15 +21,9 @@ from drystone.search.courses import plan_courses, replan_courses
 from drystone.search.found import Courses, Found
 from drystone.search.laid_courses import LaidCourses
 from drystone.search.laying import lay
-from drystone.search.laying_settings import LayingSettings, LetGoSettings, PutDownSettings
-from drystone.search.pixel_courses import (
-    pixel_extent,
-    plan_pixel_courses,
-    replan_pixel_courses,
-)
-from drystone.search.pixel_outlines import placed_outline
+from drystone.search.laying_settings import LayingSettings, LetGoSettings
 
-Weighed = TypeVar("Weighed", LayingSettings, LetGoSettings, PutDownSettings)
+Weighed = TypeVar("Weighed", LayingSettings, LetGoSettings)
 
 AGAIN = 0.3
 """Evaluations of a plan that is changed, over those of a new one."""
@@ -49,10 +43,6 @@ def newly_planned(
 def _new_plan(
     workshop: Workshop, settings: PlannerSettings, seed: int, until: Deadline
 ) -> CoursePlan | None:
-    if settings.geometry == "raster":
-        return plan_pixel_courses(
-            workshop, CourseSettings(), seed, pinned=settings.pin, until=until
-        )
     return plan_courses(
         [workshop.stones.by_id(i) for i in workshop.fitting],
         *workshop.site.extent_px,
@@ -101,11 +91,6 @@ def _upper_plan(
     quick = replace(known, evaluations=round(AGAIN * known.evaluations))
     outlines = _outlines(start, ends)
     cell_px = 1.0 / workshop.site.scale
-    if settings.geometry == "raster":
-        laid = LaidCourses.of(outlines, pixel_extent(workshop.site)[0], cell_px)
-        return replan_pixel_courses(
-            plan, kept, left, workshop, quick, seed, laid=laid, pinned=settings.pin, until=until
-        )
     extent = workshop.site.extent_px
     return replan_courses(
         plan,
@@ -169,22 +154,13 @@ def _laid(
 
 def _outlines(build: Build, ends: Sequence[int]) -> list[list[Points]]:
     """Return the outlines of the stones of the courses that are laid, the lowest first."""
-    height_px = build.wall.site.height_px
-    outlines = [
-        placed_outline(placement, height_px)
-        if placement.settled is None
-        else placement.settled.corners
-        for placement in build.wall.placements
-    ]
+    outlines = [one.settled.corners for one in build.wall.placements if one.settled]
     return [outlines[start:end] for start, end in pairwise(ends)]
 
 
 def _varied(laying: LayingSettings, settings: PlannerSettings, rng: Generator) -> LayingSettings:
-    """Return settings with every weight of a geometry multiplied by a random factor."""
+    """Return settings with every weight multiplied by a random factor."""
     spread = settings.search.spread
-    if settings.geometry == "raster":
-        weights = ("top", "width", "void", "turn", "wedge", "llc")
-        return replace(laying, put_down=_drawn(laying.put_down, weights, spread, rng))
     weights = ("apart", "top", "width", "turn", "rest", "wedge")
     let_go = _drawn(laying.let_go, weights, spread, rng)
     return replace(_drawn(laying, ("llc",), spread, rng), let_go=let_go)

@@ -8,9 +8,8 @@ from drystone.search.packed import Packed
 BATCH = 4
 """Walls after which it is looked how the planned ones do: however many processes there are."""
 
-SHARE = {"exact": 0.75, "raster": 0.9}
-"""The share of the first walls that are planned before anything is known, on each geometry: a pass
-on pixels takes up to twice as long as a plan."""
+SHARE = 0.75
+"""The share of the first walls that are planned before anything is known."""
 
 WEIGHT = 2.0
 """For how many walls that counts."""
@@ -35,9 +34,7 @@ def promised(wall: Packed, share: float = 1.0) -> float:
     return wall.merit + (0.0 if wall.courses is None else share * PROMISE)
 
 
-def next_batch(
-    found: Sequence[Packed], search: SearchSettings, geometry: str
-) -> tuple[range, float] | None:
+def next_batch(found: Sequence[Packed], search: SearchSettings) -> tuple[range, float] | None:
     """Return the numbers of the next first walls, and which share of them is planned.
 
     Parameters
@@ -46,8 +43,6 @@ def next_batch(
         All first walls so far, of this round.
     search : SearchSettings
         How many there are at most.
-    geometry : {"exact", "raster"}
-        Of their stones.
 
     Returns
     -------
@@ -60,7 +55,7 @@ def next_batch(
     if done >= search.passes or (before and stale(before)):
         return None
     end = min(len(before) + BATCH, search.passes, search.budget)
-    return (range(done, end), planned_share(before, geometry)) if end > done else None
+    return (range(done, end), planned_share(before)) if end > done else None
 
 
 def stale(found: Sequence[Packed]) -> bool:
@@ -72,7 +67,7 @@ def stale(found: Sequence[Packed]) -> bool:
     return found[best].courses is None and len(found) - 1 - best >= STALE
 
 
-def planned_share(found: Sequence[Packed], geometry: str) -> float:
+def planned_share(found: Sequence[Packed]) -> float:
     """Return the share of the next walls that are planned: that of the better half so far.
 
     On stones of masons plans win; stones with many corners are laid too unlike their plans.
@@ -81,8 +76,6 @@ def planned_share(found: Sequence[Packed], geometry: str) -> float:
     ----------
     found : sequence of Packed
         All first walls so far.
-    geometry : {"exact", "raster"}
-        Of their stones.
 
     Returns
     -------
@@ -92,4 +85,4 @@ def planned_share(found: Sequence[Packed], geometry: str) -> float:
     order = sorted(range(len(found)), key=lambda k: (-promised(found[k]), k))
     better = [found[k] for k in order[: (len(found) + 1) // 2]] if len(found) > 1 else []
     planned = sum(wall.courses is not None for wall in better)
-    return (planned + SHARE[geometry] * WEIGHT) / (len(better) + WEIGHT)
+    return (planned + SHARE * WEIGHT) / (len(better) + WEIGHT)

@@ -1,11 +1,11 @@
-"""Laying a course plan, stone by stone, on exact outlines or on pixels.
+"""Laying a course plan, stone by stone.
 
 A plan knows height profiles only.  Here each stone is let go near its planned place, pushed to the
 neighbour on its side of the course, and of all places where it rests one is taken that is near the
 plan, keeps the course's width, and leaves a wall that stands.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from drystone.planner.build import Build
@@ -17,10 +17,6 @@ from drystone.search.course_plan import CoursePlan, PlannedStone
 from drystone.search.laying_settings import LayingSettings
 from drystone.search.mason import Mason
 from drystone.search.one_course import LAID, Outcome
-from drystone.search.pixel_mason import PixelMason
-
-Layer = Callable[[Build, Sequence[PlannedStone]], tuple[Build, tuple[Outcome, ...]]]
-"""Lays a course on a wall, and says what became of its stones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +73,7 @@ def lay(
     plan : CoursePlan
         Of the workshop's stones; those that are in the wall already are passed over.
     build : Build
-        To go on from, in the geometry of the settings.
+        To go on from.
     workshop : Workshop
         Stones and site.
     settings : PlannerSettings
@@ -92,25 +88,12 @@ def lay(
     TimeIsUp
         The time limit struck.
     """
-    layer = _layer(workshop, settings, laying or LayingSettings(), until)
-    return _go_on(Laid((build,), ()), plan.courses, layer)
-
-
-def _layer(
-    workshop: Workshop, settings: PlannerSettings, laying: LayingSettings, until: Deadline
-) -> Layer:
-    """Return who lays courses in the geometry of a wall."""
-    if settings.geometry == "raster":
-        return PixelMason.of(workshop, settings, laying, until).course
-    mason = Mason.of(workshop, settings, laying, until)
+    mason = Mason.of(workshop, settings, laying or LayingSettings(), until)
     views = mason.views()
-    return lambda build, course: mason.course(build, course, views)
-
-
-def _go_on(laid: Laid, courses: Sequence[tuple[PlannedStone, ...]], layer: Layer) -> Laid:
-    states, outcomes = list(laid.states), list(laid.courses)
-    for course in courses:
-        build, became = layer(states[-1], course)
-        states.append(build)
-        outcomes.append(became)
-    return Laid(tuple(states), tuple(outcomes))
+    states: list[Build] = [build]
+    courses: list[tuple[Outcome, ...]] = []
+    for course in plan.courses:
+        after, became = mason.course(states[-1], course, views)
+        states.append(after)
+        courses.append(became)
+    return Laid(tuple(states), tuple(courses))

@@ -59,46 +59,6 @@ class LetGoSettings:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PutDownSettings:
-    """Where a planned stone of pixels is put down, and what it costs to lie elsewhere than planned.
-
-    Costs are sums of these weights; heights and widths are shares of the mean stone height.
-
-    Parameters
-    ----------
-    places : int
-        At how many places a stone is put down in each pose.
-    reach, astray, top, width, turn, wedge
-        As for :class:`LetGoSettings`.
-    void : float
-        Cost of a void below as large as the stone.
-    analysed, judged, llc
-        As for :class:`LayingSettings`.
-    """
-
-    places: int = 8
-    reach: float = 0.5
-    astray: float = 0.5
-    top: float = 1.0
-    width: float = 2.0
-    void: float = 1.0
-    turn: float = 0.3
-    wedge: float = 0.2
-    analysed: int = 4
-    judged: int = 8
-    llc: float = 3.0
-
-    def __post_init__(self) -> None:
-        if self.places < 1 or not self.astray > 0:
-            raise ValueError("places and astray must be positive")
-        if not 1 <= self.analysed <= self.judged:
-            raise ValueError("analysed must be positive, and judged not less")
-        weights = (self.top, self.width, self.void, self.turn, self.wedge, self.llc)
-        if min(self.reach, *weights) < 0:
-            raise ValueError("distances and weights must not be negative")
-
-
-@dataclass(frozen=True, kw_only=True)
 class LayingSettings:
     """How a course plan is laid.
 
@@ -106,8 +66,6 @@ class LayingSettings:
     ----------
     let_go : LetGoSettings
         From where stones are let go, and what it costs to rest elsewhere than planned.
-    put_down : PutDownSettings
-        The same of stones that are pixels, with what follows here for those on outlines.
     analysed : int
         How many of the cheapest places after which the wall stands are compared by LLC.
     judged : int
@@ -117,7 +75,6 @@ class LayingSettings:
     """
 
     let_go: LetGoSettings = field(default_factory=LetGoSettings)
-    put_down: PutDownSettings = field(default_factory=PutDownSettings)
     analysed: int = 6
     judged: int = 10
     llc: float = 3.0

@@ -26,39 +26,8 @@ UNSEEN: Mask = np.ones((1, 1), bool)
 """Stands for the pixels of what is settled, which are found when it is placed."""
 
 
-@dataclass(frozen=True)
-class PackedWedge:
-    """A wedge.
-
-    Parameters
-    ----------
-    corners : tuple of (float, float)
-        Its outline, source px; none of one that is its pixels.
-    pixels : tuple of str
-        Rows of its mask, in 0 and 1; none of one that is an outline.
-    row, col : int
-        Where they are.
-    """
-
-    corners: tuple[tuple[float, float], ...]
-    pixels: tuple[str, ...]
-    row: int
-    col: int
-
-    @classmethod
-    def of(cls, wedge: Wedge) -> "PackedWedge":
-        """Pack a wedge."""
-        if wedge.corners is not None:
-            return cls(tuple((x, y) for x, y in wedge.corners.tolist()), (), 0, 0)
-        rows = ("".join("01"[pixel] for pixel in row) for row in wedge.mask.tolist())
-        return cls((), tuple(rows), int(wedge.row), int(wedge.col))
-
-    def under(self, stone_id: int) -> Wedge:
-        """Return the wedge again, not numbered yet."""
-        if self.corners:
-            return Wedge(0, stone_id, UNSEEN.copy(), 0, 0, np.array(self.corners))
-        mask = np.array([[pixel == "1" for pixel in row] for row in self.pixels], bool)
-        return Wedge(0, stone_id, mask, self.row, self.col)
+PackedWedge = tuple[tuple[float, float], ...]
+"""Corners of a wedge, source px."""
 
 
 @dataclass(frozen=True)
@@ -71,8 +40,8 @@ class PackedGroup:
         Of the stone.
     angle_deg : float
         Its pose.
-    place : (int, int) or (float, float)
-        Row and column of its mask; where its centroid lies when it is settled.
+    place : (float, float)
+        Where its centroid lies, source px.
     side : {"left", "right"}
         From which end it was placed.
     rotation_moves : int
@@ -85,7 +54,7 @@ class PackedGroup:
 
     stone_id: int
     angle_deg: float
-    place: tuple[int, int] | tuple[float, float]
+    place: tuple[float, float]
     side: Side
     rotation_moves: int
     wedges: tuple[PackedWedge, ...]
@@ -126,13 +95,18 @@ class Packed:
 
 def _packed_group(group: Group, heights: dict[int, float]) -> PackedGroup:
     placement, settled = group.placement, group.placement.settled
+    assert settled is not None  # noqa: S101 - searches are of walls on outlines
     return PackedGroup(
         placement.stone_id,
         placement.posed.angle_deg,
-        (placement.row, placement.col) if settled is None else (settled.x_px, settled.y_px),
+        (settled.x_px, settled.y_px),
         placement.side,
         placement.rotation_moves,
-        tuple(PackedWedge.of(wedge) for wedge in group.wedges),
+        tuple(
+            tuple((x, y) for x, y in wedge.corners.tolist())
+            for wedge in group.wedges
+            if wedge.corners is not None
+        ),
         heights.get(placement.stone_id),
     )
 
@@ -152,25 +126,22 @@ def found_again(
     start = Planner(workshop.stones, workshop.site, settings=settings, workshop=workshop).build
     groups = one.groups
     heights = {g.stone_id: g.course_height_px for g in groups if g.course_height_px is not None}
-    again = [_group(group, start.wall.outlines is not None, workshop) for group in groups]
+    again = [_group(group, workshop) for group in groups]
     build, left_out, _ = replayed(start, again, heights, workshop, settings, until=until)
     if left_out:
         raise ValueError(f"stones {left_out} do not stand where they stood")
     return Found(build, one.figures, one.merit, one.solves, one.courses)
 
 
-def _group(one: PackedGroup, exact: bool, workshop: Workshop) -> Group:
+def _group(one: PackedGroup, workshop: Workshop) -> Group:
     stone = workshop.stones.by_id(one.stone_id)
-    wedges = tuple(wedge.under(one.stone_id) for wedge in one.wedges)
-    if exact:
-        posed = PosedStone(stone, one.angle_deg, workshop.site.scale, UNSEEN.copy(), (0.0, 0.0))
-        settled = settled_again(stone, one.angle_deg, one.place, workshop)
-        placement = Placement(posed, 0, 0, one.side, one.rotation_moves, settled)
-    else:
-        row, col = one.place
-        posed = workshop.book.pose(stone, one.angle_deg)
-        placement = Placement(posed, int(row), int(col), one.side, one.rotation_moves)
-    return Group(placement, wedges)
+    posed = PosedStone(stone, one.angle_deg, workshop.site.scale, UNSEEN.copy(), (0.0, 0.0))
+    settled = settled_again(stone, one.angle_deg, one.place, workshop)
+    placement = Placement(posed, 0, 0, one.side, one.rotation_moves, settled)
+    wedges = (
+        Wedge(0, one.stone_id, UNSEEN.copy(), 0, 0, np.array(corners)) for corners in one.wedges
+    )
+    return Group(placement, tuple(wedges))
 
 
 def settled_again(

@@ -321,6 +321,7 @@ def _untold(_: SoFar) -> None:
 
 def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> PlannerSettings:
     """Return the settings with the budget that is asked for, by number or by time."""
-    if budget is None and (settings.by_policy or not math.isfinite(seconds)):
+    single = settings.by_policy or settings.geometry == "raster"
+    if budget is None and (single or not math.isfinite(seconds)):
         return settings
     return settings.updated({"search": {"budget": UNLIMITED if budget is None else budget}})

@@ -74,16 +74,11 @@ def _first_wall(job: Job, number: int, planned_share: float) -> Found:
 
 
 def planned_first(settings: PlannerSettings) -> bool:
-    """Say whether courses may be planned: in quarter turns, laid from both ends, without clearance.
+    """Say whether courses may be planned: in quarter turns, laid from both ends.
 
     Plans know quarter turns of the initial pose, which other sets of orientations need not have.
     """
-    return (
-        settings.orientations == "quarter"
-        and settings.order == "free"
-        and settings.two_sided
-        and (settings.geometry == "exact" or settings.placement.clearance_px == 0)
-    )
+    return settings.orientations == "quarter" and settings.order == "free" and settings.two_sided
 
 
 def more_links(job: Job, link: PackedLink, count: int) -> PackedLink | None:
