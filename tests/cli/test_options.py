@@ -190,6 +190,14 @@ def test_a_plan_by_a_whole_file_of_another_method_says_so(
     assert "E136" not in again.err
 
 
+def test_a_search_on_pixels_is_refused(rubble: Path, tmp_path: Path, run: Run) -> None:
+    ran = run("plan", rubble, *WALL, "--budget", 3, "-o", tmp_path / "out")
+    assert (ran.code, "E123 --budget: better walls are looked for on outlines" in ran.err) == (
+        2,
+        True,
+    )
+
+
 @pytest.mark.parametrize(
     ("options", "useless"),
     [

@@ -15,8 +15,7 @@ from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.course_plan import CoursePlan, PlannedStone
 from drystone.search.laying_settings import LayingSettings
-from drystone.search.mason import Mason
-from drystone.search.one_course import LAID, Outcome
+from drystone.search.mason import LAID, Mason, Outcome
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,9 +2,9 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, field
 from operator import attrgetter
+from typing import Literal
 
 from drystone.indices.load_coefficient import limit_load_coefficient
 from drystone.model.landscape import Landscape
@@ -23,20 +23,86 @@ from drystone.poses import wrap_deg
 from drystone.search.course_plan import PlannedStone
 from drystone.search.laying_settings import LayingSettings
 from drystone.search.letting_go import Aim, Hand, Resting
-from drystone.search.one_course import (
-    HALVES,
-    SIDES,
-    Chosen,
-    Ends,
-    Outcome,
-    Status,
-    furthest,
-    laid_course,
-    seen_from,
-)
 from drystone.search.views import View
 
 Views = dict[Side, View]
+
+Status = Literal["as planned", "half turn", "elsewhere", "used", "no place", "no rest", "falls"]
+"""What became of a planned stone.
+
+Laid as planned, turned by half, or elsewhere in its course after it could not be laid in its turn.
+Not laid: it is in the wall already; there is nowhere to let it go near its planned top; it rests
+nowhere there (of stones on outlines); or the wall would not stand.
+"""
+
+LAID: tuple[Status, ...] = ("as planned", "half turn", "elsewhere")
+"""Of a stone that is in the wall by the plan."""
+
+HALVES: tuple[tuple[Status, float], ...] = (("as planned", 0.0), ("half turn", 180.0))
+"""Turns from the planned pose that are tried, one after the other."""
+
+SIDES: tuple[Side, ...] = ("left", "right")
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a planned stone.
+
+    Parameters
+    ----------
+    stone : PlannedStone
+        As it was planned.
+    status : str
+        One of :data:`Status`.
+    solves : Solves
+        What trouble the solver had with its places.
+    """
+
+    stone: PlannedStone
+    status: Status
+    solves: Solves = field(default_factory=Solves)
+
+
+@dataclass(frozen=True, eq=False)
+class _Chosen:
+    """How a stone is laid; without an action why it is not.
+
+    Parameters
+    ----------
+    status : str
+        One of :data:`Status`.
+    action : Candidate or None
+        What is to be done.
+    solves : Solves
+        What trouble the solver had with its places.
+    """
+
+    status: Status
+    action: Candidate | None = None
+    solves: Solves = field(default_factory=Solves)
+
+
+@dataclass(frozen=True)
+class _Front:
+    """How far the stones of a side of a course have come, in the view of that side.
+
+    Parameters
+    ----------
+    planned : float
+        Planned right end of the stone that was planned last.
+    reached : float
+        Right end of the one that was laid last.
+    """
+
+    planned: float = 0.0
+    reached: float = 0.0
+
+    def aim(self, left: float) -> float:
+        """Return where the left end of a stone shall be that is planned at a place.
+
+        As far from its neighbour as planned, but no further in than planned.
+        """
+        return min(left, self.reached + left - self.planned)
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,25 +195,48 @@ class Mason:
             Of its stones, in their order.
         """
         width_px = self.workshop.site.extent_px[0]
+        fronts: dict[Side, _Front] = {side: _Front() for side in SIDES}
+        outcomes: list[Outcome] = []
+        for stone in course:
+            side = stone.side
+            left, right = _seen_from(side, stone.left_px, stone.right_px, width_px)
+            chosen = self._chosen(views, build, stone, side, fronts[side].aim(left))
+            outcomes.append(Outcome(stone, chosen.status, chosen.solves))
+            end = fronts[side].reached
+            if chosen.action is not None:
+                build = build.add(chosen.action, keep=True)
+                settled = chosen.action.stabilised.placement.settled
+                assert settled is not None  # noqa: S101 - it settled on outlines
+                x_px = settled.corners[:, 0].tolist()
+                _, end = _seen_from(side, min(x_px), max(x_px), width_px)
+            fronts[side] = _Front(right, end)
+        return self._again(build, outcomes, views)
 
-        def planned_ends(stone: PlannedStone) -> Ends:
-            return seen_from(stone.side, (stone.left_px, stone.right_px), width_px)
-
-        def reached(action: Candidate) -> float:
-            settled = action.stabilised.placement.settled
-            assert settled is not None  # noqa: S101 - it settled on outlines
-            x_px = settled.corners[:, 0].tolist()
-            return seen_from(action.side, (min(x_px), max(x_px)), width_px)[1]
-
-        choose = partial(self._chosen, views)
-        return laid_course(build, course, choose, planned_ends, reached)
+    def _again(
+        self, build: Build, outcomes: Sequence[Outcome], views: Views
+    ) -> tuple[Build, tuple[Outcome, ...]]:
+        """Try what could not be laid anywhere in its course, from its own side first."""
+        ended = list(outcomes)
+        for k, one in enumerate(outcomes):
+            if one.status in LAID or one.status == "used":
+                continue
+            status, solves = one.status, one.solves
+            for side in sorted(SIDES, key=lambda side: side != one.stone.side):
+                chosen = self._chosen(views, build, one.stone, side, None)
+                solves += chosen.solves
+                if chosen.action is not None:
+                    build = build.add(chosen.action, keep=True)
+                    status = "elsewhere"
+                    break
+            ended[k] = Outcome(one.stone, status, solves)
+        return build, tuple(ended)
 
     def _chosen(
         self, views: Views, build: Build, planned: PlannedStone, side: Side, left: float | None
-    ) -> Chosen:
+    ) -> _Chosen:
         """Choose how a stone is laid, with its left end near a place of the view or anywhere."""
         if planned.stone_id not in self.workshop.remaining(build):
-            return Chosen("used")
+            return _Chosen("used")
         outlines, site = build.wall.outlines, self.workshop.site
         assert outlines is not None  # noqa: S101 - a course plan is laid on outlines
         view = views[side] = views[side].grown(outlines)
@@ -165,9 +254,11 @@ class Mason:
             action, trouble = self._best(build, stone, angle_deg, side, resting)
             solves += trouble
             if action is not None:
-                return Chosen(status, action, solves)
+                return _Chosen(status, action, solves)
             reasons.append("falls" if resting else "no rest" if starts else "no place")
-        return Chosen(furthest(reasons), solves=solves)
+        # Why not: how far the pose came that came furthest.
+        order: tuple[Status, ...] = ("falls", "no rest", "no place")
+        return _Chosen(min(reasons, key=order.index), solves=solves)
 
     def _best(
         self, build: Build, stone: Stone, angle_deg: float, side: Side, resting: Sequence[Resting]
@@ -237,3 +328,8 @@ def _solves(loaded: Loaded, known: Solves | None = None) -> Solves:
     known = known or Solves()
     failed, cold = loaded.grown.resistance.failed, loaded.grown.solved_cold
     return Solves(int(failed and not known.failed), int(cold and not known.cold))
+
+
+def _seen_from(side: Side, left: float, right: float, width: float) -> tuple[float, float]:
+    """Return the left and right end of a stone as a side of the wall sees them."""
+    return (left, right) if side == "left" else (width - right, width - left)
