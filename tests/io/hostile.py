@@ -216,15 +216,18 @@ FILES: dict[str, tuple[Callable[[], bytes], str]] = {
     # no end
     "circle.tif": (lambda: tiff_of(following=8), "E106 .*in a circle"),
     "circle_big.tif": (lambda: tiff_of(following=16, big=True), "E106 .*in a circle"),
-    "selectors.svg": (lambda: groups(".z " + "g " * 12 + "rect"), ""),
+    "selectors.svg": (lambda: groups(".z " + "g " * 12 + "rect"), "E114 .*style sheet"),
     "rules.svg": (
         lambda: svg(f"<style>{'*{opacity:1}' * 3000}</style>{STONE * 3000}"),
-        "E114 .*too many elements",
+        "E110 .*lie over each other",
     ),
     "digits.svg": (lambda: svg(STONE, width=f"{'1' * 60_000}!"), "E114 .*no length"),
     "spaces.svg": (lambda: svg(f'<path d="M1 1{" " * 60_000}!"/>'), "E114 .*no number"),
     "turn.svg": (lambda: svg(f'<g transform="{" " * 60_000}!"/>'), "E114 .*no transform"),
-    "not.svg": (lambda: svg(f"<style>rect:not({parens(60_000)}){{x:1}}</style>{STONE}"), ""),
+    "not.svg": (
+        lambda: svg(f"<style>rect:not({parens(60_000)}){{x:1}}</style>{STONE}"),
+        "E114 .*sheet",
+    ),
     "crossing.dxf": (lambda: dxf(polygon(*CROSSING)), "E114 .*cross themselves more than"),
     "crossing.obj": (f"{CORNERS}\n{FACE}".encode, "E114 .*cross themselves more than"),
     "rows.dxf": (lambda: dxf(in_rows), "E114 .*too often"),

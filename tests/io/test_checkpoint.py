@@ -26,9 +26,7 @@ SMALL = {"budget": 13, "passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
 
 CASES: dict[str, tuple[StoneSet, Site, dict[str, Any]]] = {
     "exact": (rubble(), RUBBLE_SITE, {"geometry": "exact"}),
-    "raster": (rubble(), RUBBLE_SITE, {"geometry": "raster"}),
     "exact, wedges": (few_stones(), Site(90, 30), {"geometry": "exact", **WITH_WEDGES}),
-    "raster, wedges": (few_stones(), Site(90, 30), {"geometry": "raster", **WITH_WEDGES}),
 }
 
 

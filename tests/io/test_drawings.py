@@ -270,8 +270,8 @@ def test_svg_shapes_by_closed_forms(tmp_path):
       <use href="#s" id="stone8" x="20" y="150" width="20" height="20"/>
       <path id="stone9" d="M100 150h60v40h-60zM110 160v20h40v-20z"/>
       <path id="stone10" d="M180 150h60v40h-60zM190 160h40v20h-40z"/>
-      <polyline points="0 0 5 5 9 0"/> <text>stone</text> <line x2="4"/>
-      <path d="M0 0 L9 9 L4 9"/> <circle r="5" display="none"/>
+      <polyline points="0 0 5 5 9 0" fill="none" stroke="red"/> <text>stone</text> <line x2="4"/>
+      <path d="M0 0 L9 9 L4 9" fill="none" stroke="red"/> <circle r="5" display="none"/>
       <g style="visibility:hidden"><circle r="5"/></g>
       <clipPath><rect width="9" height="9"/></clipPath>
     """

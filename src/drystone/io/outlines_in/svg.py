@@ -18,10 +18,15 @@ from drystone.io.outlines_in.model import (
     left_aside,
     number_in,
 )
-from drystone.io.outlines_in.svg_geometry import check_viewport, root_geometry, with_geometry
-from drystone.io.outlines_in.svg_shapes import SHAPES, Matrix, lines_of, moved, user_units
+from drystone.io.outlines_in.svg_shapes import (
+    SHAPES,
+    Matrix,
+    lines_of,
+    moved,
+    transform,
+    user_units,
+)
 from drystone.io.outlines_in.svg_style import Styles, tag
-from drystone.io.outlines_in.svg_transform import moves
 from drystone.io.outlines_in.svg_view import Page, View, inner_view, page_of
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
@@ -44,8 +49,10 @@ _MOST_TEXT = 2_000_000
 """Of attributes of what is drawn, beside two times what the file has: a use draws things again."""
 _VISIBLE = {"visible": True, "hidden": False, "collapse": False}
 
+_UNPAINTED = {"none", "transparent"}
+
 Style = dict[str, str]
-"""Properties by style sheets and by the attribute style, not by attributes of their names."""
+"""Properties of an element."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +67,8 @@ class _Place:
     name: str = ""
     depth: int = 0
     visible: bool = True
-    top: ET.Element | None = None
-    """What the innermost use around it shows."""
+    fill: str = "black"
+    stroke: str = "none"
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +88,9 @@ def is_svg(data: bytes, suffix: str) -> bool:
 def read_svg(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
     """Read every closed shape that is drawn as a stone; subpaths of one path are its holes.
 
-    Where there is a group of the name stones, only what is in it counts.  Open paths, text, what
-    is hidden, and a rectangle over the whole page are left aside.  A width in mm (cm, in, pt …)
+    Where there is a group of the name stones, only what is in it counts.  Lines that are neither
+    closed nor filled, text, what is hidden or has no paint, and a rectangle over the whole page
+    are left aside.  A width in mm (cm, in, pt …)
     makes it a drawing to scale; otherwise its unit is px, or what the settings say.
 
     Raises
@@ -96,9 +104,9 @@ def read_svg(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
         root = ET.fromstring(data)  # noqa: S314 - expat bounds what entities expand to
     if tag(root) != "svg":
         raise damaged(where, f"its root element is {tag(root)[:40]}, not svg")
-    walk = _Walk(root, where, _MOST_TEXT + 2 * len(data))
     with entry(where, "the element svg"):
-        page = page_of(root_geometry(walk.styles.of(root), root.attrib), settings)
+        walk = _Walk(root, where, _MOST_TEXT + 2 * len(data))
+        page = page_of(root.attrib, settings)
     shapes = list(walk.shapes(page))
     if any(shape.place.stones for shape in shapes):
         outside = [shape for shape in shapes if not shape.place.stones]
@@ -114,7 +122,7 @@ def read_svg(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
         stones.append(OutlinedStone(number_in(name), name, (area,)))
     px = page.size if page.unit_m is None else None
     size = None if px is None else (round(px[0]), round(px[1]))
-    notices = left_aside(+walk.aside, "Only closed shapes are read.") + walk.styles.notices()
+    notices = left_aside(+walk.aside, "Only closed shapes are read.")
     if _SHEET in data:
         text = "a style sheet in another file was not read, whatever it hides or moves."
         notices.append(Notice("W119", text, "Put it into the drawing, in an element style."))
@@ -126,7 +134,7 @@ class _Walk:
 
     def __init__(self, root: ET.Element, where: str, most_text: int) -> None:
         self.root, self.where = root, where
-        self.styles = Styles(root, where)
+        self.styles = Styles(root)
         self.aside: Counter[str] = Counter()
         self.known = {e.get("id"): e for e in root.iter() if e.get("id")}
         self.count = 0
@@ -154,21 +162,22 @@ class _Walk:
         self.left_text -= sum(map(len, element.attrib.values()))
         if self.left_text < 0:
             raise _too_large("long paths that are used too often", self.where)
-        style = self.styles.of(element, place.top)
+        with entry(self.where, _what(element, kind)):
+            style = self.styles.of(element)
         if _vanishes(element, style):
             self.aside[_UNSEEN] += 1
         elif kind in SHAPES:
             with entry(self.where, _what(element, kind)):
-                yield from self._shape(element, self._within(element, place, style), style)
+                yield from self._shape(element, self._within(element, place, style))
         elif kind in _GROUPS or is_symbol:
             yield from self._group(element, self._viewport(element, place, style, use))
         elif kind == "use":
             with entry(self.where, _what(element, kind)):
                 here = self._within(element, place, style)
-                target = self._shown(element, style)
+                target = self._shown(element)
             named = number_in(target.get("id", "")) is not None
             name = target.get("id", "") if named else here.name
-            yield from self._draw(target, replace(here, name=name, top=target), element)
+            yield from self._draw(target, replace(here, name=name), element)
         else:
             self.aside[kind] += 1
 
@@ -179,14 +188,12 @@ class _Walk:
         for child in element:
             yield from self._draw(child, place)
 
-    def _shown(self, element: ET.Element, style: Style) -> ET.Element:
+    def _shown(self, element: ET.Element) -> ET.Element:
         """Return what a use shows."""
         link = element.get("href") or element.get(_XLINK) or ""
         target = self.known.get(link.removeprefix("#")) if link.startswith("#") else None
         if target is None:
             raise damaged(self.where, f"{_what(element, 'use')} is of {link!r}, which is not there")
-        if tag(target) in {"svg", "symbol"}:
-            check_viewport("use", style, element.attrib)
         return target
 
     def _viewport(
@@ -198,40 +205,45 @@ class _Walk:
             here = self._within(element, place, style)
             if kind not in {"svg", "symbol"}:
                 return here
-            check_viewport(kind, style, element.attrib)
             found = inner_view(element, use, place.view)
             if found is None:
                 return None
             return replace(here, matrix=here.matrix @ found[0], view=found[1])
 
     def _within(self, element: ET.Element, place: _Place, style: Style) -> _Place:
-        matrix = place.matrix @ moves(style, element.attrib, place.view)
+        turn = transform(element.get("transform", ""))
+        origin = style.get("transform-origin") or element.get("transform-origin", "")
+        if origin and (turn[:2, :2] != np.eye(2)).any():
+            raise ValueError("its transform-origin is not read")
+        matrix = place.matrix @ turn
         if tag(element) == "use":
-            shift, at = np.eye(3), with_geometry("use", style, element.attrib)
-            shift[:2, 2] = [user_units(at, name, place.view) for name in ("x", "y")]
+            shift = np.eye(3)
+            shift[:2, 2] = [user_units(element.attrib, name, place.view) for name in ("x", "y")]
             matrix = matrix @ shift
         own = (element.get("id", ""), element.get(_LABEL, ""))
         words = {word.lower() for word in (*own, *element.get("class", "").split())}
         # Named by a use that places it, else by itself, else by the groups around it.
         name = place.name if number_in(place.name) else (own[1] or own[0] or place.name)
-        seen = _styled(element, style, "visibility")
         return replace(
             place,
             matrix=matrix,
-            rule=_styled(element, style, "fill-rule") or place.rule,
+            rule=style.get("fill-rule", place.rule),
             stones=place.stones or (_LAYER in words and tag(element) == "g"),
             name=name if tag(element) not in {"g", "svg"} or number_in(name) else place.name,
             depth=place.depth + 1,
-            visible=_VISIBLE.get(seen, place.visible),
+            visible=_VISIBLE.get(style.get("visibility", ""), place.visible),
+            fill=style.get("fill", place.fill),
+            stroke=style.get("stroke", place.stroke),
         )
 
-    def _shape(self, element: ET.Element, place: _Place, style: Style) -> Iterator[_Shape]:
-        kind = tag(element)
-        if not place.visible:
+    def _shape(self, element: ET.Element, place: _Place) -> Iterator[_Shape]:
+        kind, filled = tag(element), place.fill not in _UNPAINTED
+        if not place.visible or not (filled or place.stroke not in _UNPAINTED):
             self.aside[_UNSEEN] += 1
             return
-        lines = lines_of(kind, with_geometry(kind, style, element.attrib), place.view)
-        closed = [line.points for line in lines if line.closed and len(line.points) > 2]
+        lines = lines_of(kind, element.attrib, place.view)
+        # What is filled is closed by that.
+        closed = [one.points for one in lines if (one.closed or filled) and len(one.points) > 2]
         if len(closed) < len(lines):
             self.aside[f"open lines in {kind}"] += len(lines) - len(closed)
         self.left_corners -= sum(map(len, closed))
@@ -271,19 +283,12 @@ def _what(element: ET.Element, kind: str) -> str:
     return f"the {kind} {name!r}" if name else f"a {kind}"
 
 
-def _styled(element: ET.Element, style: Style, name: str) -> str:
-    """Return a property, of which the attribute of its name says the least."""
-    value = style.get(name) or element.get(name, "").strip()
-    return "" if value in {"inherit", "unset"} else value
-
-
 def _vanishes(element: ET.Element, style: Style) -> bool:
     """Tell what is hidden with all that is in it."""
     # A symbol that is used is shown, whatever is said of it.
-    if _styled(element, style, "display") == "none" and tag(element) != "symbol":
+    if style.get("display") == "none" and tag(element) != "symbol":
         return True
-    opacity = _styled(element, style, "opacity").removesuffix("%")
     try:
-        return bool(opacity) and float(opacity) <= 0.0
+        return float(style.get("opacity", "1").removesuffix("%")) <= 0.0
     except ValueError:
         return False

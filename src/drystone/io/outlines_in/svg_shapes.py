@@ -21,8 +21,7 @@ SHAPES = frozenset({"path", "polygon", "polyline", "rect", "circle", "ellipse"})
 
 Matrix = NDArray[np.float64]
 
-TRANSFORM = re.compile(r"\s*+(?:,\s*+)?([a-zA-Z]++)\s*+\(([^)]*+)\)")
-"""A function of a transform, and what it is of."""
+_TRANSFORM = re.compile(r"\s*+(?:,\s*+)?([a-zA-Z]++)\s*+\(([^)]*+)\)")
 _LENGTH = re.compile(rf"({NUMBER})\s*+([a-z%]*+)", re.IGNORECASE)
 UNITS_M = {
     "mm": 0.001, "cm": 0.01, "q": 0.00025, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6,
@@ -46,19 +45,6 @@ def length(text: str) -> tuple[float, str]:
     return bounded(found[1]), found[2].lower()
 
 
-def css_length(text: str) -> tuple[float, str]:
-    """Split a length of CSS, which needs a unit, unless it is 0; ValueError when it has none.
-
-    Browsers ignore what has none, other programs do not, so there is no telling what was meant.
-    """
-    value, unit = length(text)
-    if len(text.split()) > 1:
-        raise ValueError(f"{text[:30]!r} is no length")
-    if value and not unit:
-        raise ValueError(f"{text} in CSS has no unit (px)")
-    return value, unit
-
-
 def transform(text: str) -> Matrix:
     """Return the (3, 3) matrix of the attribute ``transform``.
 
@@ -70,16 +56,16 @@ def transform(text: str) -> Matrix:
     matrix, place = np.eye(3), 0
     text = "" if text.strip() == "none" else text.rstrip()
     while place < len(text):
-        found = TRANSFORM.match(text, place)
+        found = _TRANSFORM.match(text, place)
         if found is None:
             raise ValueError(f"{text[place:][:30]!r} is no transform")
         numbers = [bounded(word) for word in re.split(r"[\s,]+", found[2].strip()) if word]
-        matrix = matrix @ matrix_of(found[1], numbers)
+        matrix = matrix @ _matrix_of(found[1], numbers)
         place = found.end()
     return matrix
 
 
-def matrix_of(name: str, numbers: list[float]) -> Matrix:
+def _matrix_of(name: str, numbers: list[float]) -> Matrix:
     """Return the matrix of one function of a transform; ValueError when it is none."""
     matrix = np.eye(3)
     count = len(numbers)

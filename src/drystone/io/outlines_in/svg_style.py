@@ -1,144 +1,109 @@
-"""Style of SVG: what style sheets and style attributes say of being shown, and of moving."""
+"""What the style of an SVG hides and fills; where it would move or shape, it is refused."""
 
-from collections import defaultdict
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+import re
+from collections.abc import Iterator, Mapping
 from xml.etree import ElementTree as ET
 
-from drystone.errors import Notice
-from drystone.io.outlines_in.model import damaged
-from drystone.io.outlines_in.svg_sheet import Rule, Sheets, Step, Weight, declared
+SEEN = frozenset({"display", "visibility", "opacity", "fill", "fill-rule", "stroke"})
+"""Properties that say whether a shape is seen, and what of it is filled."""
 
-_SHOWN = 8
-_MOST_STEPS = 300_000
-"""Comparisons of an element with a step of a selector: each takes some microseconds."""
-
-
-class _Said(NamedTuple):
-    """What is said of a property; the greatest counts."""
-
-    important: bool
-    weight: Weight
-    place: int
-    value: str
+_MOVING = {
+    "transform", "translate", "rotate", "scale", "offset", "offset-path", "zoom",
+    "x", "y", "cx", "cy", "r", "rx", "ry", "d",
+}  # fmt: skip
+_SIZES = {"width", "height"}
+_NOTHING = {"", "none", "initial", "unset", "revert", "auto"}
+_COMMENT = re.compile(r"/\*.*?(?:\*/|$)", re.DOTALL)
+_RULE = re.compile(r"([^{}]*+)\{([^{}]*+)\}")
+_SIMPLE = re.compile(r"(\*|[\w-]*+)([.#][\w-]++)?+")
+_PLAIN = "Save it as plain SVG, with attributes instead of styles."
 
 
 class Styles:
-    """Properties of elements by the style sheets in a drawing and by their attribute style.
+    """Properties of elements by simple rules of style sheets, by `style`, and by attributes.
 
     Parameters
     ----------
     root : Element
         The drawing.
-    where : str
-        Its name, for messages.
+
+    Raises
+    ------
+    ValueError
+        A rule that may hide, fill, move or shape has a selector that is more than a tag, a class
+        or an id, or stands under a condition.
     """
 
-    def __init__(self, root: ET.Element, where: str) -> None:
-        self.where = where
-        self.parents = {child: parent for parent in root.iter() for child in parent}
-        self.sheets = Sheets()
+    def __init__(self, root: ET.Element) -> None:
+        # Of every selector: each property, how much its rule weighs, and its value.
+        self._said: dict[str, dict[str, tuple[tuple[int, int], str]]] = {}
+        place = 0
         for element in root.iter():
-            if tag(element) == "style":
-                media = element.get("media", "all").strip().lower()
-                self.sheets.read("".join(element.itertext()), media)
-        self._by_name: dict[str, list[Rule]] = defaultdict(list)
-        for rule in self.sheets.rules:
-            self._by_name[_name_of(rule.steps[-1])].append(rule)
-        self._classes: dict[ET.Element, frozenset[str]] = {}
-        self._left = _MOST_STEPS
+            if tag(element) != "style":
+                continue
+            media = element.get("media", "all").strip().lower()
+            condition = "" if media in {"all", "screen"} else f"media {media}"
+            for selector, said in _rules("".join(element.itertext()), condition):
+                place += 1
+                of_tag = selector[0] not in "*.#"
+                weight = (4 * selector.count("#") + 2 * selector.count(".") + of_tag, place)
+                known = self._said.setdefault(selector, {})
+                known.update({name: (weight, value) for name, value in said.items()})
 
-    def of(self, element: ET.Element, top: ET.Element | None = None) -> dict[str, str]:
-        """Return the properties of an element that decide whether and where it is shown.
-
-        Parameters
-        ----------
-        element : Element
-            Any one of the drawing.
-        top : Element, optional
-            What a ``use`` shows, when the element is shown by that.  Selectors see nothing
-            around it, neither where it stands nor where it is shown (SVG 2, 5.6: the tree that
-            is shown is a shadow tree with its own copies of the style sheets).
-
-        Raises
-        ------
-        InputError
-            E114 when there are too many elements for so many selectors.
-        """
-        best: dict[str, _Said] = {}
-        own = Rule((), (1 << 30, 0, 0), len(self.sheets.rules), declared(element.get("style", "")))
-        for rule in (*self._fitting(element, top), own):
-            for name, (value, important) in rule.declared.items():
-                said = _Said(important, rule.weight, rule.place, value)
+    def of(self, element: ET.Element) -> dict[str, str]:
+        """Return the properties of an element; ValueError where its style moves or shapes it."""
+        kind = tag(element)
+        names = [f".{name}" for name in element.get("class", "").split()]
+        names += [f"#{element.get('id')}"] if element.get("id") else []
+        keys = ["*", kind, *names, *(f"{kind}{name}" for name in names)]
+        best: dict[str, tuple[tuple[int, int], str]] = {}
+        for key in keys:
+            for name, said in self._said.get(key, {}).items():
                 best[name] = max(said, best.get(name, said))
-        return {name: said.value for name, said in best.items()}
-
-    def notices(self) -> list[Notice]:
-        """Say which rules were not read (W119)."""
-        unread = self.sheets.unread
-        if not unread:
-            return []
-        shown = ", ".join(unread[:_SHOWN]) + (" …" if len(unread) > _SHOWN else "")
-        text = f"rules of style sheets that may hide or move something were not read: {shown}."
-        return [Notice("W119", text, "Say it by attributes of the elements, or delete the rules.")]
-
-    def _fitting(self, element: ET.Element, top: ET.Element | None) -> Iterator[Rule]:
-        """Yield the rules for an element; most are told by the name of their last step."""
-        names = ("*", tag(element), f"#{element.get('id')}", *map(".{}".format, self._own(element)))
-        rules = [rule for name in names for rule in self._by_name.get(name, ())]
-        if not rules:
-            return
-        whole = [*self._around(element, top)][::-1]
-        for rule in rules:
-            path = whole if len(rule.steps) > 1 else [element]
-            self._left -= len(rule.steps) * len(path)
-            if self._left < 0:
-                what = "it has too many elements for so many and such long selectors of styles"
-                raise damaged(self.where, what)
-            if self._fits(path, rule.steps):
-                yield rule
-
-    def _fits(self, path: Sequence[ET.Element], steps: tuple[Step, ...]) -> bool:
-        """Say whether a selector is of the last element of a path, by one walk along it."""
-        here = above = [False] * len(steps)
-        for element in path:
-            # The steps before one must fit the element before, or any before it.
-            led = zip(steps, [True, *here[:-1]], [True, *above[:-1]], strict=True)
-            here = [
-                (next_to if step.child else anywhere) and self._is(element, step)
-                for step, next_to, anywhere in led
-            ]
-            above = [one or other for one, other in zip(above, here, strict=True)]
-        return here[-1]
-
-    def _is(self, element: ET.Element, step: Step) -> bool:
-        return (
-            step.tag in {"", "*", tag(element)}
-            and self._own(element).issuperset(step.classes)
-            and all(name == element.get("id") for name in step.id_names)
-        )
-
-    def _own(self, element: ET.Element) -> frozenset[str]:
-        """Return the classes of an element."""
-        if element not in self._classes:
-            self._classes[element] = frozenset(element.get("class", "").split())
-        return self._classes[element]
-
-    def _around(self, element: ET.Element, top: ET.Element | None) -> Iterator[ET.Element]:
-        """Yield an element and all around it, up to the top."""
-        yield element
-        while element is not top and (parent := self.parents.get(element)) is not None:
-            yield parent
-            element = parent
+        properties = {name: element.get(name, "").strip() for name in SEEN if element.get(name)}
+        properties |= {name: value for name, (_, value) in best.items()}
+        properties |= declared(element.get("style", ""))
+        # The size of the page by its style is how a window shows it.
+        shaping = _MOVING if kind in {"svg", "g"} else _MOVING | _SIZES
+        for name in sorted(shaping & properties.keys()):
+            if properties[name] not in _NOTHING or element.get(name):
+                raise ValueError(f"its style says {name}, which is read as an attribute only")
+        return {k: v for k, v in properties.items() if v not in {"inherit", "unset"}}
 
 
-def _name_of(step: Step) -> str:
-    """Return the name that only elements of a step can have."""
-    if step.id_names:
-        return f"#{step.id_names[0]}"
-    return f".{step.classes[0]}" if step.classes else step.tag
+def declared(body: str) -> dict[str, str]:
+    """Return the properties of a declaration block.
+
+    Examples
+    --------
+    >>> declared("fill:none; stroke : red !important")
+    {'fill': 'none', 'stroke': 'red'}
+    """
+    pairs = (part.partition(":") for part in _COMMENT.sub("", body).split(";"))
+    return {
+        name.strip().lower().removeprefix("-webkit-"): value.partition("!")[0].strip()
+        for name, _, value in pairs
+        if value
+    }
+
+
+def _rules(text: str, condition: str) -> Iterator[tuple[str, Mapping[str, str]]]:
+    """Yield the simple selectors of a sheet with what they say of shapes."""
+    text = _COMMENT.sub("", text)
+    at_rule = re.search(r"@(?!font-face|charset|namespace)[\w-]+", text)
+    condition = condition or (at_rule[0] if at_rule else "")
+    for prelude, body in _RULE.findall(text):
+        said = {k: v for k, v in declared(body).items() if k in SEEN | _MOVING | _SIZES}
+        selectors = [one.strip() for one in prelude.rpartition(";")[2].split(",")]
+        if not said or selectors == ["@font-face"]:
+            continue
+        for selector in selectors:
+            if condition or not selector or not _SIMPLE.fullmatch(selector):
+                what = (condition or selector)[:30]
+                raise ValueError(f"its style sheet says {min(said)} for {what!r}. {_PLAIN}")
+            yield selector.removeprefix("*") if selector[1:] else selector, said
 
 
 def tag(element: ET.Element) -> str:
     """Return the name of an element without its namespace."""
-    return element.tag.rpartition("}")[2]
+    return str(element.tag).rpartition("}")[2]
