@@ -34,6 +34,7 @@ from drystone.io.plan_json import plan_from_json
 from drystone.io.plan_schema import plan_schema
 from drystone.io.read_settings import ReadSettings
 from drystone.io.wall_image import write_labels
+from drystone.model.settings import range_text
 from drystone.planner.settings import METHODS, PlannerSettings
 from drystone.selection.scored import Craft
 
@@ -129,20 +130,24 @@ def explained_rows(name: str) -> Iterator[tuple[tuple[str, ...], str]]:
 
 def written_table(name: str) -> str:
     """Return a table of docs/settings.md as the code has it."""
+    kind = SOURCES.get(name) or planner_tables()[name]
     if name in SOURCES:
-        columns = {"default": SOURCES[name]()}
+        columns = {"default": kind()}
     else:
         columns = {
             f"`{method}`": settings if name == "planner" else getattr(settings, name)
             for method, settings in METHODS.items()
         }
     lines = [f"| name | {' | '.join(columns)} | meaning |", "|---" * (len(columns) + 2) + "|"]
+    ends = {field.name: field.metadata for field in dataclasses.fields(kind)}
     for names, text in explained_rows(name):
+        ranges = dict.fromkeys(range_text(ends[one]) for one in names if ends[one])
+        said = " ".join([text, *(f"{one[0].upper()}{one[1:]}." for one in ranges)])
         values = [
             ", ".join(value(getattr(settings, field)) for field in names)
             for settings in columns.values()
         ]
-        lines.append(f"| {' | '.join([', '.join(f'`{n}`' for n in names), *values, text])} |")
+        lines.append(f"| {' | '.join([', '.join(f'`{n}`' for n in names), *values, said])} |")
     return "\n".join(lines) + "\n"
 
 

@@ -86,7 +86,7 @@ def test_wrong_values(
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["--mu", "-1"], "E123 --mu: mu must be positive. Change mu."),
+        (["--mu", "-1"], "E123 --mu: mu must be in (0, 1e+06], not -1.0. Change mu."),
         (
             ["--ban", "2", "3", "--pin", "3"],
             "E123 --ban and --pin: ban and pin name the same stones: 3. Change ban or pin.",
@@ -105,13 +105,13 @@ def test_wrong_values_are_blamed_on_their_option(
 @pytest.mark.parametrize(
     ("text", "where", "said"),
     [
-        ("mu = -1.0", "", "E123 {}: mu must be positive. Change mu."),
+        ("mu = -1.0", "", "E123 {}: mu must be in (0, 1e+06], not -1.0. Change mu."),
         ("wonder = 1", "", "E123 {}: there is no setting 'wonder'."),
         ("[stop]\nfilling = 2.0", " [stop]", "E123 {}: filling must be in (0, 1]"),
         ("[stop]\nfailures = 'five'", "", "E123 {}: stop.failures = 'five' has the wrong type."),
         ("orientations = 'north'", "", "E122 {}: 'north' is no set of orientations."),
         ("mu = 1e308", "", "E123 {}: mu must be a finite number up to 1e12"),
-        ("mu = 1e7", "", "E123 {}: mu must be at most 1e+06. Change mu."),
+        ("mu = 1e7", "", "E123 {}: mu must be in (0, 1e+06], not 10000000.0. Change mu."),
     ],
 )
 def test_wrong_values_of_a_file_are_blamed_on_the_file(

@@ -108,11 +108,11 @@ def test_a_wrong_orientation_set_keeps_its_own_code() -> None:
 
 
 def test_constructors_check_too() -> None:
-    with pytest.raises(ValueError, match="unknown sampling"):
+    with pytest.raises(ValueError, match="sampling must be one of"):
         PlannerSettings(sampling="some")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="orientation choice"):
+    with pytest.raises(ValueError, match="orientation_choice must be one of"):
         PlannerSettings(orientation_choice="x")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="failures positive"):
+    with pytest.raises(ValueError, match="failures must be at least 1"):
         StopSettings(failures=0)
 
 

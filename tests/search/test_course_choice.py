@@ -7,8 +7,8 @@ import pytest
 
 from drystone.generate.rubble import RubbleSettings, rubble_stones
 from drystone.model.stone import StoneSet
+from drystone.planner.course_settings import CourseSettings
 from drystone.search.course_choice import HIGH, LEFT_OUT, PINNED, choosing, taken
-from drystone.search.course_settings import CourseSettings
 from drystone.search.course_task import Task, task_of
 from drystone.search.courses import plan_courses
 

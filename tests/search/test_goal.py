@@ -103,12 +103,6 @@ def test_figures_are_those_of_the_wall() -> None:
     assert figures_of(empty.build) is None
 
 
-@pytest.mark.parametrize("wrong", [{"urgent": 0.0}, {"F_AH": -1.0}])
-def test_goals_that_mean_nothing_are_refused(wrong: dict[str, float]) -> None:
-    with pytest.raises(ValueError, match=r"urgent|aims"):
-        GoalSettings(**wrong)
-
-
 def test_a_pinned_stone_that_is_missing_counts_heavily() -> None:
     lacking = replace(WALL, missing=2)
     assert merit_of(WALL, 0.9, GOAL) - merit_of(lacking, 0.9, GOAL) == pytest.approx(2 * MISSING)

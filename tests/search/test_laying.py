@@ -1,5 +1,6 @@
 """Course plans laid on outlines: as planned where that is possible, and the truth where not."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -13,10 +14,10 @@ from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.planner.build import Build
 from drystone.planner.evaluate import Evaluator, Loaded
+from drystone.planner.laying_settings import LayingSettings
 from drystone.planner.planner import Planner
 from drystone.search.course_plan import PlannedStone
 from drystone.search.laying import Laid, lay
-from drystone.search.laying_settings import LayingSettings, LetGoSettings
 from drystone.statics.incremental import IncrementalResult
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import Block, RigidBlockModel
@@ -138,7 +139,7 @@ def test_a_stone_that_would_bring_down_the_wall_is_reported() -> None:
 
 def test_what_cannot_be_laid_in_its_turn_is_laid_elsewhere_in_its_course() -> None:
     yard = Yard(blocks(OVERHANG), Site(50, 40))
-    near = LayingSettings(let_go=LetGoSettings(reach=0.05))
+    near = LayingSettings(reach=0.05)
     over = [yard.planned(4, 22, 20)]
     laid = yard.lay([yard.planned(1, 0, 0)], [yard.planned(2, 0, 10)], over, laying=near)
     assert _statuses(laid) == [["as planned"], ["as planned"], ["elsewhere"]]
@@ -149,7 +150,7 @@ def test_what_cannot_be_laid_in_its_turn_is_laid_elsewhere_in_its_course() -> No
 def test_elsewhere_both_sides_are_tried() -> None:
     yard = Yard(blocks(OVERHANG), Site(50, 40))
     # From the left the first place that comes to mind is at the end that tips over.
-    narrow = LayingSettings(let_go=LetGoSettings(reach=0.05, starts=1))
+    narrow = LayingSettings(reach=0.05, starts=1)
     support = [yard.planned(1, 28, 0, "right")]
     over = [yard.planned(2, 10, 10, "right")], [yard.planned(4, 10, 20)]
     laid = yard.lay(support, *over, laying=narrow)
@@ -220,8 +221,8 @@ def test_of_places_that_do_not_stand_sturdily_the_next_best_is_taken(
 
     monkeypatch.setattr(Evaluator, "sturdily", not_at_once)
     yard = Yard(blocks(BRICKS), Site(60, 20))
-    many = LetGoSettings(apart=0.1, enough=9)
-    laid = yard.lay([yard.planned(1, 10, 0)], laying=LayingSettings(let_go=many))
+    many = LayingSettings(apart=0.1, enough=9)
+    laid = yard.lay([yard.planned(1, 10, 0)], laying=many)
     assert _statuses(laid) == [["as planned"]]
     assert len(asked) == 2
     assert _boxes(laid)[1][0] == pytest.approx(asked[1])
@@ -291,14 +292,16 @@ def test_laying_is_repeatable_and_the_greedy_goes_on_from_it() -> None:
 
 def test_a_stone_goes_where_the_wall_resists_more() -> None:
     yard = Yard(blocks({1: (22, 10), 2: (40, 10), 3: (12, 10)}), Site(50, 40))
-    free = LetGoSettings(starts=30, enough=99, reach=3.0, width=0.0, top=0.0, turn=0.0, rest=0.0)
+    free = LayingSettings(
+        starts=30, enough=99, reach=3.0, width=0.0, top=0.0, turn=0.0, rest=0.0, judged=30
+    )
     below = [yard.planned(1, 0, 0)], [yard.planned(2, 0, 10)]
     walls = [
         yard.lay(*below, [yard.planned(3, 28, 20, "right")], laying=laying)
         for laying in (
-            LayingSettings(llc=0.0, let_go=free, analysed=30, judged=30),
-            LayingSettings(llc=1.0, let_go=free, analysed=30, judged=30),
-            LayingSettings(llc=1.0, let_go=free, analysed=1, judged=30),
+            replace(free, llc=0.0, analysed=30),
+            replace(free, llc=1.0, analysed=30),
+            replace(free, llc=1.0, analysed=1),
         )
     ]
     assert [_statuses(wall)[2] for wall in walls] == [["as planned"]] * 3

@@ -12,11 +12,11 @@ from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.build import Build
+from drystone.planner.laying_settings import LayingSettings
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.search.course_plan import CoursePlan, PlannedStone
 from drystone.search.laying import Laid, lay
-from drystone.search.laying_settings import LayingSettings
 from tests.planner.scenes import greedy
 
 

@@ -74,6 +74,70 @@ def updated(settings: Settings, changes: Mapping[str, Any], prefix: str = "") ->
         raise UsageError("E123", f"{error}.", where=where, cure=cure) from None
 
 
+def ranged(
+    default: float,
+    *,
+    least: float | None = None,
+    above: float | None = None,
+    most: float | None = None,
+    below: float | None = None,
+) -> Any:
+    """Return the field of a number with its range, which :class:`Ranged` checks.
+
+    Parameters
+    ----------
+    default : float
+        Its value where none is given; an int for a whole number.
+    least, above : float, optional
+        Its lower end, itself allowed or not.
+    most, below : float, optional
+        Its upper end, likewise.
+    """
+    ends = {"least": least, "above": above, "most": most, "below": below}
+    allowed = {name: end for name, end in ends.items() if end is not None}
+    return dataclasses.field(default=default, metadata=allowed)
+
+
+def range_text(allowed: Mapping[str, float]) -> str:
+    """Write a range as in mathematics, or as a bound where it has one end.
+
+    Examples
+    --------
+    >>> range_text({"above": 0, "most": 0.5}), range_text({"least": 1})
+    ('in (0, 0.5]', 'at least 1')
+    """
+    low = allowed.get("least", allowed.get("above"))
+    high = allowed.get("most", allowed.get("below"))
+    if low is None or high is None:
+        words = {"least": "at least", "above": "above", "most": "at most", "below": "below"}
+        return " and ".join(f"{words[name]} {end:g}" for name, end in allowed.items())
+    begin, end = "[" if "least" in allowed else "(", "]" if "most" in allowed else ")"
+    return f"in {begin}{low:g}, {high:g}{end}"
+
+
+class Ranged:
+    """Settings that check themselves: choices by their types, numbers by their ranges.
+
+    Raises
+    ------
+    ValueError
+        A value is none of the choices, or out of its range.
+    """
+
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):  # type: ignore[arg-type]
+            value, allowed = getattr(self, field.name), field.metadata
+            if get_origin(field.type) is Literal and value not in get_args(field.type):
+                choices = ", ".join(map(repr, get_args(field.type)))
+                raise ValueError(f"{field.name} must be one of {choices}, not {value!r}")
+            # Said so that what is not a number is out of every range.
+            if allowed and not (
+                allowed.get("least", -math.inf) <= value <= allowed.get("most", math.inf)
+                and allowed.get("above", -math.inf) < value < allowed.get("below", math.inf)
+            ):
+                raise ValueError(f"{field.name} must be {range_text(allowed)}, not {value}")
+
+
 def _to_change(message: str, given: list[str], prefix: str) -> str:
     """Name the values to change: those that a message speaks of, or the few that were given."""
     spoken_of = [name for name in given if re.search(rf"\b{name}\b", message)]

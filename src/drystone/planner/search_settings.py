@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from drystone.model.settings import Ranged, ranged
+
 UNLIMITED = 1_000_000
 """Budget of a search that the clock ends."""
 
@@ -10,7 +12,7 @@ AIMS = ("F_SF", "F_LR", "F_AV", "F_AH")
 
 
 @dataclass(frozen=True, kw_only=True)
-class GoalSettings:
+class GoalSettings(Ranged):
     """What makes a finished wall good: the weighted sum of its figures of merit.
 
     Parameters
@@ -35,21 +37,15 @@ class GoalSettings:
     level: float = 0.5
     flush: float = 0.25
     bond: float = 2.0
-    F_SF: float = 0.0
-    F_LR: float = 0.0
-    F_AV: float = 0.0
-    F_AH: float = 0.0
-    urgent: float = 4.0
-
-    def __post_init__(self) -> None:
-        if not self.urgent > 0:
-            raise ValueError("urgent must be positive")
-        if min(self.F_SF, self.F_LR, self.F_AV, self.F_AH) < 0:
-            raise ValueError("aims must not be negative")
+    F_SF: float = ranged(0.0, least=0)
+    F_LR: float = ranged(0.0, least=0)
+    F_AV: float = ranged(0.0, least=0)
+    F_AH: float = ranged(0.0, least=0)
+    urgent: float = ranged(4.0, above=0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class SearchSettings:
+class SearchSettings(Ranged):
     """How better walls are looked for after the first.
 
     Parameters
@@ -72,9 +68,9 @@ class SearchSettings:
         Share of the walls of a chain of planned walls that are made by taking down a part of its
         best wall, before anything is known of what helps.
     wedges : int
-        How many wedges may be added in the gaps of a wall of outlines each time,
+        How many wedges may be added in the gaps of a wall each time.
     wedge_below : float
-        when its merit is at most so much below the best of its chain.
+        They are added when its merit is at most so much below the best of its chain.
     warm, cold : float
         Temperatures of annealing, in units of merit, at the start and at the end of each cycle.
     cycle : int
@@ -84,31 +80,21 @@ class SearchSettings:
         begins again with other first walls.
     """
 
-    budget: int = 1
-    passes: int = 24
-    chains: int = 4
-    share_every: int = 8
-    largest: float = 0.3
-    spread: float = 0.5
-    polish: float = 0.2
-    wedges: int = 6
-    wedge_below: float = 0.12
-    warm: float = 0.15
-    cold: float = 0.01
-    cycle: int = 64
-    patience: int = 12
+    budget: int = ranged(1, least=1)
+    passes: int = ranged(24, least=1)
+    chains: int = ranged(4, least=1)
+    share_every: int = ranged(8, least=1)
+    largest: float = ranged(0.3, above=0, most=1)
+    spread: float = ranged(0.5, least=0)
+    polish: float = ranged(0.2, least=0, most=1)
+    wedges: int = ranged(6, least=0)
+    wedge_below: float = ranged(0.12, least=0)
+    warm: float = ranged(0.15, above=0)
+    cold: float = ranged(0.01, above=0)
+    cycle: int = ranged(64, least=1)
+    patience: int = ranged(12, least=1)
 
     def __post_init__(self) -> None:
-        counts = (self.budget, self.passes, self.chains, self.share_every, self.cycle)
-        if min(*counts, self.patience) < 1:
-            raise ValueError(
-                "budget, passes, chains, share_every, cycle and patience must be positive"
-            )
-        if not 0 <= self.polish <= 1:
-            raise ValueError("polish must be in [0, 1]")
-        if self.wedges < 0 or self.wedge_below < 0:
-            raise ValueError("wedges and wedge_below must not be negative")
-        if not 0 < self.largest <= 1 or self.spread < 0:
-            raise ValueError("largest must be in (0, 1], spread not negative")
-        if not 0 < self.cold <= self.warm:
-            raise ValueError("temperatures must be positive, cold not above warm")
+        super().__post_init__()
+        if self.cold > self.warm:
+            raise ValueError("cold must not be above warm")

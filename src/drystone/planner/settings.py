@@ -4,13 +4,15 @@ import dataclasses
 import types
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 from drystone.clusters import ClusterSettings
 from drystone.errors import UsageError
-from drystone.model.settings import check_finite, updated
+from drystone.model.settings import Ranged, check_finite, ranged, updated
 from drystone.model.wedge_shape import WedgeSettings
 from drystone.placement.settings import PlacementSettings
+from drystone.planner.course_settings import CourseSettings
+from drystone.planner.laying_settings import LayingSettings
 from drystone.planner.search_settings import GoalSettings, SearchSettings
 from drystone.poses import orientation_step_deg
 from drystone.selection.algorithm2 import SelectionSettings
@@ -21,12 +23,9 @@ from drystone.selection.scored import ScoreSettings
 from drystone.settle.settings import SettleSettings
 from drystone.stabilise.settings import StabiliseSettings
 
-MOST_MU = 1e6
-"""A larger coefficient of friction is none; forces are multiplied by it."""
-
 
 @dataclass(frozen=True, kw_only=True)
-class StopSettings:
+class StopSettings(Ranged):
     """When construction ends (Algorithm 1, line 27).
 
     Parameters
@@ -37,16 +36,12 @@ class StopSettings:
         Consecutive failures that end construction.
     """
 
-    filling: float = 0.99
-    failures: int = 5
-
-    def __post_init__(self) -> None:
-        if not 0 < self.filling <= 1 or self.failures < 1:
-            raise ValueError("filling must be in (0, 1], failures positive")
+    filling: float = ranged(0.99, above=0, most=1)
+    failures: int = ranged(5, least=1)
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlannerSettings:
+class PlannerSettings(Ranged):
     """Every parameter of the planner.
 
     Parameters
@@ -84,8 +79,10 @@ class PlannerSettings:
     pin : tuple of int
         Ids of stones that must be in the wall: they are preferred, and each that is missing counts
         10 units of merit against a wall.
-    clusters, placement, stabilise, settle, wedge, selection, policy, score, search, goal, stop
+    clusters, placement, stabilise, settle, wedge, selection, policy, score
         Settings of the stages.
+    search, courses, laying, goal, stop
+        Settings of the search, of course plans and how they are laid, and of the end.
     """
 
     geometry: Literal["raster", "exact"] = "raster"
@@ -94,8 +91,8 @@ class PlannerSettings:
     sampling: Sampling = "variant"
     selection_rule: str = "algorithm2"
     two_sided: bool = False
-    mu: float = 0.58
-    vary: float = 0.0
+    mu: float = ranged(0.58, above=0, most=1e6)
+    vary: float = ranged(0.0, least=0)
     skip_too_large: bool = False
     order: Literal["free", "given"] = "free"
     ban: tuple[int, ...] = ()
@@ -109,30 +106,19 @@ class PlannerSettings:
     policy: PolicySettings = field(default_factory=PolicySettings)
     score: ScoreSettings = field(default_factory=ScoreSettings)
     search: SearchSettings = field(default_factory=SearchSettings)
+    courses: CourseSettings = field(default_factory=CourseSettings)
+    laying: LayingSettings = field(default_factory=LayingSettings)
     goal: GoalSettings = field(default_factory=GoalSettings)
     stop: StopSettings = field(default_factory=StopSettings)
 
     def __post_init__(self) -> None:
         check_finite(self)
+        super().__post_init__()
         orientation_step_deg(self.orientations)
-        if self.geometry not in ("raster", "exact"):
-            raise ValueError(f"unknown geometry {self.geometry!r}")
-        if self.sampling not in get_args(Sampling):
-            raise ValueError(f"unknown sampling {self.sampling!r}")
-        if self.orientation_choice not in ("candidates", "placement"):
-            raise ValueError(f"unknown orientation choice {self.orientation_choice!r}")
         self._check_rule()
-        if self.vary < 0:
-            raise ValueError("vary must not be negative")
-        if self.order not in ("free", "given"):
-            raise ValueError(f"unknown order {self.order!r}")
         both = sorted(set(self.ban) & set(self.pin))
         if both:
             raise ValueError(f"ban and pin name the same stones: {', '.join(map(str, both))}")
-        if not self.mu > 0:
-            raise ValueError("mu must be positive")
-        if self.mu > MOST_MU:
-            raise ValueError(f"mu must be at most {MOST_MU:g}")
 
     def _check_rule(self) -> None:
         # Whether there is such a policy is asked where it chooses: a plan can be checked without
@@ -164,11 +150,14 @@ class PlannerSettings:
     def as_dict(self) -> dict[str, Any]:
         """Return nested dictionaries, as TOML and JSON write them.
 
-        Without the settings of policies when none chooses.
+        Without the settings of policies when none chooses, and without those of course plans, which
+        are laid on outlines alone, on pixels.
         """
         values = dataclasses.asdict(self)
         if not self.by_policy:
             del values["policy"]
+        if self.geometry == "raster":
+            del values["courses"], values["laying"]
         return values | {"ban": list(self.ban), "pin": list(self.pin)}
 
     def updated(self, changes: Mapping[str, Any]) -> "PlannerSettings":

@@ -4,26 +4,22 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any, TypeVar
 
 from numpy.random import Generator
 
 from drystone.kernels.polygons import Points
 from drystone.planner.build import Build
 from drystone.planner.deadline import NEVER, Deadline
+from drystone.planner.laying_settings import LayingSettings
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.search.built_up import built_up
 from drystone.search.course_plan import CoursePlan
-from drystone.search.course_settings import CourseSettings
 from drystone.search.courses import plan_courses, replan_courses
 from drystone.search.found import Courses, Found
 from drystone.search.laid_courses import LaidCourses
 from drystone.search.laying import lay
-from drystone.search.laying_settings import LayingSettings, LetGoSettings
-
-Weighed = TypeVar("Weighed", LayingSettings, LetGoSettings)
 
 AGAIN = 0.3
 """Evaluations of a plan that is changed, over those of a new one."""
@@ -37,7 +33,7 @@ def newly_planned(
     if plan is None:
         return None
     start = Planner(workshop.stones, workshop.site, settings=settings, workshop=workshop).build
-    return _laid(Courses(plan, (0,)), start, workshop, settings, LayingSettings(), rng, until)
+    return _laid(Courses(plan, (0,)), start, workshop, settings, settings.laying, rng, until)
 
 
 def _new_plan(
@@ -48,7 +44,7 @@ def _new_plan(
         *workshop.site.extent_px,
         1.0 / workshop.site.scale,
         settings.settle.outline_px,
-        CourseSettings(),
+        settings.courses,
         seed,
         book=workshop.book,
         pinned=settings.pin,
@@ -74,7 +70,7 @@ def replanned(
     if plan is None:
         return None
     begun = Courses(_each_once(plan, kept), ends)
-    return _laid(begun, start, workshop, settings, LayingSettings(), rng, until)
+    return _laid(begun, start, workshop, settings, settings.laying, rng, until)
 
 
 def _upper_plan(
@@ -87,7 +83,7 @@ def _upper_plan(
     until: Deadline,
 ) -> CoursePlan | None:
     """Plan what goes on top of the courses that are laid."""
-    kept, known, left = len(ends) - 1, CourseSettings(), workshop.remaining(start)
+    kept, known, left = len(ends) - 1, settings.courses, workshop.remaining(start)
     quick = replace(known, evaluations=round(AGAIN * known.evaluations))
     outlines = _outlines(start, ends)
     cell_px = 1.0 / workshop.site.scale
@@ -131,7 +127,7 @@ def relaid(
     kept = int(rng.integers(len(courses.ends) - 1))
     start = found.build.states()[courses.ends[kept]]
     begun = Courses(courses.plan, courses.ends[: kept + 1])
-    laying = _varied(LayingSettings(), settings, rng)
+    laying = _varied(settings.laying, settings.search.spread, rng)
     return _laid(begun, start, workshop, settings, laying, rng, until)
 
 
@@ -158,17 +154,9 @@ def _outlines(build: Build, ends: Sequence[int]) -> list[list[Points]]:
     return [outlines[start:end] for start, end in pairwise(ends)]
 
 
-def _varied(laying: LayingSettings, settings: PlannerSettings, rng: Generator) -> LayingSettings:
-    """Return settings with every weight multiplied by a random factor."""
-    spread = settings.search.spread
-    weights = ("apart", "top", "width", "turn", "rest", "wedge")
-    let_go = _drawn(laying.let_go, weights, spread, rng)
-    return replace(_drawn(laying, ("llc",), spread, rng), let_go=let_go)
-
-
-def _drawn(weighed: Weighed, names: Sequence[str], spread: float, rng: Generator) -> Weighed:
-    """Multiply weights by random factors."""
-    drawn: dict[str, Any] = {
-        name: getattr(weighed, name) * math.exp(spread * rng.normal()) for name in names
-    }
-    return replace(weighed, **drawn)
+def _varied(laying: LayingSettings, spread: float, rng: Generator) -> LayingSettings:
+    """Multiply every weight by a random factor."""
+    names = ("apart", "top", "width", "turn", "rest", "wedge", "llc")
+    return replace(
+        laying, **{name: getattr(laying, name) * math.exp(spread * rng.normal()) for name in names}
+    )

@@ -15,9 +15,9 @@ from drystone.kernels.course_types import (
     Weights,
 )
 from drystone.model.stone import Stone
+from drystone.planner.course_settings import CourseSettings
 from drystone.poses import PoseBook
 from drystone.search.course_poses import Quarters, quarters_of
-from drystone.search.course_settings import CourseSettings
 from drystone.search.laid_courses import LaidCourses, ground_of
 
 

@@ -24,11 +24,11 @@ from drystone.kernels.courses import anneal, evaluate
 from drystone.kernels.raster import turn
 from drystone.model.placement import Side
 from drystone.model.stone import Stone
+from drystone.planner.course_settings import CourseSettings
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.poses import PoseBook
 from drystone.search.course_choice import choosing, taken
 from drystone.search.course_plan import CoursePlan, PlannedStone
-from drystone.search.course_settings import CourseSettings
 from drystone.search.course_task import Task, task_of
 from drystone.search.laid_courses import LaidCourses
 

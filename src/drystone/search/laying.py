@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 from drystone.planner.build import Build
 from drystone.planner.deadline import NEVER, Deadline
+from drystone.planner.laying_settings import LayingSettings
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.search.course_plan import CoursePlan, PlannedStone
-from drystone.search.laying_settings import LayingSettings
 from drystone.search.mason import LAID, Mason, Outcome
 
 
@@ -87,7 +87,7 @@ def lay(
     TimeIsUp
         The time limit struck.
     """
-    mason = Mason.of(workshop, settings, laying or LayingSettings(), until)
+    mason = Mason.of(workshop, settings, laying or settings.laying, until)
     views = mason.views()
     states: list[Build] = [build]
     courses: list[tuple[Outcome, ...]] = []

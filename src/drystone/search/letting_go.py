@@ -9,8 +9,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import Floats, StoneProfile, hanging
+from drystone.planner.laying_settings import LayingSettings
 from drystone.poses import wrap_deg
-from drystone.search.laying_settings import LetGoSettings
 from drystone.search.views import View
 from drystone.settle.rest import Repose, Turned, repose, rests, touch_down
 from drystone.settle.settings import SettleSettings
@@ -77,7 +77,7 @@ class Hand:
 
     Parameters
     ----------
-    settings : LetGoSettings
+    settings : LayingSettings
         From where, and what it costs to rest elsewhere than planned.
     settle : SettleSettings
         How stones settle.
@@ -87,7 +87,7 @@ class Hand:
         What is tried with a stone that does not rest.
     """
 
-    settings: LetGoSettings
+    settings: LayingSettings
     settle: SettleSettings
     limits: WedgeLimits
     method: Method

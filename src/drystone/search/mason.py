@@ -15,13 +15,13 @@ from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.dropping import wedge_limits
 from drystone.planner.evaluate import Evaluator, Loaded
+from drystone.planner.laying_settings import LayingSettings
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settled import settled_in
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
 from drystone.search.course_plan import PlannedStone
-from drystone.search.laying_settings import LayingSettings
 from drystone.search.letting_go import Aim, Hand, Resting
 from drystone.search.views import View
 
@@ -164,13 +164,13 @@ class Mason:
     ) -> "Mason":
         """Return who lays stones of a workshop."""
         limits = wedge_limits(settings, workshop.stock, workshop.site)
-        hand = Hand(laying.let_go, settings.settle, limits, settings.stabilise.method)
+        hand = Hand(laying, settings.settle, limits, settings.stabilise.method)
         evaluator = Evaluator(settings, workshop.stock, until=until)
         return cls(workshop, settings, laying, hand, evaluator)
 
     def views(self) -> Views:
         """Look at the bare ground from both ends."""
-        width_px, column_px = self.workshop.site.extent_px[0], self.laying.let_go.column_px
+        width_px, column_px = self.workshop.site.extent_px[0], self.laying.column_px
         return {side: View.bare(width_px, side, self.settings.mu, column_px) for side in SIDES}
 
     def course(

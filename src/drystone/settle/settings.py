@@ -3,11 +3,13 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from drystone.model.settings import Ranged, ranged
+
 Method = Literal["energy", "pivot"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class SettleSettings:
+class SettleSettings(Ranged):
     """How stones settle on the outlines of others (§3.7; DESIGN 4.9).
 
     Lengths in source px; `size` is the root of a stone's area.
@@ -56,44 +58,23 @@ class SettleSettings:
     """
 
     method: Method = "energy"
-    outline_px: float = 0.35
-    clearance_px: float = 0.01
-    contact_px: float = 0.1
-    setback: float = 0.01
-    lean: float = 0.3
-    margin: float = 0.2
-    steep: float = 0.3
-    beyond_px: float = 0.25
-    max_turn_deg: float = 12.0
-    max_shift: float = 0.5
-    max_steps: int = 60
-    spots: int = 3
-    apart: float = 0.2
-    shortlist: int = 24
-    per_stone: int = 4
+    outline_px: float = ranged(0.35, above=0, most=0.5)
+    clearance_px: float = ranged(0.01, least=1e-4)
+    contact_px: float = ranged(0.1, least=0, most=0.5)
+    setback: float = ranged(0.01, least=0, most=0.1)
+    lean: float = ranged(0.3, least=0)
+    margin: float = ranged(0.2, least=0)
+    steep: float = ranged(0.3, least=0, below=1)
+    beyond_px: float = ranged(0.25, least=0, most=1)
+    max_turn_deg: float = ranged(12.0, least=0)
+    max_shift: float = ranged(0.5, least=0)
+    max_steps: int = ranged(60, least=1)
+    spots: int = ranged(3, least=1)
+    apart: float = ranged(0.2, least=0)
+    shortlist: int = ranged(24, least=1)
+    per_stone: int = ranged(4, least=1)
 
     def __post_init__(self) -> None:
-        if self.method not in ("energy", "pivot"):
-            raise ValueError(f"unknown way of settling {self.method!r}")
-        if not 1e-4 <= self.clearance_px or not 4 * self.clearance_px <= self.contact_px <= 0.5:
-            raise ValueError("clearance_px must be .0001 or more, contact_px 4 times it to .5")
-        # Beyond these a plan would no longer speak of the stones of the picture.
-        if not 0 < self.outline_px <= 0.5 or not 0 <= self.beyond_px <= 1:
-            raise ValueError("outline_px must be in (0, .5], beyond_px in [0, 1]")
-        if not 0 <= self.setback <= 0.1:
-            raise ValueError("setback must be in [0, .1]")
-        if not 0 <= self.steep < 1:
-            raise ValueError("steep must be in [0, 1)")
-        if (
-            min(
-                self.lean,
-                self.margin,
-                self.max_turn_deg,
-                self.max_shift,
-                self.apart,
-            )
-            < 0
-        ):
-            raise ValueError("lean, margin and limits must not be negative")
-        if min(self.max_steps, self.spots, self.shortlist, self.per_stone) < 1:
-            raise ValueError("steps, spots and the shortlist must be positive")
+        super().__post_init__()
+        if 4 * self.clearance_px > self.contact_px:
+            raise ValueError("contact_px must be at least 4 times clearance_px")

@@ -1,10 +1,12 @@
 """Settings of laying a course plan."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+
+from drystone.model.settings import Ranged, ranged
 
 
 @dataclass(frozen=True, kw_only=True)
-class LetGoSettings:
+class LayingSettings(Ranged):
     """From where a planned stone is let go, and what it costs to rest elsewhere than planned.
 
     Costs are sums of these weights; heights and widths are shares of the mean stone height.
@@ -35,37 +37,6 @@ class LetGoSettings:
         Cost of a rest that would end with the least lean of gravity; at a lean of mu it is 0.
     wedge : float
         Cost of a wedge.
-    """
-
-    column_px: float = 1.0
-    starts: int = 5
-    apart: float = 0.03
-    spread: float = 0.3
-    enough: int = 3
-    reach: float = 0.5
-    astray: float = 0.5
-    top: float = 1.0
-    width: float = 2.0
-    turn: float = 0.3
-    rest: float = 0.1
-    wedge: float = 0.2
-
-    def __post_init__(self) -> None:
-        if not self.column_px > 0 or min(self.starts, self.enough) < 1 or not self.astray > 0:
-            raise ValueError("column_px, starts, enough and astray must be positive")
-        weights = (self.top, self.width, self.turn, self.rest, self.wedge)
-        if min(self.apart, self.spread, self.reach, *weights) < 0:
-            raise ValueError("distances and weights must not be negative")
-
-
-@dataclass(frozen=True, kw_only=True)
-class LayingSettings:
-    """How a course plan is laid.
-
-    Parameters
-    ----------
-    let_go : LetGoSettings
-        From where stones are let go, and what it costs to rest elsewhere than planned.
     analysed : int
         How many of the cheapest places after which the wall stands are compared by LLC.
     judged : int
@@ -74,13 +45,23 @@ class LayingSettings:
         Bonus for LLC = 1.
     """
 
-    let_go: LetGoSettings = field(default_factory=LetGoSettings)
-    analysed: int = 6
-    judged: int = 10
-    llc: float = 3.0
+    column_px: float = ranged(1.0, above=0)
+    starts: int = ranged(5, least=1)
+    apart: float = ranged(0.03, least=0)
+    spread: float = ranged(0.3, least=0)
+    enough: int = ranged(3, least=1)
+    reach: float = ranged(0.5, least=0)
+    astray: float = ranged(0.5, above=0)
+    top: float = ranged(1.0, least=0)
+    width: float = ranged(2.0, least=0)
+    turn: float = ranged(0.3, least=0)
+    rest: float = ranged(0.1, least=0)
+    wedge: float = ranged(0.2, least=0)
+    analysed: int = ranged(6, least=1)
+    judged: int = ranged(10, least=1)
+    llc: float = ranged(3.0, least=0)
 
     def __post_init__(self) -> None:
-        if not 1 <= self.analysed <= self.judged:
-            raise ValueError("analysed must be positive, and judged not less")
-        if self.llc < 0:
-            raise ValueError("llc must not be negative")
+        super().__post_init__()
+        if self.analysed > self.judged:
+            raise ValueError("analysed must not be above judged")

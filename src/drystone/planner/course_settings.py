@@ -1,10 +1,12 @@
 """Settings of planning course by course."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+
+from drystone.model.settings import Ranged, ranged
 
 
 @dataclass(frozen=True, kw_only=True)
-class CourseSettings:
+class CourseSettings(Ranged):
     """What a course plan costs, and how long it is looked for.
 
     Lengths in the weights are shares of the mean size of a stone, the root of its area.
@@ -68,41 +70,35 @@ class CourseSettings:
         Temperature at which upper courses are planned again, over the first one.
     """
 
-    step: float = 2.0
-    level: float = 0.6
-    top: float = 1.5
-    joint: float = 4.0
-    reach: float = 0.6
-    overflow: float = 20.0
-    slack: float = 2.0
-    void: float = 1.0
-    turn: float = 0.5
-    rock: float = 1.0
-    support: float = 3.0
-    margin: float = 0.2
-    steepest_deg: float = 8.0
-    overhead: float = 20.0
-    high: float = 6.0
-    flush: float = 1.0
-    left_out: float = 8.0
-    across: float = 0.08
-    down: float = 0.012
-    target: float = 100.0
-    apart: float = 0.01
-    evaluations: int = 3_000
-    most_evaluations: int = 1_000_000
-    temperature: float = 6.0
-    coldest: float = 0.05
-    doubt: float = 2.0
-    again: float = 0.035
+    step: float = ranged(2.0, least=0)
+    level: float = ranged(0.6, least=0)
+    top: float = ranged(1.5, least=0)
+    joint: float = ranged(4.0, least=0)
+    reach: float = ranged(0.6, least=0)
+    overflow: float = ranged(20.0, least=0)
+    slack: float = ranged(2.0, least=0)
+    void: float = ranged(1.0, least=0)
+    turn: float = ranged(0.5, least=0)
+    rock: float = ranged(1.0, least=0)
+    support: float = ranged(3.0, least=0)
+    margin: float = ranged(0.2, least=0)
+    steepest_deg: float = ranged(8.0, least=0, below=45)
+    overhead: float = ranged(20.0, least=0)
+    high: float = ranged(6.0, least=0)
+    flush: float = ranged(1.0, least=0)
+    left_out: float = ranged(8.0, least=0)
+    across: float = ranged(0.08, least=0)
+    down: float = ranged(0.012, least=0)
+    target: float = ranged(100.0, least=0)
+    apart: float = ranged(0.01, least=0)
+    evaluations: int = ranged(3_000, least=1)
+    most_evaluations: int = ranged(1_000_000, least=1)
+    temperature: float = ranged(6.0, above=0)
+    coldest: float = ranged(0.05, above=0)
+    doubt: float = ranged(2.0, least=0)
+    again: float = ranged(0.035, above=0, most=1)
 
     def __post_init__(self) -> None:
-        numbers = [getattr(self, item.name) for item in fields(self)]
-        if min(numbers) < 0:
-            raise ValueError("weights and lengths must not be negative")
-        if min(
-            self.evaluations, self.most_evaluations
-        ) < 1 or not 0 < self.coldest <= self.temperature * min(1.0, self.again):
-            raise ValueError("there must be evaluations, and it must get colder")
-        if not self.steepest_deg < 45:
-            raise ValueError("a stone turns by less than 45 degrees until it rests")
+        super().__post_init__()
+        if self.coldest > self.temperature * self.again:
+            raise ValueError("coldest must not be above temperature times again")

@@ -1,0 +1,68 @@
+"""Ranges and choices of settings are kept, at their very ends."""
+
+import dataclasses
+import math
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from drystone.model.settings import Ranged, range_text
+from drystone.planner.settings import PlannerSettings
+from drystone.settle.settings import SettleSettings
+
+
+def kinds() -> Iterator[type[Any]]:
+    """The settings of the planner that check themselves."""
+    default = PlannerSettings()
+    groups = [getattr(default, field.name) for field in dataclasses.fields(default)]
+    yield from (type(one) for one in (default, *groups) if isinstance(one, Ranged))
+
+
+RANGES = [
+    pytest.param(kind, field, id=f"{kind.__name__}.{field.name}")
+    for kind in kinds()
+    for field in dataclasses.fields(kind)
+    if field.metadata
+]
+
+
+@pytest.mark.parametrize(("kind", "field"), RANGES)
+def test_numbers_out_of_their_range_are_refused(kind: type[Any], field: Any) -> None:
+    allowed, step = field.metadata, 1 if isinstance(field.default, int) else 1e-9
+    ends = {"least": -step, "above": 0, "most": step, "below": 0}
+    wrong = [allowed[name] + away for name, away in ends.items() if name in allowed]
+    assert wrong
+    for value in (*wrong, math.nan):
+        with pytest.raises(ValueError, match=rf"^{field.name} must be (?!one)"):
+            kind(**{field.name: value})
+
+
+@pytest.mark.parametrize(("kind", "field"), RANGES)
+def test_the_ends_of_a_range_are_in_it(kind: type[Any], field: Any) -> None:
+    said = f"{field.name} must be {range_text(field.metadata)}"
+    for name in {"least", "most"} & field.metadata.keys():
+        try:
+            kind(**{field.name: field.metadata[name]})
+        except ValueError as error:  # of another setting beside it
+            assert said not in str(error)  # noqa: PT017 - or none is raised
+
+
+def test_choices_are_those_of_the_type() -> None:
+    with pytest.raises(ValueError, match=re.escape("method must be one of 'energy', 'pivot', not")):
+        SettleSettings(method="glue")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"settle": {"clearance_px": 0.03}}, "contact_px must be at least 4 times clearance_px"),
+        ({"search": {"cold": 0.2}}, "cold must not be above warm"),
+        ({"courses": {"coldest": 5.0}}, "coldest must not be above temperature times again"),
+        ({"laying": {"judged": 4}}, "analysed must not be above judged"),
+    ],
+)
+def test_settings_that_do_not_go_together_are_refused(changes: Any, said: str) -> None:
+    with pytest.raises(Exception, match=said):
+        PlannerSettings().updated(changes)
