@@ -50,14 +50,18 @@ def main() -> int:
         total = [sum(room[which] for room in rooms.values()) for which in (0, 1)]
         if "--rooms" in sys.argv:
             for room_name, (lines, code) in sorted(rooms.items(), key=lambda one: -one[1][0]):
-                print(f"  {room_name:16} {lines:6,} lines, {code:6,} of code")
-        print(f"{name:16} {total[0]:6,} lines, {total[1]:6,} of code (at most {most:,} lines)")
+                sys.stdout.write(f"  {room_name:16} {lines:6,} lines, {code:6,} of code\n")
+        sys.stdout.write(
+            f"{name:16} {total[0]:6,} lines, {total[1]:6,} of code (at most {most:,} lines)\n"
+        )
         larger |= total[0] > most
         if name != "tests":
             whole = [a + b for a, b in zip(whole, total, strict=True)]
-    print(f"{'package and lab':16} {whole[0]:6,} lines, {whole[1]:6,} of code")
+    sys.stdout.write(f"{'package and lab':16} {whole[0]:6,} lines, {whole[1]:6,} of code\n")
     if larger:
-        print("A part is larger than it may be: what can go? (tools/size.py has the limits)")
+        sys.stdout.write(
+            "A part is larger than it may be: what can go? (tools/size.py has the limits)\n"
+        )
     return int(larger)
 
 
