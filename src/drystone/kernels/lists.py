@@ -41,7 +41,18 @@ def more_doubles(numbers: list[Any], count: int) -> list[Any]:
     return numbers + [0] * (count - len(numbers))
 
 
+def kept_doubles(_room: list[Any], count: int) -> list[Any]:
+    """Return room for so many numbers, which is given back with a list."""
+    return [0] * count
+
+
+def move_ints(to: list[Any], at: int, source: list[Any], start: int, count: int) -> None:
+    """Write numbers over others, which they may overlap."""
+    to[at : at + count] = source[start : start + count]
+
+
 new_ints = new_doubles
+kept_ints = kept_doubles
 more_ints = more_doubles
 
 

@@ -11,7 +11,9 @@ from cpython.buffer cimport (
     PyBuffer_Release,
     PyObject_GetBuffer,
 )
+from cpython.bytearray cimport PyByteArray_AS_STRING
 from libc.stdlib cimport free, qsort, realloc
+from libc.string cimport memmove
 
 
 cdef void *start(object array, const char *kinds, Py_ssize_t size, int access) except? NULL:
@@ -85,6 +87,26 @@ cdef void *resized(void *at, Py_ssize_t size) except? NULL nogil:
         with gil:
             raise MemoryError
     return more
+
+
+cdef double *kept_doubles(list room, Py_ssize_t count):
+    return <double *>kept(room, count * sizeof(double))
+
+
+cdef int *kept_ints(list room, Py_ssize_t count):
+    return <int *>kept(room, count * sizeof(int))
+
+
+cdef char *kept(list room, Py_ssize_t size):
+    zeros = bytearray(size)
+    room.append(zeros)
+    return PyByteArray_AS_STRING(zeros)
+
+
+cdef void move_ints(
+    int *to, Py_ssize_t at, const int *source, Py_ssize_t start, Py_ssize_t count
+) noexcept nogil:
+    memmove(to + at, source + start, count * sizeof(int))
 
 
 cdef void sort_doubles(double *at, Py_ssize_t count) noexcept nogil:
