@@ -28,6 +28,16 @@ def doubles_out(array: NDArray[Any]) -> memoryview:
     return array.reshape(-1).data
 
 
+def pixels(array: NDArray[Any]) -> memoryview:
+    """Return the flags of any view, to be read: only a few are."""
+    return np.ascontiguousarray(array).reshape(-1).data
+
+
+def stride(array: NDArray[Any], axis: int) -> int:
+    """Return how far the flags of :func:`pixels` are apart along rows (0) or in them (1)."""
+    return 1 if axis else int(array.shape[1])
+
+
 ints_out = longs_out = flags_out = doubles_out
 
 

@@ -7,6 +7,7 @@ A pointer is valid as long as its array: whoever asks for one keeps the array.
 from cpython.buffer cimport (
     PyBUF_C_CONTIGUOUS,
     PyBUF_FORMAT,
+    PyBUF_STRIDES,
     PyBUF_WRITABLE,
     PyBuffer_Release,
     PyObject_GetBuffer,
@@ -47,6 +48,21 @@ cdef long long *longs(object array) except? NULL:
 
 cdef unsigned char *flags(object array) except? NULL:
     return <unsigned char *>start(array, b"?B", 1, 0)
+
+
+cdef unsigned char *pixels(object array) except? NULL:
+    """Return where flags begin, of any view; they are :func:`stride` apart."""
+    cdef Py_buffer view
+    PyObject_GetBuffer(array, &view, PyBUF_STRIDES | PyBUF_FORMAT)
+    if view.itemsize != 1:
+        PyBuffer_Release(&view)
+        raise TypeError("a kernel got numbers that are no flags")
+    PyBuffer_Release(&view)
+    return <unsigned char *>view.buf
+
+
+cdef Py_ssize_t stride(object array, int axis) except? -1:
+    return array.strides[axis]
 
 
 cdef double *doubles_out(object array) except? NULL:
