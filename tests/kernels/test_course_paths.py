@@ -1,21 +1,28 @@
 """Paths along planned joints, against what is measured on pixels."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
-from drystone.kernels import course_paths
-from drystone.kernels.course_paths import (
+from drystone.kernels import course_types
+from drystone.kernels.course_types import (
+    PIXEL_UNITS,
     STARTS,
-    bed_percent,
-    crossing_percent,
-    mean_percent,
-    path_starts,
-    ways_up,
+    Arrangement,
+    Ground,
+    Rules,
+    Weights,
 )
-from drystone.kernels.course_types import PIXEL_UNITS
+from drystone.kernels.courses import evaluate, path_starts
+from drystone.kernels.raster import turn
 from drystone.metrics import joints as metric_joints
 from drystone.metrics import measure, paths
 from drystone.model.wall import Labels
+from drystone.search.course_poses import poses_of
+
+RULES = Rules(Weights(*[1.0] * 16), 32, 0.0, 0, 0, 9, 1000.0)
+COLUMN_PX = 0.5
 
 
 def bond(shift_px: int, courses: int) -> Labels:
@@ -27,30 +34,36 @@ def bond(shift_px: int, courses: int) -> Labels:
     return labels
 
 
-def planned(shift_px: int, courses: int) -> tuple[float, float]:
-    """F_AV and F_AH of the same bricks, by their joints."""
-    starts = path_starts(300 * PIXEL_UNITS)
-    joints: list[tuple[int, int]] = []
-    ways = np.zeros((0, STARTS), np.int32)
-    for course in range(courses):
-        below = joints
-        shift = (course % 2) * shift_px
-        inner = [x for x in range(60 - shift, 300, 60) if x > 0]
-        joints = [(x * PIXEL_UNITS,) * 2 for x in (0, *inner, 300)]
-        ways = ways_up(joints, below, ways, starts)
-    top = 20 * courses * PIXEL_UNITS
-    beds = [(20 * i * PIXEL_UNITS, 20 * i * PIXEL_UNITS, 0) for i in range(1, courses + 1)]
-    return (
-        crossing_percent(joints, ways, starts, top),
-        bed_percent(beds, top, 300 * PIXEL_UNITS),
+def laid(rows: list[list[int]], height_px: int, beds: Any = ()) -> tuple[float, float]:
+    """F_AV and F_AH of courses of bricks, given by their widths, on nothing but bed joints."""
+    widths = [width for row in rows for width in row]
+    corners = [
+        turn(np.array([(0, 0), (width, 0), (width, height_px), (0, height_px)], float), quarter)
+        for width in widths
+        for quarter in (0, 90, 180, 270)
+    ]
+    poses = poses_of(corners, np.array(widths, float) * height_px, COLUMN_PX)
+    sizes = np.array([len(row) for row in rows], np.int32)
+    numbers = np.arange(len(widths), dtype=np.int32)
+    side = sum(rows[0]) * PIXEL_UNITS
+    ground = Ground(
+        np.zeros(2 * sum(rows[0]), np.int32),
+        np.zeros((0, 2), np.int32),
+        np.zeros((0, STARTS), np.int32),
+        np.array(beds, np.int32).reshape(-1, 3),
+        side,
+        side,
     )
+    terms = evaluate(poses, Arrangement(numbers, 0 * numbers, sizes, sizes), ground, RULES).terms
+    return RULES.target - float(terms[-1, 15]), float(terms[-1, 14])
 
 
 @pytest.mark.parametrize("courses", [3, 4, 5])
 def test_bricks_are_judged_as_on_pixels(courses: int) -> None:
     found = {}
     for shift in (0, 10, 20, 30):
-        across, along = planned(shift, courses)
+        shifted = [60 - shift, 60, 60, 60, 60, shift] if shift else [60] * 5
+        across, along = laid([shifted if i % 2 else [60] * 5 for i in range(courses)], 20)
         measured = measure.measure_labels(bond(shift, courses))
         assert measured.F_AV is not None
         assert measured.F_AH is not None
@@ -63,34 +76,37 @@ def test_bricks_are_judged_as_on_pixels(courses: int) -> None:
 
 
 def test_ups_and_downs_and_distance_make_a_bed_joint_longer() -> None:
-    width, top = 300 * PIXEL_UNITS, 100 * PIXEL_UNITS
+    top = 100 * PIXEL_UNITS
     heights = [top - start for start in path_starts(top)]
-    straight = width + 2 * PIXEL_UNITS
+    straight = 302 * PIXEL_UNITS
     flat = [(y, y, 0) for y in heights]
-    assert bed_percent(flat, top, width) == 0.0
+    assert laid([[300]], 100, flat)[1] == 0.0
     rough = [(y, y, 256) for y in heights]
-    assert bed_percent(rough, top, width) == pytest.approx(100 * 106 / straight)
+    assert laid([[300]], 100, rough)[1] == pytest.approx(100 * 106 / straight)
     aside = [(y + 50, y - 70, 0) for y in heights]
-    assert bed_percent(aside, top, width) == pytest.approx(100 * 120 / straight)
+    assert laid([[300]], 100, aside)[1] == pytest.approx(100 * 120 / straight)
 
 
 def test_paths_also_run_along_the_ground_and_over_the_top() -> None:
-    width, top = 300 * PIXEL_UNITS, 100 * PIXEL_UNITS
-    half = PIXEL_UNITS // 2
-    ways = sorted(2 * (min(start, top - start) + half) for start in path_starts(top))
-    straight = width + 2 * PIXEL_UNITS
-    assert bed_percent([], top, width) == pytest.approx(100 * sum(ways[:5]) / (5 * straight))
+    top, half = 100 * PIXEL_UNITS, PIXEL_UNITS // 2
+    # The wall's own top is a bed joint too.
+    ways = sorted(2 * min(start, top - start + half) for start in path_starts(top))
+    straight = 302 * PIXEL_UNITS
+    assert laid([[300]], 100)[1] == pytest.approx(100 * sum(ways[:5]) / (5 * straight))
 
 
 def test_the_definitions_are_those_of_the_metrics() -> None:
-    assert course_paths.FIRST_PX == paths.FIRST_PX
-    assert course_paths.STARTS == paths.STARTS
-    assert metric_joints.PAD_TOP + metric_joints.PAD_BOTTOM == course_paths.PADDING_PX
-    assert metric_joints.PAD_LEFT + metric_joints.PAD_RIGHT == course_paths.PADDING_PX
+    assert course_types.FIRST_PX == paths.FIRST_PX
+    assert course_types.STARTS == paths.STARTS
+    assert metric_joints.PAD_TOP + metric_joints.PAD_BOTTOM == course_types.PADDING_PX
+    assert metric_joints.PAD_LEFT + metric_joints.PAD_RIGHT == course_types.PADDING_PX
 
 
 def test_there_are_never_more_starts_than_room_for_them() -> None:
-    assert max(len(path_starts(side * PIXEL_UNITS)) for side in range(3000)) == STARTS
+    # One more would be thrown away.
+    for side in range(3000):
+        rest = side + course_types.PADDING_PX - course_types.FIRST_PX
+        starts = path_starts(side * PIXEL_UNITS)
+        step = max(1, (side + course_types.PADDING_PX) // STARTS)
+        assert len(starts) == len(range(course_types.FIRST_PX, rest, step)) <= STARTS
     assert path_starts(17 * PIXEL_UNITS) == []
-    assert mean_percent([], 10) == 0.0
-    assert mean_percent([7, 1, 2, 3, 4, 5], 100) == pytest.approx(3.0)

@@ -1,19 +1,14 @@
 """Straight runs and their normals, against distances and angles in floats (§4.2)."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.straight import (
-    SQUARED_TOLERANCE_PX,
-    normal_beside,
-    split_at_corners,
-    straight_runs,
-    without_hooks,
-)
+from drystone.kernels.contacts import SQUARED_TOLERANCE_PX, straight_runs
 from tests.naive import contacts as naive
 from tests.strategies import repeatable
 
@@ -21,9 +16,20 @@ STEPS = {"r": (1, 0), "u": (0, 1), "l": (-1, 0), "d": (0, -1)}
 
 
 def path(word, start=(0, 0)):
-    """x and y along a path of steps to the right, up, to the left, down."""
-    nodes = np.cumsum([start, *(STEPS[letter] for letter in word)], axis=0)
-    return nodes[:, 0].tolist(), nodes[:, 1].tolist()
+    """Points (x, y) along a path of steps to the right, up, to the left, down."""
+    return np.cumsum([start, *(STEPS[letter] for letter in word)], axis=0)
+
+
+def runs_of(points):
+    """First and last point and normal of each run, of points in the wall frame, y up."""
+    x, y = np.array(points, np.int64).T
+    return straight_runs(np.column_stack((-y, x)))
+
+
+def normal_of(points):
+    """The normal of what is one run."""
+    ((_, _, normal),) = runs_of(points)
+    return normal
 
 
 # Mostly onwards, as boundaries go: no edge right back.
@@ -51,18 +57,7 @@ def turns_back(word):
     ],
 )
 def test_split_at_corners(points, cuts):
-    x, y = zip(*points, strict=True)
-    assert split_at_corners(x, y) == cuts
-
-
-@given(word=words)
-@repeatable(200)
-def test_cuts_are_those_by_distances_in_floats(word):
-    x, y = path(word)
-    pieces = naive.split(list(zip(x, y, strict=True)))
-    expected = np.cumsum([0, *(len(piece) - 1 for piece in pieces)]).tolist()
-    assert split_at_corners(x, y) == expected
-    assert naive.TOLERANCE_PX == math.sqrt(SQUARED_TOLERANCE_PX)
+    assert [(first, last) for first, last, _ in runs_of(points)] == list(pairwise(cuts))
 
 
 @pytest.mark.parametrize(
@@ -82,22 +77,21 @@ def test_cuts_are_those_by_distances_in_floats(word):
     ],
 )
 def test_single_edges_that_turn_off_are_left_out(word, kept):
-    x, y = path(word)
-    assert without_hooks(x, y, 0, len(word)) == kept
+    ((*ends, _),) = runs_of(path(word))
+    assert tuple(ends) == kept
 
 
 @given(word=words.filter(lambda word: not turns_back(word)))
 @repeatable(200)
 def test_runs_and_normals_are_those_by_angles(word):
-    x, y = path(word, (3, -2))
-    nodes = list(zip(x, y, strict=True))
+    nodes = list(map(tuple, path(word, (3, -2)).tolist()))
     expected = [naive.without_hooks(piece) for piece in naive.split(nodes)]
-    runs = straight_runs(x, y)
-    assert [nodes[first : last + 1] for first, last in runs] == expected
-    for (first, last), run in zip(runs, expected, strict=True):
-        normal = normal_beside(x, y, first, last)
+    runs = runs_of(nodes)
+    assert [nodes[first : last + 1] for first, last, _ in runs] == expected
+    for (_, _, normal), run in zip(runs, expected, strict=True):
         assert normal == pytest.approx(naive.fitted_normal(run), abs=1e-12)
         assert math.hypot(*normal) == pytest.approx(1.0, abs=1e-15)
+    assert naive.TOLERANCE_PX == math.sqrt(SQUARED_TOLERANCE_PX)
 
 
 @pytest.mark.parametrize(
@@ -112,23 +106,20 @@ def test_runs_and_normals_are_those_by_angles(word):
 )
 def test_normals_of_the_grid_are_exact_and_without_negative_zeros(word, normal):
     for count in (1, 50):
-        x, y = path(word * count)
-        assert list(map(repr, normal_beside(x, y, 0, len(x) - 1))) == list(map(repr, normal))
+        assert list(map(repr, normal_of(path(word * count)))) == list(map(repr, normal))
 
 
 @pytest.mark.parametrize("word", ["ru", "ul", "ld", "dr", "rruu"])
 @pytest.mark.parametrize("count", [1, 7, 400])
 def test_normals_of_diagonals_have_components_of_one_size(word, count):
-    x, y = path(word * count)
-    normal_x, normal_y = normal_beside(x, y, 0, len(x) - 1)
+    normal_x, normal_y = normal_of(path(word * count))
     assert abs(normal_x) == abs(normal_y) == pytest.approx(0.5**0.5, abs=1e-15)
 
 
 @pytest.mark.parametrize("where", [(0, 0), (10**6, -(10**6))])
 def test_long_runs_far_away_are_fitted_as_well(where):
-    x, y = path("rrrrru" * 8000)
-    expected = naive.fitted_normal(list(zip(x, y, strict=True)))
-    x, y = path("rrrrru" * 8000, where)
-    assert normal_beside(x, y, 0, len(x) - 1) == pytest.approx(expected, abs=1e-12)
-    x, y = path("r" * 100_000, where)
-    assert normal_beside(x, y, 0, len(x) - 1) == (0.0, 1.0)
+    # The last edge is a hook.
+    points = path("rrrrru" * 8000)[:-1]
+    expected = naive.fitted_normal(list(map(tuple, points.tolist())))
+    assert normal_of(path("rrrrru" * 8000, where)) == pytest.approx(expected, abs=1e-12)
+    assert normal_of(path("r" * 100_000, where)) == (0.0, 1.0)

@@ -1,41 +1,19 @@
-"""Where a mask stands and comes to rest, compiled and NumPy, against walking pixel by pixel."""
-
-from collections.abc import Iterator
+"""Where a mask stands and comes to rest, against walking pixel by pixel."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels import support
-from drystone.kernels.backend import compiled
 from drystone.kernels.raster import Mask
-from drystone.kernels.support import resting_place, support_ends
+from drystone.kernels.support import Ends, resting_place, support_ends
 from tests.naive import support as naive
 from tests.naive.overlap import overlaps
 from tests.naive.placement import all_positions
 from tests.strategies import landscapes, masks, repeatable
 
-FAST = compiled("support")
-KERNELS = [
-    pytest.param(None, id="numpy"),
-    pytest.param(
-        FAST,
-        id="compiled",
-        marks=pytest.mark.skipif(FAST is None, reason="kernels are not compiled here"),
-    ),
-]
 
-
-@pytest.fixture(autouse=True, scope="module", params=KERNELS)
-def kernel(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Everything here by NumPy, then by the compiled kernels."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(support, "_fast", request.param)
-        yield
-
-
-def flat(ends: naive.Ends | None) -> support.Ends | None:
+def flat(ends: naive.Ends | None) -> Ends | None:
     return None if ends is None else (ends[0][0], ends[1][0], ends[0][1], ends[1][1])
 
 

@@ -1,7 +1,10 @@
-"""Slow, obvious twin of drystone.kernels.course_cost and course_paths: loops over columns."""
+"""Slow, obvious twin of drystone.kernels.courses: loops over columns, and all laid anew."""
 
 import itertools
 import math
+
+from drystone.kernels.course_moves import Dice, changed
+from drystone.kernels.courses import evaluate
 
 UNITS, PX = 16, 32
 
@@ -167,3 +170,50 @@ def top_of(poses, pose, x, y, slope, level, new_level):
         y + int(peak) + math.floor(slope * (int(at) - middle) / 4096)
         for peak, at in zip(poses.peaks[pose], poses.part_at[pose], strict=True)
     ]
+
+
+def annealed(poses, now, ground, rules, cooling):
+    """The cheapest arrangement that is met, and its cost: each is laid anew, to the top."""
+    dice, temperature = Dice(cooling.seed), cooling.temperature
+    cost = sums(poses, now, ground, rules)[-1]
+    best = now, cost
+    for _ in range(cooling.evaluations):
+        temperature *= cooling.factor
+        plan, lowest = changed(now, dice, rules.courses)
+        if lowest < 0:
+            continue
+        limit = cost - temperature * math.log((dice.below(4096) + 0.5) / 4096)
+        old, new = sums(poses, now, ground, rules), sums(poses, plan, ground, rules)
+        highest, doubted = len(new), False
+        if len(old) == len(new):
+            pairs = zip(courses_of(now), courses_of(plan), strict=True)
+            highest = max((i for i, (a, b) in enumerate(pairs) if a != b), default=0)
+        for course in range(max(lowest, highest), len(new) - 2):
+            doubted |= new[course] - old[course] > limit - cost + cooling.doubt
+        if new[-1] <= limit and not doubted:
+            now, cost = plan, new[-1]
+            if cost < best[1]:
+                best = now, cost
+    return best
+
+
+def courses_of(plan):
+    """Poses of each course, and its gap."""
+    ends = [0, *itertools.accumulate(plan.sizes.tolist())]
+    return [
+        ([(s, int(plan.turns[s])) for s in plan.order[a:b].tolist()], gap)
+        for (a, b), gap in zip(itertools.pairwise(ends), plan.gaps.tolist(), strict=True)
+    ]
+
+
+def sums(poses, plan, ground, rules):
+    """What an arrangement costs up to each course, with what is left out; and in all."""
+    *rows, whole = evaluate(poses, plan, ground, rules).terms.tolist()
+    costs = [0.0, whole[13] * rules.weights[13]]
+    for row in rows:
+        costs[0] = 0.0
+        for term, weight in zip(row, rules.weights, strict=True):
+            costs[0] += term * weight
+        costs.append(costs[-1] + costs[0])
+    paths = whole[14] * rules.weights[14] + whole[15] * rules.weights[15]
+    return [*costs[2:], costs[-1] + paths]

@@ -7,7 +7,7 @@ import pytest
 
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.generate.rubble import RubbleSettings, rubble_stones
-from drystone.kernels.backend import compiled
+from drystone.kernels.backend import describe
 from drystone.kernels.courses import evaluate
 from drystone.kernels.polygons import Points
 from drystone.model.stone import Stone, StoneSet
@@ -25,9 +25,7 @@ TOLERANCE_PX = 0.35
 QUICK = CourseSettings(evaluations=30)
 """Python looks at some 500 plans in a second."""
 
-needs_compiled = pytest.mark.skipif(
-    compiled("courses") is None, reason="kernels are not compiled here"
-)
+needs_compiled = pytest.mark.skipif(describe() == "Python", reason="kernels are not compiled here")
 
 
 def bricks(count: int, halves: int = 0) -> StoneSet:

@@ -1,24 +1,41 @@
-"""Small changes of an arrangement of stones in courses.
+"""Small changes of an arrangement of stones in courses."""
 
-The twin of `compiled/course_moves.pyx`.
-"""
-
-from dataclasses import dataclass
-from typing import Final
+from __future__ import annotations
 
 import numpy as np
 
-from drystone.kernels.course_types import Arrangement, left_of
+from drystone.kernels.course_types import Arrangement
 
-NOTHING: Final = -1
-"""A change that could not be made."""
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
 
-SWAP, MOVE, TURN, SWAP_TURN, GAP, REVERSE, EXCHANGE, SPLIT = 20, 36, 48, 54, 58, 61, 62, 63
-"""Of 64 changes, so many are of this kind or one before it; what is left joins two courses."""
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import ints, kept_ints, move_ints
+else:
+    from drystone.kernels.lists import ints, kept_ints, move_ints
 
-WORD: Final = (1 << 64) - 1
+# A change that could not be made.
+NOTHING = cython.declare(cython.int, -1)
+
+# Of 64 changes, so many are of this kind or one before it; what is left joins two courses.
+SWAP = cython.declare(cython.int, 20)
+MOVE = cython.declare(cython.int, 36)
+TURN = cython.declare(cython.int, 48)
+SWAP_TURN = cython.declare(cython.int, 54)
+GAP = cython.declare(cython.int, 58)
+REVERSE = cython.declare(cython.int, 61)
+EXCHANGE = cython.declare(cython.int, 62)
+SPLIT = cython.declare(cython.int, 63)
+
+WORD = cython.declare(cython.ulonglong, 0xFFFFFFFFFFFFFFFF)
+GOLDEN = cython.declare(cython.ulonglong, 0x9E3779B97F4A7C15)
+FIRST = cython.declare(cython.ulonglong, 0xBF58476D1CE4E5B9)
+SECOND = cython.declare(cython.ulonglong, 0x94D049BB133111EB)
 
 
+@cython.cclass
 class Dice:
     """Random whole numbers, the same everywhere: splitmix64.
 
@@ -29,84 +46,25 @@ class Dice:
     """
 
     def __init__(self, seed: int) -> None:
-        self.state = seed & WORD
+        self.state = seed % 2**64
 
     def below(self, count: int) -> int:
-        """Return a number from 0 to below `count`, which is less than 2^32."""
-        self.state = (self.state + 0x9E3779B97F4A7C15) & WORD
-        mixed = self.state
-        mixed = ((mixed ^ (mixed >> 30)) * 0xBF58476D1CE4E5B9) & WORD
-        mixed = ((mixed ^ (mixed >> 27)) * 0x94D049BB133111EB) & WORD
-        mixed ^= mixed >> 31
-        return ((mixed >> 32) * count) >> 32
+        """Return a number from 0 to below `count`, which is at most 2^32."""
+        return drawn(self, count)
 
 
-@dataclass
+@cython.cclass
 class Draft:
-    """An arrangement that is being changed; its fields are those of `Arrangement`.
+    """An arrangement that is being changed; its fields are those of `Arrangement`."""
+
+
+def changed(plan: Arrangement, dice: Dice, courses: int) -> tuple[Arrangement, int]:
+    """Change an arrangement once, at random.
 
     Parameters
     ----------
-    order, turns, sizes, gaps : list of int
-        As there.
-    """
-
-    order: list[int]
-    turns: list[int]
-    sizes: list[int]
-    gaps: list[int]
-
-    @classmethod
-    def of(cls, plan: Arrangement) -> "Draft":
-        """Start from an arrangement."""
-        return cls(*(part.tolist() for part in plan))
-
-    def copy(self) -> "Draft":
-        """Return another one that may be changed."""
-        return Draft(list(self.order), list(self.turns), list(self.sizes), list(self.gaps))
-
-    def done(self) -> Arrangement:
-        """Return the arrangement."""
-        parts = (self.order, self.turns, self.sizes, self.gaps)
-        return Arrangement(*(np.array(part, np.int32) for part in parts))
-
-    @property
-    def placed(self) -> int:
-        """How many stones are in courses."""
-        return sum(self.sizes)
-
-    def start(self, course: int) -> int:
-        """Return the place of the first stone of a course, or of what is left out."""
-        return sum(self.sizes[:course])
-
-    def posed(self, course: int) -> list[int]:
-        """Return the poses of the stones of a course, from left to right."""
-        start = self.start(course)
-        stones = self.order[start : start + self.sizes[course]]
-        return [4 * stone + self.turns[stone] for stone in stones]
-
-    def course_of(self, place: int) -> int:
-        """Return the course of a place; the number of courses for what is left out."""
-        course = 0
-        while course < len(self.sizes) and place >= self.sizes[course]:
-            place -= self.sizes[course]
-            course += 1
-        return course
-
-    def move_gap(self, course: int, by: int) -> None:
-        """Let so many more stones of a course be laid from the left end, as many as there are."""
-        gap = self.gaps[course]
-        from_left = min(left_of(gap) + by, self.sizes[course])
-        self.gaps[course] = from_left if gap >= 0 else -1 - from_left
-
-
-def change(draft: Draft, dice: Dice, courses: int) -> int:
-    """Change a draft at random.
-
-    Parameters
-    ----------
-    draft : Draft
-        It is changed.
+    plan : Arrangement
+        Stones in courses.
     dice : Dice
         For what is drawn.
     courses : int
@@ -114,90 +72,184 @@ def change(draft: Draft, dice: Dice, courses: int) -> int:
 
     Returns
     -------
+    plan : Arrangement
+        Changed.
     course : int
         The lowest one in which something changed, or -1 when nothing did.
     """
-    kind = dice.below(64)
+    draft: Draft = Draft()
+    start(draft, plan, courses)
+    lowest: cython.int = change(draft, dice, courses)
+    return Arrangement(*parts_of(draft)), lowest
+
+
+def start(draft, plan, most):
+    """Start from an arrangement, with room for more courses."""
+    draft.room = []
+    draft.stones, draft.courses = len(plan.order), len(plan.sizes)
+    draft.order = kept_ints(draft.room, draft.stones)
+    draft.turns = kept_ints(draft.room, draft.stones)
+    draft.spare = kept_ints(draft.room, draft.stones)
+    draft.sizes = kept_ints(draft.room, most)
+    draft.gaps = kept_ints(draft.room, most)
+    move_ints(draft.order, 0, ints(plan.order), 0, draft.stones)
+    move_ints(draft.turns, 0, ints(plan.turns), 0, draft.stones)
+    move_ints(draft.sizes, 0, ints(plan.sizes), 0, draft.courses)
+    move_ints(draft.gaps, 0, ints(plan.gaps), 0, draft.courses)
+    return 0
+
+
+def parts_of(draft):
+    """Return the fields of an arrangement."""
+    return (
+        np.array([draft.order[i] for i in range(draft.stones)], np.int32),
+        np.array([draft.turns[i] for i in range(draft.stones)], np.int32),
+        np.array([draft.sizes[i] for i in range(draft.courses)], np.int32),
+        np.array([draft.gaps[i] for i in range(draft.courses)], np.int32),
+    )
+
+
+def copy(source, to):
+    """Make one draft like another."""
+    move_ints(to.order, 0, source.order, 0, source.stones)
+    move_ints(to.turns, 0, source.turns, 0, source.stones)
+    move_ints(to.sizes, 0, source.sizes, 0, source.courses)
+    move_ints(to.gaps, 0, source.gaps, 0, source.courses)
+    to.courses = source.courses
+
+
+def drawn(dice, count):
+    """Return a random number from 0 to below a count."""
+    dice.state = (dice.state + GOLDEN) & WORD
+    mixed = dice.state
+    mixed = ((mixed ^ (mixed >> 30)) * FIRST) & WORD
+    mixed = ((mixed ^ (mixed >> 27)) * SECOND) & WORD
+    mixed ^= mixed >> 31
+    return ((mixed >> 32) * count) >> 32
+
+
+def start_of(draft, course):
+    """Return the place of the first stone of a course, or of what is left out."""
+    place: cython.int = 0
+    for i in range(course):
+        place += draft.sizes[i]
+    return place
+
+
+def course_of(draft, place):
+    """Return the course of a place; the number of courses for what is left out."""
+    course: cython.int = 0
+    while course < draft.courses and place >= draft.sizes[course]:
+        place -= draft.sizes[course]
+        course += 1
+    return course
+
+
+def left_of(gap: cython.int) -> cython.int:
+    """Return how many stones of a course are laid from the left end."""
+    return gap if gap >= 0 else -1 - gap
+
+
+def move_gap(draft, course, by):
+    """Let so many more stones of a course be laid from the left end, as many as there are."""
+    gap = draft.gaps[course]
+    from_left = min(left_of(gap) + by, draft.sizes[course])
+    draft.gaps[course] = from_left if gap >= 0 else -1 - from_left
+
+
+def change(draft, dice, most):
+    """Change a draft at random; return the lowest course in which something changed, or -1."""
+    kind = drawn(dice, 64)
     if kind < SWAP:
-        return swap(draft, dice, turned=False)
+        return swap(draft, dice, False)
     if kind < MOVE:
         return move(draft, dice)
     if kind < TURN:
         return turn(draft, dice)
     if kind < SWAP_TURN:
-        return swap(draft, dice, turned=True)
-    return change_course(draft, dice, kind, courses)
-
-
-def change_course(draft: Draft, dice: Dice, kind: int, courses: int) -> int:
-    """Change a draft by more than one or two stones."""
+        return swap(draft, dice, True)
     if kind < GAP:
         return shift_gap(draft, dice)
     if kind < REVERSE:
         return reverse(draft, dice)
     if kind < EXCHANGE:
         return exchange(draft, dice)
-    return split(draft, dice, courses) if kind < SPLIT else join(draft, dice)
+    return split(draft, dice, most) if kind < SPLIT else join(draft, dice)
 
 
-def swap(draft: Draft, dice: Dice, *, turned: bool) -> int:
+def turn_stone(draft, dice, stone):
+    """Turn a stone by one, two or three quarters."""
+    draft.turns[stone] = (draft.turns[stone] + 1 + drawn(dice, 3)) % 4
+
+
+def swap(draft, dice, turned):
     """Swap a stone of a course with any other; where it was, the other may be turned."""
-    one, two = dice.below(draft.placed), dice.below(len(draft.order))
+    one = drawn(dice, start_of(draft, draft.courses))
+    two = drawn(dice, draft.stones)
     if one == two:
         return NOTHING
-    order = draft.order
-    order[one], order[two] = order[two], order[one]
+    draft.order[one], draft.order[two] = draft.order[two], draft.order[one]
     if turned:
-        draft.turns[order[one]] = (draft.turns[order[one]] + 1 + dice.below(3)) % 4
-    return min(draft.course_of(one), draft.course_of(two))
+        turn_stone(draft, dice, draft.order[one])
+    return min(course_of(draft, one), course_of(draft, two))
 
 
-def turn(draft: Draft, dice: Dice) -> int:
-    """Turn a stone of a course by one, two or three quarters."""
-    place = dice.below(draft.placed)
-    stone = draft.order[place]
-    draft.turns[stone] = (draft.turns[stone] + 1 + dice.below(3)) % 4
-    return draft.course_of(place)
+def turn(draft, dice):
+    """Turn a stone of a course."""
+    place = drawn(dice, start_of(draft, draft.courses))
+    turn_stone(draft, dice, draft.order[place])
+    return course_of(draft, place)
 
 
-def move(draft: Draft, dice: Dice) -> int:
+def move(draft, dice):
     """Move a stone to a place in the same or another course, or leave it out, or take it back."""
-    place, to = dice.below(len(draft.order)), dice.below(len(draft.sizes) + 1)
-    course = draft.course_of(place)
-    left_out = course == len(draft.sizes)
-    alone = not left_out and draft.sizes[course] == 1
-    if (left_out and to == course) or (alone and (to == course or len(draft.sizes) == 1)):
-        return NOTHING
+    place: cython.int = drawn(dice, draft.stones)
+    to: cython.int = drawn(dice, draft.courses + 1)
+    course = course_of(draft, place)
     stone = draft.order[place]
-    inside = place - draft.start(course)
-    del draft.order[place]
+    outside: cython.bint = course == draft.courses
+    alone: cython.bint = not outside and draft.sizes[course] == 1
+    if (outside and to == course) or (alone and (to == course or draft.courses == 1)):
+        return NOTHING
+    inside = place - start_of(draft, course)
+    move_ints(draft.order, place, draft.order, place + 1, draft.stones - place - 1)
     if alone:
-        del draft.sizes[course], draft.gaps[course]
-        to -= to > course
-    elif not left_out:
+        drop_course(draft, course)
+        if to > course:
+            to -= 1
+    elif not outside:
         draft.sizes[course] -= 1
-        draft.move_gap(course, -(inside < left_of(draft.gaps[course])))
+        move_gap(draft, course, -1 if inside < left_of(draft.gaps[course]) else 0)
     insert(draft, dice, stone, to)
-    return min(course, to, len(draft.sizes) - 1)
+    return min(course, to, draft.courses - 1)
 
 
-def insert(draft: Draft, dice: Dice, stone: int, course: int) -> None:
-    """Insert a stone anywhere in a course, or in what is left out."""
-    start = draft.start(course)
-    if course == len(draft.sizes):
-        draft.order.insert(start + dice.below(len(draft.order) - start + 1), stone)
-        return
-    inside = dice.below(draft.sizes[course] + 1)
-    draft.order.insert(start + inside, stone)
-    draft.sizes[course] += 1
-    draft.move_gap(course, inside < left_of(draft.gaps[course]))
+def insert(draft, dice, stone, course):
+    """Insert a stone anywhere in a course, or in what is left out; the last place is free."""
+    place: cython.int = start_of(draft, course)
+    outside: cython.bint = course == draft.courses
+    room = draft.stones - place if outside else draft.sizes[course] + 1
+    inside = drawn(dice, room)
+    place += inside
+    move_ints(draft.order, place + 1, draft.order, place, draft.stones - place - 1)
+    draft.order[place] = stone
+    if not outside:
+        draft.sizes[course] += 1
+        move_gap(draft, course, 1 if inside < left_of(draft.gaps[course]) else 0)
 
 
-def shift_gap(draft: Draft, dice: Dice) -> int:
+def drop_course(draft, course):
+    """Take a course out of the list of courses."""
+    draft.courses -= 1
+    for i in range(course, draft.courses):
+        draft.sizes[i], draft.gaps[i] = draft.sizes[i + 1], draft.gaps[i + 1]
+
+
+def shift_gap(draft, dice):
     """Put the gap of a course somewhere else; of one in four it keeps away from the ends."""
-    course = dice.below(len(draft.sizes))
-    gap = dice.below(draft.sizes[course] + 1)
-    if dice.below(4) == 0:
+    course = drawn(dice, draft.courses)
+    gap = drawn(dice, draft.sizes[course] + 1)
+    if drawn(dice, 4) == 0:
         gap = -1 - gap
     if gap == draft.gaps[course]:
         return NOTHING
@@ -205,54 +257,62 @@ def shift_gap(draft: Draft, dice: Dice) -> int:
     return course
 
 
-def reverse(draft: Draft, dice: Dice) -> int:
+def reverse(draft, dice):
     """Reverse some neighbours of a course."""
-    course = dice.below(len(draft.sizes))
-    start, size = draft.start(course), draft.sizes[course]
-    one, two = dice.below(size), dice.below(size)
+    course = drawn(dice, draft.courses)
+    size = draft.sizes[course]
+    one, two = drawn(dice, size), drawn(dice, size)
     if one == two:
         return NOTHING
-    first, end = start + min(one, two), start + max(one, two) + 1
-    draft.order[first:end] = draft.order[first:end][::-1]
+    first = start_of(draft, course) + min(one, two)
+    last = first + max(one, two) - min(one, two)
+    while first < last:
+        draft.order[first], draft.order[last] = draft.order[last], draft.order[first]
+        first += 1
+        last -= 1
     return course
 
 
-def exchange(draft: Draft, dice: Dice) -> int:
+def exchange(draft, dice):
     """Exchange two courses."""
-    one, two = dice.below(len(draft.sizes)), dice.below(len(draft.sizes))
+    one, two = drawn(dice, draft.courses), drawn(dice, draft.courses)
     if one == two:
         return NOTHING
     low, high = min(one, two), max(one, two)
-    ends = [draft.start(low), draft.start(low + 1), draft.start(high), draft.start(high + 1)]
-    order = draft.order
-    order[ends[0] : ends[3]] = (
-        order[ends[2] : ends[3]] + order[ends[1] : ends[2]] + order[ends[0] : ends[1]]
-    )
-    for numbers in (draft.sizes, draft.gaps):
-        numbers[low], numbers[high] = numbers[high], numbers[low]
+    first = start_of(draft, low)
+    small, large = draft.sizes[low], draft.sizes[high]
+    between = start_of(draft, high) - first - small
+    move_ints(draft.spare, 0, draft.order, first, small + between + large)
+    move_ints(draft.order, first, draft.spare, small + between, large)
+    move_ints(draft.order, first + large, draft.spare, small, between)
+    move_ints(draft.order, first + large + between, draft.spare, 0, small)
+    draft.sizes[low], draft.sizes[high] = large, small
+    draft.gaps[low], draft.gaps[high] = draft.gaps[high], draft.gaps[low]
     return low
 
 
-def split(draft: Draft, dice: Dice, courses: int) -> int:
+def split(draft, dice, most):
     """Make two courses of one."""
-    course = dice.below(len(draft.sizes))
+    course = drawn(dice, draft.courses)
     size = draft.sizes[course]
-    if size < 2 or len(draft.sizes) >= courses:
+    if size < 2 or draft.courses >= most:
         return NOTHING
-    lower = 1 + dice.below(size - 1)
-    draft.sizes[course] = lower
-    draft.gaps[course] = (lower + 1) // 2
-    draft.sizes.insert(course + 1, size - lower)
-    draft.gaps.insert(course + 1, (size - lower + 1) // 2)
+    lower: cython.int = 1 + drawn(dice, size - 1)
+    for i in range(draft.courses, course + 1, -1):
+        draft.sizes[i], draft.gaps[i] = draft.sizes[i - 1], draft.gaps[i - 1]
+    draft.courses += 1
+    draft.sizes[course], draft.sizes[course + 1] = lower, size - lower
+    draft.gaps[course], draft.gaps[course + 1] = (lower + 1) // 2, (size - lower + 1) // 2
     return course
 
 
-def join(draft: Draft, dice: Dice) -> int:
+def join(draft, dice):
     """Make one course of two."""
-    if len(draft.sizes) < 2:
+    if draft.courses < 2:
         return NOTHING
-    course = dice.below(len(draft.sizes) - 1)
+    course = drawn(dice, draft.courses - 1)
     draft.gaps[course] = draft.sizes[course]
-    draft.sizes[course] += draft.sizes.pop(course + 1)
-    del draft.gaps[course + 1]
+    size = draft.sizes[course] + draft.sizes[course + 1]
+    drop_course(draft, course + 1)
+    draft.sizes[course] = size
     return course

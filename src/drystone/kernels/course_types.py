@@ -36,10 +36,17 @@ as wide as the room, in the course above, still has its centroid on it."""
 TERMS: Final = 16
 """Terms of the cost, in the order of :class:`Weights`."""
 
+FIRST_PX: Final = 10
+"""Distance of the first path's start from the end of the wall, px."""
 
-def left_of(gap: int) -> int:
-    """Return how many stones of a course are laid from the left end."""
-    return gap if gap >= 0 else -1 - gap
+STARTS: Final = 10
+"""The side is divided by this to find the distance between two starts; there are no more."""
+
+PADDING_PX: Final = 3
+"""Open rows and columns around the wall, px; one of them comes first."""
+
+Joints = list[tuple[int, int]]
+Bed = tuple[int, int, int]
 
 
 class Weights(NamedTuple):

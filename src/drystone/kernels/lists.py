@@ -28,6 +28,16 @@ def doubles_out(array: NDArray[Any]) -> memoryview:
     return array.reshape(-1).data
 
 
+def pixels(array: NDArray[Any]) -> memoryview:
+    """Return the flags of any view, to be read: only a few are."""
+    return np.ascontiguousarray(array).reshape(-1).data
+
+
+def stride(array: NDArray[Any], axis: int) -> int:
+    """Return how far the flags of :func:`pixels` are apart along rows (0) or in them (1)."""
+    return 1 if axis else int(array.shape[1])
+
+
 ints_out = longs_out = flags_out = doubles_out
 
 
@@ -41,7 +51,18 @@ def more_doubles(numbers: list[Any], count: int) -> list[Any]:
     return numbers + [0] * (count - len(numbers))
 
 
+def kept_doubles(_room: list[Any], count: int) -> list[Any]:
+    """Return room for so many numbers, which is given back with a list."""
+    return [0] * count
+
+
+def move_ints(to: list[Any], at: int, source: list[Any], start: int, count: int) -> None:
+    """Write numbers over others, which they may overlap."""
+    to[at : at + count] = source[start : start + count]
+
+
 new_ints = new_doubles
+kept_ints = kept_doubles
 more_ints = more_doubles
 
 

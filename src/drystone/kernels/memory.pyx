@@ -7,11 +7,14 @@ A pointer is valid as long as its array: whoever asks for one keeps the array.
 from cpython.buffer cimport (
     PyBUF_C_CONTIGUOUS,
     PyBUF_FORMAT,
+    PyBUF_STRIDES,
     PyBUF_WRITABLE,
     PyBuffer_Release,
     PyObject_GetBuffer,
 )
+from cpython.bytearray cimport PyByteArray_AS_STRING
 from libc.stdlib cimport free, qsort, realloc
+from libc.string cimport memmove
 
 
 cdef void *start(object array, const char *kinds, Py_ssize_t size, int access) except? NULL:
@@ -45,6 +48,21 @@ cdef long long *longs(object array) except? NULL:
 
 cdef unsigned char *flags(object array) except? NULL:
     return <unsigned char *>start(array, b"?B", 1, 0)
+
+
+cdef unsigned char *pixels(object array) except? NULL:
+    """Return where flags begin, of any view; they are :func:`stride` apart."""
+    cdef Py_buffer view
+    PyObject_GetBuffer(array, &view, PyBUF_STRIDES | PyBUF_FORMAT)
+    if view.itemsize != 1:
+        PyBuffer_Release(&view)
+        raise TypeError("a kernel got numbers that are no flags")
+    PyBuffer_Release(&view)
+    return <unsigned char *>view.buf
+
+
+cdef Py_ssize_t stride(object array, int axis) except? -1:
+    return array.strides[axis]
 
 
 cdef double *doubles_out(object array) except? NULL:
@@ -85,6 +103,26 @@ cdef void *resized(void *at, Py_ssize_t size) except? NULL nogil:
         with gil:
             raise MemoryError
     return more
+
+
+cdef double *kept_doubles(list room, Py_ssize_t count):
+    return <double *>kept(room, count * sizeof(double))
+
+
+cdef int *kept_ints(list room, Py_ssize_t count):
+    return <int *>kept(room, count * sizeof(int))
+
+
+cdef char *kept(list room, Py_ssize_t size):
+    zeros = bytearray(size)
+    room.append(zeros)
+    return PyByteArray_AS_STRING(zeros)
+
+
+cdef void move_ints(
+    int *to, Py_ssize_t at, const int *source, Py_ssize_t start, Py_ssize_t count
+) noexcept nogil:
+    memmove(to + at, source + start, count * sizeof(int))
 
 
 cdef void sort_doubles(double *at, Py_ssize_t count) noexcept nogil:

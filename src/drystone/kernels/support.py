@@ -1,11 +1,22 @@
-"""Where a mask stands on a landscape: the ends of its support, and the row where it rests."""
+"""Where a mask stands on a landscape: the ends of its support, and the row where it rests.
 
-import numpy as np
+The functions take about a microsecond, less than passing the interpreter from thread to thread:
+they keep it.
+"""
 
-from drystone.kernels.backend import compiled
+from __future__ import annotations
+
 from drystone.kernels.raster import Mask
 
-_fast = compiled("support")
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import pixels, stride
+else:
+    from drystone.kernels.lists import pixels, stride
 
 Ends = tuple[int, int, int, int]
 
@@ -41,25 +52,7 @@ def support_ends(occupied: Mask, mask: Mask, row: int, col: int) -> Ends | None:
     (2, 3, 2, 2)
     """
     check_inside(occupied, mask, row, col)
-    kernel = support_ends_numpy if _fast is None else _fast.support_ends
-    ends: Ends | None = kernel(occupied, mask, row, col)
-    return ends
-
-
-def support_ends_numpy(occupied: Mask, mask: Mask, row: int, col: int) -> Ends | None:
-    """Return what :func:`support_ends` returns, by NumPy."""
-    height, width = mask.shape
-    below = occupied[row + 1 : row + height + 1, col : col + width]
-    hit = np.zeros(mask.shape, bool)
-    hit[: below.shape[0]] = mask[: below.shape[0]] & below
-    if row + height == occupied.shape[0]:
-        hit[-1] = mask[-1]
-    columns = np.flatnonzero(hit.any(axis=0))
-    if columns.size == 0:
-        return None
-    first, last = int(columns[0]), int(columns[-1])
-    lowest = height - np.argmax(hit[::-1, [first, last]], axis=0)
-    return col + first, col + last + 1, row + int(lowest[0]), row + int(lowest[1])
+    return ends_at(pair_of(occupied, mask), row, col)
 
 
 def resting_place(
@@ -89,26 +82,23 @@ def resting_place(
     """
     if col < 0 or col + mask.shape[1] > occupied.shape[1]:
         return None
-    kernel = resting_place_numpy if _fast is None else _fast.resting_place
-    place: tuple[int, Ends] | None = kernel(occupied, mask, row, col, reach_px)
-    return place
-
-
-def resting_place_numpy(
-    occupied: Mask, mask: Mask, row: int, col: int, reach_px: int
-) -> tuple[int, Ends] | None:
-    """Return what :func:`resting_place` returns, by NumPy; the mask's columns must be inside."""
-    height, width = mask.shape
-    lowest = occupied.shape[0] - height
-    window = occupied[:, col : col + width]
-
-    def fits(at: int) -> bool:
-        return 0 <= at <= lowest and not np.any(window[at : at + height] & mask)
-
-    for shift in sorted(range(-reach_px, reach_px + 1), key=lambda shift: (abs(shift), -shift)):
-        if fits(row + shift) and not fits(row + shift + 1):
-            ends = support_ends_numpy(occupied, mask, row + shift, col)
-            return None if ends is None else (row + shift, ends)
+    pair: Pair = pair_of(occupied, mask)
+    first: cython.Py_ssize_t = row
+    column: cython.Py_ssize_t = col
+    reach: cython.Py_ssize_t = reach_px
+    above: cython.bint = fits(pair, first, column)
+    below: cython.bint = fits(pair, first + 1, column)
+    if above and not below:
+        return row, ends_at(pair, first, column)
+    for shift in range(1, reach + 1):
+        further: cython.bint = fits(pair, first + shift + 1, column)
+        if below and not further:
+            return first + shift, ends_at(pair, first + shift, column)
+        below = further
+        further = fits(pair, first - shift, column)
+        if further and not above:
+            return first - shift, ends_at(pair, first - shift, column)
+        above = further
     return None
 
 
@@ -117,3 +107,63 @@ def check_inside(occupied: Mask, mask: Mask, row: int, col: int) -> None:
     height, width = mask.shape
     if min(row, col) < 0 or row + height > len(occupied) or col + width > occupied.shape[1]:
         raise ValueError(f"a mask of {height} x {width} px at ({row}, {col}) leaves the landscape")
+
+
+@cython.cclass
+class Pair:
+    """A landscape and a mask, and how far the pixels of each are apart."""
+
+
+def pair_of(occupied, mask):
+    """Return a landscape and a mask, which have to outlive it."""
+    pair: Pair = Pair()
+    pair.wall, pair.stone = pixels(occupied), pixels(mask)
+    pair.down, pair.across = stride(occupied, 0), stride(occupied, 1)
+    pair.stone_down, pair.stone_across = stride(mask, 0), stride(mask, 1)
+    pair.rows = len(occupied)
+    pair.height, pair.width = mask.shape
+    return pair
+
+
+def ends_at(pair, row, col):
+    """Return the ends of the support of a mask at a position where it is inside."""
+    left: cython.Py_ssize_t = pair.width
+    right: cython.Py_ssize_t = -1
+    left_row: cython.Py_ssize_t = 0
+    right_row: cython.Py_ssize_t = 0
+    # From the bottom up: of the pixels of a column the lowest is found first.
+    for i in range(pair.height - 1, -1, -1):
+        below = row + i + 1
+        for at in range(left):
+            if stands(pair, i, at, below, col):
+                left, left_row = at, below
+                break
+        for at in range(pair.width - 1, right, -1):
+            if stands(pair, i, at, below, col):
+                right, right_row = at, below
+                break
+    if right < 0:
+        return None
+    return col + left, col + right + 1, left_row, right_row
+
+
+def stands(pair, i, at, below, col):
+    """Say whether a pixel of a mask is on the ground or on a pixel of the row below."""
+    if not pair.stone[i * pair.stone_down + at * pair.stone_across]:
+        return False
+    return below == pair.rows or pair.wall[below * pair.down + (col + at) * pair.across] != 0
+
+
+def fits(pair, row, col):
+    """Say whether a mask is inside and overlaps nothing; its lowest rows are looked at first."""
+    if row < 0 or row + pair.height > pair.rows:
+        return False
+    for i in range(pair.height - 1, -1, -1):
+        there: cython.Py_ssize_t = (row + i) * pair.down + col * pair.across
+        here: cython.Py_ssize_t = i * pair.stone_down
+        for _ in range(pair.width):
+            if pair.wall[there] & pair.stone[here]:
+                return False
+            there += pair.across
+            here += pair.stone_across
+    return True

@@ -9,7 +9,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from drystone.kernels.course_moves import Dice
+from drystone.kernels.course_moves import Dice, left_of
 from drystone.kernels.course_types import (
     COLUMN_UNITS,
     INSET,
@@ -18,7 +18,6 @@ from drystone.kernels.course_types import (
     Cooling,
     Layout,
     Poses,
-    left_of,
 )
 from drystone.kernels.courses import anneal, evaluate
 from drystone.kernels.raster import turn

@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from drystone.kernels.course_paths import STARTS, Bed, Joints, path_starts, ways_up
-from drystone.kernels.course_types import COLUMN_UNITS, PARTS, Ground
+from drystone.kernels.course_types import COLUMN_UNITS, PARTS, STARTS, Bed, Ground, Joints
+from drystone.kernels.courses import ways_up
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import bare, extremes, raised
 
@@ -84,7 +84,7 @@ def ground_of(laid: LaidCourses | None, size_px: tuple[float, float], column_px:
     ways = np.zeros((0, STARTS), np.int32)
     for course in laid.courses:
         below, joints = joints, joints_of(course, width, unit_px)
-        ways = ways_up(joints, below, ways, path_starts(width))
+        ways = ways_up(joints, below, ways, width)
     beds = [bed_of(course, unit_px) for course in laid.courses]
     return Ground(
         np.rint(laid.tops_px / unit_px).astype(np.int32),

@@ -1,0 +1,14 @@
+ctypedef unsigned char *pixels_at
+
+
+cdef class Pair:
+    cdef pixels_at wall, stone
+    cdef Py_ssize_t down, across, stone_down, stone_across, rows, height, width
+
+
+cdef Pair pair_of(object occupied, object mask)
+cdef tuple ends_at(Pair pair, Py_ssize_t row, Py_ssize_t col)
+cdef bint stands(
+    Pair pair, Py_ssize_t i, Py_ssize_t at, Py_ssize_t below, Py_ssize_t col
+) noexcept nogil
+cdef bint fits(Pair pair, Py_ssize_t row, Py_ssize_t col) noexcept nogil
