@@ -40,9 +40,12 @@ sbom: .venv/dev.stamp           ## list the same as CycloneDX in sbom.json (need
 
 # Every file that is installed has its checksum in a lock; only then is the package itself built.
 define INSTALL
-$(PYTHON) -m venv .venv
-$(PIP) --require-hashes -r $<
-$(PIP) --no-deps --no-build-isolation -e .
+@echo "making an environment in .venv, installing what $< lists"
+@$(PYTHON) -m venv .venv
+@$(PIP) --require-hashes -r $<
+@echo "compiling the kernels, if there is a compiler"
+@$(BIN)/python setup.py -q build_ext --inplace
+@$(PIP) --no-deps --no-build-isolation -e .
 @touch $@ .venv/demo.stamp
 endef
 
