@@ -29,15 +29,16 @@ def doubles_out(array: NDArray[Any]) -> memoryview:
 
 
 def pixels(array: NDArray[Any]) -> memoryview:
-    """Return the flags of any view, to be read: only a few are."""
+    """Return the numbers of any view, of which only a few are read."""
     return np.ascontiguousarray(array).reshape(-1).data
 
 
 def stride(array: NDArray[Any], axis: int) -> int:
-    """Return how far the flags of :func:`pixels` are apart along rows (0) or in them (1)."""
+    """Return how far the numbers of :func:`pixels` are apart: from row to row (0), or in them."""
     return 1 if axis else int(array.shape[1])
 
 
+labels_in = pixels
 ints_out = longs_out = flags_out = doubles_out
 
 

@@ -5,7 +5,9 @@ cdef int *ints(object array) except? NULL
 cdef long long *longs(object array) except? NULL
 cdef unsigned char *flags(object array) except? NULL
 
+# Of any view: the numbers are a stride apart.
 cdef unsigned char *pixels(object array) except? NULL
+cdef unsigned int *labels_in(object array) except? NULL
 cdef Py_ssize_t stride(object array, int axis) except? -1
 
 cdef double *doubles_out(object array) except? NULL
