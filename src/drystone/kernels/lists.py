@@ -63,13 +63,19 @@ def move_ints(to: list[Any], at: int, source: list[Any], start: int, count: int)
 
 
 new_ints = new_doubles
-kept_ints = kept_doubles
+kept_ints = kept_longs = kept_flags = kept_doubles
 more_ints = more_doubles
 
 
 def sort_doubles(numbers: list[Any], count: int) -> None:
     """Put the first numbers in order."""
     numbers[:count] = sorted(numbers[:count])
+
+
+def sort_rows(numbers: list[Any], count: int) -> None:
+    """Put the first rows of six numbers in order."""
+    rows = sorted(zip(*[iter(numbers[: 6 * count])] * 6, strict=True))
+    numbers[: 6 * count] = [number for row in rows for number in row]
 
 
 def release(_numbers: list[Any]) -> None:

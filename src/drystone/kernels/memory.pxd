@@ -21,8 +21,11 @@ cdef double *more_doubles(double *at, Py_ssize_t count) except? NULL nogil
 cdef int *more_ints(int *at, Py_ssize_t count) except? NULL nogil
 cdef double *kept_doubles(list room, Py_ssize_t count)
 cdef int *kept_ints(list room, Py_ssize_t count)
+cdef long long *kept_longs(list room, Py_ssize_t count)
+cdef unsigned char *kept_flags(list room, Py_ssize_t count)
 cdef void move_ints(
     int *to, Py_ssize_t at, const int *source, Py_ssize_t start, Py_ssize_t count
 ) noexcept nogil
 cdef void sort_doubles(double *at, Py_ssize_t count) noexcept nogil
+cdef void sort_rows(long long *at, Py_ssize_t count) noexcept nogil
 cdef void release(void *at) noexcept nogil

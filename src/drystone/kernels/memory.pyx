@@ -110,6 +110,14 @@ cdef int *kept_ints(list room, Py_ssize_t count):
     return <int *>kept(room, count * sizeof(int))
 
 
+cdef long long *kept_longs(list room, Py_ssize_t count):
+    return <long long *>kept(room, count * sizeof(long long))
+
+
+cdef unsigned char *kept_flags(list room, Py_ssize_t count):
+    return <unsigned char *>kept(room, count)
+
+
 cdef char *kept(list room, Py_ssize_t size):
     zeros = bytearray(size)
     room.append(zeros)
@@ -129,6 +137,21 @@ cdef void sort_doubles(double *at, Py_ssize_t count) noexcept nogil:
 cdef int compared(const void *one, const void *two) noexcept nogil:
     cdef double a = (<const double *>one)[0], b = (<const double *>two)[0]
     return (a > b) - (a < b)
+
+
+cdef void sort_rows(long long *at, Py_ssize_t count) noexcept nogil:
+    """Sort rows of six numbers by the first one, then by the next one, ..."""
+    qsort(at, count, 6 * sizeof(long long), compared_rows)
+
+
+cdef int compared_rows(const void *one, const void *two) noexcept nogil:
+    cdef const long long *a = <const long long *>one
+    cdef const long long *b = <const long long *>two
+    cdef int i
+    for i in range(6):
+        if a[i] != b[i]:
+            return 1 if a[i] > b[i] else -1
+    return 0
 
 
 cdef void release(void *at) noexcept nogil:
