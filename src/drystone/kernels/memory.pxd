@@ -17,8 +17,10 @@ cdef unsigned char *flags_out(object array) except? NULL
 
 cdef double *new_doubles(Py_ssize_t count) except? NULL nogil
 cdef int *new_ints(Py_ssize_t count) except? NULL nogil
+cdef long long *new_longs(Py_ssize_t count) except? NULL nogil
 cdef double *more_doubles(double *at, Py_ssize_t count) except? NULL nogil
 cdef int *more_ints(int *at, Py_ssize_t count) except? NULL nogil
+cdef long long *more_longs(long long *at, Py_ssize_t count) except? NULL nogil
 cdef double *kept_doubles(list room, Py_ssize_t count)
 cdef int *kept_ints(list room, Py_ssize_t count)
 cdef long long *kept_longs(list room, Py_ssize_t count)

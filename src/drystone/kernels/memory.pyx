@@ -86,12 +86,20 @@ cdef int *new_ints(Py_ssize_t count) except? NULL nogil:
     return <int *>resized(NULL, count * sizeof(int))
 
 
+cdef long long *new_longs(Py_ssize_t count) except? NULL nogil:
+    return <long long *>resized(NULL, count * sizeof(long long))
+
+
 cdef double *more_doubles(double *at, Py_ssize_t count) except? NULL nogil:
     return <double *>resized(at, count * sizeof(double))
 
 
 cdef int *more_ints(int *at, Py_ssize_t count) except? NULL nogil:
     return <int *>resized(at, count * sizeof(int))
+
+
+cdef long long *more_longs(long long *at, Py_ssize_t count) except? NULL nogil:
+    return <long long *>resized(at, count * sizeof(long long))
 
 
 cdef void *resized(void *at, Py_ssize_t size) except? NULL nogil:
