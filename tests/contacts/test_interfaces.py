@@ -282,7 +282,7 @@ def test_only_what_fills_a_pixel_beside_a_contact_at_a_point_closes_it_in(row, c
 @given(seed=st.integers(0, 2**32), row=st.integers(0, 21), col=st.integers(0, 17))
 @repeatable(100)
 def test_the_contacts_that_are_closed_in_are_those_that_are_there_no_more(seed, row, col):
-    labels = np.random.default_rng(seed).choice([0, 0, 0, 1, 2, 3, 4], (24, 20))
+    labels = np.random.default_rng(seed).choice([0, 0, 0, 1, 2, 3, 4], (24, 20)).astype(np.uint32)
     mask = labels[row : row + 3, col : col + 5] == 0
     grown = labels.copy()
     grown[row : row + 3, col : col + 5][mask] = 9

@@ -6,16 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from drystone.kernels import boundary as module
-from drystone.kernels.boundary import (
-    EMPTY,
-    boundary_numpy,
-    boundary_of,
-    crossing_corners,
-    touching_edges,
-    trace_chains,
-)
-from drystone.kernels.raster import Mask
+from drystone.kernels.boundary import EMPTY, boundary_of
 from tests.naive import contacts as naive
 from tests.naive.statics import diagonal_touches, pixel_edges
 from tests.strategies import label_images, repeatable
@@ -32,10 +23,16 @@ def cells_of(labels):
     return cells
 
 
-def unit_edges(chain, height):
-    x, y = chain.nodes[:, 1] - 1, height + 1 - chain.nodes[:, 0]
-    nodes = list(zip(x.tolist(), y.tolist(), strict=True))
-    return [frozenset(pair) for pair in pairwise(nodes)]
+def chains_of(cells, fresh=None):
+    """Both labels and the nodes of each chain."""
+    boundary = boundary_of(cells, fresh)
+    nodes = np.split(boundary.nodes, boundary.begins[1:-1])
+    return [(*pair, mine) for pair, mine in zip(boundary.labels.tolist(), nodes, strict=False)]
+
+
+def unit_edges(nodes, height):
+    x, y = nodes[:, 1] - 1, height + 1 - nodes[:, 0]
+    return [frozenset(pair) for pair in pairwise(zip(x.tolist(), y.tolist(), strict=True))]
 
 
 @given(labels=pictures)
@@ -43,9 +40,9 @@ def unit_edges(chain, height):
 def test_chains_cover_every_edge_once(labels):
     cells = cells_of(labels)
     found = {}
-    for chain in trace_chains(touching_edges(cells, cells > 0)):
-        for edge in unit_edges(chain, labels.shape[0]):
-            edges = found.setdefault((chain.high, chain.low), set())
+    for high, low, nodes in chains_of(cells, cells > 0):
+        for edge in unit_edges(nodes, labels.shape[0]):
+            edges = found.setdefault((high, low), set())
             assert edge not in edges
             edges.add(edge)
     assert found == pixel_edges(labels)
@@ -55,23 +52,13 @@ def test_chains_cover_every_edge_once(labels):
 @repeatable()
 def test_the_higher_label_lies_to_the_left_of_every_edge(labels):
     cells = cells_of(labels)
-    for chain in trace_chains(touching_edges(cells, cells > 0)):
-        steps = np.diff(chain.nodes, axis=0)
-        middle = (chain.nodes[1:] + chain.nodes[:-1]) / 2
+    for high, low, nodes in chains_of(cells, cells > 0):
+        steps = np.diff(nodes, axis=0)
+        middle = (nodes[1:] + nodes[:-1]) / 2
         left = np.column_stack((-steps[:, 1], steps[:, 0])) / 2  # rows grow downwards
-        for side, label in ((left, chain.high), (-left, chain.low)):
+        for side, label in ((left, high), (-left, low)):
             row, col = np.floor(middle + side).astype(int).T
             assert (cells[row, col] == label).all()
-
-
-@given(labels=pictures, seed=st.integers(0, 99))
-@repeatable()
-def test_chains_do_not_depend_on_the_order_of_the_edges(labels, seed):
-    cells = cells_of(labels)
-    edges = touching_edges(cells, cells > 0)
-    shuffled = np.random.default_rng(seed).permutation(edges)
-    chains, again = trace_chains(edges), trace_chains(shuffled)
-    assert [c.nodes.tolist() for c in chains] == [c.nodes.tolist() for c in again]
 
 
 @given(labels=pictures)
@@ -79,7 +66,7 @@ def test_chains_do_not_depend_on_the_order_of_the_edges(labels, seed):
 def test_crossing_corners_equal_their_twin(labels):
     cells = cells_of(labels)
     height = labels.shape[0]
-    found = crossing_corners(cells, cells > 0).tolist()
+    found = boundary_of(cells, cells > 0).corners.tolist()
     assert {
         (max(a, b), min(a, b), col - 1, height + 1 - row) for a, b, row, col in found
     } == diagonal_touches(labels)
@@ -90,59 +77,42 @@ def test_crossing_corners_equal_their_twin(labels):
 
 def test_only_edges_of_fresh_cells():
     cells = np.array([[1, 2, 3]])
-    assert touching_edges(cells, cells == 3)[:, :2].tolist() == [[3, 2]]
+    assert boundary_of(cells, cells == 3).labels.tolist() == [[3, 2]]
 
 
 def test_an_enclosed_label_has_one_closed_chain_from_its_lowest_left_corner():
     cells = np.full((5, 5), 1)
     cells[1:4, 1:4] = 2
-    (chain,) = trace_chains(touching_edges(cells, cells > 0))
-    assert chain.nodes[0].tolist() == chain.nodes[-1].tolist() == [4, 1]
-    assert len(chain.nodes) == 13
+    ((_, _, nodes),) = chains_of(cells)
+    assert nodes[0].tolist() == nodes[-1].tolist() == [4, 1]
+    assert len(nodes) == 13
 
 
 def test_pixels_that_cross_give_chains_around_each_pixel():
     cells = np.array([[2, 1], [1, 2]])
-    chains = trace_chains(touching_edges(cells, cells > 0))
-    assert [chain.nodes.tolist() for chain in chains] == [
+    assert [nodes.tolist() for _, _, nodes in chains_of(cells)] == [
         [[1, 0], [1, 1], [0, 1]],
         [[1, 2], [1, 1], [2, 1]],
     ]
 
 
-compiled_too = pytest.mark.skipif(module._fast is None, reason="kernels are not compiled here")
+@pytest.mark.parametrize("shape", [(0, 0), (0, 3), (3, 0), (1, 1)])
+def test_where_there_is_hardly_anything_nothing_touches(shape):
+    boundary = boundary_of(np.ones(shape, np.int64))
+    assert boundary.begins.tolist() == [0]
+    assert boundary.labels.shape == boundary.nodes.shape == (0, 2)
+    assert boundary.corners.shape == (0, 4)
 
 
-def same_bytes(one, other):
-    """Of dataclasses of arrays: the same types, shapes and bits."""
-    pairs = zip(vars(one).values(), vars(other).values(), strict=True)
-    return all(a.dtype == b.dtype and a.shape == b.shape and (a == b).all() for a, b in pairs)
-
-
-def fresh_ids(cells, ids: list[int] | None) -> Mask | None:
-    return None if ids is None else np.isin(cells, ids)
-
-
-@compiled_too
-@given(
-    labels=pictures | label_images(),
-    ids=st.none() | st.lists(st.integers(1, 4), max_size=3),
-    margin=st.booleans(),
-)
-@repeatable(300)
-def test_the_compiled_boundary_is_the_same(labels, ids, margin):
+@given(labels=pictures | label_images(), ids=st.lists(st.integers(1, 4), max_size=3))
+@repeatable(100)
+def test_chains_and_corners_of_what_is_fresh_are_those_of_all_that_have_it(labels, ids):
     cells = cells_of(labels)
-    if not margin:
-        cells = np.ascontiguousarray(cells[1:-1, 1:-1])
-    fresh = fresh_ids(cells, ids)
-    assert same_bytes(boundary_of(cells, fresh), boundary_numpy(cells, fresh))
-
-
-@compiled_too
-@pytest.mark.parametrize("shape", [(0, 0), (0, 3), (3, 0), (1, 1), (1, 4), (4, 1)])
-def test_the_compiled_boundary_of_hardly_anything_is_the_same(shape):
-    cells = np.arange(shape[0] * shape[1]).reshape(shape)
-    assert same_bytes(boundary_of(cells), boundary_numpy(cells))
+    every, found = boundary_of(cells), boundary_of(cells, np.isin(cells, ids))
+    kept = [(*pair, nodes.tolist()) for *pair, nodes in chains_of(cells) if set(pair) & set(ids)]
+    mine = [(*pair, nodes.tolist()) for *pair, nodes in chains_of(cells, np.isin(cells, ids))]
+    assert mine == kept
+    assert found.corners.tolist() == [c for c in every.corners.tolist() if {*c[:2]} & {*ids}]
 
 
 @given(labels=pictures | label_images())

@@ -5,19 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels import patches as module
 from drystone.kernels.boundary import EMPTY
-from drystone.kernels.patches import (
-    GROUND,
-    MARGIN_PX,
-    cut_out_numpy,
-    paint_numpy,
-    painted_patch,
-    whole_patch,
-)
+from drystone.kernels.patches import GROUND, MARGIN_PX, painted_patch, whole_patch
 from tests.strategies import dust_labels, masks, repeatable
-
-compiled_too = pytest.mark.skipif(module._fast is None, reason="kernels are not compiled here")
 
 
 def cell(labels, row, col):
@@ -34,29 +24,6 @@ def cells_at(labels, shape, top, left):
 
 
 around = st.integers(-9, 9)
-shapes = st.tuples(st.integers(0, 12), st.integers(0, 12))
-
-
-@given(labels=dust_labels(), shape=shapes, top=around, left=around)
-@repeatable(150)
-def test_cells_show_the_image_and_what_is_around_it(labels, shape, top, left):
-    expected = cells_at(labels, shape, top, left)
-    cells = np.full(shape, 99)
-    cut_out_numpy(labels, cells, top, left)
-    assert cells.tolist() == expected
-
-
-@compiled_too
-@given(labels=dust_labels(), shape=shapes, top=around, left=around, strided=st.booleans())
-@repeatable(150)
-def test_the_compiled_cells_are_the_same(labels, shape, top, left, strided):
-    if strided:
-        labels = np.repeat(labels, 2, axis=1)[::-1, ::2]
-    labels.flags.writeable = False
-    expected, cells = np.full(shape, 98), np.full(shape, 99)
-    cut_out_numpy(labels, expected, top, left)
-    module._fast.cut_out(labels, cells, top, left)
-    assert cells.tolist() == expected.tolist()
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint32, np.int64, np.int16])
@@ -72,38 +39,19 @@ def test_ids_of_more_than_32_bits_survive():
     assert whole_patch(labels).cells[MARGIN_PX].tolist() == [EMPTY] * 3 + [2**40] + [EMPTY] * 4
 
 
-KERNELS = [
-    pytest.param(paint_numpy, id="numpy"),
-    pytest.param(getattr(module._fast, "paint", None), id="compiled", marks=compiled_too),
-]
-
-
-@pytest.mark.parametrize("paint", KERNELS)
-def test_painting_marks_pixels_and_adds_up_their_places(paint):
-    @given(mask=masks(9), row=st.integers(0, 3), col=st.integers(0, 3))
-    @repeatable(60)
-    def check(mask, row, col):
-        mask.flags.writeable = False
-        cells, fresh = np.full((12, 12), EMPTY), np.zeros((12, 12), bool)
-        rows, cols = np.nonzero(mask)
-        assert paint(mask, 2**32 - 1, row, col, cells, fresh) == (
-            len(rows),
-            cols.sum(),
-            rows.sum(),
-        )
-        painted = list(zip((rows + row).tolist(), (cols + col).tolist(), strict=True))
-        assert [tuple(place) for place in np.argwhere(fresh).tolist()] == painted
-        assert [tuple(place) for place in np.argwhere(cells == 2**32 - 1).tolist()] == painted
-        assert (cells[~fresh] == EMPTY).all()
-
-    check()
-
-
-@given(labels=dust_labels(), parts=st.lists(st.tuples(masks(5), around, around), min_size=1))
-@repeatable(100)
-def test_a_patch_is_the_painted_image_around_all_parts(labels, parts):
-    """Parts may leave the image: what is drawn there is seen too."""
-    parts = [(100 + k, row, col, mask) for k, (mask, row, col) in enumerate(parts)]
+@given(
+    labels=dust_labels(),
+    parts=st.lists(st.tuples(masks(9), around, around), min_size=1),
+    strided=st.booleans(),
+)
+@repeatable(250)
+def test_a_patch_is_the_painted_image_around_all_parts(labels, parts, strided):
+    """Parts may leave the image: what is drawn there is seen too.  Views are read in place."""
+    parts = [(2**32 - 1 - k, row, col, mask) for k, (mask, row, col) in enumerate(parts)]
+    if strided:
+        labels = np.repeat(labels, 2, axis=1)[::-1, ::2]
+        parts = [(*part, np.asfortranarray(mask)) for *part, mask in parts]
+    labels.flags.writeable = False
     before = labels.copy()
     patch, sums = painted_patch(labels, parts)
     assert (labels == before).all()
@@ -121,4 +69,5 @@ def test_a_patch_is_the_painted_image_around_all_parts(labels, parts):
     rows, cols = np.nonzero(fresh)
     assert (rows.min(), cols.min()) == (MARGIN_PX, MARGIN_PX)
     assert (rows.max() + 1 + MARGIN_PX, cols.max() + 1 + MARGIN_PX) == fresh.shape
-    assert [area for area, _, _ in sums] == [mask.sum() for _, _, _, mask in parts]
+    places = [np.nonzero(mask) for *_, mask in parts]
+    assert sums == [(len(rows), cols.sum(), rows.sum()) for rows, cols in places]

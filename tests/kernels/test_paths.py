@@ -1,8 +1,6 @@
-"""Shortest ways along rows: compiled and NumPy against a search on a heap."""
+"""Shortest ways along rows, against a search on a heap."""
 
 import math
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -10,22 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from drystone.kernels import paths as module
-from drystone.kernels.backend import compiled
-from drystone.kernels.paths import DIAGONAL, STRAIGHT, step_counts
+from drystone.kernels.paths import DIAGONAL, STRAIGHT, row_lengths, row_ways, step_counts
 from drystone.kernels.raster import Mask
 from tests.naive import metrics as naive
 from tests.strategies import repeatable
-
-Kernel = Callable[..., Any]
-
-
-def kernels(name: str) -> list[object]:
-    absent = pytest.mark.skipif(compiled("paths") is None, reason="kernels are not compiled here")
-    return [
-        pytest.param(getattr(module, f"{name}_numpy"), id="numpy"),
-        pytest.param(getattr(module, name), id="compiled", marks=absent),
-    ]
 
 
 def noise(shape: tuple[int, int], share: float, seed: int) -> Mask:
@@ -46,60 +32,48 @@ def lengths_px(lengths: NDArray[np.int64]) -> list[float | None]:
     return [None if c is None else c[0] + math.sqrt(2) * c[1] for c in counts]
 
 
-@pytest.mark.parametrize("row_lengths", kernels("row_lengths"))
-def test_lengths_are_those_of_the_slow_twin(row_lengths: Kernel) -> None:
-    @repeatable(120)
-    @given(images)
-    def check(image: Mask) -> None:
-        rows = np.arange(image.shape[0])
-        last = image.shape[1] - 1
-        expected = [naive.shortest_length(image, (row, 0), (row, last)) for row in rows.tolist()]
-        found = lengths_px(row_lengths(image, rows))
-        assert [x is None for x in found] == [x is None for x in expected]
-        assert found == pytest.approx(expected, abs=1e-9)
-
-    check()
+@repeatable(120)
+@given(images)
+def test_lengths_are_those_of_the_slow_twin(image: Mask) -> None:
+    rows = np.arange(image.shape[0])
+    last = image.shape[1] - 1
+    expected = [naive.shortest_length(image, (row, 0), (row, last)) for row in rows.tolist()]
+    found = lengths_px(row_lengths(image, rows))
+    assert [x is None for x in found] == [x is None for x in expected]
+    assert found == pytest.approx(expected, abs=1e-9)
 
 
-@pytest.mark.parametrize("row_ways", kernels("row_ways"))
-def test_a_way_is_as_long_as_it_should_be_and_stays_on_open_pixels(row_ways: Kernel) -> None:
-    @repeatable(100)
-    @given(images, st.data())
-    def check(image: Mask, data: st.DataObject) -> None:
-        row = data.draw(st.integers(0, image.shape[0] - 1))
-        (way,) = row_ways(image, np.array([row]))
-        length = module.row_lengths_numpy(image, np.array([row]))[0]
-        assert (way is None) == (length < 0)
-        if way is None:
-            return
-        assert way[0].tolist() == [row, 0]
-        assert way[-1].tolist() == [row, image.shape[1] - 1]
-        assert image[tuple(way.T)].all()
-        steps = np.abs(np.diff(way, axis=0))
-        assert (steps.max(axis=1, initial=1) == 1).all()
-        diagonal = np.count_nonzero(steps.sum(axis=1) == 2)
-        assert (len(steps) - diagonal) * STRAIGHT + diagonal * DIAGONAL == length
-
-    check()
+@repeatable(100)
+@given(images, st.data())
+def test_a_way_is_as_long_as_it_should_be_and_stays_on_open_pixels(
+    image: Mask, data: st.DataObject
+) -> None:
+    row = data.draw(st.integers(0, image.shape[0] - 1))
+    (way,) = row_ways(image, np.array([row]))
+    length = row_lengths(image, np.array([row]))[0]
+    assert (way is None) == (length < 0)
+    if way is None:
+        return
+    assert way[0].tolist() == [row, 0]
+    assert way[-1].tolist() == [row, image.shape[1] - 1]
+    assert image[tuple(way.T)].all()
+    steps = np.abs(np.diff(way, axis=0))
+    assert (steps.max(axis=1, initial=1) == 1).all()
+    diagonal = np.count_nonzero(steps.sum(axis=1) == 2)
+    assert (len(steps) - diagonal) * STRAIGHT + diagonal * DIAGONAL == length
 
 
-@pytest.mark.skipif(compiled("paths") is None, reason="kernels are not compiled here")
 @pytest.mark.parametrize("share", [0.5, 0.62, 0.75, 0.95])
 @pytest.mark.parametrize("seed", range(3))
-def test_both_versions_agree_on_larger_images(share: float, seed: int) -> None:
+def test_lengths_in_larger_images_are_those_of_the_slow_twin(share: float, seed: int) -> None:
     image = noise((60, 110), share, seed)
-    rows = np.arange(0, 60, 3)
-    lengths = module.row_lengths(image, rows)
-    assert lengths.tolist() == module.row_lengths_numpy(image, rows).tolist()
-    pairs = zip(module.row_ways(image, rows), module.row_ways_numpy(image, rows), strict=True)
-    for way, expected in pairs:
-        assert (way is None) == (expected is None)
-        assert way is None or expected is None or way.tolist() == expected.tolist()
+    rows = np.arange(0, 60, 9)
+    expected = [naive.shortest_length(image, (row, 0), (row, 109)) for row in rows.tolist()]
+    assert lengths_px(row_lengths(image, rows)) == pytest.approx(expected, abs=1e-9)
 
 
-@pytest.mark.parametrize("row_lengths", kernels("row_lengths"))
 @pytest.mark.parametrize("seed", [2492, 2882, 3913, 4836])
-def test_a_better_way_that_is_found_just_after_the_first(row_lengths: Kernel, seed: int) -> None:
+def test_a_better_way_that_is_found_just_after_the_first(seed: int) -> None:
     """Images in which a search that ends with the first bucket of the end is wrong."""
     image, rows = noise((12, 18), 0.62, seed), np.arange(12)
     expected = [naive.shortest_length(image, (row, 0), (row, 17)) for row in rows.tolist()]
@@ -107,9 +81,8 @@ def test_a_better_way_that_is_found_just_after_the_first(row_lengths: Kernel, se
     assert found == pytest.approx(expected, abs=1e-9)
 
 
-@pytest.mark.parametrize("row_lengths", kernels("row_lengths"))
 @pytest.mark.parametrize("turns", range(4))
-def test_a_way_that_goes_back_and_forth(row_lengths: Kernel, turns: int) -> None:
+def test_a_way_that_goes_back_and_forth(turns: int) -> None:
     """Corridors, once along the rows and once across them, ended by either row or column."""
     image = np.zeros((31, 31), bool)
     image[::2] = True
@@ -120,8 +93,7 @@ def test_a_way_that_goes_back_and_forth(row_lengths: Kernel, turns: int) -> None
     assert lengths_px(row_lengths(image, rows)) == pytest.approx(expected)
 
 
-@pytest.mark.parametrize("row_lengths", kernels("row_lengths"))
-def test_rows_do_not_disturb_each_other(row_lengths: Kernel) -> None:
+def test_rows_do_not_disturb_each_other() -> None:
     image = noise((25, 40), 0.66, 4)
     rows = np.array([3, 20, 3, 11, 0, 24, 11])
     alone = [row_lengths(image, rows[k : k + 1])[0] for k in range(len(rows))]
@@ -130,8 +102,7 @@ def test_rows_do_not_disturb_each_other(row_lengths: Kernel) -> None:
     assert max(alone) > 0
 
 
-@pytest.mark.parametrize("row_lengths", kernels("row_lengths"))
-def test_edges(row_lengths: Kernel) -> None:
+def test_edges() -> None:
     nothing = np.zeros((3, 4), bool)
     assert row_lengths(nothing, np.array([1])).tolist() == [-1]
     assert row_lengths(~nothing, np.zeros(0, int)).tolist() == []
@@ -143,8 +114,7 @@ def test_edges(row_lengths: Kernel) -> None:
     assert row_lengths(shut, np.array([1, 2])).tolist() == [-1, -1]
 
 
-@pytest.mark.parametrize("row_lengths", kernels("row_lengths"))
-def test_views_of_images_do(row_lengths: Kernel) -> None:
+def test_views_of_images_do() -> None:
     image = noise((40, 50), 0.8, 1)
     rows = np.array([0, 9, 19])
     for view in (image.T[::2, ::-1], image[::2, 3:-3]):
@@ -152,8 +122,7 @@ def test_views_of_images_do(row_lengths: Kernel) -> None:
         assert row_lengths(view, rows).tolist() == expected.tolist()
 
 
-@pytest.mark.parametrize("row_ways", kernels("row_ways"))
-def test_of_equal_ways_always_the_same_is_taken(row_ways: Kernel) -> None:
+def test_of_equal_ways_always_the_same_is_taken() -> None:
     ring = np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], bool)
     found = row_ways(ring, np.array([1, 0]))
     assert [way.tolist() for way in found] == [

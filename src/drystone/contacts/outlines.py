@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines
-from drystone.kernels.boundary import touching_edges, trace_chains
+from drystone.kernels.boundary import boundary_of
 from drystone.kernels.segments import REACH_PX, Line, fitted_lines, meeting_point, with_area
 from drystone.model.overlap import common_parts
 from drystone.model.wall import Labels
@@ -133,7 +133,8 @@ def _rings(labels: Labels) -> dict[int, Piece]:
     windows = ndimage.find_objects(place.reshape(labels.shape))
     for block, window in zip(ids[1:].tolist(), windows, strict=True):
         cells = np.pad(labels[window] == block, 1).astype(np.int64)
-        chains = [chain.nodes for chain in trace_chains(touching_edges(cells, cells >= 0))]
+        boundary = boundary_of(cells)
+        chains = np.split(boundary.nodes, boundary.begins[1:-1])
         nodes = max(chains, key=lambda chain: _area(np.column_stack([chain[:, 1], -chain[:, 0]])))
         x = nodes[:, 1] - 1 + window[1].start
         y = labels.shape[0] - (nodes[:, 0] - 1 + window[0].start)

@@ -1,16 +1,45 @@
 """Boundary between labelled regions of an image, as chains of unit pixel edges (§4.2).
 
 Nodes are pixel corners (row, col) of the array handed in: node (r, c) is the top-left corner of
-cell (r, c).  Everything is directed so that the larger of the two labels lies to the left.
+cell (r, c).  Everything is directed so that the larger of the two labels lies to the left.  Inside,
+nodes are numbered row by row, one more to a row than cells, and an edge is the number of its start
+node times four, plus its heading: 0 to the right, 1 up, 2 to the left, 3 down.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.raster import Mask
+
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import (
+        flags,
+        kept_flags,
+        kept_ints,
+        kept_longs,
+        longs,
+        longs_out,
+        sort_rows,
+    )
+else:
+    from drystone.kernels.lists import (
+        flags,
+        kept_flags,
+        kept_ints,
+        kept_longs,
+        longs,
+        longs_out,
+        sort_rows,
+    )
 
 Cells = NDArray[np.int64]
 Nodes = NDArray[np.int64]
@@ -18,7 +47,12 @@ Nodes = NDArray[np.int64]
 EMPTY = -1
 """Label of nothing; labels that bound something are >= 0."""
 
-_fast = compiled("boundary")
+# Of a node: the lower four bits are the headings that edges leave it with, the upper four say that
+# another edge goes over into that one.  A node where two labels cross has no edges.
+LEAVING = cython.declare(cython.int, 0x0F)
+CROSSING = cython.declare(cython.int, 0x80)
+
+NOTHING = cython.declare(cython.longlong, EMPTY)
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +68,8 @@ class Boundary:
     nodes : (m, 2) int64 array
         Row and col of the nodes of all chains, one chain after the other.
     corners : (k, 4) int64 array
-        From :func:`crossing_corners`.
+        Where two labels touch only diagonally, across two empty cells: label above, label below,
+        row and col of the node; from the top down.
     """
 
     labels: NDArray[np.int64]
@@ -45,6 +80,11 @@ class Boundary:
 
 def boundary_of(cells: Cells, fresh: Mask | None = None) -> Boundary:
     """Find where the regions of an array of cells touch: chains and crossing corners.
+
+    Where four edges of one pair meet (the pixels cross like a chequerboard) a chain turns left,
+    around its own pixel of the higher label.  A closed chain starts at the lowest of its leftmost
+    corners.  Chains are sorted by labels, then by start: from the bottom up and from left to
+    right.
 
     Parameters
     ----------
@@ -59,214 +99,207 @@ def boundary_of(cells: Cells, fresh: Mask | None = None) -> Boundary:
     >>> boundary.labels.tolist(), boundary.nodes.tolist()
     ([[5, 3]], [[1, 0], [1, 1], [1, 2]])
     """
-    if _fast is None:
-        return boundary_numpy(cells, fresh)
-    return Boundary(*_fast.boundary(cells, fresh))
-
-
-def boundary_numpy(cells: Cells, fresh: Mask | None = None) -> Boundary:
-    """Find chains and crossing corners without compiled code."""
-    chains = trace_chains(touching_edges(cells, fresh))
-    counts = [0, *(len(chain.rows) for chain in chains)]
-    rows = [row for chain in chains for row in chain.rows]
-    cols = [col for chain in chains for col in chain.cols]
-    return Boundary(
-        np.array([(chain.high, chain.low) for chain in chains], np.int64).reshape(-1, 2),
-        np.cumsum(counts, dtype=np.int64),
-        np.array([rows, cols], np.int64).T.copy(),
-        crossing_corners(cells, fresh),
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class Chain:
-    """A connected chain of pixel edges between two regions.
-
-    Parameters
-    ----------
-    high, low : int
-        The two labels; `high` is the larger and lies to the left of the chain.
-    rows, cols : list of int
-        Pixel corners along the chain; first and last are equal in a closed one.
-    """
-
-    high: int
-    low: int
-    rows: list[int]
-    cols: list[int]
-
-    @property
-    def nodes(self) -> Nodes:
-        """Pixel corners (row, col), one a row."""
-        return np.column_stack((self.rows, self.cols))
-
-
-def touching_edges(cells: Cells, fresh: Mask | None = None) -> NDArray[np.int64]:
-    """Find the pixel edges between two labels of which one is fresh.
-
-    Parameters
-    ----------
-    cells : (h, w) int array
-        Labels; EMPTY where nothing is.
-    fresh : (h, w) bool array, optional
-        Only edges with at least one of their two cells in here are returned; all without it.
-
-    Returns
-    -------
-    (n, 5) int array
-        high, low, row and col of the start node, heading: 0 to the right, 1 up, 2 to the left,
-        3 down.
-
-    Examples
-    --------
-    >>> cells = np.array([[5], [3]])
-    >>> touching_edges(cells, cells > 0).tolist()
-    [[5, 3, 1, 0, 0]]
-    """
-    # Horizontal edges lie between a cell and the one below: they run to the right along the top
-    # of the lower cell when that has the lower label.  Vertical ones lie beside each other.
-    a, b, row, col = _unlike(cells, fresh, np.s_[:-1], np.s_[1:])
-    back = a < b
-    across = np.maximum(a, b), np.minimum(a, b), row + 1, col + back, 2 * back
-    a, b, row, col = _unlike(cells, fresh, np.s_[:, :-1], np.s_[:, 1:])
-    up = a > b
-    upright = np.maximum(a, b), np.minimum(a, b), row + up, col + 1, 3 - 2 * up
-    return np.concatenate([np.column_stack(across), np.column_stack(upright)])
-
-
-Part = slice | tuple[slice, slice]
-
-
-def _unlike(
-    cells: Cells, fresh: Mask | None, one: Part, other: Part
-) -> tuple[Cells, Cells, NDArray[np.intp], NDArray[np.intp]]:
-    """Return the labels of neighbours that differ, neither of them empty, and where they are."""
-    first, second = cells[one], cells[other]
-    unlike = first != second
-    unlike &= (first | second) > EMPTY  # all bits of EMPTY are set
+    w: Work = Work()
+    w.room = []
+    w.height, w.width = cells.shape
+    w.stride = w.width + 1
+    w.cells = longs(cells)
+    w.all_fresh = fresh is None
     if fresh is not None:
-        unlike &= fresh[one] | fresh[other]
-    row, col = np.nonzero(unlike)
-    return first[row, col], second[row, col], row, col
+        w.fresh = flags(fresh)
+    w.nodes = kept_flags(w.room, (w.height + 1) * w.stride)
+    w.around, w.steps = kept_ints(w.room, 4), kept_ints(w.room, 4)
+    w.around[0], w.around[1], w.around[2] = -w.width, -w.width - 1, -1
+    w.steps[0], w.steps[1], w.steps[2], w.steps[3] = 1, -w.stride, -1, w.stride
+    w.edge_count = w.corner_count = w.chain_count = w.path_count = 0
+    with cython.nogil:
+        mark_nodes(w)
+    w.edges, w.corners = kept_ints(w.room, w.edge_count), kept_ints(w.room, w.corner_count)
+    # A chain has one node more than edges; closed ones have at least four edges.
+    w.path = kept_ints(w.room, 2 * w.edge_count)
+    list_edges(w)
+    starts: cython.int = put_starts_first(w)
+    w.chains = kept_longs(w.room, 6 * (starts + w.edge_count // 4))
+    with cython.nogil:
+        for k in range(starts):
+            follow_chain(w, w.edges[k])
+        for k in range(starts, w.edge_count):
+            if is_followed(w, w.edges[k]):  # and no chain came here yet: a closed one
+                follow_chain(w, lowest_of_leftmost(w, w.edges[k]))
+        sort_rows(w.chains, w.chain_count)
+    return told(w)
 
 
-def trace_chains(edges: NDArray[np.int64]) -> list[Chain]:
-    """Join pixel edges of the same two labels into chains.
-
-    Where four edges of one pair meet (the pixels cross like a chequerboard) a chain turns left,
-    around its own pixel of the higher label.  A closed chain starts at the lowest of its
-    leftmost corners.  The order of the result does not depend on the order of the edges.
-
-    Parameters
-    ----------
-    edges : (n, 5) int array
-        From :func:`touching_edges`.
-
-    Returns
-    -------
-    list of Chain
-        Sorted by labels, then by start: from the bottom up and from left to right.
-    """
-    if not len(edges):
-        return []
-    # Nodes are numbered row by row, with one more than the last column of an edge's end.
-    stride = int(edges[:, 3].max()) + 2
-    start = edges[:, 2] * stride + edges[:, 3]
-    end = start + np.array([1, -stride, -1, stride])[edges[:, 4]]
-    high, low, rows, cols, _ = edges.T.tolist()
-    following = _following(high, low, start, end, edges[:, 4])
-    chains = []
-    for sequence in _sequences(following):
-        members = sequence
-        last = end[sequence[-1]]
-        if following[sequence[-1]] == sequence[0]:
-            # A closed chain may begin anywhere: leftmost, then lowest.
-            first = min(range(len(sequence)), key=lambda k: (cols[sequence[k]], -rows[sequence[k]]))
-            members = sequence[first:] + sequence[:first]
-            last = start[members[0]]
-        row, col = divmod(int(last), stride)
-        first = members[0]
-        chains.append(
-            Chain(
-                high[first],
-                low[first],
-                [*(rows[i] for i in members), row],
-                [*(cols[i] for i in members), col],
-            )
-        )
-    chains.sort(key=lambda chain: (chain.high, chain.low, -chain.rows[0], chain.cols[0]))
-    return chains
+@cython.cclass
+class Work:
+    """Cells, marks of their nodes, and what is found; of chains labels, -row, col, begin, end."""
 
 
-def _following(
-    high: list[int],
-    low: list[int],
-    start: NDArray[np.int64],
-    end: NDArray[np.int64],
-    heading: NDArray[np.int64],
-) -> list[int]:
-    """Return which edge of the same two labels goes on where each edge ends, -1 for none."""
-    leaving = {code: edge for edge, code in enumerate((4 * start + heading).tolist())}
-    # To the left before straight on, and that before to the right.
-    turns = (4 * end[:, None] + (heading[:, None] + np.array([1, 0, 3])) % 4).tolist()
-    following = []
-    for a, b, codes in zip(high, low, turns, strict=True):
-        for code in codes:
-            edge = leaving.get(code, -1)
-            if edge >= 0 and high[edge] == a and low[edge] == b:
-                following.append(edge)
-                break
-        else:
-            following.append(-1)
-    return following
+def told(w):
+    """Write what was found into arrays."""
+    labels, begins = np.empty((w.chain_count, 2), np.int64), np.zeros(w.chain_count + 1, np.int64)
+    nodes, corners = np.empty((w.path_count, 2), np.int64), np.empty((w.corner_count, 4), np.int64)
+    pairs: cython.p_longlong = longs_out(labels)
+    begin: cython.p_longlong = longs_out(begins)
+    places: cython.p_longlong = longs_out(nodes)
+    crossings: cython.p_longlong = longs_out(corners)
+    at: cython.int = 0
+    with cython.nogil:
+        for k in range(w.chain_count):
+            pairs[2 * k], pairs[2 * k + 1] = w.chains[6 * k], w.chains[6 * k + 1]
+            for n in range(w.chains[6 * k + 4], w.chains[6 * k + 5]):
+                places[2 * at] = w.path[n] // w.stride
+                places[2 * at + 1] = w.path[n] % w.stride
+                at += 1
+            begin[k + 1] = at
+        for k in range(w.corner_count):
+            cell: cython.Py_ssize_t = w.corners[k] - w.corners[k] // w.stride
+            right: cython.bint = w.cells[cell - w.width] != NOTHING
+            crossings[4 * k] = w.cells[cell - w.width - (0 if right else 1)]
+            crossings[4 * k + 1] = w.cells[cell - (1 if right else 0)]
+            crossings[4 * k + 2] = w.corners[k] // w.stride
+            crossings[4 * k + 3] = w.corners[k] % w.stride
+    return Boundary(labels, begins, nodes, corners)
 
 
-def _sequences(following: list[int]) -> list[list[int]]:
-    """Order a successor list (-1 ends a sequence) into open sequences, then closed ones."""
-    has_predecessor = set(following)
-    open_starts = [i for i in range(len(following)) if i not in has_predecessor]
-    seen = [False] * len(following)
-    sequences = []
-    for start in (*open_starts, *range(len(following))):
-        if seen[start]:
+def mark_nodes(w):
+    """Mark where edges leave nodes, and where labels cross; count both."""
+    cells: cython.p_longlong = w.cells
+    nodes: cython.p_uchar = w.nodes
+    width: cython.Py_ssize_t = w.width
+    for row in range(w.height):
+        for col in range(width):
+            at: cython.Py_ssize_t = row * width + col
+            here = cells[at]
+            above = cells[at - width] if row else here
+            before = cells[at - 1] if col else here
+            if above == here and before == here:
+                continue
+            node = at + row
+            full: cython.bint = here != NOTHING
+            if full and above not in (here, NOTHING) and is_fresh(w, at, at - width):
+                w.edge_count += 1
+                if above > here:
+                    nodes[node] |= 1
+                else:
+                    nodes[node + 1] |= 4
+            if full and before not in (here, NOTHING) and is_fresh(w, at, at - 1):
+                w.edge_count += 1
+                if before > here:
+                    nodes[node + width + 1] |= 2
+                else:
+                    nodes[node] |= 8
+            if not (row and col):
+                continue
+            corner = cells[at - width - 1]
+            if above == NOTHING and before == NOTHING:
+                if full and corner not in (NOTHING, here):
+                    if is_fresh(w, at, at - width - 1):
+                        w.corner_count += 1
+                        nodes[node] = CROSSING
+            elif corner == NOTHING and not full:
+                if above != NOTHING and before not in (NOTHING, above):
+                    if is_fresh(w, at - width, at - 1):
+                        w.corner_count += 1
+                        nodes[node] = CROSSING
+
+
+def is_fresh(w, one, other):
+    """Say whether one of two cells is fresh."""
+    return w.all_fresh or w.fresh[one] or w.fresh[other]
+
+
+def list_edges(w):
+    """List all edges, and the nodes where labels cross, row by row."""
+    edges: cython.int = 0
+    corners: cython.int = 0
+    for node in range((w.height + 1) * w.stride):
+        mark = w.nodes[node]
+        if mark == 0:
             continue
-        sequence = []
-        at = start
-        while at >= 0 and not seen[at]:
-            seen[at] = True
-            sequence.append(at)
-            at = following[at]
-        sequences.append(sequence)
-    return sequences
+        if mark == CROSSING:
+            w.corners[corners] = node
+            corners += 1
+            continue
+        for heading in range(4):
+            if mark >> heading & 1:
+                w.edges[edges] = 4 * node + heading
+                edges += 1
 
 
-def crossing_corners(cells: Cells, fresh: Mask | None = None) -> NDArray[np.int64]:
-    """Find where two labels touch only diagonally, across two empty cells.
+def put_starts_first(w):
+    """Mark the edges that another one goes over into; list the others first, return how many."""
+    starts: cython.int = 0
+    for k in range(w.edge_count):
+        edge = following(w, w.edges[k])
+        if edge >= 0:
+            w.nodes[edge >> 2] |= 16 << (edge & 3)
+    for k in range(w.edge_count):
+        edge = w.edges[k]
+        if not is_followed(w, edge):
+            w.edges[k], w.edges[starts] = w.edges[starts], edge
+            starts += 1
+    return starts
 
-    Parameters
-    ----------
-    cells : (h, w) int array
-        Labels; EMPTY where nothing is.
-    fresh : (h, w) bool array, optional
-        At least one of the two must be in here.
 
-    Returns
-    -------
-    (n, 4) int array
-        Label above, label below, row and col of the node; from the top down.
+def is_followed(w, edge):
+    """Say whether another edge goes over into one, and no chain was written there yet."""
+    return (w.nodes[edge >> 2] >> 4 >> (edge & 3) & 1) != 0
 
-    Examples
-    --------
-    >>> crossing_corners(np.array([[EMPTY, 7], [4, EMPTY]])).tolist()
-    [[7, 4, 1, 1]]
-    """
-    full = cells != EMPTY
-    one = full[:-1, :-1]
-    across = (one == full[1:, 1:]) & (full[:-1, 1:] == full[1:, :-1]) & (one != full[:-1, 1:])
-    row, col = np.nonzero(across)
-    to_right = (~full[row, col]).astype(np.int64)  # whether the upper label is on the right
-    above, below = (row, col + to_right), (row + 1, col + 1 - to_right)
-    found = cells[above] != cells[below]
-    if fresh is not None:
-        found &= fresh[above] | fresh[below]
-    return np.asarray(np.column_stack((cells[above], cells[below], row + 1, col + 1))[found])
+
+def following(w, edge):
+    """Return which edge of the same two labels goes on where an edge ends, -1 for none."""
+    start: cython.int = edge >> 2
+    node: cython.int = start + w.steps[edge & 3]
+    mark = w.nodes[node]
+    if mark & LEAVING == 0:
+        return -1
+    # The cells below and to the right of nodes, and from there those beside an edge.
+    at: cython.Py_ssize_t = start - start // w.stride
+    high, low = w.cells[at + w.around[edge & 3]], w.cells[at + w.around[(edge + 3) & 3]]
+    at = node - node // w.stride
+    for turn in range(5, 2, -1):  # to the left before straight on, and that before to the right
+        heading = (edge + turn) & 3
+        if mark >> heading & 1 and w.cells[at + w.around[heading]] == high:
+            if w.cells[at + w.around[(heading + 3) & 3]] == low:
+                return 4 * node + heading
+    return -1
+
+
+def lowest_of_leftmost(w, start):
+    """Return the edge of a closed chain at the lowest of its leftmost nodes."""
+    edge: cython.int = start
+    best: cython.int = start
+    best_row, best_col = (start >> 2) // w.stride, (start >> 2) % w.stride
+    while True:
+        edge = following(w, edge)
+        if edge == start:
+            return best
+        row, col = (edge >> 2) // w.stride, (edge >> 2) % w.stride
+        if col < best_col or (col == best_col and row > best_row):
+            best, best_row, best_col = edge, row, col
+
+
+def follow_chain(w, start):
+    """Write the nodes of a chain from its first edge on."""
+    k: cython.Py_ssize_t = 6 * w.chain_count
+    node: cython.int = start >> 2
+    edge: cython.int = start
+    last: cython.int = start
+    at: cython.Py_ssize_t = node - node // w.stride
+    w.chains[k] = w.cells[at + w.around[start & 3]]
+    w.chains[k + 1] = w.cells[at + w.around[(start + 3) & 3]]
+    w.chains[k + 2], w.chains[k + 3] = -(node // w.stride), node % w.stride
+    w.chains[k + 4] = w.path_count
+    while True:
+        w.nodes[edge >> 2] &= ~(16 << (edge & 3))
+        w.path[w.path_count] = edge >> 2
+        w.path_count += 1
+        last = edge
+        edge = following(w, edge)
+        if edge < 0 or edge == start:
+            break
+    w.path[w.path_count] = (last >> 2) + w.steps[last & 3]
+    w.path_count += 1
+    w.chains[k + 5] = w.path_count
+    w.chain_count += 1

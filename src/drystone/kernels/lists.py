@@ -29,15 +29,16 @@ def doubles_out(array: NDArray[Any]) -> memoryview:
 
 
 def pixels(array: NDArray[Any]) -> memoryview:
-    """Return the flags of any view, to be read: only a few are."""
+    """Return the numbers of any view, of which only a few are read."""
     return np.ascontiguousarray(array).reshape(-1).data
 
 
 def stride(array: NDArray[Any], axis: int) -> int:
-    """Return how far the flags of :func:`pixels` are apart along rows (0) or in them (1)."""
+    """Return how far the numbers of :func:`pixels` are apart: from row to row (0), or in them."""
     return 1 if axis else int(array.shape[1])
 
 
+labels_in = pixels
 ints_out = longs_out = flags_out = doubles_out
 
 
@@ -61,14 +62,20 @@ def move_ints(to: list[Any], at: int, source: list[Any], start: int, count: int)
     to[at : at + count] = source[start : start + count]
 
 
-new_ints = new_doubles
-kept_ints = kept_doubles
-more_ints = more_doubles
+new_ints = new_longs = new_doubles
+kept_ints = kept_longs = kept_flags = kept_doubles
+more_ints = more_longs = more_doubles
 
 
 def sort_doubles(numbers: list[Any], count: int) -> None:
     """Put the first numbers in order."""
     numbers[:count] = sorted(numbers[:count])
+
+
+def sort_rows(numbers: list[Any], count: int) -> None:
+    """Put the first rows of six numbers in order."""
+    rows = sorted(zip(*[iter(numbers[: 6 * count])] * 6, strict=True))
+    numbers[: 6 * count] = [number for row in rows for number in row]
 
 
 def release(_numbers: list[Any]) -> None:

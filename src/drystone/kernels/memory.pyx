@@ -22,7 +22,7 @@ cdef void *start(object array, const char *kinds, Py_ssize_t size, int access) e
     cdef Py_buffer view
     cdef void *at
     cdef Py_ssize_t i = 0
-    PyObject_GetBuffer(array, &view, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT | access)
+    PyObject_GetBuffer(array, &view, PyBUF_FORMAT | access)
     at = view.buf
     while kinds[i] != 0 and kinds[i] != view.format[0]:
         i += 1
@@ -35,50 +35,47 @@ cdef void *start(object array, const char *kinds, Py_ssize_t size, int access) e
 
 
 cdef double *doubles(object array) except? NULL:
-    return <double *>start(array, b"d", 8, 0)
+    return <double *>start(array, b"d", 8, PyBUF_C_CONTIGUOUS)
 
 
 cdef int *ints(object array) except? NULL:
-    return <int *>start(array, b"il", 4, 0)
+    return <int *>start(array, b"il", 4, PyBUF_C_CONTIGUOUS)
 
 
 cdef long long *longs(object array) except? NULL:
-    return <long long *>start(array, b"lq", 8, 0)
+    return <long long *>start(array, b"lq", 8, PyBUF_C_CONTIGUOUS)
 
 
 cdef unsigned char *flags(object array) except? NULL:
-    return <unsigned char *>start(array, b"?B", 1, 0)
+    return <unsigned char *>start(array, b"?B", 1, PyBUF_C_CONTIGUOUS)
 
 
 cdef unsigned char *pixels(object array) except? NULL:
-    """Return where flags begin, of any view; they are :func:`stride` apart."""
-    cdef Py_buffer view
-    PyObject_GetBuffer(array, &view, PyBUF_STRIDES | PyBUF_FORMAT)
-    if view.itemsize != 1:
-        PyBuffer_Release(&view)
-        raise TypeError("a kernel got numbers that are no flags")
-    PyBuffer_Release(&view)
-    return <unsigned char *>view.buf
+    return <unsigned char *>start(array, b"?B", 1, PyBUF_STRIDES)
+
+
+cdef unsigned int *labels_in(object array) except? NULL:
+    return <unsigned int *>start(array, b"IL", 4, PyBUF_STRIDES)
 
 
 cdef Py_ssize_t stride(object array, int axis) except? -1:
-    return array.strides[axis]
+    return array.strides[axis] // array.itemsize
 
 
 cdef double *doubles_out(object array) except? NULL:
-    return <double *>start(array, b"d", 8, PyBUF_WRITABLE)
+    return <double *>start(array, b"d", 8, PyBUF_C_CONTIGUOUS | PyBUF_WRITABLE)
 
 
 cdef int *ints_out(object array) except? NULL:
-    return <int *>start(array, b"il", 4, PyBUF_WRITABLE)
+    return <int *>start(array, b"il", 4, PyBUF_C_CONTIGUOUS | PyBUF_WRITABLE)
 
 
 cdef long long *longs_out(object array) except? NULL:
-    return <long long *>start(array, b"lq", 8, PyBUF_WRITABLE)
+    return <long long *>start(array, b"lq", 8, PyBUF_C_CONTIGUOUS | PyBUF_WRITABLE)
 
 
 cdef unsigned char *flags_out(object array) except? NULL:
-    return <unsigned char *>start(array, b"?B", 1, PyBUF_WRITABLE)
+    return <unsigned char *>start(array, b"?B", 1, PyBUF_C_CONTIGUOUS | PyBUF_WRITABLE)
 
 
 cdef double *new_doubles(Py_ssize_t count) except? NULL nogil:
@@ -89,12 +86,20 @@ cdef int *new_ints(Py_ssize_t count) except? NULL nogil:
     return <int *>resized(NULL, count * sizeof(int))
 
 
+cdef long long *new_longs(Py_ssize_t count) except? NULL nogil:
+    return <long long *>resized(NULL, count * sizeof(long long))
+
+
 cdef double *more_doubles(double *at, Py_ssize_t count) except? NULL nogil:
     return <double *>resized(at, count * sizeof(double))
 
 
 cdef int *more_ints(int *at, Py_ssize_t count) except? NULL nogil:
     return <int *>resized(at, count * sizeof(int))
+
+
+cdef long long *more_longs(long long *at, Py_ssize_t count) except? NULL nogil:
+    return <long long *>resized(at, count * sizeof(long long))
 
 
 cdef void *resized(void *at, Py_ssize_t size) except? NULL nogil:
@@ -111,6 +116,14 @@ cdef double *kept_doubles(list room, Py_ssize_t count):
 
 cdef int *kept_ints(list room, Py_ssize_t count):
     return <int *>kept(room, count * sizeof(int))
+
+
+cdef long long *kept_longs(list room, Py_ssize_t count):
+    return <long long *>kept(room, count * sizeof(long long))
+
+
+cdef unsigned char *kept_flags(list room, Py_ssize_t count):
+    return <unsigned char *>kept(room, count)
 
 
 cdef char *kept(list room, Py_ssize_t size):
@@ -132,6 +145,21 @@ cdef void sort_doubles(double *at, Py_ssize_t count) noexcept nogil:
 cdef int compared(const void *one, const void *two) noexcept nogil:
     cdef double a = (<const double *>one)[0], b = (<const double *>two)[0]
     return (a > b) - (a < b)
+
+
+cdef void sort_rows(long long *at, Py_ssize_t count) noexcept nogil:
+    """Sort rows of six numbers by the first one, then by the next one, ..."""
+    qsort(at, count, 6 * sizeof(long long), compared_rows)
+
+
+cdef int compared_rows(const void *one, const void *two) noexcept nogil:
+    cdef const long long *a = <const long long *>one
+    cdef const long long *b = <const long long *>two
+    cdef int i
+    for i in range(6):
+        if a[i] != b[i]:
+            return 1 if a[i] > b[i] else -1
+    return 0
 
 
 cdef void release(void *at) noexcept nogil:

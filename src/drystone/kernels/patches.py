@@ -1,14 +1,31 @@
 """Pieces of label images with a margin, and new parts painted into them."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.boundary import EMPTY, Cells
 from drystone.kernels.raster import Mask
+
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import (
+        flags_out,
+        labels_in,
+        longs_out,
+        pixels,
+        stride,
+    )
+else:
+    from drystone.kernels.lists import flags_out, labels_in, longs_out, pixels, stride
 
 GROUND = 0
 """Label of the ground in cells."""
@@ -19,10 +36,8 @@ MARGIN_PX = 3
 Part = tuple[int, int, int, Mask]
 """What is new: label, row and col of the top-left corner in the image, pixels."""
 
-Box = tuple[int, int, int, int]
-"""Rows and columns of an image: top, bottom, left, right."""
-
-_fast = compiled("patches")
+NOTHING = cython.declare(cython.longlong, EMPTY)
+GROUND_LABEL = cython.declare(cython.longlong, GROUND)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,18 +68,21 @@ def whole_patch(labels: NDArray[np.integer]) -> Patch:
         0 where nothing is.
     """
     height, width = labels.shape
-    cells = _cut(labels, (0, height, 0, width))
+    cells = np.full((height + 2 * MARGIN_PX, width + 2 * MARGIN_PX), EMPTY, np.int64)
+    inside = cells[MARGIN_PX : MARGIN_PX + height, MARGIN_PX : MARGIN_PX + width]
+    np.copyto(inside, labels, where=labels > 0, casting="unsafe")
+    cells[MARGIN_PX + height :] = GROUND
     return Patch(cells, None, (-MARGIN_PX, height + MARGIN_PX))
 
 
 def painted_patch(
-    labels: NDArray[np.integer], parts: Sequence[Part]
+    labels: NDArray[np.uint32], parts: Sequence[Part]
 ) -> tuple[Patch, list[tuple[int, int, int]]]:
     """Return what is around new parts of an image, with the parts in it.
 
     Parameters
     ----------
-    labels : (h, w) integer array
+    labels : (h, w) uint32 array
         0 where nothing is.
     parts : sequence of (label, row, col, mask)
         At least one; with labels that the image does not have.
@@ -77,61 +95,73 @@ def painted_patch(
         For each part: its number of pixels, and the sums of their columns and of their rows in
         the mask.
     """
-    box = (
-        min(row for _, row, _, _ in parts),
-        max(row + mask.shape[0] for _, row, _, mask in parts),
-        min(col for _, _, col, _ in parts),
-        max(col + mask.shape[1] for _, _, col, mask in parts),
-    )
-    cells = _cut(labels, box)
+    top = min(row for _, row, _, _ in parts) - MARGIN_PX
+    left = min(col for _, _, col, _ in parts) - MARGIN_PX
+    end_row = max(row + mask.shape[0] for _, row, _, mask in parts) + MARGIN_PX
+    end_col = max(col + mask.shape[1] for _, _, col, mask in parts) + MARGIN_PX
+    cells = np.empty((end_row - top, end_col - left), np.int64)
     fresh = np.zeros(cells.shape, bool)
-    top, left = box[0] - MARGIN_PX, box[2] - MARGIN_PX
-    paint = paint_numpy if _fast is None else _fast.paint
+    cut_out(labels, cells, top, left)
     sums = [
         paint(mask, label, row - top, col - left, cells, fresh) for label, row, col, mask in parts
     ]
     return Patch(cells, fresh, (left, labels.shape[0] - top)), sums
 
 
-def _cut(labels: NDArray[np.integer], box: Box) -> Cells:
-    """Cut a box and its margin out of an image."""
-    top, bottom, left, right = box
-    margin = 2 * MARGIN_PX
-    cells = np.empty((bottom - top + margin, right - left + margin), np.int64)
-    if _fast is None or labels.dtype != np.uint32:
-        cut_out_numpy(labels, cells, top - MARGIN_PX, left - MARGIN_PX)
-    else:
-        _fast.cut_out(labels, cells, top - MARGIN_PX, left - MARGIN_PX)
-    return cells
-
-
-def cut_out_numpy(labels: NDArray[np.integer], cells: Cells, top: int, left: int) -> None:
+def cut_out(labels, cells, top, left):
     """Fill cells with what is in an image from a row and column on, and around the image."""
-    row, end_row = _inside(top, labels.shape[0], cells.shape[0])
-    col, end_col = _inside(left, labels.shape[1], cells.shape[1])
-    seen = labels[row + top : end_row + top, col + left : end_col + left]
-    cells[:] = EMPTY
-    np.copyto(cells[row:end_row, col:end_col], seen, where=seen > 0, casting="unsafe")
-    cells[max(labels.shape[0] - top, 0) :] = GROUND
+    image: cython.p_uint = labels_in(labels)
+    down: cython.Py_ssize_t = stride(labels, 0)
+    across: cython.Py_ssize_t = stride(labels, 1)
+    height: cython.Py_ssize_t = labels.shape[0]
+    width: cython.Py_ssize_t = labels.shape[1]
+    rows: cython.Py_ssize_t = cells.shape[0]
+    count: cython.Py_ssize_t = cells.shape[1]
+    out: cython.p_longlong = longs_out(cells)
+    first: cython.Py_ssize_t = min(max(-left, 0), count)
+    last: cython.Py_ssize_t = max(min(width - left, count), first)
+    with cython.nogil:
+        for row in range(top, top + rows):
+            at: cython.Py_ssize_t = (row - top) * count
+            if row < 0 or row >= height:
+                for col in range(at, at + count):
+                    out[col] = NOTHING if row < 0 else GROUND_LABEL
+                continue
+            for col in range(at, at + first):
+                out[col] = NOTHING
+            here: cython.Py_ssize_t = row * down + (first + left) * across
+            for col in range(at + first, at + last):
+                label: cython.longlong = image[here]
+                out[col] = label if label else NOTHING
+                here += across
+            for col in range(at + last, at + count):
+                out[col] = NOTHING
+    return 0
 
 
-def _inside(first: int, size: int, count: int) -> tuple[int, int]:
-    """Of so many rows, the first of which is row `first` of an image, return those inside."""
-    begin = min(max(-first, 0), count)
-    return begin, max(min(size - first, count), begin)
-
-
-def paint_numpy(
-    mask: Mask, label: int, row: int, col: int, cells: Cells, fresh: Mask
-) -> tuple[int, int, int]:
+def paint(mask, label, top, left, cells, fresh):
     """Paint a mask into cells; return its pixels, and the sums of their columns and rows."""
-    height, width = mask.shape
-    window = np.s_[row : row + height, col : col + width]
-    cells[window][mask] = label
-    fresh[window][mask] = True
-    in_cols, in_rows = np.count_nonzero(mask, axis=0), np.count_nonzero(mask, axis=1)
-    return (
-        int(in_rows.sum()),
-        int((in_cols * np.arange(width)).sum()),
-        int((in_rows * np.arange(height)).sum()),
-    )
+    pixel: cython.p_uchar = pixels(mask)
+    down: cython.Py_ssize_t = stride(mask, 0)
+    across: cython.Py_ssize_t = stride(mask, 1)
+    rows: cython.Py_ssize_t = mask.shape[0]
+    columns: cython.Py_ssize_t = mask.shape[1]
+    width: cython.Py_ssize_t = cells.shape[1]
+    out: cython.p_longlong = longs_out(cells)
+    marks: cython.p_uchar = flags_out(fresh)
+    area: cython.longlong = 0
+    sum_cols: cython.longlong = 0
+    sum_rows: cython.longlong = 0
+    with cython.nogil:
+        for row in range(rows):
+            here: cython.Py_ssize_t = row * down
+            at: cython.Py_ssize_t = (top + row) * width + left
+            for col in range(columns):
+                if pixel[here]:
+                    out[at + col] = label
+                    marks[at + col] = True
+                    area += 1
+                    sum_cols += col
+                    sum_rows += row
+                here += across
+    return area, sum_cols, sum_rows

@@ -7,15 +7,34 @@ longer one depends on whether m / n is above sqrt 2 or below.  No fraction with 
 STRAIGHT lies between sqrt 2 and DIAGONAL / STRAIGHT, or is equal to either, so whole numbers order
 ways of less than 38 million diagonal steps as the true lengths do, and ways of one length have
 equal numbers of steps of both kinds.
+
+Cells wait in buckets and are looked at from the lowest bucket on, in any order within one.  A
+bucket is narrower than any detour but 0, so few cells are looked at twice, which is not wrong: a
+cell is put in again whenever its key becomes smaller.
 """
+
+from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
-from drystone.kernels.backend import compiled
 from drystone.kernels.raster import Mask
+
+try:
+    import cython
+except ImportError:
+    from drystone.kernels import shim as cython
+
+if cython.compiled:
+    from cython.cimports.drystone.kernels.memory import (
+        longs,
+        longs_out,
+        more_longs,
+        new_longs,
+        release,
+    )
+else:
+    from drystone.kernels.lists import longs, longs_out, more_longs, new_longs, release
 
 STRAIGHT, DIAGONAL = 38_613_965, 54_608_393
 """Length of a step along a row or column, and of one across a corner."""
@@ -27,7 +46,12 @@ _COSTS = tuple(DIAGONAL if down and right else STRAIGHT for down, right in _STEP
 _ASIDE = DIAGONAL - STRAIGHT
 _INVERSE = pow(DIAGONAL, -1, STRAIGHT)
 _CLOSED, _FAR = -1, 2**62
-_NO_NODE = -1
+
+STEPS = cython.declare(cython.int, 8)
+WIDTH_BITS = cython.declare(cython.int, 24)
+
+# More than the greatest detour is wide, and a power of two.
+BUCKETS = cython.declare(cython.int, 8)
 
 _DETOURS = np.array(
     [
@@ -40,8 +64,6 @@ _DETOURS = np.array(
     np.int64,
 )
 """What each step adds to :func:`_least` from cells above the row, on it and below it."""
-
-_fast = compiled("paths")
 
 
 def row_lengths(open_px: Mask, rows: NDArray[np.intp]) -> NDArray[np.int64]:
@@ -66,15 +88,7 @@ def row_lengths(open_px: Mask, rows: NDArray[np.intp]) -> NDArray[np.int64]:
     >>> [step_counts(length) for length in lengths.tolist()]
     [(2, 0), (0, 2)]
     """
-    if _fast is None:
-        return row_lengths_numpy(open_px, rows)
     return _searched(open_px, rows)[0]
-
-
-def row_lengths_numpy(open_px: Mask, rows: NDArray[np.intp]) -> NDArray[np.int64]:
-    """Twin of :func:`row_lengths`."""
-    graph = _Graph(open_px)
-    return np.array([graph.lengths(row)[row, -1] for row in rows.tolist()], np.int64)
 
 
 def row_ways(open_px: Mask, rows: NDArray[np.intp]) -> list[NDArray[np.intp] | None]:
@@ -99,15 +113,7 @@ def row_ways(open_px: Mask, rows: NDArray[np.intp]) -> list[NDArray[np.intp] | N
     >>> [way.tolist() for way in row_ways(np.array([[1, 1, 1], [1, 0, 1]], bool), np.array([1]))]
     [[[1, 0], [0, 1], [1, 2]]]
     """
-    if _fast is None:
-        return row_ways_numpy(open_px, rows)
     return [_followed_back(_searched_lengths(open_px, row), row) for row in rows.tolist()]
-
-
-def row_ways_numpy(open_px: Mask, rows: NDArray[np.intp]) -> list[NDArray[np.intp] | None]:
-    """Twin of :func:`row_ways`."""
-    graph = _Graph(open_px)
-    return [_followed_back(graph.lengths(row), row) for row in rows.tolist()]
 
 
 def step_counts(length: int) -> tuple[int, int]:
@@ -144,8 +150,7 @@ def _searched(open_px: Mask, rows: NDArray[np.intp]) -> tuple[NDArray[np.int64],
     firsts = span * np.arange(len(rows) - 1, -1, -1, dtype=np.int64)
     steps = np.array([down * cells.shape[1] + right for down, right in _STEPS], np.int64)
     found = np.empty(len(rows), np.int64)
-    assert _fast is not None  # noqa: S101 - the callers look
-    _fast.search_rows(cells, np.asarray(rows, np.int64), firsts, steps, _DETOURS, found)
+    _search_rows(cells, np.asarray(rows, np.int64), firsts, steps, found)
     ways = (found >= firsts) & (found < firsts + span)
     lengths = np.where(ways, found - firsts + STRAIGHT * (width - 1), _CLOSED)
     return lengths, cells[1:-1, 1:-1]
@@ -176,46 +181,114 @@ def _followed_back(lengths: NDArray[np.int64], row: int) -> NDArray[np.intp] | N
     A cell whose length is right is on a shortest way to the next one; all such cells are known.
     """
     height, width = lengths.shape
-    if lengths[row, -1] == _CLOSED:
+    here = row, width - 1
+    if lengths[here] == _CLOSED:
         return None
-    way = [(row, width - 1)]
-    while way[-1] != (row, 0):
-        here = way[-1]
+    way = [here]
+    while here != (row, 0):
         before = (
             ((here[0] - down, here[1] - right), lengths[here] - cost)
             for cost, (down, right) in zip(_COSTS, _STEPS, strict=True)
             if 0 <= here[0] - down < height and 0 <= here[1] - right < width
         )
-        way.append(next(cell for cell, length in before if lengths[cell] == length))
+        here = next(cell for cell, length in before if lengths[cell] == length)
+        way.append(here)
     return np.array(way[::-1], np.intp)
 
 
-class _Graph:
-    """Open pixels and the steps between them, for SciPy; sums of steps are exact in floats."""
+@cython.cclass
+class Queue:
+    """Cells that wait, three numbers each: cell, key and which is next in its bucket."""
 
-    def __init__(self, open_px: Mask) -> None:
-        height, width = open_px.shape
-        count = int(np.count_nonzero(open_px))
-        self._node = np.full(open_px.shape, _NO_NODE, np.int32)
-        self._node[open_px] = np.arange(count)
-        starts, ends, costs = [], [], []
-        for cost, (down, right) in zip(_COSTS, _STEPS, strict=True):
-            here = self._node[max(0, -down) : height - max(0, down), max(0, -right) :]
-            there = self._node[max(0, down) : height - max(0, -down), max(0, right) :]
-            here, there = here[:, : width - abs(right)], there[:, : width - abs(right)]
-            both = (here != _NO_NODE) & (there != _NO_NODE)
-            starts.append(here[both])
-            ends.append(there[both])
-            costs.append(np.full(np.count_nonzero(both), float(cost)))
-        steps = (np.concatenate(starts), np.concatenate(ends))
-        self._steps = csr_array((np.concatenate(costs), steps), shape=(count, count))
+    def __init__(self) -> None:
+        self.room = 1024
+        self.entries = new_longs(3 * self.room)
+        self.heads = new_longs(BUCKETS)
 
-    def lengths(self, row: int) -> NDArray[np.int64]:
-        """Return how far from the first pixel of a row all pixels are; -1 where no way leads."""
-        found = np.full(self._node.shape, _CLOSED, np.int64)
-        start = self._node[row, 0]
-        if start != _NO_NODE:
-            reached = dijkstra(self._steps, indices=start)
-            reached[np.isinf(reached)] = _CLOSED
-            found[self._node != _NO_NODE] = reached
-        return found
+    def __dealloc__(self) -> None:
+        release(self.entries)
+        release(self.heads)
+
+
+def _search_rows(cells, rows, firsts, steps, found):
+    """Search along rows.
+
+    Parameters
+    ----------
+    cells : (h + 2, w + 2) int array
+        Keys: -1 for closed cells, among them a rim of one, else above all that will be written.
+    rows, firsts : (n,) int arrays
+        Rows without the rim, and the key that each begins with, falling from row to row.
+    steps : (8,) int array
+        What each step adds to the place of a cell.
+    found : (n,) int array
+        Takes the keys of the last cells of the rows.
+    """
+    queue: Queue = Queue()
+    keys: cython.p_longlong = longs_out(cells)
+    row: cython.p_longlong = longs(rows)
+    first: cython.p_longlong = longs(firsts)
+    ways: cython.p_longlong = longs(steps)
+    detours: cython.p_longlong = longs(_DETOURS)
+    last: cython.p_longlong = longs_out(found)
+    count: cython.Py_ssize_t = len(rows)
+    stride: cython.Py_ssize_t = cells.shape[1]
+    with cython.nogil:
+        for k in range(count):
+            start: cython.Py_ssize_t = (row[k] + 1) * stride + 1
+            end: cython.Py_ssize_t = start + stride - 3
+            _search_row(queue, keys, start, end, first[k], ways, detours)
+            last[k] = keys[end]
+    return 0
+
+
+def _search_row(queue, cells, row_start, row_end, first, steps, detours):
+    """Make the keys of all cells final whose key is not above the end's."""
+    number: cython.longlong = first >> WIDTH_BITS
+    empty: cython.int = 0
+    if cells[row_start] < 0 or cells[row_end] < 0:
+        return 0
+    for i in range(BUCKETS):
+        queue.heads[i] = -1
+    queue.used, queue.free = 0, -1
+    cells[row_start] = first
+    _put(queue, row_start, first)
+    while empty < BUCKETS and number <= cells[row_end] >> WIDTH_BITS:
+        bucket = number & (BUCKETS - 1)
+        empty = empty + 1 if queue.heads[bucket] < 0 else 0
+        while queue.heads[bucket] >= 0:
+            at: cython.Py_ssize_t = queue.heads[bucket]
+            here: cython.Py_ssize_t = queue.entries[at]
+            key = queue.entries[at + 1]
+            queue.heads[bucket] = queue.entries[at + 2]
+            queue.entries[at + 2], queue.free = queue.free, at
+            if cells[here] != key:
+                continue  # its key has become smaller since
+            side = 0
+            if here >= row_start:
+                side = 2 * STEPS if here > row_end else STEPS
+            for i in range(STEPS):
+                there: cython.Py_ssize_t = here + steps[i]
+                new = key + detours[side + i]
+                if new < cells[there]:
+                    cells[there] = new
+                    _put(queue, there, new)
+        number += 1
+    return 0
+
+
+def _put(queue, cell, key):
+    """Put a cell into the bucket of its key."""
+    at: cython.Py_ssize_t = queue.free
+    bucket = (key >> WIDTH_BITS) & (BUCKETS - 1)
+    if at >= 0:
+        queue.free = queue.entries[at + 2]
+    else:
+        at = 3 * queue.used
+        queue.used += 1
+        if queue.used > queue.room:
+            queue.room *= 2
+            queue.entries = more_longs(queue.entries, 3 * queue.room)
+    queue.entries[at], queue.entries[at + 1] = cell, key
+    queue.entries[at + 2], queue.heads[bucket] = queue.heads[bucket], at
+    return 0

@@ -48,6 +48,7 @@ def support_ends(occupied: Mask, mask: Mask, row: int, col: int) -> Ends | None:
 
     Examples
     --------
+    >>> import numpy as np
     >>> support_ends(np.zeros((2, 5), bool), np.array([[1, 1, 1], [0, 1, 0]], bool), 0, 1)
     (2, 3, 2, 2)
     """

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.drawing.pictures.stones import plot_labels
-from drystone.kernels.boundary import EMPTY, touching_edges
+from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone_lab.pictures.interfaces import plot_blocks, plot_boundary_edges
@@ -19,9 +19,6 @@ from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
-
-WAYS = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
-"""(x, y) of the headings of :func:`drystone.kernels.boundary.touching_edges`."""
 
 MARGIN_PX = 2
 TILTED_DEG = 1.0
@@ -102,9 +99,10 @@ def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.floa
     height, width = labels.shape
     cells = np.full((height + 1, width), GROUND, np.int64)
     cells[:-1] = np.where(labels > 0, labels.astype(np.int64), EMPTY)
-    edges = touching_edges(cells)
-    starts = np.column_stack([edges[:, 3], height - edges[:, 2]]).astype(float)
-    return starts, starts + WAYS[edges[:, 4]]
+    boundary = boundary_of(cells)
+    points = np.column_stack([boundary.nodes[:, 1], height - boundary.nodes[:, 0]]).astype(float)
+    last = boundary.begins[1:] - 1
+    return np.delete(points, last, axis=0), np.delete(points, boundary.begins[:-1], axis=0)
 
 
 def _found(found: Blocks) -> Iterator[str]:
