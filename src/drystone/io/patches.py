@@ -11,6 +11,7 @@ from scipy import ndimage
 
 from drystone.errors import LabelImageError, Notice
 from drystone.io.labels import MAX_ID
+from drystone.io.listed import MANY, listed, short
 from drystone.io.read_settings import Pieces, ReadSettings
 from drystone.kernels.raster import Mask
 from drystone.model.stone import Stone
@@ -20,7 +21,6 @@ SMALL_SHARE = 0.02
 
 MIN_AREA_PX = 10
 _WHOLE = np.ones((3, 3), bool)
-_SHOWN = 8
 
 MOST_PIECES = 100_000
 """Of all stones of a picture: more are no stones but noise, and fill the memory."""
@@ -86,7 +86,7 @@ class Patch:
         return sorted(pieces, key=lambda piece: -piece.area_px)
 
     def __str__(self) -> str:
-        return f"{self.id} ({self.name})" if self.name else str(self.id)
+        return f"{self.id} ({short(self.name)})" if self.name else str(self.id)
 
     def to_stone(self) -> Stone:
         """Make the stone, in the frame of the picture (y up from its bottom edge)."""
@@ -153,14 +153,11 @@ def without_specks(patches: list[Patch], limit_px: float) -> tuple[list[Patch], 
         (kept if largest_px >= limit_px else specks).append(patch)
     if not specks:
         return patches, []
-    listed = ", ".join(
-        f"{speck} of {speck.area_px} px at column {speck.col}, row {speck.row}" for speck in specks
-    )
+    places = (f"{s} of {s.area_px} px at column {s.col}, row {s.row}" for s in specks)
     total = sum(speck.area_px for speck in specks)
-    message = f"{len(specks)} specks < {limit_px:g} px left out ({total} px in all): {listed}."
-    return kept, [
-        Notice("W113", message, "Use --min-area PX (min_area_px in Python) to keep smaller stones.")
-    ]
+    message = f"{len(specks)} specks < {limit_px:g} px left out ({total} px in all)"
+    cure = "Use --min-area PX (min_area_px in Python) to keep smaller stones."
+    return kept, [Notice("W113", f"{message}: {listed(places, most=MANY)}.", cure)]
 
 
 def filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], list[Notice]]:
@@ -181,9 +178,9 @@ def filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], l
         return result, []
     if settings.holes == "keep":
         text = "holes kept open (areas and centroids without them; outlines as if filled)"
-        return result, [Notice("W112", f"{text}: {'; '.join(found)}.")]
+        return result, [Notice("W112", f"{text}: {listed(found, '; ', MANY)}.")]
     cure = "Use --holes keep (holes='keep' in Python) to leave them open."
-    return result, [Notice("W112", f"holes filled: {'; '.join(found)}.", cure)]
+    return result, [Notice("W112", f"holes filled: {listed(found, '; ', MANY)}.", cure)]
 
 
 def enclosed(mask: Mask) -> Mask:
@@ -261,7 +258,7 @@ def in_one_piece(
             continue
         several.append((patch, pieces[1:]))
         if _is_refused(pieces, settings.pieces):
-            refused.append(_describe(patch, pieces[:_SHOWN], len(pieces) - _SHOWN))
+            refused.append(_describe(patch, pieces))
         dropped.append(_describe(patch, pieces[1:]))
     if refused:
         raise _in_pieces(refused, where)
@@ -273,7 +270,7 @@ def in_one_piece(
         said = [Notice("W111", f"pieces became stones of their own: {text}.")] if new else []
         return kept, said
     cure = "Use --pieces split (pieces='split' in Python) to make them stones."
-    text = f"smaller pieces left out: {'; '.join(dropped)}."
+    text = f"smaller pieces left out: {listed(dropped, '; ', MANY)}."
     return result, [Notice("W111", text, cure)]
 
 
@@ -284,16 +281,15 @@ def _is_refused(pieces: list[Patch], rule: Pieces) -> bool:
     return rule == "error"
 
 
-def _describe(patch: Patch, pieces: Iterable[Patch], more: int = 0) -> str:
-    places = [f"{p.area_px} px at column {p.col}, row {p.row}" for p in pieces]
-    return f"stone {patch}: {', '.join(places)}" + (f" and {more} more" if more > 0 else "")
+def _describe(patch: Patch, pieces: Iterable[Patch]) -> str:
+    places = listed(f"{p.area_px} px at column {p.col}, row {p.row}" for p in pieces)
+    return f"stone {patch}: {places}"
 
 
 def _in_pieces(refused: list[str], where: str) -> LabelImageError:
-    more = f"; and {len(refused) - _SHOWN} more" if len(refused) > _SHOWN else ""
     return LabelImageError(
         "E103",
-        f"{len(refused)} stones are in several pieces: {'; '.join(refused[:_SHOWN])}{more}.",
+        f"{len(refused)} stones are in several pieces: {listed(refused, '; ')}.",
         where=where,
         cure="Correct the picture, or choose --pieces keep-largest (leave the others out) or "
         "--pieces split (each piece a stone); in Python pieces='keep-largest' or pieces='split'.",
@@ -315,5 +311,5 @@ def _as_stones(
         ]
         stones += new
         if new:
-            text.append(f"stone {patch}: " + ", ".join(f"{p.id} ({p.area_px} px)" for p in new))
-    return stones, "; ".join(text)
+            text.append(f"stone {patch}: {listed(f'{p.id} ({p.area_px} px)' for p in new)}")
+    return stones, listed(text, "; ", MANY)

@@ -6,10 +6,10 @@ from typing import NamedTuple
 from xml.etree import ElementTree as ET
 
 from drystone.errors import Notice
+from drystone.io.listed import listed
 from drystone.io.outlines_in.model import damaged
 from drystone.io.outlines_in.svg_sheet import Rule, Sheets, Step, Weight, declared
 
-_SHOWN = 8
 _MOST_STEPS = 300_000
 """Comparisons of an element with a step of a selector: each takes some microseconds."""
 
@@ -78,8 +78,8 @@ class Styles:
         unread = self.sheets.unread
         if not unread:
             return []
-        shown = ", ".join(unread[:_SHOWN]) + (" …" if len(unread) > _SHOWN else "")
-        text = f"rules of style sheets that may hide or move something were not read: {shown}."
+        what = "rules of style sheets that may hide or move something were not read"
+        text = f"{what}: {listed(unread)}."
         return [Notice("W119", text, "Say it by attributes of the elements, or delete the rules.")]
 
     def _fitting(self, element: ET.Element, top: ET.Element | None) -> Iterator[Rule]:
