@@ -13,6 +13,8 @@ from drystone.errors import LabelImageError, Notice
 from drystone.io.labels import MAX_ID
 from drystone.io.listed import MANY, listed, short
 from drystone.io.read_settings import Pieces, ReadSettings
+from drystone.kernels.ids import counted
+from drystone.kernels.label_runs import label_runs, runs_in_pieces
 from drystone.kernels.raster import Mask
 from drystone.model.stone import Stone
 
@@ -20,6 +22,8 @@ SMALL_SHARE = 0.02
 """Pieces that together are less than this share of their stone are left out by default."""
 
 MIN_AREA_PX = 10
+_LARGE_PX, _PLAIN_PX = 2**20, 64
+"""From where pieces and holes are found on runs, and how many px there must be to a run."""
 _WHOLE = np.ones((3, 3), bool)
 
 MOST_PIECES = 100_000
@@ -62,11 +66,14 @@ class Patch:
     @cached_property
     def piece_areas_px(self) -> tuple[int, ...]:
         """Number of pixels of each 8-connected piece, in row order."""
-        found, count = ndimage.label(self.mask, _WHOLE)
-        if count == 1:
-            return (self.area_px,)
-        check_count(count, str(self))
-        return tuple(np.bincount(found.ravel())[1:].tolist())
+        if _is_plain(self.mask):
+            runs = label_runs(self.mask.view(np.uint8))
+            areas = np.bincount(runs_in_pieces(runs), runs.lengths).astype(int)
+        else:
+            found, count = ndimage.label(self.mask, _WHOLE)
+            areas = counted(found, count)[1:]
+        check_count(len(areas), str(self))
+        return tuple(areas.tolist())
 
     def pieces(self) -> list["Patch"]:
         """Return the 8-connected pieces, the largest first, equal ones in row order."""
@@ -193,10 +200,30 @@ def enclosed(mask: Mask) -> Mask:
     """
     around = np.ones((mask.shape[0] + 2, mask.shape[1] + 2), bool)
     np.logical_not(mask, out=around[1:-1, 1:-1])
-    found, count = ndimage.label(around)
-    if count == 1:
+    if not _is_plain(mask):
+        found, count = ndimage.label(around)
+        return np.zeros_like(mask) if count == 1 else np.asarray(found[1:-1, 1:-1] > 1)
+    runs = label_runs(around.view(np.uint8))
+    pieces = runs_in_pieces(runs, corners=False)
+    holes = pieces != pieces[0]
+    if not holes.any():
         return np.zeros_like(mask)
-    return np.asarray(found[1:-1, 1:-1] > 1)
+    change = around.view(np.int8).ravel()
+    change[:] = 0
+    change[(runs.rows * runs.width + runs.begins)[holes]] = 1
+    change[(runs.rows * runs.width + runs.ends)[holes]] = -1
+    np.cumsum(change, dtype=np.int8, out=change)
+    return around[1:-1, 1:-1]
+
+
+def _is_plain(mask: Mask) -> bool:
+    """Tell a large mask that has few runs along its rows, which are faster than its pixels."""
+    if mask.size < _LARGE_PX or not mask.flags.c_contiguous:
+        return False
+    step = max(1, _LARGE_PX // mask.shape[1])
+    some = (mask[row : row + step] for row in range(0, len(mask), step))
+    runs = sum(np.count_nonzero(part[:, 1:] != part[:, :-1]) for part in some)
+    return _PLAIN_PX * runs < mask.size
 
 
 def piece_numbers(patches: list[Patch], settings: ReadSettings) -> dict[int, list[int]]:

@@ -62,13 +62,15 @@ def label_runs(labels: NDArray[np.integer]) -> LabelRuns:
     return LabelRuns(width, flat[first[taken]], rows, begins, beyond[taken] - rows * width)
 
 
-def runs_in_pieces(runs: LabelRuns) -> Ints:
-    """Return which connected piece of its label each run is in; corners connect, too.
+def runs_in_pieces(runs: LabelRuns, *, corners: bool = True) -> Ints:
+    """Return which connected piece of its label each run is in.
 
     Parameters
     ----------
     runs : LabelRuns
         Of an image.
+    corners : bool
+        Pixels that meet at a corner connect, too.
 
     Returns
     -------
@@ -86,8 +88,9 @@ def runs_in_pieces(runs: LabelRuns) -> Ints:
     # In the row below, the runs that a run touches follow one another; runs are in order.
     stride = runs.width + 1
     below = (runs.rows + 1) * stride
-    first = np.searchsorted(runs.rows * stride + runs.ends, below + runs.begins)
-    last = np.searchsorted(runs.rows * stride + runs.begins, below + runs.ends, side="right")
+    near, far = ("left", "right") if corners else ("right", "left")
+    first = np.searchsorted(runs.rows * stride + runs.ends, below + runs.begins, side=near)
+    last = np.searchsorted(runs.rows * stride + runs.begins, below + runs.ends, side=far)
     touched = np.maximum(last - first, 0)
     upper = np.repeat(np.arange(count), touched)
     lower = np.arange(touched.sum()) + np.repeat(first - np.cumsum(touched) + touched, touched)
