@@ -223,7 +223,7 @@ def _is_plain(mask: Mask) -> bool:
     step = max(1, _LARGE_PX // mask.shape[1])
     some = (mask[row : row + step] for row in range(0, len(mask), step))
     runs = sum(np.count_nonzero(part[:, 1:] != part[:, :-1]) for part in some)
-    return _PLAIN_PX * runs < mask.size
+    return bool(_PLAIN_PX * runs < mask.size)
 
 
 def piece_numbers(patches: list[Patch], settings: ReadSettings) -> dict[int, list[int]]:

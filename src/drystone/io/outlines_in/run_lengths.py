@@ -62,8 +62,9 @@ def mask_of(value: Mapping[str, Any], room: Room) -> PlacedMask | None:
     if not len(starts):
         return None
     first, last = int(starts[0]) // height, (int(stops[-1]) - 1) // height
-    inside = np.diff(np.clip(ends, first * height, (last + 1) * height), prepend=first * height)
-    columns = np.repeat(np.arange(len(runs)) % 2 == 1, inside).reshape(-1, height)
+    ends = np.clip(ends, first * height, (last + 1) * height)
+    runs = ends - np.concatenate(([first * height], ends[:-1]))
+    columns = np.repeat(np.arange(len(runs)) % 2 == 1, runs).reshape(-1, height)
     rows = np.flatnonzero(columns.any(axis=0))
     top, bottom = int(rows[0]), int(rows[-1]) + 1
     room.take((bottom - top) * len(columns))
