@@ -276,6 +276,15 @@ FILES: dict[str, tuple[Callable[[], bytes], str]] = {
     "entries.tif": (many_entries, "E106"),
     "signalling.npy": (lambda: saved(signalling()), "E108 .*not finite"),
     "shape.npy": (lambda: npy(f"({2**62}, {2**62})"), "E106"),
+    "sides.npy": (lambda: npy(f"({'9' * 400}, -1)"), "E106 .*below 0"),
+    "nothing.npy": (lambda: npy(f"({'9' * 400}, 9)", "|S0"), "E106 .*no bytes"),
+    "alpha.tif": (lambda: tiff_of({338: 1}), "E101 "),
+    "letters.tif": (
+        lambda: tiff_of({259: 8}).replace(
+            struct.pack("<HHII", 256, 4, 1, 6), struct.pack("<HHI4s", 256, 7, 1, b"6")
+        ),
+        "E106 .*no number",
+    ),
     "negative.npy": (lambda: npy("(-1, 4)"), "E10"),
     "width.npy": (lambda: npy("(2160,)", "|S1000000000"), "E106"),
     "digits.npy": (lambda: npy(f"({'9' * 60}, 0)"), "E106"),

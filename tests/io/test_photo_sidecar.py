@@ -133,5 +133,8 @@ def test_the_name_of_a_photograph_leads_nowhere_else(tmp_path: Path) -> None:
     folder = tmp_path / "found"
     folder.mkdir()
     (tmp_path / "photo.jpg").write_bytes(b"not yours")
-    write_sidecar(PhotoSidecar(640, 480, photo="../photo.jpg"), folder)
-    assert photo_of(folder / "stones.png") is None
+    for name in ("../photo.jpg", "x" * 300 + ".jpg", "\0.jpg", "", "/", "\ud800.jpg"):
+        write_sidecar(PhotoSidecar(640, 480, photo="?"), folder)
+        path = folder / "stones.json"
+        path.write_text(path.read_text("utf-8").replace('"?"', json.dumps(name)), encoding="utf-8")
+        assert photo_of(folder / "stones.png") is None

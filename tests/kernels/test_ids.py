@@ -8,7 +8,7 @@ from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
 
 from drystone.kernels import ids as module
-from drystone.kernels.ids import counted, numbered
+from drystone.kernels.ids import counted, looked_up, numbered
 from tests.naive import io as naive
 from tests.strategies import repeatable
 
@@ -38,3 +38,15 @@ def test_counts_do_not_depend_on_the_blocks(block: int, monkeypatch: pytest.Monk
     monkeypatch.setattr(module, "BLOCK_PX", block)
     index = np.random.default_rng(1).integers(0, 6, (7, 9)).astype(np.int32)
     assert counted(index, 8).tolist() == [int((index == k).sum()) for k in range(9)]
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.uint32, np.int64])
+def test_looking_up_is_indexing(kind: type, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "_CACHED_PX", 10)
+    rng = np.random.default_rng(2)
+    table, index = rng.integers(0, 99, 6).astype(np.uint16), rng.integers(0, 6, (7, 9)).astype(kind)
+    for image in (index, index.T):
+        assert np.array_equal(looked_up(table, image), table[image])
+    out = np.zeros(index.shape, np.uint32)
+    assert looked_up(table.astype(np.uint32), index, out) is out
+    assert np.array_equal(out, table[index])

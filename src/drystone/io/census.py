@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.ids import counted, numbered
+from drystone.kernels.ids import counted, looked_up, numbered
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,11 @@ class Census:
 
     def pixels(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Return the (h, w) mask of the pixels whose value is chosen; `chosen` is (n,) bool."""
-        return np.concatenate(([False], chosen))[self.index]
+        return self.of(chosen)
+
+    def of(self, told: NDArray[Any], out: NDArray[Any] | None = None) -> NDArray[Any]:
+        """Return pixel by pixel, (h, w), what is told of each value; `told` is (n,)."""
+        return looked_up(np.concatenate((told[:1], told)), self.index, out)
 
 
 def take_census(ids: NDArray[Any]) -> Census:

@@ -208,7 +208,8 @@ def _check_no_values_of_edges(census: Census, where: str) -> None:
         raise LabelImageError(
             "E101",
             f"the ids were blended at the edges of stones: {len(census.values)} values, "
-            f"{int(thin.sum())} of them in edges only; about {int(plain.sum()) - 1} are stones.",
+            f"{int(thin.sum())} of them in edges only; about {max(0, int(plain.sum()) - 1)} are "
+            "stones.",
             where=where,
             cure=f"{_CLEAN_EXPORT} Scale label images by nearest neighbour.",
         )

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from drystone.errors import LabelImageError, Notice
+from drystone.io.listed import listed
 from drystone.io.necks import suspect_necks
 from drystone.io.patches import (
     Patch,
@@ -37,8 +38,7 @@ def stone_set(found: Found, source: Source, settings: ReadSettings) -> StoneSet:
     unknown = sorted(set(settings.skip) - known)
     notices = list(found.notices)
     if unknown:
-        listed = ", ".join(str(stone_id) for stone_id in unknown)
-        notices.append(Notice("W116", f"no stone {listed} to skip.", "Check the ids."))
+        notices.append(Notice("W116", f"no stone {listed(unknown)} to skip.", "Check the ids."))
     skip = set(settings.skip)
     # One of several numbers stays until it is split.
     patches = [p for p in found.patches if not {p.id, *numbers.get(p.id, ())} <= skip]

@@ -133,7 +133,9 @@ def _read_tiff(data: bytes, where: str, max_px: int) -> Picture:
     if page.colours:
         raise _no_ids(page.colours, where)
     values = tiff.values(data, where, check)
-    return Picture(_without_alpha(values) if page.alpha else values, lossy=page.lossy)
+    # Tags may speak of an alpha that is not there.
+    alpha = page.alpha and values.ndim > 2
+    return Picture(_without_alpha(values) if alpha else values, lossy=page.lossy)
 
 
 def _read_npy(data: bytes, where: str, max_px: int) -> Picture:

@@ -177,27 +177,32 @@ def _without_negative_background(ids: NDArray[Any], background: int) -> tuple[ND
 
 def _ids_of_colours(colours: NDArray[Any], background: int, where: str) -> IdImage:
     red, green, blue = (colours[:, :, i] for i in range(3))
-    grey = (red == green) & (green == blue)
-    if grey.all():
+    if np.array_equal(red, green) and np.array_equal(green, blue):
         return _ids_of_numbers(red, background, where)
-    if int(colours.min()) < 0 or int(colours.max()) > 255:
+    if colours.dtype != np.uint8 and (int(colours.min()) < 0 or int(colours.max()) > 255):
         raise LabelImageError(
             "E108", "colours have values outside 0 ... 255.", where=where,
             cure="Export ids as one channel of 16 or 32 bits, or colours of 8 bits.",
         )  # fmt: skip
-    codes = red.astype(np.uint32)
-    codes |= green.astype(np.uint32) << 8
-    codes |= blue.astype(np.uint32) << 16
-    present = take_census(codes).values
-    is_grey = (present & 255) * 0x010101 == present
-    mixed = np.where(is_grey, present & 255, present)
+    codes = blue.astype(np.uint32)
+    for channel in (green, red):
+        codes <<= 8
+        codes |= channel.astype(np.uint8, copy=False)
+    census = take_census(codes)
+    # What follows is asked of the colours, and not of every pixel.
+    present = census.values
+    parts = present[:, None] >> np.array([0, 8, 16]) & 255
+    is_grey = (parts[:, :1] == parts).all(axis=1)
+    mixed = np.where(is_grey, parts[:, 0], present)
     rule = "R + 256 G + 65536 B"
-    ids = codes
+    values = present
     if len(np.unique(mixed)) == len(mixed):
-        ids = np.where(grey, red, codes).astype(np.uint32)
         rule += " (greys: their value)" if is_grey[present > 0].any() else ""
-    stones = len(present) - int((ids == background).any())
+        values = mixed
+        census.of(mixed.astype(np.uint32), out=codes)
+    stones = len(present) - int((values == background).any())
     notice = Notice("W115", f"{len(present)} colours read as ids {rule}: {stones} stones.")
-    brightest = colours.max(axis=2)
-    spread = int((brightest - colours.min(axis=2)).max())
-    return IdImage(ids, background, brightest, spread <= _GREY_TOLERANCE, (notice,))
+    brightest = parts.max(axis=1)
+    spread = int((brightest - parts.min(axis=1)).max())
+    brightness = census.of(brightest.astype(np.uint8))
+    return IdImage(codes, background, brightness, spread <= _GREY_TOLERANCE, (notice,))

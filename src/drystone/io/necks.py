@@ -16,6 +16,9 @@ LARGE = 1.5
 _WAIST = 1.6
 """Both parts must be this many times as thick as the neck between them."""
 
+_MOST_HILLS = 2**16
+"""No stone has as many: more are noise."""
+
 _PART_SHARE = 0.15
 """Each part must have this share of the stone."""
 
@@ -30,8 +33,8 @@ def neck_width_px(mask: Mask, most_px: int = 2**22) -> int | None:
     mask : (h, w) bool array
         One 8-connected piece.
     most_px : int
-        A larger mask is looked at in a coarser picture.  There a neck that is thinner than one of
-        its pixels counts as one of them.
+        A larger mask, or one that is noise, is looked at in a coarser picture.  There a neck that
+        is thinner than one of its pixels counts as one of them.
 
     Notes
     -----
@@ -50,6 +53,8 @@ def neck_width_px(mask: Mask, most_px: int = 2**22) -> int | None:
     if depth.max() < 2 * _WAIST:
         return None
     summits = Summits(depth)
+    if len(summits.starts) > _MOST_HILLS:
+        return neck_width_px(mask, depth.size // 4)
     erosions = np.arange(int(depth.max() / _WAIST) + 1)
     wide_px = _WAIST * np.maximum(erosions, 1)
     least_px = _PART_SHARE * summits.left[: len(erosions)]

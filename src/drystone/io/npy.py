@@ -39,6 +39,8 @@ def array_of(data: bytes, where: str, max_px: int) -> NDArray[Any]:
         shape, fortran, dtype = read(file)
     if dtype.hasobject:
         raise damaged("it holds Python objects, and pickle is not read", where)
+    if min(shape, default=0) < 0 or not dtype.itemsize:
+        raise damaged("a side is below 0, or its values have no bytes", where)
     count, start = math.prod(shape), file.tell()
     if count * dtype.itemsize > len(data) - start:
         raise damaged("there are fewer bytes than its shape asks for", where)

@@ -11,7 +11,10 @@ from scipy import ndimage
 
 from drystone.errors import LabelImageError, Notice
 from drystone.io.labels import MAX_ID
+from drystone.io.listed import MANY, listed, short
 from drystone.io.read_settings import Pieces, ReadSettings
+from drystone.kernels.ids import counted
+from drystone.kernels.label_runs import label_runs, runs_in_pieces
 from drystone.kernels.raster import Mask
 from drystone.model.stone import Stone
 
@@ -19,8 +22,9 @@ SMALL_SHARE = 0.02
 """Pieces that together are less than this share of their stone are left out by default."""
 
 MIN_AREA_PX = 10
+_LARGE_PX, _PLAIN_PX = 2**20, 64
+"""From where pieces and holes are found on runs, and how many px there must be to a run."""
 _WHOLE = np.ones((3, 3), bool)
-_SHOWN = 8
 
 MOST_PIECES = 100_000
 """Of all stones of a picture: more are no stones but noise, and fill the memory."""
@@ -62,11 +66,14 @@ class Patch:
     @cached_property
     def piece_areas_px(self) -> tuple[int, ...]:
         """Number of pixels of each 8-connected piece, in row order."""
-        found, count = ndimage.label(self.mask, _WHOLE)
-        if count == 1:
-            return (self.area_px,)
-        check_count(count, str(self))
-        return tuple(np.bincount(found.ravel())[1:].tolist())
+        if _is_plain(self.mask):
+            runs = label_runs(self.mask.view(np.uint8))
+            areas = np.bincount(runs_in_pieces(runs), runs.lengths).astype(int)
+        else:
+            found, count = ndimage.label(self.mask, _WHOLE)
+            areas = counted(found, count)[1:]
+        check_count(len(areas), str(self))
+        return tuple(areas.tolist())
 
     def pieces(self) -> list["Patch"]:
         """Return the 8-connected pieces, the largest first, equal ones in row order."""
@@ -86,7 +93,7 @@ class Patch:
         return sorted(pieces, key=lambda piece: -piece.area_px)
 
     def __str__(self) -> str:
-        return f"{self.id} ({self.name})" if self.name else str(self.id)
+        return f"{self.id} ({short(self.name)})" if self.name else str(self.id)
 
     def to_stone(self) -> Stone:
         """Make the stone, in the frame of the picture (y up from its bottom edge)."""
@@ -153,14 +160,11 @@ def without_specks(patches: list[Patch], limit_px: float) -> tuple[list[Patch], 
         (kept if largest_px >= limit_px else specks).append(patch)
     if not specks:
         return patches, []
-    listed = ", ".join(
-        f"{speck} of {speck.area_px} px at column {speck.col}, row {speck.row}" for speck in specks
-    )
+    places = (f"{s} of {s.area_px} px at column {s.col}, row {s.row}" for s in specks)
     total = sum(speck.area_px for speck in specks)
-    message = f"{len(specks)} specks < {limit_px:g} px left out ({total} px in all): {listed}."
-    return kept, [
-        Notice("W113", message, "Use --min-area PX (min_area_px in Python) to keep smaller stones.")
-    ]
+    message = f"{len(specks)} specks < {limit_px:g} px left out ({total} px in all)"
+    cure = "Use --min-area PX (min_area_px in Python) to keep smaller stones."
+    return kept, [Notice("W113", f"{message}: {listed(places, most=MANY)}.", cure)]
 
 
 def filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], list[Notice]]:
@@ -181,9 +185,9 @@ def filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], l
         return result, []
     if settings.holes == "keep":
         text = "holes kept open (areas and centroids without them; outlines as if filled)"
-        return result, [Notice("W112", f"{text}: {'; '.join(found)}.")]
+        return result, [Notice("W112", f"{text}: {listed(found, '; ', MANY)}.")]
     cure = "Use --holes keep (holes='keep' in Python) to leave them open."
-    return result, [Notice("W112", f"holes filled: {'; '.join(found)}.", cure)]
+    return result, [Notice("W112", f"holes filled: {listed(found, '; ', MANY)}.", cure)]
 
 
 def enclosed(mask: Mask) -> Mask:
@@ -196,10 +200,30 @@ def enclosed(mask: Mask) -> Mask:
     """
     around = np.ones((mask.shape[0] + 2, mask.shape[1] + 2), bool)
     np.logical_not(mask, out=around[1:-1, 1:-1])
-    found, count = ndimage.label(around)
-    if count == 1:
+    if not _is_plain(mask):
+        found, count = ndimage.label(around)
+        return np.zeros_like(mask) if count == 1 else np.asarray(found[1:-1, 1:-1] > 1)
+    runs = label_runs(around.view(np.uint8))
+    pieces = runs_in_pieces(runs, corners=False)
+    holes = pieces != pieces[0]
+    if not holes.any():
         return np.zeros_like(mask)
-    return np.asarray(found[1:-1, 1:-1] > 1)
+    change = around.view(np.int8).ravel()
+    change[:] = 0
+    change[(runs.rows * runs.width + runs.begins)[holes]] = 1
+    change[(runs.rows * runs.width + runs.ends)[holes]] = -1
+    np.cumsum(change, dtype=np.int8, out=change)
+    return around[1:-1, 1:-1]
+
+
+def _is_plain(mask: Mask) -> bool:
+    """Tell a large mask that has few runs along its rows, which are faster than its pixels."""
+    if mask.size < _LARGE_PX or not mask.flags.c_contiguous:
+        return False
+    step = max(1, _LARGE_PX // mask.shape[1])
+    some = (mask[row : row + step] for row in range(0, len(mask), step))
+    runs = sum(np.count_nonzero(part[:, 1:] != part[:, :-1]) for part in some)
+    return bool(_PLAIN_PX * runs < mask.size)
 
 
 def piece_numbers(patches: list[Patch], settings: ReadSettings) -> dict[int, list[int]]:
@@ -261,7 +285,7 @@ def in_one_piece(
             continue
         several.append((patch, pieces[1:]))
         if _is_refused(pieces, settings.pieces):
-            refused.append(_describe(patch, pieces[:_SHOWN], len(pieces) - _SHOWN))
+            refused.append(_describe(patch, pieces))
         dropped.append(_describe(patch, pieces[1:]))
     if refused:
         raise _in_pieces(refused, where)
@@ -273,7 +297,7 @@ def in_one_piece(
         said = [Notice("W111", f"pieces became stones of their own: {text}.")] if new else []
         return kept, said
     cure = "Use --pieces split (pieces='split' in Python) to make them stones."
-    text = f"smaller pieces left out: {'; '.join(dropped)}."
+    text = f"smaller pieces left out: {listed(dropped, '; ', MANY)}."
     return result, [Notice("W111", text, cure)]
 
 
@@ -284,16 +308,15 @@ def _is_refused(pieces: list[Patch], rule: Pieces) -> bool:
     return rule == "error"
 
 
-def _describe(patch: Patch, pieces: Iterable[Patch], more: int = 0) -> str:
-    places = [f"{p.area_px} px at column {p.col}, row {p.row}" for p in pieces]
-    return f"stone {patch}: {', '.join(places)}" + (f" and {more} more" if more > 0 else "")
+def _describe(patch: Patch, pieces: Iterable[Patch]) -> str:
+    places = listed(f"{p.area_px} px at column {p.col}, row {p.row}" for p in pieces)
+    return f"stone {patch}: {places}"
 
 
 def _in_pieces(refused: list[str], where: str) -> LabelImageError:
-    more = f"; and {len(refused) - _SHOWN} more" if len(refused) > _SHOWN else ""
     return LabelImageError(
         "E103",
-        f"{len(refused)} stones are in several pieces: {'; '.join(refused[:_SHOWN])}{more}.",
+        f"{len(refused)} stones are in several pieces: {listed(refused, '; ')}.",
         where=where,
         cure="Correct the picture, or choose --pieces keep-largest (leave the others out) or "
         "--pieces split (each piece a stone); in Python pieces='keep-largest' or pieces='split'.",
@@ -315,5 +338,5 @@ def _as_stones(
         ]
         stones += new
         if new:
-            text.append(f"stone {patch}: " + ", ".join(f"{p.id} ({p.area_px} px)" for p in new))
-    return stones, "; ".join(text)
+            text.append(f"stone {patch}: {listed(f'{p.id} ({p.area_px} px)' for p in new)}")
+    return stones, listed(text, "; ", MANY)

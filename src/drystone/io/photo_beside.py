@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -30,9 +31,12 @@ def photo_of(stones: Path) -> Path | None:
     sidecar = read_sidecar(labels)
     if sidecar is None or not sidecar.photo:
         return None
-    # A base name: what stands in the file leads nowhere else.
-    photo = labels.with_name(Path(sidecar.photo).name)
-    return photo if photo.is_file() and _copy_of(photo, photo.parent).name in NAMES else None
+    with suppress(OSError, ValueError):  # no file can have some names
+        # A base name: what stands in the file leads nowhere else.
+        photo = labels.with_name(Path(sidecar.photo).name)
+        if photo.is_file() and _copy_of(photo, photo.parent).name in NAMES:
+            return photo
+    return None
 
 
 def check_place(photo: Path | None, folder: Path) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 from drystone.errors import InputError
 from drystone.io.file_bytes import file_bytes
 from drystone.io.json_text import json_of
+from drystone.io.listed import short
 from drystone.io.read_settings import MOST_PX_PER_M
 from drystone.whole_files import write_whole
 
@@ -91,7 +92,7 @@ def read_sidecar(labels: Path) -> PhotoSidecar | None:
     except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
         raise InputError(
             "E112",
-            f"what it says of the photograph cannot be used ({error}).",
+            f"what it says of the photograph cannot be used ({short(error)}).",
             where=str(path),
             cure="Find the stones again with `drystone segment`, or remove the file.",
         ) from error

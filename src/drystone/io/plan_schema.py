@@ -54,7 +54,7 @@ def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) < len(pairs):
         twice, _ = Counter(name for name, _ in pairs).most_common(1)[0]
-        raise ValueError(f"{twice!r} is given twice in one object")
+        raise ValueError(f"{_short(twice)} is given twice in one object")
     return found
 
 
@@ -87,7 +87,7 @@ def validate_plan(data: Any, where: str) -> None:
         raise PlanError(
             "E205",
             "the number is not finite; JSON has no NaN and no infinity.",
-            where=f"{where}: {bad}",
+            where=f"{where}: {_short(bad, quote=False)}",
             cure="Write null where nothing could be computed, if the schema allows it.",
         )
     errors = list(jsonschema.Draft202012Validator(plan_schema()).iter_errors(data))
@@ -97,7 +97,7 @@ def validate_plan(data: Any, where: str) -> None:
         raise PlanError(
             "E205",
             f"{_short(first.message, quote=False)}{more}.",
-            where=f"{where}: {first.json_path}",
+            where=f"{where}: {_short(first.json_path, quote=False)}",
             cure=_cure(first),
         )
 

@@ -23,6 +23,7 @@ from drystone.io.file_bytes import file_bytes
 from drystone.io.found import Found, stone_set
 from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
 from drystone.io.labels import IdImage, to_ids
+from drystone.io.listed import listed
 from drystone.io.masks import BinaryMask, check_mask, components, find_mask
 from drystone.io.outlines_in.detect import outline_reader
 from drystone.io.outlines_in.model import OutlineFile
@@ -155,6 +156,7 @@ def _read_array(array: Any, settings: ReadSettings) -> StoneSet:
 def _read_picture(picture: Picture, source: Source, settings: ReadSettings) -> StoneSet:
     """Read a picture of several stones: a mask or ids."""
     where = source.path or "array"
+    reading = _of_px(settings, where)
     image = to_ids(picture.values, settings.background, where)
     height, width = image.ids.shape
     census = take_census(image.ids)
@@ -168,7 +170,6 @@ def _read_picture(picture: Picture, source: Source, settings: ReadSettings) -> S
         check_count(count, where)
         patches = cut(labels, np.arange(1, count + 1))
         found = Found(patches, [_mask_notice(binary, count)], where)
-    reading = _of_px(settings, where)
     source = replace(source, width_px=width, height_px=height, reading=reading)
     return stone_set(found, source, settings)
 
@@ -233,7 +234,7 @@ def _read_folder(folder: Path, settings: ReadSettings) -> StoneSet:
     ignored = sorted({entry.name for entry in entries} - {file.name for file in files})
     notices = []
     if ignored:
-        notices.append(Notice("W117", f"not pictures, left aside: {writable(', '.join(ignored))}."))
+        notices.append(Notice("W117", f"not pictures, left aside: {writable(listed(ignored))}."))
     digest, patches, sizes = hashlib.sha256(), [], []
     names = tuple(writable(file.name) for file in files)
     for number, (file, own) in enumerate(zip(files, names, strict=True), start=1):

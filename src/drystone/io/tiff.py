@@ -161,7 +161,10 @@ def _page(data: bytes, where: str) -> Iterator[Any]:
         file = tifffile.TiffFile(  # noqa: TID251 - its chain was followed
             io.BytesIO(data), is_lsm=False, is_ndpi=False, is_scanimage=False
         )
-        yield file.pages[0]
+        page = file.pages[0]
+        if not all(isinstance(side, int) for side in page.shape):
+            raise damaged("a side of it is no number", where)
+        yield page
 
 
 def _count_pages(data: bytes, where: str) -> int:

@@ -16,6 +16,7 @@ from drystone.io.blocks_json import BLOCKS
 from drystone.io.file_bytes import file_bytes
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
+from drystone.io.listed import listed
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
 from drystone.kernels.label_runs import label_runs
@@ -158,11 +159,10 @@ def unsupported(model: RigidBlockModel) -> Notice | None:
     loose = loose_blocks(model)
     if not loose:
         return None
-    named = ", ".join(map(str, loose[:8])) + (", …" if len(loose) > 8 else "")
     return Notice(
         "W302",
         f"{len(loose)} of {len(model.blocks)} blocks touch neither the ground nor a block that is "
-        f"connected with it: {named}.",
+        f"connected with it: {listed(loose)}.",
         "Only edges that meet bear on each other: close the gaps that are drawn between stones.",
     )
 

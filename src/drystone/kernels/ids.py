@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 BLOCK_PX = 1 << 20
 """Pixels that are counted at once: counting takes copies of 8 bytes each."""
+_CACHED_PX = 1 << 16
 
 
 def counted(index: NDArray[np.int32], most: int) -> NDArray[np.int64]:
@@ -22,6 +23,24 @@ def counted(index: NDArray[np.int32], most: int) -> NDArray[np.int64]:
     for start in range(0, flat.size, BLOCK_PX):
         counts += np.bincount(flat[start : start + BLOCK_PX], minlength=most + 1)
     return counts
+
+
+def looked_up(
+    table: NDArray[Any], index: NDArray[Any], out: NDArray[Any] | None = None
+) -> NDArray[Any]:
+    """Return ``table[index]`` of an image of positions; nothing but the answer takes memory.
+
+    Examples
+    --------
+    >>> looked_up(np.array([5, 6]), np.array([[1, 0]]))
+    array([[6, 5]])
+    """
+    found = np.empty(index.shape, table.dtype) if out is None else out
+    flat, places = found.ravel(), index.ravel()
+    for start in range(0, flat.size, _CACHED_PX):
+        some = slice(start, start + _CACHED_PX)
+        np.take(table, places[some].astype(np.intp), out=flat[some], mode="clip")
+    return found
 
 
 def numbered(ids: NDArray[Any]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
@@ -50,7 +69,7 @@ def numbered(ids: NDArray[Any]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
         present = np.zeros(top + 1, bool)
         present[ids.ravel()] = True
         table = np.cumsum(present, dtype=np.int32)
-        return table[ids], np.flatnonzero(present).astype(np.int64)
+        return looked_up(table, ids), np.flatnonzero(present).astype(np.int64)
     # Ids come in runs: only the first pixel of each run is sorted.
     flat = ids.ravel()
     starts = np.concatenate(([0], np.flatnonzero(flat[1:] != flat[:-1]) + 1))

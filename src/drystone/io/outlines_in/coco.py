@@ -6,6 +6,7 @@ from pathlib import PurePath
 from typing import Any
 
 from drystone.errors import InputError, Notice
+from drystone.io.listed import listed, short
 from drystone.io.outlines_in.fill import Room, check_reach
 from drystone.io.outlines_in.model import (
     Area,
@@ -104,8 +105,8 @@ def size_in(
         if image is not None and image.get("width") and image.get("height"):
             sizes.add((side_px(image["width"]), side_px(image["height"])))
         if len(sizes) > 1:
-            listed = ", ".join(f"{width} x {height}" for width, height in sorted(sizes))
-            raise ValueError(f"its sizes differ: {listed} px")
+            found = listed(f"{width} x {height}" for width, height in sorted(sizes))
+            raise ValueError(f"its sizes differ: {found} px")
     return sizes.pop() if sizes else None
 
 
@@ -138,9 +139,8 @@ def _chosen(
 
 def image_needed(what: str, where: str, names: Sequence[str] | Any) -> InputError:
     """Make the error for several images in one file (E115)."""
-    listed = list(names)
-    shown = ", ".join(listed[:8]) + (f" and {len(listed) - 8} more" if len(listed) > 8 else "")
     return InputError(
         "E115", f"{what}.", where=where,
-        cure=f"Say which one with --image NAME (ReadSettings.image); there are {shown}.",
+        cure="Say which one with --image NAME (ReadSettings.image); there are "
+        f"{listed(map(short, names))}.",
     )  # fmt: skip

@@ -9,6 +9,7 @@ from typing import Any
 from drystone.errors import InputError
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
+from drystone.io.listed import listed, short
 from drystone.io.npy import BEGINNING
 from drystone.io.outlines_in.coco import is_coco, read_coco
 from drystone.io.outlines_in.dxf import is_dxf, read_dxf
@@ -90,7 +91,7 @@ def _what_else(content: Any) -> tuple[str, str]:
             return "is a plan, made of stones already", "Give the stones, or use it with --from."
         if "blocks" in content or "blocks_xywh" in content:
             return "is a block model of a wall", "Give the stones; `drystone analyse` reads it."
-        keys = ", ".join(map(repr, list(content)[:6])) or "nothing"
+        keys = listed(short(repr(key)) for key in content) or "nothing"
         return f"has none of the known forms (its keys are {keys})", ""
     return "has none of the known forms", ""
 

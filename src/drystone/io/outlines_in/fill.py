@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import InputError
+from drystone.io.listed import short
 from drystone.io.outlines_in.model import Area, OutlinedStone, PlacedMask
 from drystone.kernels.polygons import Points
 
@@ -73,8 +74,8 @@ def check_reach(stones: Iterable[OutlinedStone], where: str, max_px: int) -> Non
         if width * height > most:
             raise InputError(
                 "E110",
-                f"stone {stone.name or stone.id} reaches over {width} x {height} px; the limit is "
-                f"{most / 1e6:g} million.",
+                f"stone {short(stone.name or stone.id)} reaches over {width} x {height} px; the "
+                f"limit is {most / 1e6:g} million.",
                 where=where,
                 cure="Is a corner of it far away from the picture? Correct it; only in Python "
                 "can the limit be raised (max_image_mpx).",
@@ -84,8 +85,8 @@ def check_reach(stones: Iterable[OutlinedStone], where: str, max_px: int) -> Non
         if crossed > width * height + _FREE_ROWS:
             raise InputError(
                 "E110",
-                f"the outline of stone {stone.name or stone.id} goes up and down over {crossed} "
-                f"rows of pixels, and it has {width} x {height} px.",
+                f"the outline of stone {short(stone.name or stone.id)} goes up and down over "
+                f"{crossed} rows of pixels, and it has {width} x {height} px.",
                 where=where,
                 cure="Draw it with fewer corners.",
             )

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from drystone.errors import InputError, Notice
+from drystone.io.listed import short
 from drystone.io.outlines_in.model import (
     METRES,
     Area,
@@ -60,7 +61,7 @@ def read_geojson(content: Mapping[str, Any], where: str, settings: ReadSettings)
     unit = content.get("unit", "px")
     if unit not in (*METRES, "px"):
         raise InputError(
-            "E116", f"its unit {unit!r} is not known.", where=where,
+            "E116", f"its unit {short(repr(unit))} is not known.", where=where,
             cure=f"Use one of px, {', '.join(METRES)}.",
         )  # fmt: skip
     stones: list[OutlinedStone] = []

@@ -14,6 +14,7 @@ from scipy.sparse.csgraph import connected_components
 
 from drystone.errors import InputError, Notice, UsageError
 from drystone.io.foreign import foreign
+from drystone.io.listed import listed, short
 from drystone.io.outlines_in.model import (
     METRES,
     OutlinedStone,
@@ -33,7 +34,6 @@ _WORDS = {
 }
 _OURS = (b"# drystone ", b"drystone, ")
 _HEAD = 400
-_SHOWN = 8
 _STL_FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _STL_VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)")
 _PLY_FACES = re.compile(rb"^element\s+face\s+(\d{1,18})", re.MULTILINE)
@@ -114,9 +114,9 @@ def read_mesh(kind: str, data: bytes, where: str, settings: ReadSettings) -> Out
 
 
 def _united(body: Body) -> Notice:
-    shown = ", ".join(body.said[:_SHOWN]) + (" …" if len(body.said) > _SHOWN else "")
+    shown = listed(map(short, body.said))
     why = "of the groups of a face the first counts, and what follows # is a comment"
-    text = f"{why}, so {body.name} is one stone of: {shown}."
+    text = f"{why}, so {short(body.name)} is one stone of: {shown}."
     return Notice("W119", text, "Give every stone an object (o) of its own if they are several.")
 
 

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -12,13 +12,13 @@ import numpy as np
 
 from drystone.errors import InputError, Notice
 from drystone.io.labels import MAX_ID
+from drystone.io.listed import listed, short
 from drystone.kernels.polygons import Points
 from drystone.kernels.raster import Mask
 
 METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048})
 """Metres in each unit that a user may name."""
 
-_SHOWN = 8
 _LARGEST = 10**9
 _LONGEST = 300
 _STONE_NAME = re.compile(r"(?:stones?[ _-]*)?0*([1-9][0-9]*)", re.IGNORECASE)
@@ -147,11 +147,11 @@ def numbered(stones: tuple[OutlinedStone, ...]) -> tuple[tuple[OutlinedStone, ..
     if not own:
         return result, []
     if several:
-        why = f"the numbers of the file are not different ({_shown(several)}): stones"
+        why = f"the numbers of the file are not different ({listed(several)}): stones"
         text = f"{why} are numbered in order."
     else:
         missing = len(stones) - len(own)
-        why = f"{_shown(beyond)} cannot be the number of a stone" if beyond else ""
+        why = f"{listed(beyond)} cannot be the number of a stone" if beyond else ""
         why += ", " if beyond and missing else ""
         why += f"{missing} of {len(stones)} stones without a number" if missing else ""
         moved = [
@@ -159,13 +159,9 @@ def numbered(stones: tuple[OutlinedStone, ...]) -> tuple[tuple[OutlinedStone, ..
             for i, stone in enumerate(stones, start=1)
             if stone.id not in (None, i)
         ]
-        text = f"{why}: all are numbered in order{f' ({_shown(moved)})' if moved else ''}."
+        text = f"{why}: all are numbered in order{f' ({listed(moved)})' if moved else ''}."
     cure = "Give every stone a number of its own, from 1, to keep them."
     return result, [Notice("W119", text, cure)]
-
-
-def _shown(things: Sequence[object]) -> str:
-    return ", ".join(map(str, things[:_SHOWN])) + (" …" if len(things) > _SHOWN else "")
 
 
 def without_wedges(
@@ -181,8 +177,8 @@ def left_aside(kinds: Counter[str], cure: str = "") -> list[Notice]:
     """Say what in a file is no outline of a stone."""
     if not kinds:
         return []
-    listed = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
-    return [Notice("W119", f"no outlines of stones, left aside: {listed}.", cure)]
+    found = listed(f"{count} {short(kind)}" for kind, count in sorted(kinds.items()))
+    return [Notice("W119", f"no outlines of stones, left aside: {found}.", cure)]
 
 
 def side_px(value: Any) -> int:
@@ -230,7 +226,9 @@ def entry(where: str, what: str) -> Iterator[None]:
 
 def damaged(where: str, what: str) -> InputError:
     """Make the error for a file whose content is not what its format says (E114)."""
-    shown = what if len(what) <= _LONGEST else f"{what[:_LONGEST]} …"
     return InputError(
-        "E114", f"{shown}.", where=where, cure="Correct it, or export the file again."
+        "E114",
+        f"{short(what, _LONGEST)}.",
+        where=where,
+        cure="Correct it, or export the file again.",
     )

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import InputError, Notice
+from drystone.io.listed import MANY, listed
 from drystone.io.outlines_in.fill import filled_area, united
 from drystone.io.outlines_in.model import OutlinedStone, PlacedMask
 from drystone.io.patches import enclosed
@@ -116,12 +117,14 @@ def without_nested(
     said = [f"{name[i]} (the ground: others lie in its holes)" for i in sorted(ground)]
     said += [f"{name[i]} ({name[whole]} again)" for i, whole in sorted(again.items())]
     for i, parts in sorted(groups.items()):
-        said.append(f"{name[i]} (a group of {', '.join(str(name[part]) for part in parts)})")
+        said.append(f"{name[i]} (a group of {listed(name[part] for part in parts)})")
     said += [f"{name[i]} (a part of {name[whole]})" for i, whole in sorted(parts_of.items())]
     kept = [_with_pixels(s, placed.get(i)) for i, s in enumerate(stones) if i not in left]
     if not said:
         return kept, []
-    text = f"{len(said)} of {len(stones)} masks are no stones of their own: {', '.join(said)}."
+    text = (
+        f"{len(said)} of {len(stones)} masks are no stones of their own: {listed(said, most=MANY)}."
+    )
     return kept, [Notice("W119", text, "Skip ids to decide otherwise.")]
 
 

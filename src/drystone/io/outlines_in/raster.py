@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from drystone.errors import InputError, LabelImageError, Notice
+from drystone.io.listed import listed, short
 from drystone.io.outlines_in.fill import check_reach, trimmed
 from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile, PlacedMask
 from drystone.io.outlines_in.nested import meeting_boxes, overlap, pixels_of
@@ -17,8 +18,6 @@ from drystone.kernels.raster import Mask
 
 USUAL_SIDE_PX = 160.0
 """Longer side of the median stone of a drawing without a resolution."""
-
-_SHOWN = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +91,7 @@ def rastered(file: OutlineFile, settings: ReadSettings, where: str) -> Rastered:
     for stone in stones:
         placed = pixels_of(stone)
         inside = None if placed is None else _within(placed, width, height)
-        name = f"{stone.id} ({stone.name})" if stone.name else str(stone.id)
+        name = f"{stone.id} ({short(stone.name)})" if stone.name else str(stone.id)
         outside = 0 if placed is None else int(placed.mask.sum())
         outside -= 0 if inside is None else int(inside.mask.sum())
         if outside:
@@ -104,16 +103,11 @@ def rastered(file: OutlineFile, settings: ReadSettings, where: str) -> Rastered:
             Patch(stone.id or 0, inside.mask, inside.row, inside.col, height, None, stone.name)
         )
     if lost:
-        notices.append(Notice("W119", f"outside the image, cut off: {_listed(lost)}."))
+        notices.append(Notice("W119", f"outside the image, cut off: {listed(lost, '; ')}."))
     if empty:
-        notices.append(Notice("W119", f"without a pixel, left out: {_listed(empty)}."))
+        notices.append(Notice("W119", f"without a pixel, left out: {listed(empty, '; ')}."))
     patches, overlaps = _beside_others(patches, where)
     return Rastered(patches, width, height, px_per_m, notices + overlaps)
-
-
-def _listed(found: list[str]) -> str:
-    more = f"; and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
-    return "; ".join(found[:_SHOWN]) + more
 
 
 def _usual_scale(file: OutlineFile, where: str) -> tuple[float, Notice]:
@@ -203,7 +197,7 @@ def _beside_others(patches: list[Patch], where: str) -> tuple[list[Patch], list[
     ]
     if not overlaps:
         return result, []
-    text = f"stones overlap, and each keeps all its pixels: {_listed(overlaps)}."
+    text = f"stones overlap, and each keeps all its pixels: {listed(overlaps, '; ')}."
     return result, [Notice("W119", text, "Check their outlines.")]
 
 

@@ -11,6 +11,7 @@ from drystone.io.outlines_in.model import PlacedMask
 from drystone.io.pictures import check_size
 
 _MOST_PX = 2**31
+_AT_ONCE = 64
 
 
 def is_runs(value: object) -> bool:
@@ -61,15 +62,17 @@ def mask_of(value: Mapping[str, Any], room: Room) -> PlacedMask | None:
     if not len(starts):
         return None
     first, last = int(starts[0]) // height, (int(stops[-1]) - 1) // height
-    change = np.zeros((last - first + 1) * height + 1, np.int8)
-    np.add.at(change, starts - first * height, 1)
-    np.add.at(change, stops - first * height, -1)
-    # In place: a bit that is set is a byte of 1.
-    columns = np.cumsum(change[:-1], dtype=np.int8, out=change[:-1]).view(bool).reshape(-1, height)
+    ends = np.clip(ends, first * height, (last + 1) * height)
+    runs = ends - np.concatenate(([first * height], ends[:-1]))
+    columns = np.repeat(np.arange(len(runs)) % 2 == 1, runs).reshape(-1, height)
     rows = np.flatnonzero(columns.any(axis=0))
     top, bottom = int(rows[0]), int(rows[-1]) + 1
     room.take((bottom - top) * len(columns))
-    return PlacedMask(np.ascontiguousarray(columns[:, top:bottom].T), top, first)
+    mask = np.empty((bottom - top, len(columns)), bool)
+    for begin in range(0, len(columns), _AT_ONCE):  # what a cache holds
+        some = slice(begin, begin + _AT_ONCE)
+        mask[:, some] = columns[some, top:bottom].T
+    return PlacedMask(mask, top, first)
 
 
 def unpacked(text: str | bytes) -> NDArray[np.int64]:
