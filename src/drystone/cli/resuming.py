@@ -168,8 +168,10 @@ def tell_finished(
 
 def _without_budget(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Leave out how many walls a search builds: an interrupted plan says how many it had built."""
-    search = {name: value for name, value in settings["search"].items() if name != "budget"}
-    return {**settings, "search": search}
+    search = settings.get("search")
+    if not isinstance(search, Mapping):  # of other hands
+        return dict(settings)
+    return {**settings, "search": {n: value for n, value in search.items() if n != "budget"}}
 
 
 def course_heights(plan: Plan | None) -> dict[int, float]:
