@@ -168,10 +168,9 @@ def tell_finished(
 
 def _without_budget(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Leave out how many walls a search builds: an interrupted plan says how many it had built."""
-    search = settings.get("search")
-    if not isinstance(search, Mapping):  # of other hands
-        return dict(settings)
-    return {**settings, "search": {n: value for n, value in search.items() if n != "budget"}}
+    search = dict(settings.get("search", {}))
+    search.pop("budget", None)
+    return {**settings, "search": search}
 
 
 def course_heights(plan: Plan | None) -> dict[int, float]:

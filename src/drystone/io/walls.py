@@ -65,10 +65,9 @@ class GivenWall:
     @property
     def mu(self) -> float:
         """Coefficient of friction of the block model or the plan, or .58."""
-        given = self.blocks
-        if given is None and self.plan is not None:
-            given = dict(self.plan.settings)
-        return read_mu(given or {}, "mu", 0.58)
+        if self.blocks is not None:
+            return read_mu(self.blocks, "mu", 0.58)
+        return float(self.plan.settings.get("mu", 0.58)) if self.plan else 0.58
 
 
 def read_wall(path: Path, *, background: int = 0) -> GivenWall:

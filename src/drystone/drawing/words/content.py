@@ -130,9 +130,7 @@ def geometry(plan: Plan) -> Literal["raster", "exact"]:
 
 def assumptions(plan: Plan) -> tuple[str, ...]:
     """Return what the results of a plan rest on."""
-    settle, contact_px = plan.settings.get("settle"), SettleSettings().contact_px
-    if isinstance(settle, Mapping):
-        contact_px = settle.get("contact_px", contact_px)
+    contact_px = plan.settings.get("settle", {}).get("contact_px", SettleSettings().contact_px)
     return (*ASSUMPTIONS, TOUCHING[geometry(plan)].format(contact_px=contact_px))
 
 
