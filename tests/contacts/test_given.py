@@ -335,7 +335,7 @@ def test_blocks_with_a_common_line_do_not_overlap():
 def test_of_blocks_in_one_place_the_first_two_are_named_at_once(monkeypatch):
     asked = []
     monkeypatch.setattr("drystone.contacts.given.overlap_depth", lambda *_: asked.append(1) or 1.0)
-    with pytest.raises(InputError, match="E304 .*blocks 1 and 2 overlap"):
+    with pytest.raises(InputError, match=r"E304 .*blocks 1 and 2 overlap"):
         model_from_json({"blocks_xywh": [[0, 0, 4, 2]] * 400})
     assert len(asked) == 1
 
@@ -355,5 +355,5 @@ def sectors(count):
 def test_not_all_of_many_blocks_may_meet_at_one_point(monkeypatch):
     assert len(model_from_json(sectors(40)).blocks) == 40
     monkeypatch.setattr("drystone.contacts.given.MOST_TOUCHING", (100, 8))
-    with pytest.raises(InputError, match="E303 .*more than 420 pairs of its 40 blocks touch"):
+    with pytest.raises(InputError, match=r"E303 .*more than 420 pairs of its 40 blocks touch"):
         model_from_json(sectors(40))

@@ -22,7 +22,7 @@ def comb(teeth: int) -> np.ndarray:
         box(1e9, 0, 2, 1),
         box(0, 1e9, 2, 1),
         box(4, 0, 1e5, 1),
-        comb(20_000) + [4.0, 0.0],
+        np.add(comb(20_000), (4.0, 0.0)),
     ],
     ids=["far aside", "far up", "wide", "comb"],
 )

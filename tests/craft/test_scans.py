@@ -13,9 +13,10 @@ def test_runs_are_what_the_lines_have_of_the_outlines(axis):
     for seed in range(5):
         radii = np.random.default_rng(seed).uniform(0.3, 3.0, (60, 1))
         star = radii * np.column_stack([np.cos(angles), np.sin(angles)])
-        found = scan({4: star, 7: star + [5.0, 1.0]}, axis, 0.07)
+        outlines = {4: star, 7: star + np.array([5.0, 1.0])}
+        found = scan(outlines, axis, 0.07)
         for place, runs in zip(found.places.tolist(), found.runs, strict=True):
-            for block, loop in ((4, star), (7, star + [5.0, 1.0])):
+            for block, loop in outlines.items():
                 ends = np.array([[-9.0, place], [99.0, place]])[:, :: 1 - 2 * axis]
                 cut = shapely.intersection(shapely.Polygon(loop), shapely.LineString(ends))
                 pieces = [np.sort(part.xy[axis]) for part in shapely.get_parts(cut)]

@@ -97,7 +97,7 @@ def _links(masonry: "Masonry") -> list[tuple[tuple[float, float], int, int]]:
     tops = np.array([joint.top for joint in heads])
     aside, up = (1e-9 + settings.offset) * height, (1e-9 + settings.hole) * height
     # The ends of two joints that meet overlap by the rounding of stones to lines of the scan.
-    low, high = tops - [aside, 2.5 * masonry.rows.spacing], tops + [aside, up]
+    low, high = tops - (aside, 2.5 * masonry.rows.spacing), np.add(tops, (aside, up))
     near = shapely.STRtree(shapely.points(bottoms)).query(shapely.box(*low.T, *high.T))
     stones = shapely.STRtree(list(masonry.shapes.values()))
     ids = list(masonry.shapes)
