@@ -3,6 +3,7 @@
 import base64
 import json
 from collections.abc import Sequence
+from copy import deepcopy
 from random import Random
 from typing import Any
 
@@ -59,7 +60,9 @@ def _change(root: list[Any], rng: Random, pool: Sequence[bytes]) -> None:
         del node[i]
     elif draw == 1:
         most = LARGEST // len(_written(holder[at]))
-        node[i:i] = node[i : i + 1] * min(most, rng.choice((1, 1, 2, 50, 2000)))
+        # Copies: what is changed in one later must not grow in all.
+        count = min(most, rng.choice((1, 1, 2, 50, 2000)))
+        node[i:i] = [deepcopy(node[i]) for _ in range(count)]
     elif draw == 2 and isinstance(node, Pairs):
         node[i] = [rng.choice((*ODD, *(key for key, *_ in node))), node[i][1]]
     elif draw == 3:
@@ -87,7 +90,8 @@ def _other(value: Any, rng: Random, pool: Sequence[bytes]) -> Any:
         return _other_text(value, rng, pool)
     if isinstance(value, list) and rng.random() < 0.7:
         most = LARGEST // len(_written(value))
-        value = list.copy(value) * min(most, rng.choice((0, 1, 2, 3, 100)))
+        count = min(most, rng.choice((0, 1, 2, 3, 100)))
+        value = [deepcopy(item) for _ in range(count) for item in value]
         rng.shuffle(value)
         return value
     return rng.choice((None, True, False, [], Pairs(), [[]], "", "7", Text("7"), Text("0.5")))

@@ -46,6 +46,12 @@ def _commands_of_the_lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[N
         sys.path.remove(str(place))
 
 
+@pytest.fixture(autouse=True)
+def _no_data_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let tests find published stone sets by `data_dir` alone, whatever the machine has set."""
+    monkeypatch.delenv("DRYSTONE_DATA", raising=False)
+
+
 @pytest.fixture(scope="session")
 def data_dir() -> Path:
     """Folder of the published stone sets; tests that need it skip when it is absent."""

@@ -1,5 +1,6 @@
 """An interrupt and the time limit keep what is built, and --resume goes on from there."""
 
+import json
 import signal
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -82,6 +83,20 @@ def test_resume_refuses_another_command(
     assert "E136" in ran.err
     assert said in ran.err
     assert (interrupted / "plan.json").read_bytes() == before
+
+
+@pytest.mark.parametrize("kept", [(), ("mu", "settle")])
+def test_a_plan_without_all_settings_is_one_with_others(
+    kept: tuple[str, ...], interrupted: Path, rubble: Path, run: Run
+) -> None:
+    path = interrupted / "plan.json"
+    plan = json.loads(path.read_text(encoding="utf-8"))
+    plan["settings"] = {name: plan["settings"][name] for name in kept}
+    path.write_text(json.dumps(plan), encoding="utf-8")
+    ran = run("plan", rubble, *WALL, "--seed", 1, "-o", interrupted, "--resume")
+    assert ran.code == 2
+    assert "E136" in ran.err
+    assert "other settings" in ran.err
 
 
 def test_resume_refuses_other_stones(interrupted: Path, bricks: Path, run: Run) -> None:

@@ -330,3 +330,30 @@ def test_blocks_with_a_common_line_do_not_overlap():
         pair = outlines_along_a_line(rng)
         blocks = [{"id": i, "polygon": p.tolist()} for i, p in enumerate(pair, 1)]
         assert {i.other for i in model_from_json({"blocks": blocks}).interfaces} == {1}
+
+
+def test_of_blocks_in_one_place_the_first_two_are_named_at_once(monkeypatch):
+    asked = []
+    monkeypatch.setattr("drystone.contacts.given.overlap_depth", lambda *_: asked.append(1) or 1.0)
+    with pytest.raises(InputError, match=r"E304 .*blocks 1 and 2 overlap"):
+        model_from_json({"blocks_xywh": [[0, 0, 4, 2]] * 400})
+    assert len(asked) == 1
+
+
+def sectors(count):
+    """Blocks that all meet at one point."""
+    angles = np.linspace(0.0, math.pi, count + 1)
+    rim = np.column_stack([np.cos(angles), np.sin(angles)])
+    return {
+        "blocks": [
+            {"id": i + 1, "polygon": [[0, 0], rim[i].tolist(), rim[i + 1].tolist()]}
+            for i in range(count)
+        ]
+    }
+
+
+def test_not_all_of_many_blocks_may_meet_at_one_point(monkeypatch):
+    assert len(model_from_json(sectors(40)).blocks) == 40
+    monkeypatch.setattr("drystone.contacts.given.MOST_TOUCHING", (100, 8))
+    with pytest.raises(InputError, match=r"E303 .*more than 420 pairs of its 40 blocks touch"):
+        model_from_json(sectors(40))

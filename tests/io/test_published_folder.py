@@ -15,8 +15,7 @@ from tests.io.served import CONTENTS, lay_open, nobody, serving, toy_set
 
 
 @pytest.fixture(autouse=True)
-def _no_data_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.delenv("DRYSTONE_DATA", raising=False)
+def _no_cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(pooch, "os_cache", lambda project: tmp_path / "cache" / project)
 
 

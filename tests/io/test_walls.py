@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import drystone as ds
 from drystone.errors import InputError
-from drystone.io.wall_image import write_wall_image
+from drystone.io.wall_image import write_labels, write_wall_image
 from drystone.io.walls import _seen, read_wall, shows
 from drystone.model.plan import Plan
 from drystone.model.stone import Stone
@@ -86,6 +86,14 @@ def test_other_places_are_refused(name: str, tmp_path: Path) -> None:
     with pytest.raises(InputError) as caught:
         read_wall(written(made, ELSEWHERE[name](made.plan), tmp_path))
     assert caught.value.code == "E133"
+
+
+def test_an_image_that_is_far_too_large_for_the_plan_is_not_decoded(tmp_path: Path) -> None:
+    made = example()
+    folder = written(made, made.plan, tmp_path)
+    write_labels(np.ones((1001, 1000), np.uint8), next(folder.glob("wall.*")))
+    with pytest.raises(InputError, match=r"E110 wall.png: .* the limit is 1 million"):
+        read_wall(folder)
 
 
 def test_half_a_px_is_no_other_place(tmp_path: Path) -> None:

@@ -168,7 +168,8 @@ def tell_finished(
 
 def _without_budget(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Leave out how many walls a search builds: an interrupted plan says how many it had built."""
-    search = {name: value for name, value in settings["search"].items() if name != "budget"}
+    search = dict(settings.get("search", {}))
+    search.pop("budget", None)
     return {**settings, "search": search}
 
 

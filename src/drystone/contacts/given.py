@@ -36,6 +36,10 @@ as contact: coordinates are written with six digits or so."""
 SMALLEST = 1.0 / LARGEST
 """Of sizes and densities."""
 
+MOST_TOUCHING = 1000, 8
+"""Pairs that may touch: so many, and so many for each block.  Of blocks side by side in a plane
+about 3 do for each, or 4 with those that only meet at their corners."""
+
 FARTHEST = 1e9
 """From the origin, in sizes of a block: beyond it coordinates lack the digits to tell contacts."""
 
@@ -257,17 +261,21 @@ def _among_blocks(corners: dict[int, Points], sizes: dict[int, float]) -> list[I
     ids = sorted(corners)
     shapes = np.array([shapely.Polygon(corners[i]) for i in ids])
     reach = RELATIVE_TOLERANCE * np.array([sizes[i] for i in ids])
-    near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=reach)
+    tree, pairs = shapely.STRtree(shapes), 0
+    most = MOST_TOUCHING[0] + MOST_TOUCHING[1] * len(ids)
     found = []
-    for high, low in sorted({(max(pair), min(pair)) for pair in near.T.tolist()}):
-        if high == low:
-            continue
-        block, other = ids[high], ids[low]
-        tolerance = float(min(reach[high], reach[low]))
-        depth = overlap_depth(shapes[high], shapes[low])
-        if depth > tolerance:
-            raise _too_deep(f"blocks {other} and {block} overlap by {depth:g}.")
-        found += touching_interfaces(block, corners[block], other, corners[other], tolerance)
+    for high, (block, shape) in enumerate(zip(ids, shapes, strict=True)):
+        near = tree.query(shape, predicate="dwithin", distance=reach[high])
+        for low in np.sort(near[near < high]).tolist():
+            pairs += 1
+            if pairs > most:
+                what = f"more than {most} pairs of its {len(ids)} blocks touch."
+                raise bad(what, "block model", "Let fewer blocks meet at one point.")
+            other, tolerance = ids[low], float(min(reach[high], reach[low]))
+            depth = overlap_depth(shape, shapes[low])
+            if depth > tolerance:
+                raise _too_deep(f"blocks {other} and {block} overlap by {depth:g}.")
+            found += touching_interfaces(block, corners[block], other, corners[other], tolerance)
     return found
 
 

@@ -95,28 +95,29 @@ def _links(masonry: "Masonry") -> list[tuple[tuple[float, float], int, int]]:
     settings, height = masonry.settings, masonry.mean_height
     bottoms = np.array([joint.bottom for joint in heads])
     tops = np.array([joint.top for joint in heads])
-    slack = 1e-9 * height
-    aside = np.abs(bottoms[None, :, 0] - tops[:, None, 0])
-    up = bottoms[None, :, 1] - tops[:, None, 1]
-    near = (aside <= settings.offset * height + slack) & (up <= settings.hole * height + slack)
+    aside, up = (1e-9 + settings.offset) * height, (1e-9 + settings.hole) * height
     # The ends of two joints that meet overlap by the rounding of stones to lines of the scan.
-    near &= up >= -2.5 * masonry.rows.spacing
+    low, high = tops - (aside, 2.5 * masonry.rows.spacing), np.add(tops, (aside, up))
+    near = shapely.STRtree(shapely.points(bottoms)).query(shapely.box(*low.T, *high.T))
+    stones = shapely.STRtree(list(masonry.shapes.values()))
+    ids = list(masonry.shapes)
     found = []
-    for lower, upper in np.argwhere(near).tolist():
+    for lower, upper in near.T.tolist():
         if lower == upper or not _climbs(heads[lower], heads[upper]):
             continue
         way = shapely.LineString([tops[lower], bottoms[upper]])
-        if not _crossed(masonry, way, heads[lower], heads[upper]):
-            cost = (
-                round(float(aside[lower, upper]) / height, 6),
-                round(float(abs(up[lower, upper])) / height, 6),
-            )
+        beside = {ids[i] for i in stones.query(way)}
+        if not _crossed(masonry, way, heads[lower], heads[upper], beside):
+            across, along = np.abs(bottoms[upper] - tops[lower]).tolist()
+            cost = round(across / height, 6), round(along / height, 6)
             found.append((cost, lower, upper))
     return found
 
 
-def _crossed(masonry: "Masonry", way: shapely.LineString, lower: Joint, upper: Joint) -> bool:
-    """Whether a stone lies on the way from one joint to the other.
+def _crossed(
+    masonry: "Masonry", way: shapely.LineString, lower: Joint, upper: Joint, near: set[int]
+) -> bool:
+    """Whether one of the stones near the way from one joint to the other lies on it.
 
     The way may cut corners of the stones of the joints, as far to the side as they may be apart.
     Any other stone on it lies between them, as far as the scan tells it from a touch: each end of
@@ -128,7 +129,7 @@ def _crossed(masonry: "Masonry", way: shapely.LineString, lower: Joint, upper: J
     own = shapely.union_all([masonry.shapes[i] for i in four])
     if shapely.intersection(own, way).length > of_joints:
         return True
-    others = [shape for i, shape in masonry.shapes.items() if i not in four]
+    others = [masonry.shapes[i] for i in near - four]
     return bool((shapely.length(shapely.intersection(others, way)) > 0.75 * spacing).any())
 
 

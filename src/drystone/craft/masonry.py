@@ -14,12 +14,16 @@ from drystone.craft.chains import Chain, chains
 from drystone.craft.joints import Joint, joints
 from drystone.craft.scans import Scan, scan
 from drystone.craft.settings import CraftSettings
-from drystone.errors import UsageError
+from drystone.errors import InputError, UsageError
 from drystone.kernels.polygons import Polygons, area_and_centroid, no_polygons
 from drystone.model.wall import Labels
 from drystone.statics.model import RigidBlockModel
 
 Points = NDArray[np.float64]
+
+LONGEST = 4000, 12
+"""Mean heights of stones over which a wall and its stones may reach, and more for each stone: the
+lines that cut it, and what they cut, take as much memory and time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +52,8 @@ class Masonry:
     ------
     UsageError
         E191 for the id of a wedge that is not in the wall.
+    InputError
+        E192, when the rules look at it, for a wall that is too long for the height of its stones.
 
     Examples
     --------
@@ -173,12 +179,28 @@ class Masonry:
     @cached_property
     def rows(self) -> Scan:
         """What lies on level lines."""
-        return scan(self.loops, 0, self.settings.sample * self.mean_height)
+        return self._scan(0)
 
     @cached_property
     def columns(self) -> Scan:
         """What lies on upright lines."""
-        return scan(self.loops, 1, self.settings.sample * self.mean_height)
+        return self._scan(1)
+
+    def _scan(self, axis: int) -> Scan:
+        """Cut the wall by lines; refuse a wall of which lines without end would tell nothing."""
+        places = [loop[:, 1 - axis] for loop in self.loops.values()]
+        if places:
+            ways = sum(float(np.abs(one - np.roll(one, 1)).sum()) for one in places) / 2.0
+            extent = (float(np.ptp(np.concatenate(places))) + ways) / self.mean_height
+            if extent > LONGEST[0] + LONGEST[1] * len(places):
+                raise InputError(
+                    "E192",
+                    f"it reaches over {extent:.2g} mean heights of its {len(places)} stones,"
+                    " which is no wall that rules could judge.",
+                    where="wall",
+                    cure="Leave out what lies far from the wall, and what is no stone.",
+                )
+        return scan(self.loops, axis, self.settings.sample * self.mean_height)
 
     @cached_property
     def heads(self) -> tuple[Joint, ...]:

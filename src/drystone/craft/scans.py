@@ -74,11 +74,9 @@ def scan(outlines: Mapping[int, Points], axis: int, spacing: float) -> Scan:
     places = low + (np.arange(count) + 0.5) * (high - low) / count
     found: list[list[Run]] = [[] for _ in places]
     for block, loop in outlines.items():
-        ends = loop[:, across].min(), loop[:, across].max()
-        first, last = np.searchsorted(places, ends).tolist()
-        lines, along = _crossings(loop, axis, places[first : last + 1])
+        lines, along = _crossings(loop, axis, places)
         for line, begin, end in zip(lines[::2], along[::2], along[1::2], strict=True):
-            found[first + line].append(Run(block, begin, end))
+            found[line].append(Run(block, begin, end))
     rows = tuple(tuple(sorted(line, key=lambda run: run.begin + run.end)) for line in found)
     return Scan((high - low) / count, places, rows)
 
@@ -92,8 +90,10 @@ def _crossings(
     """
     ahead = np.roll(loop, -1, axis=0)
     a, b = loop[:, 1 - axis], ahead[:, 1 - axis]
-    above = places[:, None] >= loop[:, 1 - axis]
-    lines, edges = np.nonzero(above != np.roll(above, -1, axis=1))
+    first, end = np.searchsorted(places, [np.minimum(a, b), np.maximum(a, b)])
+    counts = end - first
+    edges = np.repeat(np.arange(len(loop)), counts)
+    lines = np.arange(len(edges)) + np.repeat(end - np.cumsum(counts), counts)
     share = (places[lines] - a[edges]) / (b[edges] - a[edges])
     along = loop[edges, axis] + share * (ahead[edges, axis] - loop[edges, axis])
     order = np.lexsort((along, lines))

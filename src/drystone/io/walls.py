@@ -71,6 +71,10 @@ class GivenWall:
         return float(self.plan.settings.get("mu", 0.58)) if self.plan else 0.58
 
 
+MOST_MPX = 200.0
+"""Largest picture of a wall that is decoded, in millions of pixels."""
+
+
 def read_wall(path: Path, *, background: int = 0) -> GivenWall:
     """Read a label image, a plan.json (with the wall image beside it), or a block model.
 
@@ -136,7 +140,11 @@ def image_name(plan: Plan) -> str:
 def read_image_of(plan: Plan, folder: Path) -> Labels | None:
     """Return the wall image in the folder of a plan; None when it is not there."""
     path = folder / image_name(plan)
-    return read_wall_image(path, planned=True) if path.exists() else None
+    if not path.exists():
+        return None
+    # One that is far larger is not of the plan, and is not decoded to find that out.
+    px = plan.width * plan.height * (plan.working_scale * (plan.px_per_m or 1.0)) ** 2
+    return read_wall_image(path, planned=True, max_image_mpx=min(max(1.0, 4e-6 * px), MOST_MPX))
 
 
 def read_blocks_of(plan: Plan, folder: Path) -> Any:

@@ -38,7 +38,10 @@ def test_a_suite_without_pictures_makes_no_folder_for_them(tmp_path: Path, run: 
     assert not (tmp_path / "new").exists()
 
 
-def test_walls_say_that_data_is_missing(tmp_path: Path, run: Run) -> None:
+def test_walls_say_that_data_is_missing(
+    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("drystone.io.published._cache", lambda: None)
     for options in ((), ("--data", tmp_path), ("--data", tmp_path / "none")):
         ran = run("bench", "walls", *options)
         assert ran.code == 0

@@ -12,7 +12,6 @@ from tests.io.served import COMMIT, CONTENTS, lay_open, nobody, serving, toy_set
 
 @pytest.fixture
 def _toys(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("DRYSTONE_DATA", raising=False)
     monkeypatch.setattr(fetch, "SETS", {"toy": toy_set()})
 
 
