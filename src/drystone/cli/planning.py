@@ -52,6 +52,21 @@ _EXIT = {
 }
 
 
+def add_writing(command: argparse.ArgumentParser) -> None:
+    """Add the options of what is written and printed."""
+    group = command.add_argument_group("output")
+    group.add_argument(
+        "--overwrite", action="store_true", help="write into a folder that has files"
+    )
+    group.add_argument(
+        "--pareto", action="store_true",
+        help="write the walls too that no wall of the search beats in every figure: pareto/01, ...",
+    )  # fmt: skip
+    group.add_argument("--json", action="store_true", help="print the summary as JSON")
+    group.add_argument("--quiet", action="store_true", help="no progress")
+    group.add_argument("--profile", action="store_true", help="say where the time went")
+
+
 def plan_and_write(
     stones: StoneSet,
     wall: tuple[float, float],

@@ -25,6 +25,22 @@ if TYPE_CHECKING:
     from drystone.drawing.pictures.check import Drawn
 
 
+def add(command: argparse.ArgumentParser) -> None:
+    """Add its options."""
+    command.add_argument("plan", metavar="PLAN.json", help="plan to verify, or its folder")
+    command.add_argument("--stones", metavar="STONES", help="what the plan was made from")
+    command.add_argument(
+        "--physics", action="store_true",
+        help="build the wall in a rigid-body engine too, and tilt it (extra `physics`)",
+    )  # fmt: skip
+    command.add_argument(
+        "--picture", metavar="FILE.png",
+        help="draw it, whatever was found (else check.png beside the plan when something fails)",
+    )  # fmt: skip
+    command.add_argument("--overwrite", action="store_true", help="replace the picture")
+    command.add_argument("--json", action="store_true", help="print as JSON")
+
+
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print whether the plan holds, and each problem; draw what fails."""
     if arguments.picture:

@@ -9,8 +9,9 @@ from drystone.cli.announce import WRITTEN
 from drystone.cli.choice import files_of_choice
 from drystone.cli.inputs import refuse_inputs
 from drystone.cli.output import working_in
-from drystone.cli.planning import plan_and_write
-from drystone.cli.settings import settings_from
+from drystone.cli.planning import add_writing, plan_and_write
+from drystone.cli.scale import add_scale
+from drystone.cli.settings import add_settings, settings_from
 from drystone.errors import ExitCode
 from drystone.generate.layout import lay_out
 from drystone.generate.rubble import RubbleSettings, rubble_stones
@@ -18,6 +19,16 @@ from drystone.io.read_stones import read_stones
 from drystone.io.wall_image import write_labels
 
 STONES = "stones.png"
+
+
+def add(command: argparse.ArgumentParser) -> None:
+    """Add what `drystone demo` takes."""
+    command.add_argument(
+        "-o", "--output", default="drystone-demo", metavar="DIR", help="folder to write to"
+    )
+    add_scale(command)
+    add_settings(command)
+    add_writing(command)
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
