@@ -10,6 +10,7 @@ from drystone.cli.choice import files_of_choice
 from drystone.cli.inputs import refuse_inputs
 from drystone.cli.output import working_in
 from drystone.cli.planning import add_writing, plan_and_write
+from drystone.cli.request import output_from, request_from
 from drystone.cli.scale import add_scale
 from drystone.cli.settings import add_settings, settings_from
 from drystone.errors import ExitCode
@@ -48,4 +49,5 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         write_labels(lay_out(made), folder / STONES)
         stones = read_stones(folder / STONES)
         wall = settings.width_px, settings.height_px
-        return plan_and_write(stones, wall, arguments, prepared=True)
+        request = request_from(stones, wall, arguments.px_per_m, arguments)
+        return plan_and_write(request, output_from(arguments), prepared=True)

@@ -11,6 +11,7 @@ from drystone.cli.lengths import parse_wall
 from drystone.cli.numbers import whole_from
 from drystone.cli.planning import add_writing, plan_and_write
 from drystone.cli.reading import STONES, add_reading, reading_from
+from drystone.cli.request import output_from, request_from
 from drystone.cli.scale import add_scale, scale_with
 from drystone.cli.settings import add_settings
 from drystone.errors import ExitCode
@@ -67,6 +68,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
     stones = read_stones(source, settings=reading_from(arguments))
     for notice in stones.notices:
         print(f"drystone: {notice}", file=sys.stderr)
-    arguments.px_per_m = scale_with(arguments.px_per_m, stones.source.px_per_m)
-    wall = parse_wall(arguments.wall, arguments.px_per_m)
-    return plan_and_write(stones, wall, arguments, photo_of(source))
+    px_per_m = scale_with(arguments.px_per_m, stones.source.px_per_m)
+    wall = parse_wall(arguments.wall, px_per_m)
+    request = request_from(stones, wall, px_per_m, arguments)
+    return plan_and_write(request, output_from(arguments, photo_of(source)))
