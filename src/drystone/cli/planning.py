@@ -23,13 +23,13 @@ from drystone.cli.choice import (
     write_choice,
 )
 from drystone.cli.keeping import Keeper
-from drystone.cli.output import print_json, working_in
-from drystone.cli.plan_summary import print_summary, summary
+from drystone.cli.output import print_json, print_table, working_in
 from drystone.cli.progress import step_bar
 from drystone.cli.request import PlanOutput, PlanRequest
 from drystone.cli.resuming import course_heights, earlier_run, made_of, tell_finished
 from drystone.cli.scale import picture_size_px, refuse_outside, scale_notice
-from drystone.cli.timing import print_profile, profile_summary
+from drystone.drawing.words.planned import ending, rows, summary
+from drystone.drawing.words.times import profile_rows, profile_summary
 from drystone.errors import DrystoneError, ExitCode, UsageError
 from drystone.io.checkpoint import CHECKPOINT
 from drystone.io.photo_beside import check_place, photo_beside, place_photo
@@ -142,11 +142,12 @@ def _written_and_told(
             told["pareto"] = choice_summary(result, folder)
         print_json(told | ({} if profile is None else {"profile": profile}))
     else:
-        print_summary(result, folder)
+        print_table(ending(result), rows(result, folder))
         if output.pareto:
             print_choice(result)
         if profile is not None:
-            print_profile(profile)
+            title = "\nwhere the time went, and microseconds a candidate"
+            print_table(title, profile_rows(profile))
     if failed is not None:
         raise failed
     if not output.quiet:

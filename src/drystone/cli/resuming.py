@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from drystone.cli.output import print_json
-from drystone.cli.plan_summary import summary_of_plan
 from drystone.cli.request import PlanOutput, PlanRequest
+from drystone.drawing.words.planned import summary_of_plan
 from drystone.errors import Notice, PlanError, UsageError
 from drystone.io.checkpoint import CHECKPOINT, read_checkpoint
 from drystone.io.plan_json import read_plan
