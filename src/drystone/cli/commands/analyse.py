@@ -10,14 +10,13 @@ from importlib.metadata import version
 from pathlib import Path
 
 from drystone.cli.inputs import files_of_wall, refuse_inputs, refuse_plans_own
-from drystone.cli.loads import is_plain, is_range, load_case
-from drystone.cli.modelling import modelled
 from drystone.cli.numbers import finite, friction, not_negative, whole_from
 from drystone.cli.output import prepare_files, print_json, print_table
 from drystone.cli.progress import counting_bar
+from drystone.cli.reading import add_wall
 from drystone.cli.scale import add_scale, refuse_outside, scale_with, wall_picture_px
-from drystone.cli.wall_options import add_wall
 from drystone.drawing.words.analysis import Card, ModelledWall, RangeCard, analysis_of
+from drystone.drawing.words.modelling import ModelRequest, modelled
 from drystone.drawing.words.shaken import ScatterCard, Unit, noise_unit
 from drystone.drawing.words.tables import NAMES as TABLES
 from drystone.drawing.words.tables import write_tables
@@ -25,6 +24,7 @@ from drystone.drawing.words.wall_size import scarcity, size_words
 from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.statics.limit import lateral_resistance, load_range
+from drystone.statics.load_case import LoadCase, load_case
 from drystone.statics.loads import Loads
 from drystone.statics.lp.program import assemble
 from drystone.statics.model import RigidBlockModel
@@ -124,11 +124,17 @@ def _load(text: str) -> str:
 
 def run(arguments: argparse.Namespace) -> ExitCode:
     """Print load multipliers and mechanisms; draw contacts, forces and mechanisms when asked."""
-    if _wants_scatter(arguments) and not is_plain(arguments):
+    case = LoadCase(
+        arguments.load, arguments.tilt, arguments.dead, arguments.live, arguments.settle
+    )
+    asked = ModelRequest(
+        arguments.mu, arguments.mu_head, arguments.contacts, arguments.close_gaps, case
+    )
+    if _wants_scatter(arguments) and not case.is_plain:
         raise UsageError("E138", "the scatter is that of the tilting table; leave loads out.")
     path = Path(arguments.wall_path)
     given = read_wall(path, background=arguments.background)
-    wall = modelled(given, arguments)
+    wall = modelled(given, asked, arguments.wall_path)
     per_unit_m = _metres_per_unit(given, arguments)
     few = scarcity(wall, per_unit_m)
     if few is not None:
@@ -140,9 +146,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         wall = replace(wall, remarks={**wall.remarks, "size": size})
     folder = None if arguments.output is None else Path(arguments.output)
     pictures = [] if folder is None else _prepare(folder, arguments)
-    if is_range(arguments):
-        return _print_range(wall, arguments, pictures)
-    model, loads = load_case(arguments, wall.model)
+    model, loads = load_case(case, wall.model)
+    if case.is_range:
+        return _print_range(replace(wall, model=model), loads, arguments, pictures)
     resistance = lateral_resistance(model, loads, mechanism=True, solver=arguments.solver)
     loose = None if resistance.stable else unsupported(model)
     if loose is not None:
@@ -200,10 +206,9 @@ def _sha256(arguments: argparse.Namespace) -> str:
 
 
 def _print_range(
-    wall: ModelledWall, arguments: argparse.Namespace, pictures: list[Path]
+    wall: ModelledWall, loads: Loads, arguments: argparse.Namespace, pictures: list[Path]
 ) -> ExitCode:
-    model, loads = load_case(arguments, wall.model)
-    wall = replace(wall, model=model)
+    model = wall.model
     found = load_range(model, loads, mechanism=True, solver=arguments.solver)
     ends = (found.least, found.greatest)
     card = RangeCard(

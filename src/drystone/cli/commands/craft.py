@@ -8,7 +8,7 @@ from pathlib import Path
 from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.numbers import finite, whole_from
 from drystone.cli.output import prepare_files, print_json
-from drystone.cli.wall_options import add_wall
+from drystone.cli.reading import add_wall
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.pieces import notice_of_pieces
 from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look

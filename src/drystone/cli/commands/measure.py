@@ -9,8 +9,8 @@ from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.lengths import parse_wall
 from drystone.cli.numbers import not_negative, share
 from drystone.cli.output import prepare_files, print_json, print_table
+from drystone.cli.reading import add_wall
 from drystone.cli.scale import add_scale, option_of, refuse_outside, scale_with, wall_picture_px
-from drystone.cli.wall_options import add_wall
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.contacts.pieces import notice_of_pieces
