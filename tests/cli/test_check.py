@@ -13,7 +13,7 @@ import shapely
 from matplotlib.image import imread
 from PIL import Image
 
-from drystone.cli import check_physics
+from drystone.cli.commands import check as check_command
 from drystone.cli.main import main
 from drystone.drawing.pictures import check as check_picture
 from drystone.drawing.pictures.check import views_of
@@ -94,7 +94,7 @@ def test_a_wall_that_stands_in_words(
 ) -> None:
     pytest.importorskip("pymunk", reason=NO_ENGINE)
     rough = Variation("rough", ROUNDED, TiltSettings(coarse=0.3, fine=0.3))
-    monkeypatch.setattr(check_physics, "tilt_of", partial(tilt_of, variations=(rough,)))
+    monkeypatch.setattr(check_command, "tilt_of", partial(tilt_of, variations=(rough,)))
     ran = run("check", plan_copy, "--physics")
     assert ran.code == 0
     assert ": holds\n" in ran.out
@@ -113,7 +113,7 @@ def test_a_stone_that_falls_is_named_and_drawn(
     pytest.importorskip("pymunk", reason=NO_ENGINE)
     # By this measure the stone that settles by a px has fallen.
     strict = partial(build_up, settings=BuildSettings(moved_share=0.03))
-    monkeypatch.setattr(check_physics, "build_up", strict)
+    monkeypatch.setattr(check_command, "build_up", strict)
     assert run("check", plan_copy).code == 0
     assert not (plan_copy / "check.png").exists()
     ran = run("check", plan_copy, "--physics")
@@ -146,7 +146,7 @@ def test_a_claim_that_the_engine_contradicts_fails(
         TiltResult(side, (TiltTrial(side, 0.3, None, (), 0.0, 0.01),), ("quick",))
         for side in ("left", "right")
     )
-    monkeypatch.setattr(check_physics, "tilt_of", lambda _: weak)
+    monkeypatch.setattr(check_command, "tilt_of", lambda _: weak)
     assert run("check", plan_copy).code == 0
     ran = run("check", plan_copy, "--physics")
     assert ran.code == 5
@@ -326,7 +326,7 @@ def test_the_engine_is_told_how_deep_outlines_overlap(
 ) -> None:
     """The plan is one of pixels, whose outlines do overlap."""
     pytest.importorskip("pymunk", reason=NO_ENGINE)
-    monkeypatch.setattr(check_physics, "tilt_of", lambda _: None)
+    monkeypatch.setattr(check_command, "tilt_of", lambda _: None)
     change(plan_copy, push)
     depth = run("check", plan_copy, "--json").json()["overlap_depth"]
     assert depth > NOTEWORTHY_PX

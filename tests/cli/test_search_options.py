@@ -25,7 +25,7 @@ def test_the_clock_ends_a_search_unless_a_budget_does(tmp_path: Path) -> None:
     assert asked("--time", 2.5) == (2.5, UNLIMITED)
     assert asked("--budget", 7) == (None, 7)
     assert asked("--method", "paper") == (None, 1)
-    assert asked("--method", "paper", "--time", 2) == (2.0, UNLIMITED)
+    assert asked("--method", "paper", "--time", 2) == (2.0, 1)
     toml = tmp_path / "settings.toml"
     toml.write_text("mu = 0.6\n", encoding="utf-8")
     assert asked("--settings", toml) == (10.0, UNLIMITED)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from drystone.cli.timing import print_profile, profile_summary
+from drystone.drawing.words.times import profile_rows, profile_summary
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.planner.settings import method_settings
 from drystone.search.plan_result import PlanResult
@@ -29,11 +29,8 @@ def test_parts_of_a_search_add_up(searched: PlanResult, jobs: int) -> None:
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
-def test_the_search_is_a_row_and_its_workers_are_processes(
-    searched: PlanResult, jobs: int, capsys: pytest.CaptureFixture[str]
-) -> None:
-    print_profile(profile_summary(searched, jobs))
-    lines = {line[:16].strip(): line[16:].strip() for line in capsys.readouterr().out.splitlines()}
+def test_the_search_is_a_row_and_its_workers_are_processes(searched: PlanResult, jobs: int) -> None:
+    lines = dict(profile_rows(profile_summary(searched, jobs)))
     assert lines["search"].endswith("%")  # no microseconds a candidate
     assert lines["processes"] == f"{jobs}; the search is by the clock"
     assert "threads" not in lines

@@ -1,24 +1,14 @@
 """The plan that a search begins with (`--from`)."""
 
-import argparse
-from pathlib import Path
-
 import numpy as np
 
+from drystone.cli.request import PlanRequest
 from drystone.errors import UsageError
 from drystone.io.plan_json import read_plan
 from drystone.model.plan import Plan
-from drystone.model.stone import StoneSet
-from drystone.planner.settings import PlannerSettings
-from drystone.search.plan_wall import working_scale
 
 
-def plan_to_begin_with(
-    stones: StoneSet,
-    wall: tuple[float, float],
-    arguments: argparse.Namespace,
-    settings: PlannerSettings,
-) -> Plan | None:
+def plan_to_begin_with(request: PlanRequest) -> Plan | None:
     """Return the plan of `--from`; None when there is none.
 
     Raises
@@ -27,11 +17,10 @@ def plan_to_begin_with(
         E144: it is of other stones, for another wall, made at another resolution or geometry, or
         in poses or from a side that the settings do not allow.
     """
-    asked = getattr(arguments, "begin", None)
-    if asked is None:
+    if request.begin is None:
         return None
-    plan = read_plan(Path(asked))
-    scale = arguments.scale or working_scale(stones)
+    plan = read_plan(request.begin)
+    stones, wall, settings = request.stones, request.wall, request.settings
     size = np.array([plan.width, plan.height]) * (plan.px_per_m or 1.0)
     geometry = str(plan.settings.get("geometry", "raster"))
     found = [
@@ -47,7 +36,7 @@ def plan_to_begin_with(
         _other(
             "another resolution",
             f"--scale {plan.working_scale:g}",
-            same=plan.working_scale == scale,
+            same=plan.working_scale == request.scale,
         ),
         _other("another geometry", f"--geometry {geometry}", same=geometry == settings.geometry),
         _other(
@@ -67,7 +56,7 @@ def plan_to_begin_with(
         raise UsageError(
             "E144",
             f"the plan is of {', '.join(name for name, _ in different)}.",
-            where=str(asked),
+            where=str(request.begin),
             cure=f"Add {options}." if all(option for _, option in different) else
             "Give the stones and the wall that the plan was made for, or leave --from out.",
         )  # fmt: skip

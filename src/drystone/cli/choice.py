@@ -3,7 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from drystone.cli.output import make_folder, number, refuse_file
+from drystone.cli.output import make_folder, refuse_file
+from drystone.drawing.words.content import number
 from drystone.io.plan_folder import write_plan_folder
 from drystone.io.plan_names import WRITTEN
 from drystone.search.plan_result import PlanResult

@@ -121,11 +121,6 @@ def print_table(title: str, rows: Sequence[tuple[str, str]]) -> None:
         print(f"{name:<{width}}  {value}")
 
 
-def number(value: float | None, digits: int = 3) -> str:
-    """Write a number, or that there is none."""
-    return "not defined" if value is None else f"{value:.{digits}f}"
-
-
 def make_folder(path: Path) -> None:
     """Make a folder, with those that it lies in; refuse where a file is in the way (E129)."""
     refuse_file(path)

@@ -1,4 +1,4 @@
-"""How to read stones, from options or from the plan that was made of them."""
+"""How to read stones or walls, from options or from the plan that was made of them."""
 
 import argparse
 from collections.abc import Mapping
@@ -39,6 +39,22 @@ def add_reading(command: argparse.ArgumentParser) -> None:
     )
     group.add_argument(
         "--image", metavar="NAME", help="which image of annotations of several (COCO, masks of SAM)"
+    )
+
+
+def add_wall(command: argparse.ArgumentParser) -> None:
+    """Add the wall, how its picture is read, and where results go."""
+    command.add_argument(
+        "wall_path", metavar="WALL", help="label image, plan.json, or block model (JSON)"
+    )
+    command.add_argument(
+        "--background", type=int, default=0, metavar="N",
+        help="the value of a label image that is not stone (default 0)",
+    )  # fmt: skip
+    command.add_argument("--json", action="store_true", help="print as JSON")
+    command.add_argument("-o", "--output", metavar="DIR", help="draw pictures into a folder")
+    command.add_argument(
+        "--overwrite", action="store_true", help="replace pictures of the same names"
     )
 
 

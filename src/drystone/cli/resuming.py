@@ -1,6 +1,5 @@
 """What an earlier run has left in the output folder, and going on with it (`--resume`)."""
 
-import argparse
 import json
 import sys
 from collections.abc import Mapping
@@ -11,18 +10,15 @@ from typing import Any
 import numpy as np
 
 from drystone.cli.output import print_json
-from drystone.cli.plan_summary import summary_of_plan
-from drystone.cli.settings import recorded_method
+from drystone.cli.request import PlanOutput, PlanRequest
+from drystone.drawing.words.planned import summary_of_plan
 from drystone.errors import Notice, PlanError, UsageError
 from drystone.io.checkpoint import CHECKPOINT, read_checkpoint
 from drystone.io.plan_json import read_plan
 from drystone.model.plan import Plan
-from drystone.model.stone import StoneSet
 from drystone.planner.events import UNFINISHED, Stopped
 from drystone.planner.planner import Planner
-from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_result import result_of
-from drystone.search.plan_wall import working_scale
 from drystone.search.standing import Standing
 from drystone.verify.replay import rebuild_wall
 
@@ -60,45 +56,37 @@ class Earlier:
             print("drystone: nothing to go on with yet, planning begins anew", file=sys.stderr)
 
 
-def made_of(
-    stones: StoneSet,
-    wall: tuple[float, float],
-    arguments: argparse.Namespace,
-    settings: PlannerSettings,
-) -> dict[str, Any]:
+def made_of(request: PlanRequest) -> dict[str, Any]:
     """Return all that shapes the plan of a command, by what the user gives, as JSON has it."""
+    source = request.stones.source
     shaped: dict[str, Any] = json.loads(
         json.dumps(
             {
-                "stones": stones.source.sha256,
-                "reading": dict(stones.source.reading),
-                "--wall": wall,
-                "--px-per-m": arguments.px_per_m,
-                "--scale": arguments.scale or working_scale(stones),
-                "--seed": arguments.seed,
-                "--method": recorded_method(arguments),
-                "settings": _without_budget(settings.as_dict()),
+                "stones": source.sha256,
+                "reading": dict(source.reading),
+                "--wall": request.wall,
+                "--px-per-m": request.px_per_m,
+                "--scale": request.scale,
+                "--seed": request.seed,
+                "--method": request.method,
+                "settings": _without_budget(request.settings.as_dict()),
             }
         )
     )
     return shaped
 
 
-def earlier_run(
-    folder: Path,
-    stones: StoneSet,
-    wall: tuple[float, float],
-    arguments: argparse.Namespace,
-    settings: PlannerSettings,
-) -> Earlier:
+def earlier_run(request: PlanRequest, folder: Path) -> Earlier:
     """Return what to go on from, if that is asked for; refuse what is of something else (E136)."""
-    if not getattr(arguments, "resume", False):
+    if not request.resume:
         return Earlier()
-    asked, path = made_of(stones, wall, arguments, settings), folder / "plan.json"
+    asked, path = made_of(request), folder / "plan.json"
     plan = read_plan(path) if path.exists() else None
-    different = [] if plan is None else _differences(plan, asked, arguments)
+    different = [] if plan is None else _differences(plan, asked, request.asked_method)
     try:
-        kept = read_checkpoint(folder, [stone.id for stone in stones], settings.search)
+        kept = read_checkpoint(
+            folder, [stone.id for stone in request.stones], request.settings.search
+        )
     except PlanError as error:
         cure = "The partial plan is gone on from." if plan is not None else "Planning begins anew."
         notice = Notice("W129", f"{error.where}: {error.what}", cure)
@@ -116,9 +104,9 @@ def earlier_run(
     return Earlier(plan if partial else None, begun=True)
 
 
-def _differences(plan: Plan, asked: Mapping[str, Any], arguments: argparse.Namespace) -> list[str]:
+def _differences(plan: Plan, asked: Mapping[str, Any], asked_method: str) -> list[str]:
     """Name what a plan was made of that is not what is asked for."""
-    px_per_m = arguments.px_per_m or 1.0
+    px_per_m = asked["--px-per-m"] or 1.0
     size = plan.width * px_per_m, plan.height * px_per_m
     equal = {
         "stones": plan.source["sha256"] == asked["stones"],
@@ -127,7 +115,7 @@ def _differences(plan: Plan, asked: Mapping[str, Any], arguments: argparse.Names
         "--px-per-m": plan.px_per_m == asked["--px-per-m"],
         "--scale": plan.working_scale == asked["--scale"],
         "--seed": plan.seed == asked["--seed"],
-        "--method": plan.method in (asked["--method"], arguments.method),
+        "--method": plan.method in (asked["--method"], asked_method),
         "settings": _without_budget(plan.settings) == asked["settings"],
     }
     return [name for name, same in equal.items() if not same]
@@ -143,25 +131,23 @@ def _refuse(different: list[str], path: Path) -> None:
         )
 
 
-def tell_finished(
-    plan: Plan, stones: StoneSet, settings: PlannerSettings, arguments: argparse.Namespace
-) -> str:
+def tell_finished(plan: Plan, request: PlanRequest, output: PlanOutput) -> str:
     """Say that there is nothing to go on with; return the status that the wall ended with."""
     print(
         "drystone: this plan is finished, there is nothing to go on with;"
         " --from begins a search with it",
         file=sys.stderr,
     )
-    wall = rebuild_wall(plan, stones)
-    planner = Planner(stones, wall.site, seed=plan.seed, settings=settings)
+    wall = rebuild_wall(plan, request.stones)
+    planner = Planner(request.stones, wall.site, seed=plan.seed, settings=request.settings)
     planner.restore(wall, course_heights(plan))
     # A plan keeps why it ended in words only, and the words are all that is asked for.
     planner.stopped = Stopped("search", plan.stopped)
     result = result_of(planner)
     if result.shortfall:
         print(f"drystone: {result.status}: {result.shortfall}", file=sys.stderr)
-    if arguments.json:
-        told = summary_of_plan(plan, Path(arguments.output))
+    if output.json:
+        told = summary_of_plan(plan, output.folder)
         print_json(told | {"status": "finished"})
     return result.status
 

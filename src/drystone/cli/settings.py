@@ -7,10 +7,11 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
+from drystone.cli.numbers import positive, share, whole_from
 from drystone.errors import InputError, UsageError
 from drystone.io.file_bytes import file_bytes
 from drystone.io.foreign import foreign
-from drystone.planner.search_settings import UNLIMITED
+from drystone.planner.search_settings import AIMS, UNLIMITED
 from drystone.planner.settings import METHODS, PlannerSettings, method_settings
 from drystone.selection.policies.registry import rule_of
 
@@ -26,6 +27,84 @@ _PLAIN = ("sampling", "two_sided", "orientations", "mu", "skip_too_large")
 
 _Asked = tuple[str, dict[str, Any]]
 """Options, as an error names them, and what they change."""
+
+
+def add_settings(command: argparse.ArgumentParser) -> None:
+    """Add the options that say how a wall is planned."""
+    group = command.add_argument_group("method")
+    group.add_argument("--method", default="best", metavar="NAME", help="best (default) or paper")
+    group.add_argument(
+        "--settings", metavar="FILE.toml", help="parameters that replace the method's"
+    )
+    group.add_argument(
+        "--seed", type=whole_from(0), default=0, help="of the random choices (default 0)"
+    )
+    group.add_argument(
+        "--scale", type=share, metavar="S", help="plan on images reduced by S, 0 to 1"
+    )
+    group.add_argument(
+        "--policy", metavar="NAME",
+        help="who chooses the stones of a single pass: paper, random, lowest, scalarised, filter, "
+        "towers, learned, or one that is installed (docs/policies.md)",
+    )  # fmt: skip
+    group.add_argument(
+        "--sampling", choices=["variant", "uniform", "twofold", "full"],
+        help="stones that are tried in a step: one of each cluster, as many at random, one of "
+        "each and then all of the winner's cluster, or all",
+    )  # fmt: skip
+    group.add_argument("--placement", choices=["snug", "eq12", "lowest"])
+    group.add_argument("--reach", choices=["any", "above"], help="where a stone may be inserted")
+    group.add_argument(
+        "--two-sided", action=argparse.BooleanOptionalAction, default=None, dest="two_sided",
+        help="build from both ends",
+    )  # fmt: skip
+    group.add_argument(
+        "--one-sided", action="store_false", dest="two_sided", help="same as --no-two-sided"
+    )
+    group.add_argument("--orientations", metavar="SET", help="sf, quarter, or a step such as 10deg")
+    group.add_argument("--stabilise", choices=["both", "rotation", "wedge", "none"])
+    group.add_argument("--mu", type=float, help="coefficient of friction (default .58)")
+    group.add_argument(
+        "--geometry", choices=["exact", "raster"],
+        help="exact: stones settle on their outlines; raster: they are their pixels",
+    )  # fmt: skip
+    group.add_argument(
+        "--settle", choices=["energy", "pivot"],
+        help="with exact geometry: down to the least energy, or rolling as in the paper",
+    )  # fmt: skip
+    effort = group.add_mutually_exclusive_group()
+    effort.add_argument(
+        "--time", type=positive, metavar="SECONDS",
+        help="time limit of the search (best: 10 s for 30 stones, and a whole wall)",
+    )  # fmt: skip
+    effort.add_argument(
+        "--budget", type=whole_from(1), metavar="N",
+        help="how many walls are built instead, which repeats exactly: 1 is a single pass",
+    )  # fmt: skip
+    group.add_argument(
+        "--aim", nargs="+", action="extend", type=_aim, metavar="FIGURE=VALUE",
+        help="figures to reach, such as F_SF=.88 F_AV=40 F_AH=1.5 F_LR=.8",
+    )  # fmt: skip
+    group.add_argument(
+        "--skip-too-large", action="store_true", default=None,
+        help="leave out stones that fit into the wall in no orientation",
+    )  # fmt: skip
+    group.add_argument(
+        "--jobs",
+        type=whole_from(1),
+        default=1,
+        metavar="N",
+        help="processes; never the result of a budget",
+    )
+
+
+def _aim(text: str) -> tuple[str, float]:
+    """Read what a figure of merit shall reach."""
+    name, equals, value = text.partition("=")
+    if name not in AIMS or not equals:
+        message = f"{text!r} is not one of {', '.join(f'{known}=VALUE' for known in AIMS)}"
+        raise argparse.ArgumentTypeError(message)
+    return name, positive(value)
 
 
 def settings_from(arguments: argparse.Namespace) -> PlannerSettings:

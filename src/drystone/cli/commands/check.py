@@ -6,23 +6,41 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from drystone.cli.check_physics import physics_of
 from drystone.cli.inputs import files_of, files_of_wall, refuse_among_masks, refuse_inputs
 from drystone.cli.output import prepare_picture, print_json, print_table
+from drystone.cli.progress import counting_bar
 from drystone.cli.reading import reading_of
-from drystone.drawing.words.checked import PICTURE, Checked
+from drystone.drawing.words.checked import PICTURE, Checked, PhysicsCard
 from drystone.errors import ExitCode, InputError, PlanError
 from drystone.io.file_bytes import file_bytes
 from drystone.io.plan_json import read_plan
 from drystone.io.read_stones import read_stones
 from drystone.io.walls import read_blocks_of, read_image_of
 from drystone.model.plan import Plan
+from drystone.physics.building import build_up, tilt_of
 from drystone.physics.table import load_engine
 from drystone.verify.check import check_plan
+from drystone.verify.lengths import plan_settings
 from drystone.verify.outlines import plan_polygons
 
 if TYPE_CHECKING:
     from drystone.drawing.pictures.check import Drawn
+
+
+def add(command: argparse.ArgumentParser) -> None:
+    """Add its options."""
+    command.add_argument("plan", metavar="PLAN.json", help="plan to verify, or its folder")
+    command.add_argument("--stones", metavar="STONES", help="what the plan was made from")
+    command.add_argument(
+        "--physics", action="store_true",
+        help="build the wall in a rigid-body engine too, and tilt it (extra `physics`)",
+    )  # fmt: skip
+    command.add_argument(
+        "--picture", metavar="FILE.png",
+        help="draw it, whatever was found (else check.png beside the plan when something fails)",
+    )  # fmt: skip
+    command.add_argument("--overwrite", action="store_true", help="replace the picture")
+    command.add_argument("--json", action="store_true", help="print as JSON")
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -36,7 +54,9 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         path /= "plan.json"
     plan = read_plan(path)
     source = Path(arguments.stones) if arguments.stones else _find_stones(plan, path.parent)
-    refuse_inputs((*files_of(source), *files_of_wall(path)), _drawn(arguments, path.parent))
+    # Without a place of its own, what may be drawn, here or by another check before.
+    picture_path = Path(arguments.picture) if arguments.picture else path.parent / PICTURE
+    refuse_inputs((*files_of(source), *files_of_wall(path)), [picture_path])
     if arguments.picture:
         refuse_among_masks(source, [Path(arguments.picture)])
     # The image of a plan without stones is no picture of stones.
@@ -51,8 +71,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         asked_physics=arguments.physics,
     )
     if arguments.physics:
-        found = physics_of(plan, checked.groups, checked.report, quiet=arguments.json)
-        checked = replace(checked, physics=found)
+        checked = replace(checked, physics=_physics_of(checked, quiet=arguments.json))
     picture = _picture(checked, arguments, path.parent)
     if arguments.json:
         print_json({**checked.as_dict(), **({"picture": picture.path} if picture else {})})
@@ -60,11 +79,6 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         drawn = [("picture", picture.words)] if picture else []
         print_table(f"{path}: {checked.verdict}", checked.rows() + drawn)
     return ExitCode.DONE if checked.ok else ExitCode.CHECK_FAILED
-
-
-def _drawn(arguments: argparse.Namespace, folder: Path) -> tuple[Path, ...]:
-    """Return what may be drawn, here or by another check before."""
-    return (Path(arguments.picture) if arguments.picture else folder / PICTURE,)
 
 
 def _picture(checked: Checked, arguments: argparse.Namespace, folder: Path) -> "Drawn | None":
@@ -76,6 +90,18 @@ def _picture(checked: Checked, arguments: argparse.Namespace, folder: Path) -> "
     if arguments.picture:
         return draw_asked(checked, Path(arguments.picture))
     return draw_failures(checked, folder)
+
+
+def _physics_of(checked: Checked, *, quiet: bool) -> PhysicsCard | None:
+    """Build the wall in the engine and tilt it; None when some step places nothing."""
+    plan, groups = checked.plan, checked.groups
+    if sum(map(len, groups)) < len(plan.steps):
+        return None
+    settings, _ = plan_settings(plan)
+    with counting_bar("stones in the engine", len(groups), quiet=quiet) as on_group:
+        built = build_up(groups, settings.mu, on_group=on_group)
+    report = checked.report
+    return PhysicsCard(plan, built, tilt_of(built), report.metrics, report.overlap_depth)
 
 
 def _blocks_beside(plan: Plan, folder: Path) -> Any:

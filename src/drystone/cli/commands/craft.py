@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from drystone.cli.inputs import files_of_wall, refuse_inputs
+from drystone.cli.numbers import finite, whole_from
 from drystone.cli.output import prepare_files, print_json
+from drystone.cli.reading import add_wall
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.pieces import notice_of_pieces
 from drystone.craft import RULES, CraftReport, Finding, Limit, Masonry, look
@@ -15,6 +17,33 @@ from drystone.errors import ExitCode, Notice, UsageError
 from drystone.io.walls import GivenWall, read_wall
 
 SHEET_DPI, SINGLE_DPI = 130, 150
+
+
+def add(command: argparse.ArgumentParser) -> None:
+    """Add what can be said about a look at a wall."""
+    add_wall(command)
+    command.add_argument(
+        "--cases", type=whole_from(0), default=3, metavar="N",
+        help="how many places a rule names in the table (default 3); JSON has all",
+    )  # fmt: skip
+    command.add_argument(
+        "--limit", action="append", type=_limit, default=[], metavar="RULE=GOOD:FAIR",
+        dest="limits",
+        help="last good and last fair number of a rule, such as laps=.1:.3; repeatable",
+    )  # fmt: skip
+    command.add_argument(
+        "--wedges", nargs="+", action="extend", type=whole_from(1), default=[], metavar="ID",
+        help="ids that are wedges, in a label image or block model",
+    )  # fmt: skip
+
+
+def _limit(text: str) -> tuple[str, float, float]:
+    """Read a rule and its two limits."""
+    name, equals, values = text.partition("=")
+    good, colon, fair = values.partition(":")
+    if not (equals and colon):
+        raise argparse.ArgumentTypeError(f"{text!r} is not RULE=GOOD:FAIR")
+    return name, finite(good), finite(fair)
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:

@@ -9,8 +9,10 @@ from drystone.cli.announce import WRITTEN
 from drystone.cli.choice import files_of_choice
 from drystone.cli.inputs import refuse_inputs
 from drystone.cli.output import working_in
-from drystone.cli.planning import plan_and_write
-from drystone.cli.settings import settings_from
+from drystone.cli.planning import add_writing, plan_and_write
+from drystone.cli.request import output_from, request_from
+from drystone.cli.scale import add_scale
+from drystone.cli.settings import add_settings, settings_from
 from drystone.errors import ExitCode
 from drystone.generate.layout import lay_out
 from drystone.generate.rubble import RubbleSettings, rubble_stones
@@ -18,6 +20,16 @@ from drystone.io.read_stones import read_stones
 from drystone.io.wall_image import write_labels
 
 STONES = "stones.png"
+
+
+def add(command: argparse.ArgumentParser) -> None:
+    """Add what `drystone demo` takes."""
+    command.add_argument(
+        "-o", "--output", default="drystone-demo", metavar="DIR", help="folder to write to"
+    )
+    add_scale(command)
+    add_settings(command)
+    add_writing(command)
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:
@@ -37,4 +49,5 @@ def run(arguments: argparse.Namespace) -> ExitCode:
         write_labels(lay_out(made), folder / STONES)
         stones = read_stones(folder / STONES)
         wall = settings.width_px, settings.height_px
-        return plan_and_write(stones, wall, arguments, prepared=True)
+        request = request_from(stones, wall, arguments.px_per_m, arguments)
+        return plan_and_write(request, output_from(arguments), prepared=True)

@@ -10,10 +10,24 @@ from typing import Any
 import numpy as np
 
 from drystone import generate
+from drystone.cli.numbers import whole_from
 from drystone.cli.output import prepare_files
 from drystone.errors import ExitCode, UsageError
 from drystone.io.wall_image import write_labels
 from drystone.model.settings import updated
+
+
+def add(command: argparse.ArgumentParser) -> None:
+    """Add its options."""
+    command.add_argument("kind", choices=["fourier", "polygon", "brick", "rubble"])
+    command.add_argument("-o", "--output", required=True, metavar="STONES.png")
+    command.add_argument("--count", type=whole_from(1), help="number of stones")
+    command.add_argument("--seed", type=whole_from(0), default=0)
+    command.add_argument("--overwrite", action="store_true", help="replace the file")
+    command.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", dest="changes",
+        help="a parameter of the generator, such as noise=0.4 or D2=0.2 (see the docs)",
+    )  # fmt: skip
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:

@@ -7,17 +7,31 @@ from pathlib import Path
 
 from drystone.cli.inputs import files_of_wall, refuse_inputs
 from drystone.cli.lengths import parse_wall
-from drystone.cli.output import number, prepare_files, print_json, print_table
-from drystone.cli.scale import option_of, refuse_outside, scale_with, wall_picture_px
+from drystone.cli.numbers import not_negative, share
+from drystone.cli.output import prepare_files, print_json, print_table
+from drystone.cli.reading import add_wall
+from drystone.cli.scale import add_scale, option_of, refuse_outside, scale_with, wall_picture_px
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.contacts.pieces import notice_of_pieces
+from drystone.drawing.words.content import number
 from drystone.errors import ExitCode, UsageError
 from drystone.io.walls import GivenWall, read_wall, unsupported
 from drystone.metrics.measure import WallMetrics, measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
+
+
+def add(command: argparse.ArgumentParser) -> None:
+    """Add its options."""
+    add_wall(command)
+    command.add_argument("--mu", type=not_negative, help="coefficient of friction (default .58)")
+    command.add_argument("--wall", metavar="WxH", help="wall that was to be built, px or metric")
+    command.add_argument(
+        "--scale", type=share, default=1.0, metavar="S", help="reduce the image by S first"
+    )
+    add_scale(command)
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:

@@ -6,13 +6,23 @@ from pathlib import Path
 
 from drystone.cli.inputs import files_of, refuse_among_masks, refuse_inputs
 from drystone.cli.output import prepare_picture, print_json, print_table
-from drystone.cli.reading import reading_from
-from drystone.cli.scale import picture_size_px, refuse_outside, scale_notice, scale_with
+from drystone.cli.reading import STONES, add_reading, reading_from
+from drystone.cli.scale import add_scale, picture_size_px, refuse_outside, scale_notice, scale_with
 from drystone.clusters import cluster_stones
 from drystone.errors import ExitCode
 from drystone.io.read_stones import read_stones
 from drystone.model.stone_size import median_sides, sides_px
 from drystone.poses import PoseBook
+
+
+def add(command: argparse.ArgumentParser) -> None:
+    """Add its options."""
+    command.add_argument("stones", metavar="STONES", help=STONES)
+    command.add_argument("-o", "--output", metavar="PICTURE.png", help="draw the stones")
+    command.add_argument("--overwrite", action="store_true", help="replace the picture")
+    add_reading(command)
+    add_scale(command)
+    command.add_argument("--json", action="store_true", help="print as JSON")
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:

@@ -1,23 +1,11 @@
-"""The scatter of the load multiplier in `drystone analyse`."""
+"""What is said of walls that were shaken, and the unit of the noise."""
 
-import argparse
-from collections.abc import Iterator
-from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from drystone.cli.output import prepare_files
-from drystone.cli.progress import counting_bar
-from drystone.drawing.words.analysis import ModelledWall
-from drystone.errors import UsageError
 from drystone.io.walls import GivenWall
 from drystone.statics.result import LimitStatus
-from drystone.statics.scatter.scatter import Quantiles, Scatter, scatter
-from drystone.statics.scatter.shaking import ScatterSettings
-
-SAMPLES = 200
+from drystone.statics.scatter.scatter import Quantiles, Scatter
 
 
 @dataclass(frozen=True)
@@ -117,53 +105,3 @@ def noise_unit(wall: GivenWall) -> Unit:
         return Unit("lengths of the block model")
     px_per_m = wall.plan.px_per_m if wall.plan.length_unit == "m" else None
     return Unit("px", 1.0 / (px_per_m or 1.0))
-
-
-def wants_scatter(arguments: argparse.Namespace) -> bool:
-    """Whether an option of the scatter was given.
-
-    Raises
-    ------
-    UsageError
-        E138 when there are samples to take, but nothing by which they would differ.
-    """
-    is_varied = arguments.mu is not None and arguments.mu[0] < arguments.mu[1]
-    varied: bool = is_varied or arguments.outline_noise > 0 or arguments.placement_noise > 0
-    if arguments.scatter is not None and not varied:
-        raise UsageError(
-            "E138",
-            "all samples would be the same wall.",
-            where="--scatter",
-            cure="Say what is not known: --mu LOW:HIGH, --outline-noise or --placement-noise.",
-        )
-    return varied
-
-
-def scatter_of(
-    wall: ModelledWall, arguments: argparse.Namespace, unit: Unit, folder: Path | None
-) -> ScatterCard:
-    """Shake the wall and analyse it each time; draw the distribution into the folder."""
-    settings = ScatterSettings(
-        samples=SAMPLES if arguments.scatter is None else arguments.scatter,
-        mu=arguments.mu,
-        outline_noise=arguments.outline_noise * unit.lengths,
-        placement_noise=arguments.placement_noise * unit.lengths,
-    )
-    if folder is not None:
-        prepare_files([folder / "scatter.png"], overwrite=arguments.overwrite)
-    bar = counting_bar("walls", settings.samples, quiet=arguments.json)
-    with bar as on_sample, _workers(arguments.jobs) as executor:
-        found = scatter(
-            wall.model, settings, seed=arguments.seed, executor=executor, on_sample=on_sample
-        )
-    if folder is not None:
-        from drystone.drawing import plot_scatter, save  # noqa: PLC0415 - slow import
-
-        save(plot_scatter(found).figure, folder / "scatter.png")
-    return ScatterCard(found, unit)
-
-
-@contextmanager
-def _workers(jobs: int) -> Iterator[Executor | None]:
-    with ThreadPoolExecutor(jobs) if jobs > 1 else nullcontext() as executor:
-        yield executor

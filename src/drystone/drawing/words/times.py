@@ -1,8 +1,7 @@
-"""What `plan --profile` says: where the time of a plan went."""
+"""Where the time of a plan went."""
 
 from typing import Any
 
-from drystone.cli.output import print_table
 from drystone.kernels.backend import describe
 from drystone.planner.profile import PARTS
 from drystone.search.plan_result import PlanResult
@@ -33,8 +32,8 @@ def profile_summary(result: PlanResult, jobs: int) -> dict[str, Any]:
     }
 
 
-def print_profile(summary: dict[str, Any]) -> None:
-    """Print the times as a table."""
+def profile_rows(summary: dict[str, Any]) -> list[tuple[str, str]]:
+    """Return the times as names and values, one a line."""
     whole = sum(summary["parts"].values()) or 1.0
     jobs, searched = summary["jobs"], summary["parts"]["search"] > 0
     without = " (without those of the search)" if searched else ""
@@ -44,7 +43,8 @@ def print_profile(summary: dict[str, Any]) -> None:
         if searched or part != "search"
     ]
     longest = f"the longest {1000 * summary['longest_step']:.1f} ms"
-    rows += [
+    return [
+        *rows,
         ("steps", f"{summary['steps']}, {longest}{without}"),
         ("candidates", f"{summary['candidates']}{without}"),
         ("solved anew", f"{summary['solved_anew']}, as the first answer had no certificate"),
@@ -53,7 +53,6 @@ def print_profile(summary: dict[str, Any]) -> None:
         if searched
         else ("threads", "1" if jobs == 1 else f"{jobs}; parts are summed over them"),
     ]
-    print_table("\nwhere the time went, and microseconds a candidate", rows)
 
 
 def _each(part: str, seconds: float, summary: dict[str, Any]) -> str:

@@ -1,39 +1,15 @@
-"""How large a wall is that `drystone analyse` looks at, and which stones touch too little."""
+"""How large a wall is, and which of its stones touch too little."""
 
-import argparse
 from collections.abc import Mapping
 
 import numpy as np
 
-from drystone.cli.scale import refuse_outside, scale_with, wall_picture_px
 from drystone.contacts.scarce import scarce_contacts
 from drystone.drawing.words.analysis import ModelledWall, Shapes
 from drystone.errors import Notice
-from drystone.io.walls import GivenWall
 
 LISTED = 8
 """So many stones are named."""
-
-
-def metres_per_unit(wall: GivenWall, arguments: argparse.Namespace) -> float | None:
-    """Return how long a unit of the model is; None when nobody knows.
-
-    Raises
-    ------
-    UsageError
-        E131 when the options give another scale than the plan has; E138 for a ruler that lies
-        beyond the picture.
-    """
-    refuse_outside(arguments.px_per_m, wall_picture_px(wall))
-    plan = wall.plan
-    px_per_m = scale_with(arguments.px_per_m, None if plan is None else plan.px_per_m, "plan")
-    if px_per_m is None:
-        return None
-    if plan is None:
-        return 1.0 / px_per_m
-    if wall.blocks is not None:
-        return 1.0 if plan.length_unit == "m" else 1.0 / px_per_m
-    return 1.0 / (px_per_m * plan.working_scale)
 
 
 def size_words(shapes: Shapes, per_unit_m: float | None) -> str | None:

@@ -1,12 +1,10 @@
-"""From a wall file to the rigid block model that `drystone analyse` looks at."""
+"""From a wall file to the rigid block model that is asked for."""
 
-import argparse
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-from drystone.cli.loads import is_plain, is_range, load_case
 from drystone.contacts.blocks import ImageModel, model_from_labels
 from drystone.contacts.gap_spread import closed_gap_spread
 from drystone.contacts.gaps import model_with_closed_gaps, settle_gaps
@@ -19,58 +17,79 @@ from drystone.io.walls import GivenWall
 from drystone.model.wall import Labels
 from drystone.statics.joints import with_head_friction
 from drystone.statics.limit import lateral_resistance
+from drystone.statics.load_case import LoadCase, load_case
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 
 
-def modelled(wall: GivenWall, arguments: argparse.Namespace) -> ModelledWall:
+@dataclass(frozen=True)
+class ModelRequest:
+    """What touches what, how rough it is, and what it carries, as it is asked for.
+
+    Parameters
+    ----------
+    mu : (float, float) or None
+        Range of the coefficient of friction; None for that of the wall.
+    mu_head : float or None
+        That of head joints, when it is another.
+    contacts : {"pixels", "outlines"}
+        What they are taken from.
+    close_gaps : str or None
+        How wide gaps may be that bear, or "settle".
+    case : LoadCase
+        The loads.
+    """
+
+    mu: tuple[float, float] | None
+    mu_head: float | None
+    contacts: str
+    close_gaps: str | None
+    case: LoadCase
+
+    @property
+    def as_planned(self) -> bool:
+        """Whether loads and head joints are those that F_LR of a plan is of: a tilting table."""
+        return self.case.is_plain and self.mu_head is None
+
+
+def modelled(wall: GivenWall, asked: ModelRequest, where: str) -> ModelledWall:
     """Make the model that the options ask for."""
-    mu = _mu(wall, arguments)
+    mu = wall.mu if asked.mu is None else sum(asked.mu) / 2.0
     if wall.blocks is not None:
-        found = _given(wall, wall.blocks, mu, arguments)
+        found = _given(wall, wall.blocks, mu, asked)
     else:
         assert wall.labels is not None  # noqa: S101 - a wall without blocks has an image
-        found = _drawn(wall, wall.labels, mu, arguments)
-    if arguments.mu_head is not None:
+        found = _drawn(wall, wall.labels, mu, asked)
+    if asked.mu_head is not None:
         if wall.blocks is None:
-            found = replace(found, model=with_head_friction(found.model, arguments.mu_head))
-        said = f"friction {arguments.mu_head:g}"
+            found = replace(found, model=with_head_friction(found.model, asked.mu_head))
+        said = f"friction {asked.mu_head:g}"
         found = replace(found, remarks={**found.remarks, "head joints": said})
     if all(block.fixed for block in found.model.blocks):
         raise InputError(
             "E303",
             "there is no free block in it, so there is nothing to analyse.",
-            where=arguments.wall_path,
+            where=where,
             cure="Give a block that is not fixed.",
         )
     return found
 
 
-def _mu(wall: GivenWall, arguments: argparse.Namespace) -> float:
-    """Return the friction of the options, the middle of their range, or that of the wall."""
-    if arguments.mu is not None:
-        low, high = arguments.mu
-        return float(low + high) / 2.0
-    return wall.mu
-
-
-def _given(
-    wall: GivenWall, blocks: dict[str, Any], mu: float, arguments: argparse.Namespace
-) -> ModelledWall:
-    if arguments.close_gaps is not None or arguments.contacts != "pixels":
+def _given(wall: GivenWall, blocks: dict[str, Any], mu: float, asked: ModelRequest) -> ModelledWall:
+    if asked.close_gaps is not None or asked.contacts != "pixels":
         what = "a block model has no pixels to take contacts from."
         cure = "Leave --close-gaps and --contacts out."
         if wall.plan is not None:
             what = "this plan is one of outlines, whose contacts are known."
             cure = "Leave --close-gaps and --contacts out, or give its wall image."
         raise UsageError("E138", what, cure=cure)
-    if arguments.mu is not None:
+    if asked.mu is not None:
         blocks = {**blocks, "mu": mu}
-    if arguments.mu_head is not None:
-        blocks = {**blocks, "mu_head": arguments.mu_head}
+    if asked.mu_head is not None:
+        blocks = {**blocks, "mu_head": asked.mu_head}
     remarks = {}
     bare = None if wall.plan is None else wall.plan.metrics.F_LR_no_setback
-    if bare is not None and arguments.mu is None and _as_planned(arguments):
+    if bare is not None and asked.mu is None and asked.as_planned:
         remarks["contacts"] = f"set back; F_LR {bare:.3f} with contacts up to the ends of faces"
     return ModelledWall(
         model_from_json(blocks),
@@ -81,20 +100,18 @@ def _given(
     )
 
 
-def _drawn(
-    wall: GivenWall, labels: Labels, mu: float, arguments: argparse.Namespace
-) -> ModelledWall:
-    if arguments.close_gaps is not None:
-        return _with_closed_gaps(wall, labels, mu, arguments)
+def _drawn(wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest) -> ModelledWall:
+    if asked.close_gaps is not None:
+        return _with_closed_gaps(wall, labels, mu, asked)
     picture = model_from_labels(labels, mu)
-    if arguments.contacts == "pixels":
+    if asked.contacts == "pixels":
         return ModelledWall(picture.model, labels, "stone", wall.wedge_ids, picture.notices)
     outlines = outlines_of_labels(labels[: picture.ground_row])
     # What a picture weighs it weighs by its pixels, not by what smoothing made of them.
     bare = replace(model_from_outlines(outlines, mu), blocks=picture.model.blocks)
     found = model_from_outlines(outlines, mu, setback=SETBACK)
     said = "from sub-pixel outlines, set back"
-    if _as_planned(arguments):
+    if asked.as_planned:
         strength = lateral_resistance(bare).value
         with_ends = "falls" if strength is None else f"F_LR {strength:.3f}"
         said += f"; {with_ends} with contacts up to the ends of faces"
@@ -108,17 +125,13 @@ def _drawn(
     )
 
 
-def _as_planned(arguments: argparse.Namespace) -> bool:
-    """Whether loads and head joints are those that F_LR of a plan is of: a tilting table."""
-    return is_plain(arguments) and arguments.mu_head is None
-
-
 def _with_closed_gaps(
-    wall: GivenWall, labels: Labels, mu: float, arguments: argparse.Namespace
+    wall: GivenWall, labels: Labels, mu: float, asked: ModelRequest
 ) -> ModelledWall:
-    if arguments.contacts != "pixels":
+    if asked.contacts != "pixels":
         raise UsageError("E138", "--close-gaps goes with --contacts pixels only.")
-    reach = _reach(arguments.close_gaps)
+    drawn, done = labels, ""
+    reach = _reach(asked.close_gaps or "")
     picture: ImageModel
     if reach is None:
         labels, moved = settle_gaps(labels)
@@ -127,26 +140,19 @@ def _with_closed_gaps(
         done = f"{len(moved)} stones lowered by up to {farthest} px; "
     else:
         picture = model_with_closed_gaps(labels, reach, mu)
-        done = ""
-    drawn = labels if reach is not None else _labels(wall)
-    spread = closed_gap_spread(drawn, reach, mu, partial(_resistance, arguments))
+    spread = closed_gap_spread(drawn, reach, mu, partial(_resistance, asked))
     remarks = {"gaps": f"{done}{spread.words()}"}
     return ModelledWall(picture.model, labels, "stone", wall.wedge_ids, picture.notices, remarks)
 
 
-def _resistance(arguments: argparse.Namespace, model: RigidBlockModel) -> LateralResistance:
+def _resistance(asked: ModelRequest, model: RigidBlockModel) -> LateralResistance:
     """Analyse a variant under the loads and the friction of the options."""
-    if arguments.mu_head is not None:
-        model = with_head_friction(model, arguments.mu_head)
-    if is_range(arguments):  # its answer is no resistance: the spread is that of the tilting table
+    if asked.mu_head is not None:
+        model = with_head_friction(model, asked.mu_head)
+    if asked.case.is_range:  # its answer is no resistance: the spread is that of the tilting table
         return lateral_resistance(model)
-    model, loads = load_case(arguments, model)
+    model, loads = load_case(asked.case, model)
     return lateral_resistance(model, loads)
-
-
-def _labels(wall: GivenWall) -> Labels:
-    assert wall.labels is not None  # noqa: S101 - only walls with an image come here
-    return wall.labels
 
 
 def _reach(text: str) -> float | None:

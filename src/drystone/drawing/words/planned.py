@@ -1,0 +1,105 @@
+"""What is said of a plan that was made: a table for people, the same for programs."""
+
+from pathlib import Path
+from typing import Any
+
+from drystone.craft import RULES, CraftReport, Masonry, look
+from drystone.drawing.words.content import number
+from drystone.model.plan import Plan
+from drystone.search.plan_result import PlanResult
+
+FIGURES = (
+    "F_AV", "F_AH", "F_LR", "F_LR_coulomb", "F_LR_half", "F_LR_double", "F_LR_no_setback",
+    "T_LEVEL", "E_FLUSH", "alpha_left", "alpha_right", "wedge_area",
+)  # fmt: skip
+"""Metrics that the summary has beside F_SF."""
+
+
+def summary(result: PlanResult, folder: Path) -> dict[str, Any]:
+    """Return what `--json` prints."""
+    return summary_of_plan(result.plan, folder) | {
+        "status": result.status,
+        "shortfall": result.shortfall,
+        "F_SF_bound": result.F_SF_bound,
+        "craft_broken": list(_craft(result).broken),
+        "seconds": result.seconds,
+    }
+
+
+def summary_of_plan(plan: Plan, folder: Path) -> dict[str, Any]:
+    """Return what a plan says of itself; null what only the run knows that made it."""
+    metrics = plan.metrics
+    return {
+        "plan": str(folder / "plan.json"),
+        "status": None,
+        "stopped": plan.stopped,
+        "shortfall": None,
+        "placed": len(plan.stone_steps),
+        "stones": len(plan.stone_steps) + len(plan.unused),
+        "unused": list(plan.unused),
+        "wedges": len(plan.wedge_steps),
+        "F_SF": metrics.F_SF,
+        "F_SF_bound": None,
+        "craft_broken": None,
+        **{name: getattr(metrics, name) for name in FIGURES},
+        "working_scale": plan.working_scale,
+        "seconds": None,
+    }
+
+
+def _craft(result: PlanResult) -> CraftReport:
+    """Judge the wall by the masons' rules."""
+    wedges = {wedge.id for wedge in result.wall.wedges}
+    if result.wall.outlines is None:
+        return look(Masonry.from_labels(result.wall.labels, wedges))
+    outlines, per_m = dict(result.wall.outlines.blocks), result.wall.site.px_per_m
+    return look(Masonry(outlines, result.model, wedges, cut=True, per_m=per_m))
+
+
+def ending(result: PlanResult) -> str:
+    """Say how a plan ended."""
+    if result.status == "interrupted":
+        return "interrupted: --resume goes on from here"
+    return f"{result.status}: {'; '.join(filter(None, (result.message, result.shortfall)))}"
+
+
+def rows(result: PlanResult, folder: Path) -> list[tuple[str, str]]:
+    """Return names and values, one a line.
+
+    Parameters
+    ----------
+    result : PlanResult
+        The plan.
+    folder : Path
+        Where its pictures are.
+    """
+    plan, metrics, bound = result.plan, result.metrics, result.F_SF_bound
+    placed, left = len(plan.stone_steps), len(plan.unused)
+    unused = f", unused: {', '.join(map(str, plan.unused))}" if left else ""
+    most = f"{number(bound)} ({'a full wall' if bound == 1.0 else 'area of the stones'})"
+    by_contacts = [
+        f"{number(metrics.F_LR_half)} and {number(metrics.F_LR_double)} at half and twice the"
+        " contact tolerance",
+        f"{number(metrics.F_LR_no_setback)} with contacts up to the ends of faces",
+    ]
+    report = _craft(result)
+    broken = [f"{RULES[name].title} ({report.findings[name].amount})" for name in report.broken]
+    craft = f"breaks {', '.join(broken)}; see drystone craft" if broken else "breaks no rule"
+    return [
+        ("stones", f"{placed} of {placed + left} placed{unused}"),
+        ("F_SF", f"{number(metrics.F_SF)} of at most {most}"),
+        ("F_AV", f"{number(metrics.F_AV, 2)}  vertical arrangement, higher is better"),
+        ("F_AH", f"{number(metrics.F_AH, 2)}  horizontal arrangement, lower is better"),
+        ("F_LR", f"{number(metrics.F_LR)}  lateral resistance / mu, higher is better"),
+        ("F_LR_coulomb", f"{number(metrics.F_LR_coulomb)}  the same without dilatancy"),
+        *(("", said) for said in by_contacts if result.wall.outlines is not None),
+        ("T_LEVEL", f"{number(metrics.T_LEVEL)}  unevenness of the top"),
+        ("E_FLUSH", f"{number(metrics.E_FLUSH)}  unevenness of the ends"),
+        ("alpha", f"left {number(metrics.alpha_left)}, right {number(metrics.alpha_right)}"),
+        ("wedges", f"{len(plan.wedge_steps)}, area {metrics.wedge_area:g} {plan.length_unit}²"),
+        ("craft", craft),
+        ("working scale", f"{plan.working_scale:g}"),
+        ("planned in", f"{result.seconds:.2f} s"),
+        ("picture", str(folder / "picture.png")),
+        ("report", str(folder / "report.html")),
+    ]
