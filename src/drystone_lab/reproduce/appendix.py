@@ -1,7 +1,7 @@
 """Fig. B.33: 91 irregular stones; Fig. B.34: bricks of aspect 2 and 3 (B.2)."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from drystone_lab.pictures.wall_grid import plot_walls
@@ -63,20 +63,6 @@ def wall_of_image(context: Context) -> Target:
     return Target(context.image.name, source, 0.0, 0.0, scale)
 
 
-def _irregular_found(found: Built) -> Iterator[str]:
-    for one in found:
-        figures = one.outcomes[0].figures
-        yield (
-            f"{found.name}, from {one.way}: {figures['placed']} of {figures['stones']}, F_SF "
-            f"{figures['F_SF']:.3f}."
-        )
-    yield (
-        "The paper's stones are not public; generated ones are our own irregular rubble. How many "
-        "of them fit depends on the wall that they are given, which the paper does not tell, so "
-        "the counts can be compared in kind only."
-    )
-
-
 def _irregular_table(found: Built) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for one in found:
@@ -113,7 +99,11 @@ IRREGULAR = Item(
         "said.",
     ),
     study=irregular_walls,
-    ours=lambda found: tuple(_irregular_found(found)),
+    notes=(
+        "The paper's stones are not public; generated ones are our own irregular rubble. How many "
+        "of them fit depends on the wall that they are given, which the paper does not tell, so "
+        "the counts can be compared in kind only.",
+    ),
     tables={"walls": _irregular_table},
     pictures=lambda found: (_irregular_picture(found),),
 )
@@ -171,24 +161,6 @@ def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks
     return Bricks(built(context, walls, SIDES, (context.seed,)), ASPECTS)
 
 
-def _bricks_found(found: Bricks) -> Iterator[str]:
-    for aspect, one, courses in found.all:
-        figures = one.outcomes[0].figures
-        yield (
-            f"Aspect {aspect:g} from {one.way}: {figures['placed']} of {figures['stones']} bricks "
-            f"in {courses.courses} courses, F_SF {figures['F_SF']:.3f}; {courses.in_course} of "
-            f"{courses.bricks} bricks lie at a whole number of brick heights. {courses.crossed} of "
-            f"{courses.joints} head joints are crossed: {OVERLAP:g} of a brick or more from those "
-            "of the courses beside them."
-        )
-    yield (
-        "The bricks of a wall are alike, so that variant sampling has next to nothing to choose "
-        "from: Eq. 12 alone says where the next one lies, and the indices that reward a bond "
-        "compare stones, not places. §5.3 says the like of stones of little variety: easy to stack "
-        "and to fill with, 'but it often results in walls with inferior interlocking'."
-    )
-
-
 def _bricks_table(found: Bricks) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for aspect, one, courses in found.all:
@@ -237,7 +209,12 @@ BRICKS = Item(
         "given.",
     ),
     study=brick_walls,
-    ours=lambda found: tuple(_bricks_found(found)),
+    notes=(
+        "The bricks of a wall are alike, so that variant sampling has next to nothing to choose "
+        "from: Eq. 12 alone says where the next one lies, and the indices that reward a bond "
+        "compare stones, not places. §5.3 says the like of stones of little variety: easy to stack "
+        "and to fill with, 'but it often results in walls with inferior interlocking'.",
+    ),
     tables={"walls": _bricks_table},
     pictures=lambda found: (_bricks_picture(found),),
 )

@@ -15,6 +15,7 @@ from drystone.kernels.boundary import EMPTY, touching_edges
 from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from drystone_lab.pictures.interfaces import plot_blocks, plot_boundary_edges
+from drystone_lab.reproduce.cells import Finding
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
@@ -107,25 +108,6 @@ def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.floa
     return starts, starts + WAYS[edges[:, 4]]
 
 
-def _found(found: Blocks) -> Iterator[str]:
-    model = found.model
-    long = sum(len(interface.points) == 2 for interface in model.interfaces)
-    yield (
-        f"Stones {', '.join(str(block.id) for block in model.blocks)} touch each other and the "
-        f"ground on {len(found.edges[0])} pixel edges, which make {long} straight interfaces and "
-        f"{len(model.interfaces) - long} contacts at a point, {model.contact_count} contact points "
-        "in all, at the corners of pixels."
-    )
-    angles = sorted(_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2)
-    yield (
-        "The planner takes the normal of the line fitted to a run. The paper takes the mean of the "
-        "normals of its pixels, which depends on the two ends of the run alone. In the finished "
-        f"wall the two differ by more than {TILTED_DEG:g} degree in "
-        f"{sum(angle > TILTED_DEG for angle in angles)} of {len(angles)} interfaces, by "
-        f"{angles[-1]:.1f} degrees at most."
-    )
-
-
 def _mean_normal(interface: Interface) -> NDArray[np.float64]:
     """Return the mean of the normals of the pixel edges of a run.
 
@@ -153,9 +135,9 @@ def _blocks(model: RigidBlockModel) -> Table:
     )
 
 
-def _interfaces(model: RigidBlockModel) -> Table:
+def _interfaces(found: Blocks) -> Table:
     rows: list[tuple[Cell, ...]] = []
-    for interface in model.interfaces:
+    for interface in found.model.interfaces:
         long = len(interface.points) == 2
         ends = [*interface.points[0].tolist(), *interface.points[-1].tolist()]
         rows.append(
@@ -166,7 +148,8 @@ def _interfaces(model: RigidBlockModel) -> Table:
             )
         )  # fmt: skip
     return Table(
-        "Interfaces; the normal points from the second into the first",
+        f"Interfaces of {len(found.edges[0])} pixel edges; the normal points from the second "
+        "into the first",
         ("stone", "other", "x0", "y0", "x1", "y1", "length px", "normal x", "normal y",
          "from the mean of the edges' normals deg"),
         tuple(rows),
@@ -190,6 +173,17 @@ def _picture(found: Blocks) -> Picture:
     )  # fmt: skip
 
 
+def _claims(found: Blocks) -> Iterator[Finding]:
+    angles = sorted(_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2)
+    yield Finding(
+        "The normal of an interface is the mean of the normals of its pixels.",
+        "the planner takes that of the fitted line, which differs by more than "
+        f"{TILTED_DEG:g} degree in {sum(angle > TILTED_DEG for angle in angles)} of {len(angles)} "
+        f"interfaces of the finished wall, by {angles[-1]:.1f} degrees at most.",
+        None,
+    )
+
+
 PIC_TO_RI = Item(
     title="Pic-to-Ri: from pixels to rigid blocks",
     section="§4.2",
@@ -201,10 +195,13 @@ PIC_TO_RI = Item(
         "normal vectors in a given interface' (§4.2). There are no numbers.",
     ),
     study=blocks,
-    ours=lambda found: tuple(_found(found)),
+    notes=(
+        "The mean of the normals of a run depends on its two ends alone; the planner fits a line.",
+    ),
+    claims=_claims,
     tables={
         "blocks": lambda found: _blocks(found.model),
-        "interfaces": lambda found: _interfaces(found.model),
+        "interfaces": _interfaces,
     },
     pictures=lambda found: (_picture(found),),
     needs=(PR.source.name,),

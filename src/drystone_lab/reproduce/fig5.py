@@ -13,6 +13,7 @@ from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.pictures.features import COUNTS_IN, plot_counts, plot_features
+from drystone_lab.reproduce.cells import Finding
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import MASONS, PR, Target
@@ -68,22 +69,6 @@ def grouped(
     """Group the stones of a wall, which are drawn, and of others whose stones are there."""
     sets = {one.name: one.stones(context.data) for one in (wall, *others)}
     return [Grouped.of(name, stones) for name, stones in sets.items() if stones is not None]
-
-
-def _found(counted: Sequence[Grouped]) -> Iterator[str]:
-    drawn = counted[0]
-    low, high = drawn.between(PAPER_CLUSTERS)
-    yield (
-        f"The {len(drawn.stones)} stones {drawn.name} fall into {drawn.number} clusters at a "
-        f"distance of {DISTANCE:g}; the paper has {PAPER_CLUSTERS}. There are so many for every "
-        f"threshold from {low:.3f} to {high:.3f}."
-    )
-    sets = "; ".join(f"{one.name}: {one.number} of {len(one.stones)} stones" for one in counted)
-    yield (
-        f"Clusters at {DISTANCE:g} by set: {sets}. Size is relative to the largest of a set, so "
-        "the number depends on how far its sizes spread, and one very large stone makes fewer "
-        "clusters of the others."
-    )
 
 
 def _clusters(drawn: Grouped) -> Table:
@@ -153,6 +138,16 @@ def _counts_picture(counted: Sequence[Grouped]) -> Picture:
     )  # fmt: skip
 
 
+def _claims(counted: Sequence[Grouped]) -> Iterator[Finding]:
+    drawn = counted[0]
+    low, high = drawn.between(PAPER_CLUSTERS)
+    yield Finding(
+        f"The stones PR fall into {PAPER_CLUSTERS} clusters at a distance of {DISTANCE:g}.",
+        f"{drawn.number}; {PAPER_CLUSTERS} for every threshold from {low:.3f} to {high:.3f}.",
+        drawn.number == PAPER_CLUSTERS,
+    )
+
+
 CLUSTERS = Item(
     title="clusters of the stones PR",
     section="§3.4",
@@ -164,7 +159,11 @@ CLUSTERS = Item(
         "in the set. The members of the clusters are only in the picture.",
     ),
     study=grouped,
-    ours=lambda sets: tuple(_found(sets)),
+    notes=(
+        "Size is relative to the largest of a set, so the number depends on how far its sizes "
+        "spread, and one very large stone makes fewer clusters of the others.",
+    ),
+    claims=_claims,
     tables={
         "clusters": lambda sets: _clusters(sets[0]),
         "stones": lambda sets: _stones(sets[0]),

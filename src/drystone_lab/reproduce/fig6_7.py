@@ -1,6 +1,6 @@
 """Fig. 6 and Fig. 7: what the indices measure, on real stones (§3.5)."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -64,23 +64,6 @@ def places(context: Context, wall: Target = PR) -> Places:
     return Places(wall, moment, place, resting_places(moment), (spec,))
 
 
-def _found(found: Places) -> Iterator[str]:
-    moment, place = found.moment, found.place
-    yield (
-        f"With {len(moment.wall.placements)} stones placed, {len(moment.remaining)} are left, and "
-        f"there are {len(found.all)} feasible positions at which one of them rests by itself. NHR "
-        "is taken where there is a left neighbour, IWR of inner stones over two joints, IS of "
-        "boundary stones. The column of values counted again is worked out from the pixels of the "
-        "picture alone; SF differs there because the planner takes the area and the box from the "
-        "source image."
-    )
-    values = ", ".join(f"{name} = {value:.3f}" for name, value in place.values.items())
-    yield (
-        f"Fig. 7 shows stone {place.posed.stone.id}, number {moment.number} of the run, where it "
-        f"ended: {values}."
-    )
-
-
 def _row(moment: Moment, place: Place, name: str) -> tuple[Cell, ...]:
     action = action_at(moment, place.posed, place.row, place.col)
     again, box = recounted(action, name), action.box
@@ -119,7 +102,7 @@ def _ranges(places: Sequence[Place]) -> Table:
 
 def _one(moment: Moment, place: Place) -> Table:
     return Table(
-        "Indices of the stone of Fig. 7",
+        f"Indices of the stone of Fig. 7, number {moment.number} of the run",
         ("index", "stone", "left px", "bottom px", "value", "counted again"),
         tuple((name, *_row(moment, place, name)) for name in place.values),
     )
@@ -174,7 +157,12 @@ INDICES = Item(
         "below.",
     ),
     study=places,
-    ours=lambda found: tuple(_found(found)),
+    notes=(
+        "NHR is taken where there is a left neighbour, IWR of inner stones over two joints, IS of "
+        "boundary stones. The column of values counted again is worked out from the pixels of the "
+        "picture alone; SF differs there because the planner takes the area and the box from the "
+        "source image.",
+    ),
     tables={
         "extremes": lambda found: _extremes(found.moment, found.cases),
         "ranges": lambda found: _ranges(found.all),

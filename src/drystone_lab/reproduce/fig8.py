@@ -14,6 +14,7 @@ from drystone.kernels.merits import eq12_merits
 from drystone.kernels.raster import Mask
 from drystone.model.pose import PosedStone
 from drystone_lab.pictures.positions import Layer, plot_position_layers, plot_position_values
+from drystone_lab.reproduce.cells import Finding
 from drystone_lab.reproduce.construction import Moment, construction
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.places import amid_course
@@ -113,25 +114,6 @@ def trial(context: Context, wall: Target = PR) -> Trial:
     return Trial(wall, moment, found[0], found[1:], (spec,))
 
 
-def _found(found: Trial) -> Iterator[str]:
-    maps, resting = found.maps, found.resting
-    inside = int(np.count_nonzero(maps.touching[resting[:, 0], resting[:, 1]]))
-    share = len(found.touching) / maps.free.size
-    yield (
-        f"Of {maps.free.size} positions {int(maps.free.sum())} overlap nothing; "
-        f"{int(maps.floating.sum())} of these float, which leaves {len(found.touching)} "
-        f"({100 * share:.1f} %) that touch something. The planner is stricter: a touch at a side "
-        f"or at the bounds carries nothing, so it takes the {len(resting)} at which the stone "
-        f"rests on something from below; {inside} of these are among the paper's."
-    )
-    papers, ours = (_best(found, positions) for positions in (found.touching, resting))
-    yield (
-        f"Of these Eq. 12 is largest, {ours[2]:.3f}, at {ours[1]} px from the left; the stone is "
-        f"tried at {found.chosen[1]} px. Among the paper's positions the best is {papers[2]:.3f}, "
-        f"at {papers[1]} px; it may rest on nothing."
-    )
-
-
 def _table(found: Trial) -> Table:
     posed, maps, height = found.posed, found.maps, found.moment.landscape.height_px
     value = float(found.values(np.array([found.chosen], np.int64))[0])
@@ -187,6 +169,17 @@ def _drawn(found: Trial) -> Picture:
     )  # fmt: skip
 
 
+def _claims(found: Trial) -> Iterator[Finding]:
+    resting = found.resting
+    inside = int(np.count_nonzero(found.maps.touching[resting[:, 0], resting[:, 1]]))
+    yield Finding(
+        "The difference of both convolutions gives the feasible positions.",
+        f"it holds {inside} of the {len(resting)} at which the stone rests on something, and "
+        f"{len(found.touching) - inside} more.",
+        inside == len(resting) == len(found.touching),
+    )
+
+
 POSITIONS = Item(
     title="feasible positions of a stone",
     section="§3.6",
@@ -198,7 +191,11 @@ POSITIONS = Item(
         "(pink, §3.6). The stone goes where Eq. 12 is largest (black). There are no numbers.",
     ),
     study=trial,
-    ours=lambda found: tuple(_found(found)),
+    notes=(
+        "The planner is stricter than the paper: a touch at a side or at the bounds carries "
+        "nothing, so that the paper's best position may rest on nothing.",
+    ),
+    claims=_claims,
     tables={"positions": _table},
     pictures=lambda found: (_drawn(found),),
     needs=(PR.source.name,),

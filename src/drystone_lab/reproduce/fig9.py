@@ -1,6 +1,6 @@
 """Fig. 9: stones that fall where they are tried, turned and wedged (§3.7)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
@@ -62,20 +62,6 @@ def _wide(cases: Sequence[Unstable]) -> Sequence[Unstable]:
 
 def _wedge_area(case: Unstable) -> int:
     return sum(wedge.area_px for wedge in case.wedged.wedges) if case.wedged is not None else 0
-
-
-def _found(found: Falls) -> Iterator[str]:
-    wrong = [one for one in found.unstable if not one.sign_agrees]
-    yield (
-        f"Before each step every stone that is left was tried where Eq. 12 puts it: {found.trials} "
-        f"trials, of which {len(found.unstable)} are not stable."
-    )
-    yield (
-        f"AB x AC has the sign that the paper's rule needs in {len(found.unstable) - len(wrong)} "
-        f"of {len(found.unstable)} cases. In the others it would turn the stone away from the side "
-        f"to which it falls; in {sum(one.hangs for one in wrong)} of them C is below A, where the "
-        "stone hangs on a shoulder. So the planner turns towards the side on which C is beyond A."
-    )
 
 
 def _counts(found: Falls) -> Table:
@@ -169,7 +155,12 @@ STABILISING = Item(
         "no numbers.",
     ),
     study=falls,
-    ours=lambda found: tuple(_found(found)),
+    notes=(
+        "Before each step every stone that is left was tried where Eq. 12 puts it. AB x AC of the "
+        "wrong sign would turn a stone away from the side to which it falls; C is below A where "
+        "the stone hangs on a shoulder. So the planner turns towards the side on which C is "
+        "beyond A.",
+    ),
     tables={"counts": _counts, "cases": lambda found: _cases(found.shown)},
     pictures=lambda found: (_picture(found.shown, found.wall.name),) if found.shown else (),
     needs=(PR.source.name,),

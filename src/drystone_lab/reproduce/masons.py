@@ -1,6 +1,6 @@
 """Fig. 13: the masons' walls of the published sets, and with their gaps closed (§5.1)."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -110,25 +110,6 @@ def treated_walls(context: Context, walls: Sequence[Target] = MASONS) -> Walls:
     return [(wall, treatments(wall)) for wall in found]
 
 
-def _found(walls: Walls) -> Iterator[str]:
-    for wall, ways in walls:
-        values = [way.F_LR for way in ways if way.F_LR is not None]
-        (papers,) = (way for way in ways if way.name == PAPERS_WAY)
-        spread = f"{min(values):.2f} to {max(values):.2f}" if values else "-"
-        theirs = f"no F_LR ({papers.status})" if papers.F_LR is None else f"F_LR {papers.F_LR:.2f}"
-        yield (
-            f"{wall.wall.name}: {PAPERS_WAY}, the wall has {theirs}; the paper's is "
-            f"{REFERENCES[wall.wall.number][-1]:g}. {len(ways) - len(values)} of {len(ways)} "
-            f"treatments leave a wall without a load multiplier; with the others F_LR is {spread}."
-        )
-    yield (
-        "Dilation by one px closes gaps of at most two, what stones drawn to the corner leave open "
-        "stays open, and one stone without support is enough for a wall without a multiplier. The "
-        "figure is one of the treatment and of the tracing as much as of the wall; no F_LR of a "
-        "masons' wall is a target here."
-    )
-
-
 def _metrics(walls: Walls) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for each, _ in walls:
@@ -196,7 +177,12 @@ FIG13 = Item(
         + " of the walls so treated, and says that they depend on the annotation.",
     ),
     study=treated_walls,
-    ours=lambda walls: tuple(_found(walls)),
+    notes=(
+        "Dilation by one px closes gaps of at most two, what stones drawn to the corner leave open "
+        "stays open, and one stone without support is enough for a wall without a multiplier. The "
+        "figure is one of the treatment and of the tracing as much as of the wall; no F_LR of a "
+        "masons' wall is a target here.",
+    ),
     tables={"fig13": _metrics, "fig13_resistance": _resistance},
     pictures=lambda walls: (_picture(walls),),
     needs=tuple(wall.source.name for wall in MASONS),

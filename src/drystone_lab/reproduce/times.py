@@ -144,16 +144,6 @@ def step_findings(walls: BySampling) -> tuple[Finding, ...]:
     )
 
 
-def _steps_found(walls: BySampling) -> Iterator[str]:
-    for name, wall in walls.items():
-        counts = [step.candidates for step in wall.steps]
-        yield (
-            f"{SAMPLINGS[name]}: {len(counts)} steps of {fmean(counts):.1f} candidates each, "
-            f"{sum(counts)} in all."
-        )
-    yield HOW_TIMED
-
-
 def _candidates(walls: BySampling) -> Table:
     rows: list[tuple[Cell, ...]] = [
         (sampling, number, step.stones, step.candidates)
@@ -187,7 +177,7 @@ STEPS = Item(
         "candidates get fewer.",
     ),
     study=by_sampling,
-    ours=lambda walls: tuple(_steps_found(walls)),
+    notes=(HOW_TIMED,),
     tables={"candidates": _candidates},
     times={
         "claims": lambda walls: findings_table(
@@ -253,19 +243,6 @@ def scale_findings(walls: Mapping[float, Planned]) -> Iterator[Finding]:
                 yield Finding(claim, words, seconds(wall) <= said)
 
 
-def _scales_found(found: Scaled) -> Iterator[str]:
-    for scale, one in zip(found.timed, found.built, strict=True):
-        outcome = one.outcomes[0]
-        first = " ".join(map(str, tuple(outcome.clusters)[:4]))
-        yield f"Scale {scale:g}: {outcome.figures['placed']} stones, ids {first} first."
-    yield (
-        "All walls have the seed of the plan in common and come out the same whenever they are "
-        "planned again. Every resolution has positions and indices of its own, and one other "
-        "choice changes all that follow."
-    )
-    yield HOW_TIMED
-
-
 def _scales_table(found: Scaled) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for (scale, wall), one in zip(found.timed.items(), found.built, strict=True):
@@ -316,7 +293,12 @@ RESOLUTION = Item(
         "algorithm.'",
     ),
     study=by_scale,
-    ours=lambda found: tuple(_scales_found(found)),
+    notes=(
+        "All walls have the seed of the plan in common and come out the same whenever they are "
+        "planned again. Every resolution has positions and indices of its own, and one other "
+        "choice changes all that follow.",
+        HOW_TIMED,
+    ),
     tables={"walls": _scales_table},
     times={
         "claims": lambda found: findings_table(
@@ -492,19 +474,14 @@ GROWTH = Item(
         "O(Q^2).' It is derived, not measured, and takes the cost of a candidate as constant.",
     ),
     study=by_stones,
-    ours=lambda walls: (
+    notes=(
         f"Generated rubble for a wall of {WALL_PX[0]} x {WALL_PX[1]} px, smaller stones the more "
         "there are. A count of candidates is the same on every machine: what the paper derives is "
         "that count.",
-        *(f"{one.claim} Here: {one.found}" for one in counts(walls)),
         HOW_TIMED,
     ),
-    tables={
-        "claims": lambda walls: findings_table(
-            "The paper's claims in numbers of candidates", counts(walls)
-        ),
-        "walls": _counted,
-    },
+    claims=counts,
+    tables={"walls": _counted},
     times={
         "time-claims": lambda walls: findings_table(
             "The paper's claims in seconds", seconds(walls)

@@ -67,7 +67,7 @@ FILLING = Item(
     section="§3.4",
     paper=("Walls & <joints>.",),
     study=walls,
-    ours=lambda found: (f"We have {len(found.runs)} walls.",),
+    notes=("Walls of bricks.",),
     tables={"walls": _table},
     times={"walls": _times},
     pictures=lambda found: (_picture(found),),
@@ -77,7 +77,7 @@ WORDS = Item(
     section="5.1",
     paper=("Words.",),
     study=lambda context: context,
-    ours=lambda context: (f"Seed {context.seed}, image {context.image}.",),
+    notes=("Only words.",),
 )
 NEEDY = replace(WORDS, title="published stones", section="§5.1",
                 needs=("almeida/PR.png", "ferris/x.json"))  # fmt: skip
