@@ -8,7 +8,7 @@ from drystone.drawing.files import save
 from drystone.planner.settings import method_settings
 from drystone.selection.sampling import Sampling
 from drystone_lab.table import BenchSettings, Cell, Table
-from drystone_lab.time_tables import (
+from drystone_lab.timed_walls import (
     SAMPLINGS,
     pixels_table,
     plot_pixels,

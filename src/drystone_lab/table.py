@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from drystone_lab.runs.changes import Changes
+from drystone_lab.runs.spec import Changes
 
 Cell = str | int | float | bool | None
 

@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
 def _print_list() -> None:
     """Print suites and policies, one a line."""
-    from drystone_lab.public.methods import known_methods  # noqa: PLC0415 - see _tables
+    from drystone_lab.public.suites import known_methods  # noqa: PLC0415 - see _tables
 
     for name, (text, _) in SUITES.items():
         print(f"{name}: {text}")

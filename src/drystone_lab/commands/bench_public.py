@@ -13,9 +13,9 @@ from drystone.drawing.files import save
 from drystone.errors import UsageError
 from drystone_lab.public.bench import PublicSettings, run_public
 from drystone_lab.public.history import Medians, drawn_history, history_table, medians_of
-from drystone_lab.public.methods import flat_changes
 from drystone_lab.public.store import BenchStore, Stamp
-from drystone_lab.runs.changes import Changes
+from drystone_lab.public.suites import flat_changes
+from drystone_lab.runs.spec import Changes
 from drystone_lab.table import Table
 
 DEFAULT_METHODS = ("paper", "random")

@@ -6,22 +6,55 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
+
+from drystone.contacts.outlines import outlines_of_labels
+from drystone.kernels.polygons import Points
+from drystone.model.wall import Wall
+from drystone.physics.building import ROUNDED
+from drystone.physics.scene import Scene
+from drystone.physics.shake import shake_once
 from drystone.physics.table import load_engine
 from drystone_lab.packing import load_packer
-from drystone_lab.public.compare import comparison
-from drystone_lab.public.methods import STRIP_SECONDS, BenchMethod, method_named
-from drystone_lab.public.pairs import pair_tables
-from drystone_lab.public.results import SHAKE, Result, Results
-from drystone_lab.public.shaken import pga_of
 from drystone_lab.public.store import NOT_SHAKEN, BenchStore, KeptRun, Stamp, kept_run
-from drystone_lab.public.suites import walls_of
-from drystone_lab.runs.failures import absent_data
-from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.runner import Runner, Work, one_by_one
+from drystone_lab.public.suites import STRIP_SECONDS, BenchMethod, method_named, walls_of
+from drystone_lab.public.tables import SHAKE, Result, Results, comparison, pair_tables
+from drystone_lab.runs.outcome import Outcome, RunStore
+from drystone_lab.runs.runner import Runner, Work, absent_data, one_by_one
 from drystone_lab.runs.spec import STRIPS, RunSpec
-from drystone_lab.runs.store import RunStore
 from drystone_lab.table import Table
 from drystone_lab.walls import Target
+
+
+def pga_of(spec: RunSpec, outcome: Outcome, data: Path | None) -> float | None:
+    """Return the amplitude that a planned wall stands, g.
+
+    Returns
+    -------
+    float or None
+        None when nothing was built, or it does not stand at rest in the engine.
+
+    Raises
+    ------
+    UsageError
+        E305 when pymunk is not installed.
+    """
+    if not outcome.figures["placed"]:
+        return None
+    wall = outcome.wall(spec, data)
+    # Wedges may fall out: the score is about stones.
+    stones = frozenset(placement.stone_id for placement in wall.placements)
+    scene = Scene(wall_outlines(wall), spec.settings().mu)
+    trial = shake_once(scene, ROUNDED, watched=stones)
+    return trial.pga_g
+
+
+def wall_outlines(wall: Wall) -> Mapping[int, Points]:
+    """Return the outlines of stones and wedges; of a wall of pixels, sub-pixel ones."""
+    if wall.outlines is not None:
+        return {block: np.asarray(corners) for block, corners in wall.outlines.blocks}
+    return outlines_of_labels(wall.labels)
+
 
 SEEDS, QUICK_SEEDS = 5, 2
 """How many unless it is said."""

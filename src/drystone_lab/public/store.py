@@ -13,10 +13,10 @@ from typing import Any
 
 from drystone.errors import DrystoneError, InputError, UsageError, not_written
 from drystone.whole_files import write_whole
-from drystone_lab.public.results import SHAKE, Result
 from drystone_lab.public.suites import SUITE_VERSION
+from drystone_lab.public.tables import SHAKE, Result
 from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.source import Scalar
+from drystone_lab.runs.spec import Scalar
 
 DATABASE = "bench.sqlite"
 CSV = "runs.csv"

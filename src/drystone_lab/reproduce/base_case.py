@@ -19,9 +19,8 @@ from drystone.statics.flow.nonassociative import NonassociativeResult, nonassoci
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus
-from drystone_lab.pictures.groups import group_panels
-from drystone_lab.pictures.sheet import Panel, sheet_of
-from drystone_lab.pictures.wall_grid import wall_aspect
+from drystone_lab.pictures.charts import group_panels
+from drystone_lab.pictures.walls import Panel, sheet_of, wall_aspect
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, Finding, rounded
 from drystone_lab.reproduce.item import Context, Item, Picture

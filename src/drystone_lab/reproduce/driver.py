@@ -8,14 +8,19 @@ from pathlib import Path
 from typing import Any, Literal
 
 from drystone.errors import DrystoneError, InputError
-from drystone_lab.reproduce.folder import ReportFolder
+from drystone_lab.reproduce.folder import (
+    Clock,
+    ReportFolder,
+    Request,
+    made_with,
+    request_of,
+    utc_now,
+)
 from drystone_lab.reproduce.item import Context, Item, Output
 from drystone_lab.reproduce.items import ITEMS, item_named
-from drystone_lab.reproduce.request import Clock, Request, made_with, request_of, utc_now
-from drystone_lab.runs.failures import absent_data
-from drystone_lab.runs.runner import Runner, Work, one_by_one
-from drystone_lab.runs.source import published
-from drystone_lab.runs.store import RunStore
+from drystone_lab.runs.outcome import RunStore
+from drystone_lab.runs.runner import Runner, Work, absent_data, one_by_one
+from drystone_lab.runs.spec import published
 
 Status = Literal["made", "kept", "missing data", "failed"]
 

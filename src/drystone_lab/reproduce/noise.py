@@ -8,9 +8,15 @@ from statistics import median
 from matplotlib.figure import Figure
 from scipy.stats import binomtest
 
-from drystone_lab.pictures.groups import TWO_IN, group_panels, plot_two_figures
-from drystone_lab.pictures.noise import NoiseNames, NoisePanel, noise_panels
-from drystone_lab.pictures.wall_grid import plot_walls
+from drystone_lab.pictures.charts import (
+    TWO_IN,
+    NoiseNames,
+    NoisePanel,
+    group_panels,
+    noise_panels,
+    plot_two_figures,
+)
+from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import (
     LEVEL,
     METRICS,

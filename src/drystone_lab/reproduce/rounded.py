@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from scipy.stats import mannwhitneyu
 
 from drystone.generate.fourier import FourierSettings, fourier_descriptors
-from drystone_lab.pictures.groups import TWO_IN, plot_two_figures
-from drystone_lab.pictures.wall_grid import plot_walls
+from drystone_lab.pictures.charts import TWO_IN, plot_two_figures
+from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import (
     COLUMNS,
     LEVEL,
@@ -22,8 +22,7 @@ from drystone_lab.reproduce.cells import (
 )
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.study import Built, Trials
-from drystone_lab.runs.source import generated
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.spec import RunSpec, generated
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import TWO_SIDED, Target
 

@@ -12,9 +12,14 @@ from drystone.drawing.pictures.stones import plot_stones
 from drystone.metrics.measure import WallMetrics
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
-from drystone_lab.pictures.masonry import masonry_panel
-from drystone_lab.pictures.sheet import EMPTY, Panel, sheet_of
-from drystone_lab.pictures.wall_grid import wall_aspect, wall_panel
+from drystone_lab.pictures.walls import (
+    EMPTY,
+    Panel,
+    masonry_panel,
+    sheet_of,
+    wall_aspect,
+    wall_panel,
+)
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, rounded
 from drystone_lab.reproduce.item import Context, Item, Picture

@@ -12,28 +12,26 @@ from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
 from drystone.selection.sampling import Sampling
 from drystone_lab.pictures.growth import GROWTH_IN, Series, plot_growth
-from drystone_lab.pictures.wall_grid import plot_walls
+from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import METRICS, Finding, findings_table, metric_cells, trend
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.study import ONE_WAY, Built, built
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
-from drystone_lab.time_tables import (
+from drystone_lab.timed_walls import (
     PAPER_STEP_S,
     PAPER_WALL_S,
     SAMPLINGS,
-    pixels_table,
-    plot_pixels,
-    steps_figure,
-    steps_table,
-)
-from drystone_lab.timed_walls import (
     Planned,
     exponent,
     fitted,
+    pixels_table,
     planned,
+    plot_pixels,
     rubble,
     size_of,
+    steps_figure,
+    steps_table,
     three_digits,
 )
 from drystone_lab.walls import PR, Target

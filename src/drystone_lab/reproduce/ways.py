@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 from statistics import median
 
-from drystone_lab.pictures.groups import group_panels, plot_two_figures
+from drystone_lab.pictures.charts import group_panels, plot_two_figures
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.cells import METRICS, Finding, rounded
 from drystone_lab.reproduce.item import Item, Picture
@@ -18,7 +18,7 @@ from drystone_lab.reproduce.study import (
     walls_table,
     ways_table,
 )
-from drystone_lab.runs.changes import Changes
+from drystone_lab.runs.spec import Changes
 from drystone_lab.table import Table
 from drystone_lab.walls import IR, LIU_5, MASONS, PR, TWO_SIDED, R, coarser
 

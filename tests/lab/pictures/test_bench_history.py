@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from drystone.drawing.palette import rgb
-from drystone_lab.pictures.bench_history import LINES, history_panels, plot_history
+from drystone_lab.pictures.charts import LINES, history_panels, plot_history
 
 
 def test_versions_without_a_value_have_no_point():

@@ -6,13 +6,12 @@ import pytest
 
 from drystone.errors import InputError
 from drystone.physics.shake import ShakeTrial
-from drystone_lab.public import bench, shaken
+from drystone_lab.public import bench
 from drystone_lab.public.bench import PublicSettings, run_public
 from drystone_lab.public.store import BenchStore, Stamp
 from drystone_lab.runs.outcome import execute
 from drystone_lab.runs.runner import one_by_one
-from drystone_lab.runs.source import generated
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.spec import RunSpec, generated
 
 STAMP = Stamp((), "1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
 SETTINGS = PublicSettings(suite="bricks", methods=("paper", "random"), stamp=STAMP, quick=True)
@@ -127,10 +126,10 @@ def test_a_wall_of_bricks_on_the_table(monkeypatch):
         seen.append((scene, watched))
         return ShakeTrial(0.3, 0.0, (), 0.0)
 
-    monkeypatch.setattr(shaken, "shake_once", shake)
+    monkeypatch.setattr(bench, "shake_once", shake)
     source = generated("brick", 1, count=6, height_px=10, aspect=2)
     spec = RunSpec(source=source, width=60, height=20)
-    assert shaken.pga_of(spec, execute(spec, None), None) == 0.3
+    assert bench.pga_of(spec, execute(spec, None), None) == 0.3
     ((scene, watched),) = seen
     assert scene.mu == 0.58
     assert watched == frozenset(range(1, 7)) == frozenset(scene.shapes)

@@ -10,10 +10,8 @@ from drystone_lab import packing
 from drystone_lab.public import bench
 from drystone_lab.public.bench import PublicSettings, run_public
 from drystone_lab.public.history import history_table, medians_of
-from drystone_lab.public.methods import known_methods, method_named
 from drystone_lab.public.store import BenchStore, Stamp
-from drystone_lab.public.suites import walls_of
-from drystone_lab.runs import strips
+from drystone_lab.public.suites import known_methods, method_named, walls_of
 from drystone_lab.runs.outcome import FIGURES, execute
 
 STAMP = Stamp((), "0.1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
@@ -28,9 +26,9 @@ def packing_into(monkeypatch: pytest.MonkeyPatch, width: float) -> list[tuple[ob
         asked.append((len(stones), height, turns, seconds, seed))
         return width
 
-    monkeypatch.setattr(strips, "load_packer", lambda: None)
+    monkeypatch.setattr(packing, "load_packer", lambda: None)
     monkeypatch.setattr(bench, "load_packer", lambda: None)
-    monkeypatch.setattr(strips, "packed_width_px", packed)
+    monkeypatch.setattr(packing, "packed_width_px", packed)
     return asked
 
 
@@ -69,7 +67,7 @@ def test_it_is_in_tables_but_in_no_pairs(monkeypatch: pytest.MonkeyPatch, tmp_pa
     assert shares["spyrrow"] is None
     assert shares["paper"] > 0.5
     # What is kept is not packed again.
-    monkeypatch.setattr(strips, "packed_width_px", None)
+    monkeypatch.setattr(packing, "packed_width_px", None)
     assert run_public(settings)[0].rows == walls.rows
 
 

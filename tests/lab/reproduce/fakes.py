@@ -8,8 +8,7 @@ from matplotlib.figure import Figure
 from drystone.errors import InputError
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.source import generated
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.spec import RunSpec, generated
 from drystone_lab.table import Table
 
 BRICKS = generated("brick", 1, count=4, height_px=10, aspect=2)

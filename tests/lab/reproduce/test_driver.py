@@ -12,7 +12,7 @@ import pytest
 
 from drystone.errors import InputError, UsageError
 from drystone_lab.reproduce.driver import EVERY_S, Made, Options, Progress, reproduce
-from drystone_lab.reproduce.files import csv_text, write_tables
+from drystone_lab.reproduce.folder import csv_text, write_tables
 from drystone_lab.reproduce.item import Item, Output
 from drystone_lab.runs.runner import one_by_one
 from drystone_lab.table import Table

@@ -15,7 +15,7 @@ from drystone_lab.reproduce.item import Context
 from drystone_lab.reproduce.masons import FIG13, MasonsWall, masons_wall, treatments
 from drystone_lab.reproduce.table2 import best_trial, tenths
 from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.source import published
+from drystone_lab.runs.spec import published
 from drystone_lab.walls import Target
 from tests.lab.reproduce.made_outcomes import outcome as made
 from tests.lab.reproduce.small_walls import RUBBLE, context, of, on, rows

@@ -13,7 +13,7 @@ from drystone.planner.profile import StepTime
 from drystone_lab.reproduce import base_case, noise, rounded, times, ways
 from drystone_lab.reproduce.item import Context, Output
 from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.source import generated
+from drystone_lab.runs.spec import generated
 from drystone_lab.timed_walls import Planned
 from drystone_lab.walls import Target
 from tests.lab.reproduce.small_walls import context, of, on, rows

@@ -1,7 +1,11 @@
-"""Figures of many walls by group: strips with medians, and one figure over another (Fig. 20)."""
+"""Figures of many walls: by group, over the noise of their stones, by version."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import ceil
 from statistics import median
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -177,3 +181,196 @@ def _name_groups(ax: Axes, names: Sequence[str]) -> None:
         range(len(names)), names, fontsize=7, rotation=30 if turned else 0,
         ha="right" if turned else "center",
     )  # fmt: skip
+
+
+NOISE_IN = (3.9, 2.8)
+NOISE_COLUMNS = 2
+
+FULL: dict[str, Any] = {"marker": "o", "color": CLUSTER_COLOURS[0]}
+POOR: dict[str, Any] = {"marker": "^", "color": CLUSTER_COLOURS[1]}
+"""Walls above and below the threshold of filling: blue points and yellow triangles."""
+
+REFERENCE: dict[str, Any] = {
+    "linestyle": (0, (5, 3)), "linewidth": 1.3, "marker": "s", "markersize": 3.5,
+    "color": CLUSTER_COLOURS[12],
+}  # fmt: skip
+BASELINE: dict[str, Any] = {
+    "linestyle": "dotted", "linewidth": 1.2, "marker": "x", "markersize": 4, "color": OUTLINE_COLOUR
+}  # fmt: skip
+
+SHIFTS = (0.0, 1.4, -1.4, 2.8, -2.8)
+"""Walls of one level in turn, so that they do not hide each other; % of noise."""
+
+NoisePairs = Sequence[tuple[int, float]]
+
+
+@dataclass(frozen=True)
+class NoisePanel:
+    """One figure of many walls.
+
+    Parameters
+    ----------
+    figure : str
+        Which, with its unit; written at the axis.
+    full, poor : sequence of (int, float)
+        Noise in % and value of the walls filled above and below the threshold.
+    reference, baseline : mapping of int to float
+        By noise, drawn as lines.
+    """
+
+    figure: str
+    full: NoisePairs
+    poor: NoisePairs
+    reference: Mapping[int, float]
+    baseline: Mapping[int, float]
+
+
+@dataclass(frozen=True)
+class NoiseNames:
+    """What the legend calls what is drawn."""
+
+    full: str
+    poor: str
+    reference: str
+    baseline: str
+
+
+def plot_noise(panel: NoisePanel, names: NoiseNames, ax: Axes | None = None) -> Axes:
+    """Draw a figure over the noise.
+
+    Parameters
+    ----------
+    panel : NoisePanel
+        What is drawn.
+    names : NoiseNames
+        For a legend.
+    ax : Axes, optional
+        Where to draw; None makes a figure.
+    """
+    ax = Figure(figsize=NOISE_IN).add_subplot() if ax is None else ax
+    for name, pairs, look in ((names.full, panel.full, FULL), (names.poor, panel.poor, POOR)):
+        seen: Counter[int] = Counter()
+        x = []
+        for noise, _ in pairs:
+            x.append(noise + SHIFTS[seen[noise] % len(SHIFTS)])
+            seen[noise] += 1
+        ax.plot(
+            x, [value for _, value in pairs], linestyle="", markersize=4, alpha=0.8,
+            markeredgecolor=OUTLINE_COLOUR, markeredgewidth=0.3, label=name, gid=name, **look,
+        )  # fmt: skip
+    lines = (
+        (names.reference, panel.reference, REFERENCE),
+        (names.baseline, panel.baseline, BASELINE),
+    )
+    for name, line, look in lines:
+        ax.plot(list(line), list(line.values()), label=name, gid=name, zorder=3, **look)
+    ax.set_ylabel(panel.figure, fontsize=8)
+    ax.set_xlabel("noise, %", fontsize=8)
+    ax.tick_params(labelsize=7)
+    ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
+    return ax
+
+
+def noise_panels(
+    panels: Sequence[NoisePanel], names: NoiseNames, ticks: Mapping[int, str]
+) -> Figure:
+    """Draw several figures of the same walls, with one legend above.
+
+    Parameters
+    ----------
+    panels : sequence of NoisePanel
+        At least one.
+    names : NoiseNames
+        For the legend.
+    ticks : mapping of int to str
+        What is written at the axis of noise.
+    """
+    rows = -(-len(panels) // NOISE_COLUMNS)
+    sheet = Figure(figsize=(NOISE_COLUMNS * NOISE_IN[0], rows * NOISE_IN[1]), layout="constrained")
+    axes = sheet.subplots(rows, NOISE_COLUMNS, squeeze=False).ravel().tolist()
+    for ax, panel in zip(axes, panels, strict=False):
+        plot_noise(panel, names, ax)
+        ax.set_xticks(list(ticks), list(ticks.values()))
+    for ax in axes[len(panels) :]:
+        ax.remove()
+    handles, labels = axes[0].get_legend_handles_labels()
+    sheet.legend(handles, labels, fontsize=7, frameon=False, loc="outside upper center", ncols=4)
+    return sheet
+
+
+LINES = (
+    (CLUSTER_COLOURS[0], "o"), ("#8b0000", "s"), (CLUSTER_COLOURS[12], "^"),
+    (CLUSTER_COLOURS[3], "D"), (CLUSTER_COLOURS[10], "v"), (CLUSTER_COLOURS[13], "P"),
+    (OUTLINE_COLOUR, "X"), (CLUSTER_COLOURS[6], "<"),
+)  # fmt: skip
+"""Colour and marker by method; they come round again with a dashed line after the last."""
+
+HISTORY_IN = (3.4, 2.4)
+ACROSS = 3
+
+Lines = Mapping[str, Sequence[float | None]]
+"""By method: a value a version, None where there is none."""
+
+
+def plot_history(
+    versions: Sequence[str], lines: Lines, ax: Axes | None = None, *, figure: str = ""
+) -> Axes:
+    """Draw a figure over versions, a line a method.
+
+    Parameters
+    ----------
+    versions : sequence of str
+        Oldest first.
+    lines : mapping of str to sequence of float or None
+        By method, a value a version.
+    ax : Axes, optional
+        Where to draw; None makes a figure.
+    figure : str
+        What it is, with its unit, written at the axis.
+    """
+    ax = Figure(figsize=HISTORY_IN).add_subplot() if ax is None else ax
+    for number, (method, values) in enumerate(lines.items()):
+        turn, place = divmod(number, len(LINES))
+        colour, marker = LINES[place]
+        points = [(x, value) for x, value in enumerate(values) if value is not None]
+        ax.plot(
+            [x for x, _ in points], [value for _, value in points], color=colour, marker=marker,
+            markersize=4.5, linewidth=1, linestyle="--" if turn else "-", label=method,
+        )  # fmt: skip
+    ax.set_xticks(range(len(versions)), versions)
+    ax.set_xlim(-0.4, len(versions) - 0.6)
+    ax.set_xlabel("version", fontsize=8)
+    ax.set_ylabel(figure, fontsize=8)
+    ax.tick_params(labelsize=7)
+    return ax
+
+
+def history_panels(versions: Sequence[str], figures: Mapping[str, Lines], title: str) -> Figure:
+    """Draw several figures over versions, with one legend.
+
+    Parameters
+    ----------
+    versions : sequence of str
+        Oldest first.
+    figures : mapping of str to lines
+        By figure with its unit, at least one; the same methods in each.
+    title : str
+        Above them.
+    """
+    across = min(ACROSS, len(figures))
+    down = ceil(len(figures) / across)
+    whole = Figure(figsize=(HISTORY_IN[0] * across, HISTORY_IN[1] * down + 0.4))
+    panels = whole.subplots(down, across, squeeze=False).ravel().tolist()
+    for ax, (name, lines) in zip(panels, figures.items(), strict=False):
+        plot_history(versions, lines, ax, figure=name)
+    for empty in panels[len(figures) :]:
+        whole.delaxes(empty)
+    handles, labels = panels[0].get_legend_handles_labels()
+    whole.suptitle(title, fontsize=9)
+    whole.tight_layout()
+    # Below, where it hides no panel.
+    whole.legend(
+        handles, labels, fontsize=7, edgecolor="none", loc="upper center",
+        bbox_to_anchor=(0.5, 0.0), ncols=min(len(labels), 8),
+    )  # fmt: skip
+    return whole
