@@ -250,7 +250,7 @@ def searched(
     wanted = [run for task in tasks for run in task.runs]
     counts = {target.name: len(stones) for target, stones in walls}
     left = [task for task in tasks if not known.keys() >= set(task.runs)]
-    for task, results in _done(left, settings.jobs):
+    for task, results in _done(left, settings.jobs or 1):
         found = zip(task.runs, results, strict=True)
         new = {run: result for run, result in found if run not in known}
         known |= new

@@ -109,7 +109,7 @@ def _settings(arguments: argparse.Namespace, suite: str) -> BenchSettings:
         only=tuple(arguments.only),
         policies=tuple(arguments.policy),
         changes=read_changes(arguments.settings),
-        jobs=arguments.jobs or 1,
+        jobs=arguments.jobs,
         runs=None if arguments.runs is None else Path(arguments.runs),
         say=say,
     )

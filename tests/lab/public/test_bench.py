@@ -13,8 +13,8 @@ from drystone_lab.runs.outcome import execute
 from drystone_lab.runs.runner import one_by_one
 from drystone_lab.runs.spec import RunSpec, generated
 
-STAMP = Stamp((), "1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
-SETTINGS = PublicSettings(suite="bricks", methods=("paper", "random"), stamp=STAMP, quick=True)
+STAMP = Stamp("1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
+SETTINGS = PublicSettings(suite="bricks", policies=("paper", "random"), stamp=STAMP, quick=True)
 
 
 @pytest.fixture
@@ -35,7 +35,7 @@ def figures(tables):
 
 
 def test_every_method_builds_every_wall_with_every_seed(counted):
-    walls, everything, seconds, *_ = run_public(replace(SETTINGS, first_seed=3))
+    walls, everything, seconds, *_ = run_public(replace(SETTINGS, seed=3))
     assert [(row["wall"], row["method"], row["seeds"]) for row in walls.records()] == [
         ("bricks 2:1", "paper", 2),
         ("bricks 2:1", "random", 2),
@@ -68,8 +68,8 @@ def test_runs_of_a_store_are_not_done_again(tmp_path, counted):
 
 
 def test_settings_are_in_the_store(tmp_path):
-    stamp = replace(STAMP, settings=(("sampling", "full"),))
-    run_public(replace(SETTINGS, methods=("paper",), seeds=1, store=tmp_path, stamp=stamp))
+    changes = (("sampling", "full"),)
+    run_public(replace(SETTINGS, policies=("paper",), seeds=1, store=tmp_path, changes=changes))
     (row,) = BenchStore(tmp_path).runs()
     assert row.settings == '{"sampling": "full"}'
     assert (row.suite, row.suite_version, row.placed, row.shaken) == ("bricks", 1, 30, "no")
@@ -104,7 +104,7 @@ def test_shaken_walls_are_shaken_once(tmp_path, monkeypatch):
         return None if len(keys) == 1 else 0.25
 
     monkeypatch.setattr(bench, "pga_of", pga_of)
-    settings = replace(SETTINGS, methods=("paper",), store=tmp_path, shake=True)
+    settings = replace(SETTINGS, policies=("paper",), store=tmp_path, shake=True)
     first = run_public(settings)[0]
     assert first.records()[0]["PGA, g"] == 0.25
     assert run_public(settings)[0] == first
