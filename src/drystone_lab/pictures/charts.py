@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import ceil
 from statistics import median
 from typing import Any
 
@@ -31,6 +30,29 @@ Figures = Sequence[float | None]
 """A figure of several walls; None where a wall has none, which is left out."""
 
 Pairs = Sequence[tuple[float | None, float | None]]
+
+
+def name_axes(ax: Axes, across: str, up: str) -> None:
+    """Write what is drawn at both axes of a chart."""
+    ax.set_xlabel(across, fontsize=8)
+    ax.set_ylabel(up, fontsize=8)
+    ax.tick_params(labelsize=7)
+
+
+def panel_sheet(
+    count: int, columns: int, panel_in: tuple[float, float], title: str = ""
+) -> tuple[Figure, list[Axes]]:
+    """Return a sheet with room for so many charts, a few in a row, and their axes."""
+    rows = -(-count // columns)
+    columns = -(-count // rows)
+    size = (columns * panel_in[0], rows * panel_in[1] + 0.3)
+    sheet = Figure(figsize=size, layout="constrained")
+    panels = sheet.subplots(rows, columns, squeeze=False).ravel().tolist()
+    for ax in panels[count:]:
+        ax.remove()
+    if title:
+        sheet.suptitle(title, fontsize=9)
+    return sheet, panels[:count]
 
 
 def plot_groups(
@@ -107,17 +129,9 @@ def group_panels(
     claims : mapping of str to mapping of str to float, optional
         By figure and group, what the paper reports.
     """
-    rows = -(-len(figures) // COLUMNS)
-    columns = -(-len(figures) // rows)
-    size = (columns * PANEL_IN[0], rows * PANEL_IN[1] + 0.3)
-    sheet = Figure(figsize=size, layout="constrained")
-    panels = sheet.subplots(rows, columns, squeeze=False).ravel().tolist()
-    for ax, (name, groups) in zip(panels, figures.items(), strict=False):
+    sheet, panels = panel_sheet(len(figures), COLUMNS, PANEL_IN, title)
+    for ax, (name, groups) in zip(panels, figures.items(), strict=True):
         plot_groups(groups, ax, figure=name, claims=(claims or {}).get(name))
-    for ax in panels[len(figures) :]:
-        ax.remove()
-    if title:
-        sheet.suptitle(title, fontsize=9)
     return sheet
 
 
@@ -150,9 +164,7 @@ def plot_two_figures(
                 markeredgecolor=OUTLINE_COLOUR, markeredgewidth=1.3, zorder=4,
                 gid=f"median-{name}",
             )  # fmt: skip
-    ax.set_xlabel(across, fontsize=8)
-    ax.set_ylabel(up, fontsize=8)
-    ax.tick_params(labelsize=7)
+    name_axes(ax, across, up)
     ax.grid(color=GREY, linewidth=0.3, alpha=0.5)
     # Above, where it hides no point.
     ax.legend(fontsize=7, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
@@ -264,9 +276,7 @@ def plot_noise(panel: NoisePanel, names: NoiseNames, ax: Axes | None = None) -> 
     )
     for name, line, look in lines:
         ax.plot(list(line), list(line.values()), label=name, gid=name, zorder=3, **look)
-    ax.set_ylabel(panel.figure, fontsize=8)
-    ax.set_xlabel("noise, %", fontsize=8)
-    ax.tick_params(labelsize=7)
+    name_axes(ax, "noise, %", panel.figure)
     ax.grid(axis="y", color=GREY, linewidth=0.3, alpha=0.5)
     return ax
 
@@ -285,25 +295,14 @@ def noise_panels(
     ticks : mapping of int to str
         What is written at the axis of noise.
     """
-    rows = -(-len(panels) // NOISE_COLUMNS)
-    sheet = Figure(figsize=(NOISE_COLUMNS * NOISE_IN[0], rows * NOISE_IN[1]), layout="constrained")
-    axes = sheet.subplots(rows, NOISE_COLUMNS, squeeze=False).ravel().tolist()
-    for ax, panel in zip(axes, panels, strict=False):
+    sheet, axes = panel_sheet(len(panels), NOISE_COLUMNS, NOISE_IN)
+    for ax, panel in zip(axes, panels, strict=True):
         plot_noise(panel, names, ax)
         ax.set_xticks(list(ticks), list(ticks.values()))
-    for ax in axes[len(panels) :]:
-        ax.remove()
     handles, labels = axes[0].get_legend_handles_labels()
     sheet.legend(handles, labels, fontsize=7, frameon=False, loc="outside upper center", ncols=4)
     return sheet
 
-
-LINES = (
-    (CLUSTER_COLOURS[0], "o"), ("#8b0000", "s"), (CLUSTER_COLOURS[12], "^"),
-    (CLUSTER_COLOURS[3], "D"), (CLUSTER_COLOURS[10], "v"), (CLUSTER_COLOURS[13], "P"),
-    (OUTLINE_COLOUR, "X"), (CLUSTER_COLOURS[6], "<"),
-)  # fmt: skip
-"""Colour and marker by method; they come round again with a dashed line after the last."""
 
 HISTORY_IN = (3.4, 2.4)
 ACROSS = 3
@@ -315,7 +314,7 @@ Lines = Mapping[str, Sequence[float | None]]
 def plot_history(
     versions: Sequence[str], lines: Lines, ax: Axes | None = None, *, figure: str = ""
 ) -> Axes:
-    """Draw a figure over versions, a line a method.
+    """Draw a figure over versions, a line a method; dashed where colours come round again.
 
     Parameters
     ----------
@@ -330,8 +329,8 @@ def plot_history(
     """
     ax = Figure(figsize=HISTORY_IN).add_subplot() if ax is None else ax
     for number, (method, values) in enumerate(lines.items()):
-        turn, place = divmod(number, len(LINES))
-        colour, marker = LINES[place]
+        turn, place = divmod(number, len(LOOKS))
+        colour, marker = LOOKS[place]
         points = [(x, value) for x, value in enumerate(values) if value is not None]
         ax.plot(
             [x for x, _ in points], [value for _, value in points], color=colour, marker=marker,
@@ -339,9 +338,7 @@ def plot_history(
         )  # fmt: skip
     ax.set_xticks(range(len(versions)), versions)
     ax.set_xlim(-0.4, len(versions) - 0.6)
-    ax.set_xlabel("version", fontsize=8)
-    ax.set_ylabel(figure, fontsize=8)
-    ax.tick_params(labelsize=7)
+    name_axes(ax, "version", figure)
     return ax
 
 
@@ -357,20 +354,12 @@ def history_panels(versions: Sequence[str], figures: Mapping[str, Lines], title:
     title : str
         Above them.
     """
-    across = min(ACROSS, len(figures))
-    down = ceil(len(figures) / across)
-    whole = Figure(figsize=(HISTORY_IN[0] * across, HISTORY_IN[1] * down + 0.4))
-    panels = whole.subplots(down, across, squeeze=False).ravel().tolist()
-    for ax, (name, lines) in zip(panels, figures.items(), strict=False):
+    sheet, panels = panel_sheet(len(figures), ACROSS, HISTORY_IN, title)
+    for ax, (name, lines) in zip(panels, figures.items(), strict=True):
         plot_history(versions, lines, ax, figure=name)
-    for empty in panels[len(figures) :]:
-        whole.delaxes(empty)
     handles, labels = panels[0].get_legend_handles_labels()
-    whole.suptitle(title, fontsize=9)
-    whole.tight_layout()
-    # Below, where it hides no panel.
-    whole.legend(
-        handles, labels, fontsize=7, edgecolor="none", loc="upper center",
-        bbox_to_anchor=(0.5, 0.0), ncols=min(len(labels), 8),
+    sheet.legend(
+        handles, labels, fontsize=7, edgecolor="none", loc="outside lower center",
+        ncols=min(len(labels), 8),
     )  # fmt: skip
-    return whole
+    return sheet

@@ -14,6 +14,7 @@ from drystone.drawing.palette import OUTLINE_COLOUR, WEDGE_COLOUR, cluster_colou
 from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
+from drystone_lab.pictures.charts import name_axes
 from drystone_lab.reproduce.cells import Finding
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.table import Cell, Table
@@ -60,9 +61,7 @@ def plot_features(
             markersize=MARKER_PT, markeredgecolor=OUTLINE_COLOUR, markeredgewidth=0.5,
             gid=f"stone-{stone_id}",
         )  # fmt: skip
-    ax.set_xlabel("eccentricity", fontsize=8)
-    ax.set_ylabel("area of the bounding box / largest", fontsize=8)
-    ax.tick_params(labelsize=7)
+    name_axes(ax, "eccentricity", "area of the bounding box / largest")
     ax.margins(0.08)
     _write_ids(ax, features, stone_ids)
     return ax
@@ -112,9 +111,7 @@ def plot_counts(
         distance, number, who = claim
         ax.plot([distance], [number], "x", color=OUTLINE_COLOUR, markersize=9,
                 markeredgewidth=1.6, label=who, gid="claim", zorder=5)  # fmt: skip
-    ax.set_xlabel("distance threshold of Ward's linkage", fontsize=8)
-    ax.set_ylabel("clusters", fontsize=8)
-    ax.tick_params(labelsize=7)
+    name_axes(ax, "distance threshold of Ward's linkage", "clusters")
     ax.set_ylim(bottom=0)
     ax.grid(visible=True, axis="y", linewidth=0.3)
     ax.legend(fontsize=7, frameon=False)
