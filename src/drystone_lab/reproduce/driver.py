@@ -28,22 +28,6 @@ EVERY_S = 2.0
 """Walls are told of no oftener than that."""
 
 
-class PaperItems(Mapping[str, Item]):
-    """The items of the paper by name, in its order; each is loaded when it is asked for."""
-
-    def __getitem__(self, name: str) -> Item:
-        """Return an item."""
-        return item_named(name)
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the names."""
-        return iter(ITEMS)
-
-    def __len__(self) -> int:
-        """Return how many there are."""
-        return len(ITEMS)
-
-
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """How items are made.
@@ -125,7 +109,7 @@ def reproduce(
     InputError
         E100: there is no such image.
     """
-    items = PaperItems() if items is None else items
+    items = {name: item_named(name) for name in ITEMS} if items is None else items
     request = request_of(
         quick=options.quick, seed=options.seed, image=options.image, data=options.data
     )
