@@ -8,23 +8,21 @@ from drystone.drawing.files import save
 from drystone.planner.settings import method_settings
 from drystone.selection.sampling import Sampling
 from drystone_lab.table import BenchSettings, Cell, Table
-from drystone_lab.time_tables import (
-    SAMPLINGS,
-    pixels_table,
-    plot_pixels,
-    steps_figure,
-    steps_table,
-)
 from drystone_lab.timed_walls import (
     COLUMNS,
     LEAST_STONES,
+    SAMPLINGS,
     Planned,
     exponent,
     numbers_of,
     parts_ms,
+    pixels_table,
     planned,
+    plot_pixels,
     rubble,
     size_of,
+    steps_figure,
+    steps_table,
     three_digits,
 )
 from drystone_lab.walls import PR, Target

@@ -5,7 +5,9 @@ package spyrrow: it makes a strip of given height as short as it can.  It knows 
 support, so what it reaches is a yardstick for filling alone.
 """
 
+import time
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from drystone.errors import UsageError
@@ -13,6 +15,8 @@ from drystone.kernels.raster import turn
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 from drystone_lab.planned_walls import missing_data
+from drystone_lab.runs.outcome import FIGURES, Outcome
+from drystone_lab.runs.spec import RunSpec
 from drystone_lab.search_ways import SEARCH, WAYS, looked_for
 from drystone_lab.table import BenchSettings, Cell, Table
 from drystone_lab.walls import BRICKS, SEARCHED, Target, chosen
@@ -118,3 +122,31 @@ def _row(
         None if figures is None else figures.F_SF,
         f"{0 if figures is None else figures.stones} of {len(stones)}",
     )
+
+
+def packed(spec: RunSpec, data: Path | None) -> Outcome:
+    """Pack the stones of a run into a strip as high as its wall, as short as it gets.
+
+    Returns
+    -------
+    outcome : Outcome
+        Of its figures F_SF alone: area of the stones over that of the strip, or over that of the
+        wall where the strip is shorter.  Without steps.
+
+    Raises
+    ------
+    UsageError
+        E305: spyrrow is not installed.
+    """
+    packer = load_packer()
+    stones = spec.source.stones(data)
+    width = spec.width or float(stones.source.width_px)
+    height = spec.height or float(stones.source.height_px)
+    seconds = int(dict(spec.changes)["seconds"])
+    started = time.perf_counter()
+    strip = packed_width_px(packer, stones, height, TURNS["quarter"], seconds, spec.seed)
+    took = time.perf_counter() - started
+    figures: dict[str, float | int | None] = dict.fromkeys(FIGURES)
+    figures["stones"] = len(stones)
+    figures["F_SF"] = stones.total_area_px / (max(strip, width) * height)
+    return Outcome(spec.key, figures, {"steps": []}, {"wall": took})

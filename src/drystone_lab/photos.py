@@ -11,10 +11,8 @@ from PIL import ImageOps, JpegImagePlugin
 
 from drystone.errors import DrystoneError
 from drystone.photo.segment_photo import SegmentedPhoto, segment_photo
-from drystone_lab.photographs.camera import inverse, moved
-from drystone_lab.photographs.level import LEVELS, Level
-from drystone_lab.photographs.scene import Photograph, photograph
-from drystone_lab.photographs.sheets import layout_of
+from drystone_lab.photographs.layout import LEVELS, Level
+from drystone_lab.photographs.scene import Photograph, inverse, layout_of, moved, photograph
 from drystone_lab.table import BenchSettings, Cell, Table
 
 MATCHED = 0.5

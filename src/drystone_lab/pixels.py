@@ -1,18 +1,330 @@
-"""`drystone bench pixels`: published cases from pictures, and tilted joints as pixels shrink."""
+"""Suite "pixels": cases from pictures, and how errors fall as the resolution grows."""
 
-from collections.abc import Callable, Iterable
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
+import shapely
+from numpy.random import Generator
+from numpy.typing import NDArray
+from shapely.geometry.polygon import orient
+from shapely.ops import split
 
 from drystone.contacts.blocks import model_from_labels
+from drystone.contacts.given import model_from_json
 from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
+from drystone.kernels.outline import rasterise_polygon
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
-from drystone_lab.cases import Rectangle, closed_forms
-from drystone_lab.refinement import RefinementStudy, refinement_study
+from drystone.statics.result import LimitResult, LimitStatus
+from drystone_lab.statics_cases import HEIGHT, MU, WALLS, Rectangle, closed_forms
 from drystone_lab.table import BenchSettings, Cell, Table
-from drystone_lab.walls_of_ferris import HEIGHT, MU, WALLS
+
+Points = NDArray[np.float64]
+
+BED_SLOPES_DEG = (4.0, 7.0, 11.0)
+"""Slopes of the pieces of a bed joint; their signs alternate."""
+
+HEAD_SLOPES_DEG = (7.0, 11.0, 17.0)
+"""How far a head joint leans from the vertical, to either side."""
+
+BATTER_DEG = (3.0, 5.0)
+"""How far the ends of the wall lean inwards."""
+
+STONE_LENGTH = 1.5
+"""Mean length of a stone over the height of its course."""
+
+ATTEMPTS = 200
+"""How often a joint is drawn anew before the whole wall is, and how often the wall."""
+
+SHORTEST = 0.04
+"""Bends and ends of joints are at least this far apart along a bed; the wall is 1 high."""
+
+
+@dataclass(frozen=True, eq=False)
+class TiltedWall:
+    """A wall of height 1 on flat ground whose joints follow no grid.
+
+    Parameters
+    ----------
+    polygons : tuple of (n, 2) float array
+        Corners of stone 1, 2, ...; counter-clockwise, not closed, x to the right and y up;
+        without gaps between them.
+    """
+
+    polygons: tuple[Points, ...]
+
+    def model(self, mu: float = 0.58) -> RigidBlockModel:
+        """Return its exact rigid block model."""
+        blocks = [
+            {"id": number, "polygon": polygon.tolist()}
+            for number, polygon in enumerate(self.polygons, start=1)
+        ]
+        return model_from_json({"blocks": blocks, "mu": mu})
+
+    def picture(self, height_px: int, offset_px: tuple[float, float] = (0.0, 0.0)) -> Labels:
+        """Return its label image: a pixel belongs to the stone that its centre lies in.
+
+        Parameters
+        ----------
+        height_px : int
+            Height of the wall.
+        offset_px : (float, float)
+            Where the wall's lower left corner lies right of and above a pixel corner, 0 to 1.
+
+        Returns
+        -------
+        (h, w) uint32 array
+            Row 0 at the top, the lowest pixels of the wall in the last row.
+        """
+        scaled = [polygon * height_px + offset_px for polygon in self.polygons]
+        width, height = np.ceil(np.max([p.max(axis=0) for p in scaled], axis=0)).astype(int)
+        labels = np.zeros((int(height), int(width)), np.uint32)
+        for number, polygon in enumerate(scaled, start=1):
+            mask, left, bottom = rasterise_polygon(polygon)
+            last, right = int(height) - bottom, left + mask.shape[1]
+            labels[last - mask.shape[0] : last, left:right][mask] = number
+        filled = np.flatnonzero(labels.any(axis=1))
+        return labels[: filled[-1] + 1]
+
+
+def tilted_wall(rng: Generator, courses: int = 4, length: float = 0.9) -> TiltedWall:
+    """Draw a wall whose bed joints zigzag, whose head joints lean and whose ends have a batter.
+
+    Raises
+    ------
+    ValueError
+        When no such wall was found.
+
+    Notes
+    -----
+    Bends and ends of joints are at least `SHORTEST` apart along a bed.  A facet smaller than a
+    pixel cannot be seen in a picture, but may carry a good part of the load.
+
+    Examples
+    --------
+    >>> wall = tilted_wall(np.random.default_rng(1), courses=3)
+    >>> len(wall.polygons), wall.picture(40).shape
+    (7, (40, 36))
+    """
+    for _ in range(ATTEMPTS):
+        polygons = _attempt(rng, courses, length)
+        if polygons:
+            return TiltedWall(polygons)
+    raise ValueError(f"no wall of {courses} courses, {length} long, has joints far enough apart")
+
+
+def _attempt(rng: Generator, courses: int, length: float) -> tuple[Points, ...]:
+    """Draw course after course; give up, without stones, where joints come too close."""
+    left, right = np.tan(np.radians(rng.permutation(BATTER_DEG)))
+    outline = shapely.Polygon([(0, 0), (length, 0), (length - right, 1), (left, 1)])
+    lower = np.array([[-1.0, 0.0], [length + 1.0, 0.0]])
+    polygons: list[Points] = []
+    below: list[Points] = []
+    for course in range(courses):
+        draws = (_heads(rng, course, length, courses) for _ in range(ATTEMPTS))
+        heads = next((h for h in draws if _are_apart(lower, [*below, *h], outline)), None)
+        if heads is None:
+            return ()
+        beds = (_bed(rng, course + 1, length, courses) for _ in range(ATTEMPTS))
+        upper = next((bed for bed in beds if _are_apart(bed, heads, outline)), None)
+        if upper is None:
+            return ()
+        polygons += _stones(shapely.Polygon([*lower, *upper[::-1]]) & outline, heads)
+        lower, below = upper, heads
+    return tuple(polygons)
+
+
+def _heads(rng: Generator, course: int, length: float, courses: int) -> list[Points]:
+    """Draw the lines of the head joints, half a stone further on in every other course."""
+    count = max(2, round(length * courses / STONE_LENGTH))
+    steps = np.cumsum(rng.uniform(0.85, 1.15, count + 1))
+    places = (steps - 0.5 * (course % 2) * steps[0]) / steps[-2] * length
+    middle = (course + 0.5) / courses
+    lines = []
+    for place in places[: count - 1 + course % 2].tolist():
+        lean = math.tan(math.radians(float(rng.choice(HEAD_SLOPES_DEG) * rng.choice([-1, 1]))))
+        lines.append(np.array([[place + lean * t, middle + t] for t in (-1.0, 1.0)]))
+    return lines
+
+
+def _bed(rng: Generator, course: int, length: float, courses: int) -> Points:
+    """Draw the bed below a course, a zigzag with pieces about as long as a stone; flat at the top.
+
+    It reaches beyond the wall on both sides.
+    """
+    if course == courses:
+        return np.array([[-1.0, 1.0], [length + 1.0, 1.0]])
+    x, y = [float(rng.uniform(-1.0, -0.5))], [0.0]
+    sign = float(rng.choice([-1.0, 1.0]))
+    while x[-1] < length + 0.5:
+        slope = sign * math.tan(math.radians(float(rng.choice(BED_SLOPES_DEG))))
+        run = float(rng.uniform(0.7, 1.3)) * STONE_LENGTH / courses
+        x.append(x[-1] + run)
+        y.append(y[-1] + slope * run)
+        sign = -sign
+    points = np.column_stack([x, y])
+    points[:, 1] += course / courses - points[:, 1].mean()
+    return points
+
+
+def _are_apart(bed: Points, heads: list[Points], outline: shapely.Polygon) -> bool:
+    """Tell whether the ends and bends of a bed and its joints are at least SHORTEST apart."""
+    line = shapely.LineString(bed)
+    inside = shapely.get_coordinates(line & outline)[:, 0]
+    joints = shapely.get_coordinates([line & shapely.LineString(head) for head in heads])[:, 0]
+    places = np.sort(np.concatenate([inside, joints]))
+    return all(after - before >= SHORTEST for before, after in pairwise(places.tolist()))
+
+
+def _stones(band: shapely.Polygon, heads: list[Points]) -> list[Points]:
+    """Cut a course into its stones, from left to right."""
+    pieces = [band]
+    for head in heads:
+        pieces = [part for piece in pieces for part in split(piece, shapely.LineString(head)).geoms]
+    pieces.sort(key=lambda piece: float(piece.centroid.x))
+    return [shapely.get_coordinates(orient(piece))[:-1] for piece in pieces]
+
+
+COURSES = (3, 4, 5)
+"""The walls have these numbers of courses in turn."""
+
+
+@dataclass(frozen=True)
+class RefinementRow:
+    """Errors at one resolution.
+
+    Parameters
+    ----------
+    height_px : int
+        Height of the wall.
+    cases : int
+        Load multipliers compared: walls times offsets times two directions.
+    unanswered : int
+        Comparisons without a number, of either kind of contacts; left out of the means.
+    pixel_error, outline_error : float
+        Mean of |alpha - exact alpha| with contacts from pixel edges and from outlines.
+    pixel_worst, outline_worst : float
+        Largest of them.
+    """
+
+    height_px: int
+    cases: int
+    unanswered: int
+    pixel_error: float
+    outline_error: float
+    pixel_worst: float
+    outline_worst: float
+
+
+@dataclass(frozen=True)
+class RefinementStudy:
+    """Errors at all resolutions, and p in error ~ height^-p, fitted to their logarithms."""
+
+    rows: tuple[RefinementRow, ...]
+    pixel_order: float
+    outline_order: float
+
+
+def refinement_study(
+    heights_px: Sequence[int] = (40, 80, 160, 320),
+    *,
+    walls: int = 9,
+    offsets: int = 3,
+    mu: float = 0.58,
+    seed: int = 0,
+) -> RefinementStudy:
+    """Compare pictures of walls of tilted joints with their polygons.
+
+    Parameters
+    ----------
+    heights_px : sequence of int
+        Heights of the walls in the pictures, at least two different ones.
+    walls : int
+        Number of walls from :func:`drystone_lab.pixels.tilted_wall`.
+    offsets : int
+        Sub-pixel positions at which each wall is rasterised.
+    mu : float
+        Coefficient of friction.
+    seed : int
+        Decides the walls.
+
+    Notes
+    -----
+    A picture of blocks that do not stand counts with alpha = 0.
+
+    Examples
+    --------
+    >>> study = refinement_study((40, 80), walls=1, offsets=1)
+    >>> [row.cases for row in study.rows]
+    [2, 2]
+    """
+    seeds = np.random.default_rng(seed).integers(0, 2**32, walls).tolist()
+    drawn = [
+        tilted_wall(np.random.default_rng(wall_seed), COURSES[i % len(COURSES)])
+        for i, wall_seed in enumerate(seeds)
+    ]
+    exact = [_alphas(wall.model(mu)) for wall in drawn]
+    rows = []
+    for height_px in heights_px:
+        pixels, outlines = [], []
+        for wall, true in zip(drawn, exact, strict=True):
+            for number in range(offsets):
+                labels = wall.picture(height_px, _offset(number))
+                standing = _alphas(model_from_labels(labels, mu).model)
+                pixels.append(np.abs(standing - true))
+                standing = _alphas(model_from_outlines(outlines_of_labels(labels), mu))
+                outlines.append(np.abs(standing - true))
+        rows.append(_row(height_px, np.array(pixels), np.array(outlines)))
+    return RefinementStudy(
+        tuple(rows),
+        fitted_order(heights_px, [row.pixel_error for row in rows]),
+        fitted_order(heights_px, [row.outline_error for row in rows]),
+    )
+
+
+def fitted_order(heights_px: Sequence[int], errors: Sequence[float]) -> float:
+    """Return p of error ~ height^-p by least squares of the logarithms.
+
+    Examples
+    --------
+    >>> round(fitted_order((10, 20, 40), (0.4, 0.1, 0.025)), 9)
+    2.0
+    """
+    return float(-np.polyfit(np.log(heights_px), np.log(errors), 1)[0])
+
+
+def _offset(number: int) -> tuple[float, float]:
+    """Return the n-th point of an even sequence of sub-pixel positions (Roberts's R2)."""
+    return (0.5 + 0.7548776662466927 * number) % 1.0, (0.5 + 0.5698402909980532 * number) % 1.0
+
+
+def _alphas(model: RigidBlockModel) -> np.ndarray:
+    both = lateral_resistance(model)
+    return np.array([_alpha(both.left), _alpha(both.right)])
+
+
+def _alpha(result: LimitResult) -> float:
+    if result.status is LimitStatus.UNSTABLE:
+        return 0.0
+    return np.nan if result.alpha is None else result.alpha
+
+
+def _row(height_px: int, pixels: np.ndarray, outlines: np.ndarray) -> RefinementRow:
+    missing = int(np.isnan(pixels).sum() + np.isnan(outlines).sum())
+    return RefinementRow(
+        height_px,
+        pixels.size,
+        missing,
+        float(np.nanmean(pixels)),
+        float(np.nanmean(outlines)),
+        float(np.nanmax(pixels)),
+        float(np.nanmax(outlines)),
+    )
+
 
 BRICK_PX = 20
 """Height of a brick."""

@@ -7,18 +7,18 @@ from drystone.statics.flow.nonassociative import NonassociativeResult, nonassoci
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult
-from drystone_lab.arches import (
+from drystone_lab.statics_cases import (
     NO_SLIDING,
     THICKEST,
+    WALLS,
     WITH_FRICTION,
     WITHOUT_SLIDING,
     ArchCase,
     arch,
+    closed_forms,
     least_thickness,
 )
-from drystone_lab.cases import closed_forms
 from drystone_lab.table import BenchSettings, Cell, Table
-from drystone_lab.walls_of_ferris import WALLS
 
 CLOSED_FORM_TOLERANCE = 1e-6
 

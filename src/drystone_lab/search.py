@@ -10,9 +10,8 @@ from drystone.planner.settings import method_settings
 from drystone_lab.masons import masons_walls
 from drystone_lab.paired import median_difference
 from drystone_lab.planned_walls import missing_data
-from drystone_lab.runs.changes import Changes, nested, told
-from drystone_lab.search_results import FIGURES, Result, Run
-from drystone_lab.search_runs import method_name, searched, searched_walls
+from drystone_lab.runs.spec import Changes, nested, told
+from drystone_lab.search_runs import FIGURES, Result, Run, method_name, searched, searched_walls
 from drystone_lab.search_ways import NO_COURSES, RESTARTS, SEARCH, WAYS, WEDGED
 from drystone_lab.table import BenchSettings, Cell, Table
 from drystone_lab.walls import Target

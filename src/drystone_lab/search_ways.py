@@ -14,7 +14,7 @@ from drystone.search.chain import wedged
 from drystone.search.found import Found
 from drystone.search.goal import possible_filling
 from drystone.search.packed import found_again
-from drystone_lab.runs.changes import Changes, nested
+from drystone_lab.runs.spec import Changes, nested
 from drystone_lab.walls import Target
 
 Clock = Callable[[], float]

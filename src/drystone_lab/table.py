@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from drystone_lab.runs.changes import Changes
+from drystone_lab.runs.spec import Changes
 
 Cell = str | int | float | bool | None
 
@@ -87,8 +87,8 @@ class BenchSettings:
         Names of the ways to search that are compared; empty for all.
     changes : tuple of (str, value)
         Settings that are replaced for all of them, by names such as ``"goal.F_AH"``.
-    jobs : int
-        How many searches run side by side, each in a process of its own.
+    jobs : int or None
+        How many searches run side by side, each in a process of its own; None for one.
     runs : Path or None
         Table to which every search is added, and of which none is done again; None keeps nothing.
     say : callable
@@ -104,7 +104,7 @@ class BenchSettings:
     only: tuple[str, ...] = ()
     policies: tuple[str, ...] = ()
     changes: Changes = ()
-    jobs: int = 1
+    jobs: int | None = None
     runs: Path | None = None
     say: Callable[[str], None] = lambda _: None
 

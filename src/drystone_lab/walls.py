@@ -6,9 +6,7 @@ from pathlib import Path
 
 from drystone.errors import UsageError
 from drystone.model.stone import StoneSet
-from drystone_lab.runs.changes import Changes
-from drystone_lab.runs.source import Scalar, StoneSource, generated, published
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.spec import Changes, RunSpec, Scalar, StoneSource, generated, published
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from drystone.planner.settings import method_settings
 from drystone_lab import timed_walls
 from drystone_lab.pictures.growth import PowerLaw
 from drystone_lab.table import BenchSettings
-from drystone_lab.time_tables import pixels_table, steps_table
-from drystone_lab.timed_walls import Planned, fitted, planned, rubble
+from drystone_lab.timed_walls import Planned, fitted, pixels_table, planned, rubble, steps_table
 from drystone_lab.walls import PR
 
 

@@ -13,7 +13,7 @@ from drystone.cli.commands import analyse
 from drystone.io.wall_image import write_labels
 from drystone.statics.lp.program import EquilibriumProgram
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
-from drystone_lab.walls_of_ferris import WALLS
+from drystone_lab.statics_cases import WALLS
 from tests.cli.conftest import EXACT, Run
 from tests.statics.walls import coursed
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from drystone_lab.photographs.level import Level
+from drystone_lab.photographs.layout import Level
 from drystone_lab.photographs.scene import photograph
 from drystone_lab.photos import overlaps
 

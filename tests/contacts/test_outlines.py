@@ -12,7 +12,7 @@ from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
 from drystone.io.read_stones import read_stones
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
-from drystone_lab.tilted_walls import tilted_wall
+from drystone_lab.pixels import tilted_wall
 from tests.statics.walls import irregular
 from tests.strategies import repeatable
 

@@ -23,7 +23,7 @@ from drystone.statics.lp.highs import WARM
 from drystone.statics.lp.program import units_of
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus
-from drystone_lab.tilted_walls import tilted_wall
+from drystone_lab.pixels import tilted_wall
 from tests.naive import meetings as naive
 from tests.statics.growth import assert_same
 

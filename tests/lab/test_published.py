@@ -6,9 +6,9 @@ import pytest
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
-from drystone_lab import arches, published
-from drystone_lab.cases import closed_forms
+from drystone_lab import published, statics_cases
 from drystone_lab.published import run
+from drystone_lab.statics_cases import closed_forms
 from drystone_lab.table import BenchSettings
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "validation.md"
@@ -151,11 +151,13 @@ def test_only_example_6_may_have_no_factor_without_dilatancy(monkeypatch):
 
 @pytest.mark.parametrize("error", [1.3e-5, -1.3e-5])
 def test_a_wrong_arch_misses(monkeypatch, error):
-    monkeypatch.setattr(arches, "stands", lambda _count, thickness, _mu: thickness > 0.2 + error)
-    row = published._arch_row(arches.ArchCase(9, 0.6, 0.2))
+    monkeypatch.setattr(
+        statics_cases, "stands", lambda _count, thickness, _mu: thickness > 0.2 + error
+    )
+    row = published._arch_row(statics_cases.ArchCase(9, 0.6, 0.2))
     assert row[-1] == "miss"
-    assert published._arch_row(arches.ArchCase(9, 0.6, None))[-1] == "miss"
-    assert published._arch_row(arches.ArchCase(9, 0.6, 0.2 + error))[-1] == "pass"
+    assert published._arch_row(statics_cases.ArchCase(9, 0.6, None))[-1] == "miss"
+    assert published._arch_row(statics_cases.ArchCase(9, 0.6, 0.2 + error))[-1] == "pass"
 
 
 def test_the_page_shows_every_case(tables):

@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 import shapely
 
-from drystone_lab.refinement import refinement_study
-from drystone_lab.tilted_walls import SHORTEST, tilted_wall
+from drystone_lab.pixels import SHORTEST, refinement_study, tilted_wall
 
 
 @pytest.mark.parametrize("courses", [3, 4, 5])

@@ -15,14 +15,14 @@ from drystone.model.wall import Wall
 from drystone_lab import search
 from drystone_lab.masons import masons_row, masons_walls
 from drystone_lab.search import Compared
-from drystone_lab.search_results import (
+from drystone_lab.search_runs import (
     FIGURES,
     Result,
     Run,
     append_results,
+    searched_walls,
     second_of,
 )
-from drystone_lab.search_runs import searched_walls
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS, UNSEEN, chosen
 from tests.metrics.walls import bricks

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from drystone.errors import UsageError
-from drystone_lab.search_results import (
+from drystone_lab.search_runs import (
     COLUMNS,
     FIGURES,
     Result,

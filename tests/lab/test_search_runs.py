@@ -10,8 +10,7 @@ import pytest
 from drystone.errors import DrystoneError, UsageError
 from drystone.planner.settings import method_settings
 from drystone_lab import search_runs
-from drystone_lab.search_results import FIGURES, Result, Run, read_results
-from drystone_lab.search_runs import Task, chosen_ways, searched
+from drystone_lab.search_runs import FIGURES, Result, Run, Task, chosen_ways, read_results, searched
 from drystone_lab.search_ways import WAYS, Way
 from drystone_lab.table import BenchSettings
 from drystone_lab.walls import BRICKS

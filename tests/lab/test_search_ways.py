@@ -10,7 +10,7 @@ import pytest
 from drystone.generate.brick import BrickSettings, brick_stones
 from drystone.search.plan_wall import plan_wall
 from drystone_lab import search_ways
-from drystone_lab.runs.source import generated
+from drystone_lab.runs.spec import generated
 from drystone_lab.search_ways import (
     BETWEEN_SEEDS,
     State,

@@ -11,7 +11,7 @@ from drystone.photo.segment import segment
 from drystone.photo.segment_doubts import doubts_of, notices_of, ruler_doubts
 from drystone.photo.segment_photo import segment_photo
 from drystone.photo.segment_settings import SegmentSettings
-from drystone_lab.photographs.level import Level
+from drystone_lab.photographs.layout import Level
 from drystone_lab.photographs.scene import photograph
 from drystone_lab.photos import overlaps, pixels, score
 

@@ -8,7 +8,7 @@ from drystone.physics.compare import TiltComparison, compare_with_tilt
 from drystone.physics.scatter import TiltResult, Variation
 from drystone.physics.scene import EngineSettings, Scene
 from drystone.physics.tilt import TiltSettings, TiltTrial
-from drystone_lab.walls_of_ferris import MU, WALLS
+from drystone_lab.statics_cases import MU, WALLS
 
 ONCE = (Variation("as given", EngineSettings(), TiltSettings()),)
 QUICK = (Variation("few iterations", EngineSettings(iterations=50), TiltSettings(coarse=0.064)),)

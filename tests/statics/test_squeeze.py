@@ -12,7 +12,7 @@ from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.statics.squeeze import held_by_upright_faces
-from drystone_lab.arches import arch
+from drystone_lab.statics_cases import arch
 from tests.statics.walls import JAMS, between_piers, brick_model, slot, under_a_roof
 from tests.strategies import repeatable
 

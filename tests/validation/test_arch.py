@@ -8,7 +8,7 @@ must fall, one more stand.
 
 import pytest
 
-from drystone_lab.arches import stands
+from drystone_lab.statics_cases import stands
 
 
 @pytest.mark.parametrize(

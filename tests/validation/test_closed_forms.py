@@ -13,7 +13,7 @@ from drystone.contacts.given import model_from_json
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.squeeze import held_by_upright_faces
-from drystone_lab.cases import (
+from drystone_lab.statics_cases import (
     closed_forms,
     offset_stack,
     running_bond,

@@ -13,7 +13,7 @@ import pytest
 
 from drystone.contacts.given import model_from_json
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.walls_of_ferris import WALLS
+from drystone_lab.statics_cases import WALLS
 
 PUBLISHED = {
     1: (33, 83, 0.64286),

@@ -1,6 +1,6 @@
 """Load factors without dilatancy of published walls, and how often there is an answer.
 
-Walls of Ferris and Tin-Loi (2001), see drystone_lab.walls_of_ferris.  The factors depend
+Walls of Ferris and Tin-Loi (2001), see drystone_lab.statics_cases.  The factors depend
 on the method, which finds one of many; the least that a nonlinear solver found on the same
 complementarity problems are .63898, .5574, .35582, .26374 and .2086.
 """
@@ -14,7 +14,7 @@ from drystone.statics.flow.flow_search import NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_load, nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.result import LimitStatus
-from drystone_lab.walls_of_ferris import WALLS
+from drystone_lab.statics_cases import WALLS
 from tests.statics.walls import brick_model, irregular
 
 ACCEPTED = {

@@ -8,7 +8,7 @@ import pytest
 
 from drystone.statics.limit import lateral_resistance
 from drystone_lab.pixels import BRICK_PX, from_outlines, from_pixels, rasterised
-from drystone_lab.walls_of_ferris import WALLS
+from drystone_lab.statics_cases import WALLS
 
 
 def alphas(model):

@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> ExitCode:
 
 def _print_list() -> None:
     """Print suites and policies, one a line."""
-    from drystone_lab.public.methods import known_methods  # noqa: PLC0415 - see _tables
+    from drystone_lab.public.suites import known_methods  # noqa: PLC0415 - see _tables
 
     for name, (text, _) in SUITES.items():
         print(f"{name}: {text}")
@@ -109,7 +109,7 @@ def _settings(arguments: argparse.Namespace, suite: str) -> BenchSettings:
         only=tuple(arguments.only),
         policies=tuple(arguments.policy),
         changes=read_changes(arguments.settings),
-        jobs=arguments.jobs or 1,
+        jobs=arguments.jobs,
         runs=None if arguments.runs is None else Path(arguments.runs),
         say=say,
     )

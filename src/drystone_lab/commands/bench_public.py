@@ -13,9 +13,9 @@ from drystone.drawing.files import save
 from drystone.errors import UsageError
 from drystone_lab.public.bench import PublicSettings, run_public
 from drystone_lab.public.history import Medians, drawn_history, history_table, medians_of
-from drystone_lab.public.methods import flat_changes
 from drystone_lab.public.store import BenchStore, Stamp
-from drystone_lab.runs.changes import Changes
+from drystone_lab.public.suites import flat_changes
+from drystone_lab.runs.spec import Changes
 from drystone_lab.table import Table
 
 DEFAULT_METHODS = ("paper", "random")
@@ -38,15 +38,19 @@ def public_tables(arguments: argparse.Namespace, suite: str, data: Path | None) 
         E138: options that make no sense together.
     """
     _refuse_useless(arguments)
-    changes = read_changes(arguments.settings)
     if arguments.store is not None:
         make_folder(Path(arguments.store))
     return run_public(
         PublicSettings(
             suite=suite,
-            methods=tuple(dict.fromkeys(arguments.policy or DEFAULT_METHODS)),
-            stamp=_stamp(changes),
-            first_seed=arguments.seed,
+            policies=tuple(dict.fromkeys(arguments.policy or DEFAULT_METHODS)),
+            changes=read_changes(arguments.settings),
+            stamp=Stamp(
+                version=version("drystone"),
+                made_at=datetime.now(UTC).isoformat(timespec="seconds"),
+                platform=f"{platform.system()} {platform.machine()}",
+            ),
+            seed=arguments.seed,
             seeds=arguments.seeds,
             data=data,
             store=None if arguments.store is None else Path(arguments.store),
@@ -122,12 +126,3 @@ def _refuse_useless(arguments: argparse.Namespace) -> None:
 def read_changes(name: str | None) -> Changes:
     """Return what a file of settings replaces for all methods; nothing without a file."""
     return () if name is None else flat_changes(read_toml(Path(name)), name)
-
-
-def _stamp(changes: Changes) -> Stamp:
-    return Stamp(
-        settings=changes,
-        version=version("drystone"),
-        made_at=datetime.now(UTC).isoformat(timespec="seconds"),
-        platform=f"{platform.system()} {platform.machine()}",
-    )

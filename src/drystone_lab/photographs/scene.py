@@ -1,32 +1,316 @@
 """A test photograph: stones on a ground, lit, and the truth about them."""
 
+import io
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
+from PIL import Image
 from scipy import ndimage
 from skimage.draw import polygon2mask
+from skimage.transform import warp
 
-from drystone_lab.photographs.camera import (
-    Homography,
-    exposed,
-    frame_corners,
-    inverse,
-    moved,
-    view_of,
-)
-from drystone_lab.photographs.layout import Labels, lay_stones
-from drystone_lab.photographs.level import Level
-from drystone_lab.photographs.sheets import place_markers
-from drystone_lab.photographs.texture import (
-    Light,
-    Plane,
-    clouds,
-    ground_surface,
-    stone_face,
-)
+from drystone.kernels.raster import Mask
+from drystone.photo.dictionaries import marker_modules
+from drystone.photo.layout import ON_A_SHEET, MarkerLayout, page_mm, parse_layout
+from drystone_lab.photographs.layout import Ground, Labels, Level, Rock, lay_stones
+
+Plane = NDArray[np.float32]
+"""(h, w)."""
+Light = NDArray[np.float32]
+"""(h, w, 3), linear, 0 to 1 for what a camera can record."""
+
+
+@dataclass(frozen=True)
+class _Face:
+    colours: tuple[str, ...]
+    clouds: float
+    specks: float
+    veins: float
+
+
+_ROCKS: dict[Rock, _Face] = {
+    "granite": _Face(("#a3a09c", "#b3a79d", "#8f9092"), 0.10, 0.55, 0.0),
+    "sandstone": _Face(("#b98f63", "#a5714f", "#c7a77c"), 0.16, 0.08, 0.15),
+    "limestone": _Face(("#d6cdb9", "#c9c1ad", "#ded8cc"), 0.10, 0.05, 0.25),
+    "basalt": _Face(("#4a4b4e", "#565350", "#3d4044"), 0.15, 0.15, 0.0),
+    "schist": _Face(("#7b8076", "#6f7480", "#8a8272"), 0.16, 0.12, 0.35),
+}
+
+
+def linear(colour: str) -> NDArray[np.float32]:
+    """Return the linear light of ``"#rrggbb"``.
+
+    Examples
+    --------
+    >>> [round(float(part), 3) for part in linear("#ff8000")]
+    [1.0, 0.216, 0.0]
+    """
+    value = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) / 255
+    low = value / 12.92
+    return np.where(value <= 0.04045, low, ((value + 0.055) / 1.055) ** 2.4).astype(np.float32)
+
+
+def clouds(
+    shape: tuple[int, int], cells: Sequence[tuple[float, float]], rng: Generator, fall: float = 0.6
+) -> Plane:
+    """Return noise of several octaves with mean 0 and standard deviation about 1."""
+    total, power, strength = np.zeros(shape, np.float32), 0.0, 1.0
+    for down, across in cells:
+        grid = (max(2, round(shape[0] / down) + 1), max(2, round(shape[1] / across) + 1))
+        noise = Image.fromarray(rng.standard_normal(grid).astype(np.float32))
+        fine = np.asarray(noise.resize((shape[1], shape[0]), Image.Resampling.BICUBIC))
+        total += strength * fine / max(float(fine.std()), 1e-6)
+        power += strength**2
+        strength *= fall
+    return np.asarray(total / np.sqrt(power), np.float32)
+
+
+def stone_face(rock: Rock, shape: tuple[int, int], rng: Generator) -> Light:
+    """Return the surface of a stone, flat and evenly lit: clouds, specks and veins on a colour."""
+    face = _ROCKS[rock]
+    base = linear(face.colours[int(rng.integers(len(face.colours)))])
+    base = base * np.float32(rng.uniform(0.85, 1.15))
+    size = max(shape)
+    light = face.clouds * clouds(shape, [(size / k, size / k) for k in (2, 4, 9, 20)], rng, 0.7)
+    specks = clouds(shape, [(5, 5), (2.5, 2.5)], rng, 0.8)
+    light += face.specks * (0.5 * (specks > 1.1) - 0.8 * (specks < -1.2))
+    ridge = 1 - np.abs(clouds(shape, [(size / 2, size / 5), (size / 6, size / 9)], rng, 0.4)) * 6
+    light += face.veins * np.clip(ridge, 0, 1)
+    tint = 0.03 * clouds(shape, [(size / 2, size / 2), (size / 6, size / 6)], rng)
+    colour = base * (1 + light[..., None])
+    colour[..., 0] *= 1 + tint
+    colour[..., 2] *= 1 - tint
+    return np.clip(colour, 0.01, 1.0).astype(np.float32)
+
+
+def ground_surface(ground: Ground, shape: tuple[int, int], rng: Generator) -> Light:
+    """Return a ground, evenly lit."""
+    makers = {
+        "plywood": _plywood, "tarpaulin": _tarpaulin, "cloth": _cloth,
+        "rubber": _rubber, "gravel": _gravel, "grass": _grass,
+    }  # fmt: skip
+    return np.asarray(np.clip(makers[ground](shape, rng), 0.005, 1.0), np.float32)
+
+
+def _plywood(shape: tuple[int, int], rng: Generator) -> Light:
+    grain = clouds(shape, [(14, 900), (5, 300), (2, 90)], rng, 0.8)
+    boards = clouds(shape, [(400, 1500)], rng)
+    return np.asarray(linear("#d8b98a") * (1 + 0.06 * grain + 0.04 * boards)[..., None])
+
+
+def _tarpaulin(shape: tuple[int, int], rng: Generator) -> Light:
+    rows, cols = np.indices(shape, np.float32)
+    weave = np.sin(rows * 1.1) * np.sin(cols * 1.1)
+    folds = clouds(shape, [(500, 300), (160, 200)], rng, 0.4)
+    return np.asarray(linear("#2f6fb0") * (1 + 0.05 * weave + 0.08 * folds)[..., None])
+
+
+def _cloth(shape: tuple[int, int], rng: Generator) -> Light:
+    folds = clouds(shape, [(420, 260), (120, 150)], rng, 0.4)
+    threads = clouds(shape, [(2, 6), (6, 2)], rng, 0.9)
+    return linear("#ecebe6") * (1 + 0.03 * folds + 0.02 * threads)[..., None]
+
+
+def _rubber(shape: tuple[int, int], rng: Generator) -> Light:
+    crumbs = clouds(shape, [(5, 5), (2.5, 2.5)], rng, 0.8)
+    return linear("#26262a") * (1 + 0.25 * crumbs)[..., None]
+
+
+def _gravel(shape: tuple[int, int], rng: Generator) -> Light:
+    grains = clouds(shape, [(7, 7), (4, 4), (2.5, 2.5)], rng, 0.8)
+    tint = 0.04 * clouds(shape, [(9, 9)], rng)
+    light = linear("#c9c3b4") * (1 + 0.16 * grains)[..., None]
+    light[..., 0] *= 1 + tint
+    return np.asarray(light)
+
+
+def _grass(shape: tuple[int, int], rng: Generator) -> Light:
+    blades = clouds(shape, [(16, 5), (9, 3), (4, 3)], rng, 0.8)
+    patches = clouds(shape, [(220, 220), (70, 70)], rng, 0.6)
+    light = linear("#5b8a35") * np.exp(0.35 * blades + 0.12 * patches)[..., None]
+    light[..., 0] *= 1 + 0.12 * patches
+    return np.asarray(light)
+
+
+Homography = NDArray[np.float64]
+"""(3, 3); maps points (x, y, 1), y down, px."""
+
+FOCAL = 1.2
+"""Focal length over the width of the photograph: of a phone."""
+
+_TURNS = {
+    2: Image.Transpose.FLIP_LEFT_RIGHT, 3: Image.Transpose.ROTATE_180,
+    4: Image.Transpose.FLIP_TOP_BOTTOM, 5: Image.Transpose.TRANSPOSE,
+    6: Image.Transpose.ROTATE_90, 7: Image.Transpose.TRANSVERSE, 8: Image.Transpose.ROTATE_270,
+}  # fmt: skip
+"""How a picture is stored that a viewer turns back for its EXIF orientation."""
+
+
+def inverse(homography: Homography) -> Homography:
+    """Return the way back."""
+    return np.asarray(np.linalg.inv(homography), np.float64)
+
+
+def view_of(level: Level) -> tuple[Homography, tuple[int, int]]:
+    """Return the homography from the ground to the photograph, and the ground that is seen.
+
+    Returns
+    -------
+    homography : (3, 3) float array
+        Ground px to photograph px.
+    shape : (int, int)
+        Height and width of the ground that holds all that the camera sees, px.
+    """
+    focal = FOCAL * level.width_px
+    tilt, turn = math.radians(level.tilt_deg), math.radians(level.turn_deg)
+    spin = np.array(
+        [[math.cos(turn), -math.sin(turn), 0], [math.sin(turn), math.cos(turn), 0], [0, 0, 1]]
+    )
+    look = np.array([[focal, 0, 0], [0, focal * math.cos(tilt), 0], [0, -math.sin(tilt), focal]])
+    middle = np.array([[1, 0, level.width_px / 2], [0, 1, level.height_px / 2], [0, 0, 1]])
+    centred = middle @ look @ spin
+    corners = moved(inverse(centred), frame_corners(level))
+    low, high = np.floor(corners.min(axis=0)), np.ceil(corners.max(axis=0))
+    shift = np.array([[1, 0, low[0]], [0, 1, low[1]], [0, 0, 1]])
+    width, height = (int(side) for side in high - low)
+    return centred @ shift, (height, width)
+
+
+def frame_corners(level: Level) -> NDArray[np.float64]:
+    """Return the corners of the photograph, (4, 2), in turn."""
+    width, height = level.width_px, level.height_px
+    return np.array([[0, 0], [width, 0], [width, height], [0, height]], float)
+
+
+def moved(homography: Homography, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Map points (n, 2).
+
+    Examples
+    --------
+    >>> moved(np.diag([2.0, 2.0, 1.0]), np.array([[1.0, 3.0]])).tolist()
+    [[2.0, 6.0]]
+    """
+    mapped = np.column_stack([points, np.ones(len(points))]) @ homography.T
+    return np.asarray(mapped[:, :2] / mapped[:, 2:])
+
+
+def exposed(ground: Light, homography: Homography, level: Level, rng: Generator) -> bytes:
+    """Return the JPEG that a camera makes of a lit ground."""
+    shape = (level.height_px, level.width_px)
+    # Centres of px lie at halves in the homography and at whole numbers in `warp`.
+    half = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1]])
+    back = np.linalg.inv(half) @ np.linalg.inv(homography) @ half
+    planes = [
+        warp(ground[..., k], back, output_shape=shape, order=1, mode="edge", preserve_range=True)
+        for k in range(3)
+    ]
+    seen = [ndimage.gaussian_filter(plane, level.blur_px) for plane in planes]
+    light = np.clip(np.stack(seen, axis=-1), 0, 1)
+    grey = 255 * np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    grey += rng.normal(0, level.noise, grey.shape)
+    picture = Image.fromarray(np.clip(np.rint(grey), 0, 255).astype(np.uint8))
+    if level.orientation != 1:
+        picture = picture.transpose(_TURNS[level.orientation])
+    exif = Image.Exif()
+    exif[0x0112] = level.orientation
+    file = io.BytesIO()
+    picture.save(file, "JPEG", quality=level.quality, exif=exif)
+    return file.getvalue()
+
+
+PAPER, INK = 0.82, 0.03
+"""Linear light of paper and ink."""
+
+_GAP = 0.3
+"""Border of a single marker over its side."""
+
+_TURN_DEG = 12.0
+_FINE = 3
+"""Samples along a side of a px."""
+
+
+def layout_of(level: Level) -> MarkerLayout | None:
+    """Return the markers of a photograph as its user would name them; None without."""
+    names = {"sheet": f"A4:{level.marker_mm:g}mm", "single": f"{level.marker_mm:g}mm"}
+    return None if level.markers == "none" else parse_layout(names[level.markers])
+
+
+def place_markers(level: Level, surface: Light, seen: Mask) -> Mask:
+    """Draw markers on the ground; return where no stone may lie."""
+    layout = layout_of(level)
+    covered = np.zeros(seen.shape, bool)
+    if layout is None:
+        return covered
+    papers = [_sheet(layout)] if layout.page else [_single(layout, k) for k in range(ON_A_SHEET)]
+    for place, paper in enumerate(papers):
+        wrong = level.wrong_print if place == len(papers) - 1 else 1.0
+        half = math.hypot(*paper.size_m) / 2 * level.px_per_m
+        room = np.argwhere(ndimage.distance_transform_edt(np.pad(seen, 1))[1:-1, 1:-1] > half + 5)
+        signs = ((1, 1), (1, -1), (-1, 1), (-1, -1))[place]
+        middle = room[(room * signs).sum(axis=1).argmin()][::-1] + 0.5
+        _draw(paper, middle, level.px_per_m * wrong, surface, covered)
+    return np.asarray(ndimage.distance_transform_edt(~covered) < level.gap_px)
+
+
+@dataclass(frozen=True, eq=False)
+class _Paper:
+    size_m: tuple[float, float]
+    squares: tuple[tuple[NDArray[np.float64], NDArray[np.bool_]], ...]
+    """Upper left corner and modules of every marker."""
+    side_m: float
+
+
+def _sheet(layout: MarkerLayout) -> _Paper:
+    width, height = page_mm(str(layout.page))
+    squares = tuple((layout.corners_m(k)[0], marker_modules("aruco", k)) for k in range(ON_A_SHEET))
+    return _Paper((width / 1000, height / 1000), squares, layout.size_m)
+
+
+def _single(layout: MarkerLayout, number: int) -> _Paper:
+    border = _GAP * layout.size_m
+    whole = layout.size_m + 2 * border
+    corner = np.array([border, border])
+    return _Paper((whole, whole), ((corner, marker_modules("aruco", number)),), layout.size_m)
+
+
+def _draw(
+    paper: _Paper, middle: NDArray[np.float64], px_per_m: float, surface: Light, covered: Mask
+) -> None:
+    """Lay a paper down, turned a little, its middle at a place."""
+    half = math.ceil(math.hypot(*paper.size_m) / 2 * px_per_m) + 2
+    left, top = (int(part) - half for part in middle)
+    fine = (np.arange(2 * half * _FINE) + 0.5) / _FINE
+    x, y = np.meshgrid(fine + left - middle[0], fine + top - middle[1])
+    turn = math.radians(_TURN_DEG)
+    across = (x * math.cos(turn) + y * math.sin(turn)) / px_per_m + paper.size_m[0] / 2
+    down = (y * math.cos(turn) - x * math.sin(turn)) / px_per_m + paper.size_m[1] / 2
+    on = (across >= 0) & (down >= 0) & (across < paper.size_m[0]) & (down < paper.size_m[1])
+    light = np.where(on, PAPER, 0.0)
+    for corner, modules in paper.squares:
+        count = len(modules)
+        row = np.floor((down - corner[1]) / paper.side_m * count).astype(int)
+        col = np.floor((across - corner[0]) / paper.side_m * count).astype(int)
+        inside = (row >= 0) & (col >= 0) & (row < count) & (col < count)
+        dark = modules[np.where(inside, row, 0), np.where(inside, col, 0)] & inside
+        light[dark] = INK
+    share = _coarse(on.astype(float))[..., None]
+    # Near the edge of the ground the box is cut; the paper itself is not.
+    rows = slice(max(-top, 0), 2 * half - max(top + 2 * half - surface.shape[0], 0))
+    cols = slice(max(-left, 0), 2 * half - max(left + 2 * half - surface.shape[1], 0))
+    box = (slice(top + rows.start, top + rows.stop), slice(left + cols.start, left + cols.stop))
+    mixed = surface[box] * (1 - share[rows, cols]) + _coarse(light)[rows, cols][..., None]
+    surface[box] = mixed
+    covered[box] |= share[rows, cols, 0] > 0
+
+
+def _coarse(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    side = values.shape[0] // _FINE
+    return np.asarray(values.reshape(side, _FINE, side, _FINE).mean(axis=(1, 3)))
+
 
 HEIGHT = 0.4
 """Height of a stone over the square root of its area."""

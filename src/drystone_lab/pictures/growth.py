@@ -10,6 +10,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from drystone.drawing.palette import CLUSTER_COLOURS, GREY, OUTLINE_COLOUR, WEDGE_COLOUR
 from drystone.planner.profile import StepTime
+from drystone_lab.pictures.charts import name_axes
 
 PART_COLOURS = {
     "placement": CLUSTER_COLOURS[0],
@@ -100,9 +101,7 @@ def plot_step_times(steps: Sequence[StepTime], ax: Axes | None = None, *, title:
     rest = np.maximum(0.0, 1e3 * np.array([step.seconds for step in steps]) - foot)
     ax.bar(number, rest, 0.8, foot, color=GREY, label=REST)
     ax.set_xlim(0.4, len(steps) + 0.6)
-    ax.set_xlabel("step", fontsize=8)
-    ax.set_ylabel("ms", fontsize=8)
-    ax.tick_params(labelsize=7)
+    name_axes(ax, "step", "ms")
     ax.set_title(title, fontsize=8)
     return ax
 
@@ -168,9 +167,7 @@ def plot_growth(
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
         axis.set_minor_formatter(NullFormatter())
-    ax.set_xlabel(size, fontsize=8)
-    ax.set_ylabel("s", fontsize=8)
-    ax.tick_params(labelsize=7)
+    name_axes(ax, size, "s")
     # Above, where it hides no point.
     ax.legend(fontsize=7, edgecolor="none", loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
     return ax

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from drystone.drawing.palette import CLUSTER_COLOURS, GREY, OUTLINE_COLOUR, WEDGE_COLOUR
+from drystone_lab.pictures.charts import name_axes
 
 COLOURS = (CLUSTER_COLOURS[0], WEDGE_COLOUR, CLUSTER_COLOURS[11])
 """By model; the first three."""
@@ -91,9 +92,7 @@ def plot_predictions(
         ax.plot([0, end], [0, share * end], color=GREY, linewidth=0.6, linestyle="--", zorder=0)
     ax.set_xlim(0, end)
     ax.set_ylim(0, end)
-    ax.set_xlabel(f"measured, {unit}", fontsize=8)
-    ax.set_ylabel(f"predicted, {unit}", fontsize=8)
-    ax.tick_params(labelsize=7)
+    name_axes(ax, f"measured, {unit}", f"predicted, {unit}")
     _legend(ax, colours, markers, band)
     return ax
 

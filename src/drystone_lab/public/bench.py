@@ -1,27 +1,60 @@
 """Runs of the public benchmark: every method on every wall with every seed."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
+
+from drystone.contacts.outlines import outlines_of_labels
+from drystone.kernels.polygons import Points
+from drystone.model.wall import Wall
+from drystone.physics.building import ROUNDED
+from drystone.physics.scene import Scene
+from drystone.physics.shake import shake_once
 from drystone.physics.table import load_engine
 from drystone_lab.packing import load_packer
-from drystone_lab.public.compare import comparison
-from drystone_lab.public.methods import STRIP_SECONDS, BenchMethod, method_named
-from drystone_lab.public.pairs import pair_tables
-from drystone_lab.public.results import SHAKE, Result, Results
-from drystone_lab.public.shaken import pga_of
 from drystone_lab.public.store import NOT_SHAKEN, BenchStore, KeptRun, Stamp, kept_run
-from drystone_lab.public.suites import walls_of
-from drystone_lab.runs.failures import absent_data
-from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.runner import Runner, Work, one_by_one
+from drystone_lab.public.suites import STRIP_SECONDS, BenchMethod, method_named, walls_of
+from drystone_lab.public.tables import SHAKE, Result, Results, comparison, pair_tables
+from drystone_lab.runs.outcome import Outcome, RunStore
+from drystone_lab.runs.runner import Runner, Work, absent_data, one_by_one
 from drystone_lab.runs.spec import STRIPS, RunSpec
-from drystone_lab.runs.store import RunStore
-from drystone_lab.table import Table
+from drystone_lab.table import BenchSettings, Table
 from drystone_lab.walls import Target
+
+
+def pga_of(spec: RunSpec, outcome: Outcome, data: Path | None) -> float | None:
+    """Return the amplitude that a planned wall stands, g.
+
+    Returns
+    -------
+    float or None
+        None when nothing was built, or it does not stand at rest in the engine.
+
+    Raises
+    ------
+    UsageError
+        E305 when pymunk is not installed.
+    """
+    if not outcome.figures["placed"]:
+        return None
+    wall = outcome.wall(spec, data)
+    # Wedges may fall out: the score is about stones.
+    stones = frozenset(placement.stone_id for placement in wall.placements)
+    scene = Scene(wall_outlines(wall), spec.settings().mu)
+    trial = shake_once(scene, ROUNDED, watched=stones)
+    return trial.pga_g
+
+
+def wall_outlines(wall: Wall) -> Mapping[int, Points]:
+    """Return the outlines of stones and wedges; of a wall of pixels, sub-pixel ones."""
+    if wall.outlines is not None:
+        return {block: np.asarray(corners) for block, corners in wall.outlines.blocks}
+    return outlines_of_labels(wall.labels)
+
 
 SEEDS, QUICK_SEEDS = 5, 2
 """How many unless it is said."""
@@ -33,61 +66,37 @@ Task = tuple[Target, BenchMethod, RunSpec]
 
 
 @dataclass(frozen=True, kw_only=True)
-class PublicSettings:
-    """What is run, and by whom.
+class PublicSettings(BenchSettings):
+    """What is run, and by whom; `policies` are the methods, `jobs` None for this process.
 
     Parameters
     ----------
     suite : str
         One of :data:`drystone_lab.public.suites.PUBLIC_SUITES`.
-    methods : tuple of str
-        Names of methods.
     stamp : Stamp
-        Version, time, machine, and the settings that all methods share.
-    first_seed : int
-        The first of the seeds.
-    seeds : int or None
-        How many; None for the usual number.
-    data : Path or None
-        Folder of the published data; walls that need it are left out without it.
+        Version, time and machine.
     store : Path or None
         Folder of the runs that are kept; None keeps nothing.
     again : bool
         Do runs again that are kept.
-    only : tuple of str
-        How the names of walls begin that are wanted; empty for all.
-    quick : bool
-        The first wall, two seeds.
-    jobs : int or None
-        Processes, None for this one.
     dask : str or None
         Address of a scheduler.
     shake : bool
         Shake the walls too.
-    say : callable
-        Told of progress.
     """
 
     suite: str
-    methods: tuple[str, ...]
     stamp: Stamp
-    first_seed: int = 0
-    seeds: int | None = None
-    data: Path | None = None
     store: Path | None = None
     again: bool = False
-    only: tuple[str, ...] = ()
-    quick: bool = False
-    jobs: int | None = None
     dask: str | None = None
     shake: bool = False
-    say: Callable[[str], None] = lambda _: None
 
     @property
     def seed_range(self) -> range:
         """All seeds."""
         count = self.seeds or (QUICK_SEEDS if self.quick else SEEDS)
-        return range(self.first_seed, self.first_seed + count)
+        return range(self.seed, self.seed + count)
 
 
 class _NothingKept(RunStore):
@@ -115,7 +124,7 @@ def run_public(settings: PublicSettings) -> tuple[Table, ...]:
         E100: all walls need published stones, which are not there; E160: there are others in
         their place; E401: the store is damaged.
     """
-    methods = [method_named(name, settings.stamp.settings) for name in settings.methods]
+    methods = [method_named(name, settings.changes) for name in settings.policies]
     asked = walls_of(settings.suite, settings.only, quick=settings.quick)
     walls = [wall for wall in asked if wall.source.is_there(settings.data)]
     if not walls:
@@ -172,7 +181,12 @@ def _done(tasks: Sequence[Task], settings: PublicSettings) -> Results:
     ]
     if store is not None:
         new = [run for run in runs if settings.again or run[1].key not in kept]
-        store.put([kept_run(result, outcome, settings.stamp) for _, outcome, result in new])
+        store.put(
+            [
+                kept_run(result, outcome, settings.changes, settings.stamp)
+                for _, outcome, result in new
+            ]
+        )
     results = [result for _, _, result in runs]
     if settings.shake:
         results = _shaken(runs, {} if settings.again else kept, store, settings)
@@ -200,7 +214,7 @@ def _shaken(
             continue
         results.append(_with_score(result, pga_of(spec, outcome, settings.data)))
         if store is not None:
-            store.put([kept_run(results[-1], outcome, settings.stamp)])
+            store.put([kept_run(results[-1], outcome, settings.changes, settings.stamp)])
         settings.say(f"{number} of {len(runs)} walls shaken")
     return results
 

@@ -7,7 +7,7 @@ from statistics import median
 
 from matplotlib.figure import Figure
 
-from drystone_lab.pictures.bench_history import history_panels
+from drystone_lab.pictures.charts import history_panels
 from drystone_lab.public.store import KeptRun
 from drystone_lab.runs.spec import STRIPS
 from drystone_lab.table import Cell, Table

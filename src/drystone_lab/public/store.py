@@ -13,10 +13,10 @@ from typing import Any
 
 from drystone.errors import DrystoneError, InputError, UsageError, not_written
 from drystone.whole_files import write_whole
-from drystone_lab.public.results import SHAKE, Result
 from drystone_lab.public.suites import SUITE_VERSION
+from drystone_lab.public.tables import SHAKE, Result
 from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.source import Scalar
+from drystone_lab.runs.spec import Changes
 
 DATABASE = "bench.sqlite"
 CSV = "runs.csv"
@@ -95,27 +95,24 @@ class Stamp:
 
     Parameters
     ----------
-    settings : tuple of (str, value)
-        What was replaced for all methods alike.
     version, made_at, platform : str
         As in :class:`KeptRun`.
     """
 
-    settings: tuple[tuple[str, Scalar], ...]
     version: str
     made_at: str
     platform: str
 
 
-def kept_run(result: Result, outcome: Outcome, stamp: Stamp) -> KeptRun:
-    """Return the row of a run."""
+def kept_run(result: Result, outcome: Outcome, changes: Changes, stamp: Stamp) -> KeptRun:
+    """Return the row of a run; `changes` replaced settings for all methods alike."""
     figures, wall = outcome.figures, result.wall
     names = ("F_SF", "F_AV", "F_AH", "F_LR", "T_LEVEL", "E_FLUSH", "wedge_area")
     pga_g = result.figures.get(SHAKE)
     shaken = NOT_SHAKEN if SHAKE not in result.figures else "falls" if pga_g is None else "yes"
     return KeptRun(
         run_key=outcome.key, suite=wall.suite, suite_version=SUITE_VERSION, wall=wall.name,
-        method=result.method, settings=json.dumps(dict(stamp.settings), sort_keys=True),
+        method=result.method, settings=json.dumps(dict(changes), sort_keys=True),
         seed=result.seed, version=stamp.version, placed=int(figures["placed"] or 0),
         stones=int(figures["stones"] or 0), **{name: figures[name] for name in names},
         seconds=result.seconds, pga_g=pga_g, shaken=shaken, made_at=stamp.made_at,

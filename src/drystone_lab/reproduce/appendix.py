@@ -1,19 +1,115 @@
 """Fig. B.33: 91 irregular stones; Fig. B.34: bricks of aspect 2 and 3 (B.2)."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
-from drystone_lab.pictures.wall_grid import plot_walls
+from drystone.model.wall import Wall
+from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import METRICS, metric_cells
-from drystone_lab.reproduce.courses import OVERLAP, Courses, bricks_of, courses_of
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.study import Built, Trials, built
-from drystone_lab.runs.changes import Changes
-from drystone_lab.runs.source import from_file, generated
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.spec import Changes, RunSpec, from_file, generated
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import TWO_SIDED, Target
+
+OVERLAP = 0.25
+"""Of the brick's length, by which head joints of neighbouring courses are apart at least: the
+usual rule of a bond."""
+
+
+@dataclass(frozen=True)
+class Brick:
+    """The box of a placed brick, px; full when it fills it, so that it is not turned."""
+
+    left: int
+    right: int
+    bottom: int
+    top: int
+    full: bool
+
+
+@dataclass(frozen=True)
+class Courses:
+    """What the courses of a wall are like.
+
+    Parameters
+    ----------
+    bricks : int
+        In the wall.
+    lying : int
+        With their long side level.
+    in_course : int
+        Lying, with their foot at a whole number of brick heights.
+    courses : int
+        Of these bricks.
+    joints : int
+        Head joints within courses that have a course next to them.
+    crossed : int
+        Those that are apart from all head joints of the courses beside them by :data:`OVERLAP`.
+    """
+
+    bricks: int
+    lying: int
+    in_course: int
+    courses: int
+    joints: int
+    crossed: int
+
+
+def bricks_of(wall: Wall) -> tuple[Brick, ...]:
+    """Return the boxes of the stones of a wall of pixels."""
+    bricks = []
+    for placement in wall.placements:
+        rows, cols = placement.window
+        height = wall.site.height_px
+        bricks.append(
+            Brick(cols.start, cols.stop, height - rows.stop, height - rows.start,
+                  bool(placement.posed.mask.all()))
+        )  # fmt: skip
+    return tuple(bricks)
+
+
+def courses_of(bricks: Sequence[Brick], height_px: int, width_px: int) -> Courses:
+    """Look at the courses of equal bricks, of the size of one that lies.
+
+    Examples
+    --------
+    >>> low = [Brick(0, 20, 0, 10, True), Brick(20, 40, 0, 10, True)]
+    >>> courses_of([*low, Brick(10, 30, 10, 20, True), Brick(30, 50, 10, 20, True)], 10, 20)
+    Courses(bricks=4, lying=4, in_course=4, courses=2, joints=2, crossed=2)
+    """
+    lying = [b for b in bricks if b.full and b.right - b.left == width_px]
+    level = [b for b in lying if b.bottom % height_px == 0]
+    by_course: dict[int, list[Brick]] = {}
+    for brick in level:
+        by_course.setdefault(brick.bottom // height_px, []).append(brick)
+    joints = {course: head_joints(found) for course, found in by_course.items()}
+    count = crossed = 0
+    for course, places in joints.items():
+        if not {course - 1, course + 1} & set(joints):
+            continue
+        beside = joints.get(course - 1, []) + joints.get(course + 1, [])
+        count += len(places)
+        crossed += sum(
+            all(abs(place - other) >= OVERLAP * width_px for other in beside) for place in places
+        )
+    return Courses(len(bricks), len(lying), len(level), len(by_course), count, crossed)
+
+
+def head_joints(course: Sequence[Brick]) -> list[float]:
+    """Return the middles of the joints between the bricks of a course that are next to each other.
+
+    A joint may be open, by less than the length of a brick: a wider one is a hole.
+    """
+    row = sorted(course, key=lambda brick: brick.left)
+    return [
+        (one.right + other.left) / 2
+        for one, other in pairwise(row)
+        if other.left - one.right < one.right - one.left
+    ]
+
 
 SIDES: Mapping[str, Changes] = {"one side": (), "two sides": TWO_SIDED}
 
@@ -63,20 +159,6 @@ def wall_of_image(context: Context) -> Target:
     return Target(context.image.name, source, 0.0, 0.0, scale)
 
 
-def _irregular_found(found: Built) -> Iterator[str]:
-    for one in found:
-        figures = one.outcomes[0].figures
-        yield (
-            f"{found.name}, from {one.way}: {figures['placed']} of {figures['stones']}, F_SF "
-            f"{figures['F_SF']:.3f}."
-        )
-    yield (
-        "The paper's stones are not public; generated ones are our own irregular rubble. How many "
-        "of them fit depends on the wall that they are given, which the paper does not tell, so "
-        "the counts can be compared in kind only."
-    )
-
-
 def _irregular_table(found: Built) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for one in found:
@@ -113,7 +195,11 @@ IRREGULAR = Item(
         "said.",
     ),
     study=irregular_walls,
-    ours=lambda found: tuple(_irregular_found(found)),
+    notes=(
+        "The paper's stones are not public; generated ones are our own irregular rubble. How many "
+        "of them fit depends on the wall that they are given, which the paper does not tell, so "
+        "the counts can be compared in kind only.",
+    ),
     tables={"walls": _irregular_table},
     pictures=lambda found: (_irregular_picture(found),),
 )
@@ -171,24 +257,6 @@ def brick_walls(context: Context, size: tuple[int, int] | None = None) -> Bricks
     return Bricks(built(context, walls, SIDES, (context.seed,)), ASPECTS)
 
 
-def _bricks_found(found: Bricks) -> Iterator[str]:
-    for aspect, one, courses in found.all:
-        figures = one.outcomes[0].figures
-        yield (
-            f"Aspect {aspect:g} from {one.way}: {figures['placed']} of {figures['stones']} bricks "
-            f"in {courses.courses} courses, F_SF {figures['F_SF']:.3f}; {courses.in_course} of "
-            f"{courses.bricks} bricks lie at a whole number of brick heights. {courses.crossed} of "
-            f"{courses.joints} head joints are crossed: {OVERLAP:g} of a brick or more from those "
-            "of the courses beside them."
-        )
-    yield (
-        "The bricks of a wall are alike, so that variant sampling has next to nothing to choose "
-        "from: Eq. 12 alone says where the next one lies, and the indices that reward a bond "
-        "compare stones, not places. §5.3 says the like of stones of little variety: easy to stack "
-        "and to fill with, 'but it often results in walls with inferior interlocking'."
-    )
-
-
 def _bricks_table(found: Bricks) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for aspect, one, courses in found.all:
@@ -237,7 +305,12 @@ BRICKS = Item(
         "given.",
     ),
     study=brick_walls,
-    ours=lambda found: tuple(_bricks_found(found)),
+    notes=(
+        "The bricks of a wall are alike, so that variant sampling has next to nothing to choose "
+        "from: Eq. 12 alone says where the next one lies, and the indices that reward a bond "
+        "compare stones, not places. §5.3 says the like of stones of little variety: easy to stack "
+        "and to fill with, 'but it often results in walls with inferior interlocking'.",
+    ),
     tables={"walls": _bricks_table},
     pictures=lambda found: (_bricks_picture(found),),
 )

@@ -19,11 +19,10 @@ from drystone.statics.flow.nonassociative import NonassociativeResult, nonassoci
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult, LimitStatus
-from drystone_lab.pictures.groups import group_panels
-from drystone_lab.pictures.sheet import Panel, sheet_of
-from drystone_lab.pictures.wall_grid import wall_aspect
+from drystone_lab.pictures.charts import group_panels
+from drystone_lab.pictures.walls import Panel, sheet_of, wall_aspect
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.cells import METRICS, rounded
+from drystone_lab.reproduce.cells import METRICS, Finding, rounded
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.study import Built, Study, Trials, sheet
 from drystone_lab.runs.spec import RunSpec
@@ -70,24 +69,6 @@ def base_case(context: Context, study: Study) -> BaseCase:
     without = nonassociative_resistance(model)
     pairs = ((both.left, without.left), (both.right, without.right))
     return BaseCase(found, wall, model, pairs)
-
-
-def _found(case: BaseCase) -> Iterator[str]:
-    mu = case.model.mu
-    yield (
-        "A wall on flat ground slides as a whole when the load is mu times its weight, so alpha is "
-        f"at most mu = {mu:g} here. The paper's {ALPHAS['left']:g} and {ALPHAS['right']:g} are "
-        "over mu already, as its LLC is, which it says to be between 0 and 1 (Eq. 11), or belong "
-        "to a larger mu that it does not state; we compare them with alpha over mu."
-    )
-    for side, papers in ALPHAS.items():
-        if values := case.over_mu(side):
-            yield (
-                f"To the {side} the median of alpha / mu of {len(values)} walls is "
-                f"{median(values):.2f} ({min(values):.2f} to {max(values):.2f}), and "
-                f"{sum(value >= papers for value in values)} reach the paper's {papers:g}."
-            )
-    yield "The wall that is drawn is the first, not the best; tables have it by both flow rules."
 
 
 def _seeds(case: BaseCase) -> Table:
@@ -182,7 +163,13 @@ BASE_CASE = Item(
         "rule. How the wall was chosen from those of other seeds is not said.",
     ),
     study=partial(base_case, study=Study(walls=(PR,), quick_seeds=5)),
-    ours=lambda case: tuple(_found(case)),
+    notes=(
+        "A wall on flat ground slides as a whole when the load is mu times its weight, so alpha is "
+        f"at most mu. The paper's {ALPHAS['left']:g} and {ALPHAS['right']:g} are over mu already, "
+        "as its LLC is, which it says to be between 0 and 1 (Eq. 11), or belong to a larger mu "
+        "that it does not state; we compare them with alpha over mu.",
+        "The wall that is drawn is the first, not the best; tables have it by both flow rules.",
+    ),
     tables={"fig14_seeds": _seeds, "fig14": _summary, "fig15": _rules},
     pictures=lambda case: tuple(_pictures(case)),
     needs=(PR.source.name,),
@@ -199,16 +186,17 @@ ZOOM_ASPECT = 0.6
 Box = tuple[float, float, float, float]
 
 
-def _wedges_found(found: Built) -> Iterator[str]:
+def _wedges_claims(found: Built) -> Iterator[Finding]:
     for one in found:
         wall, figures = found.wall(one), one.outcomes[0].figures
         share = 100 * float(figures["wedge_area"] or 0.0) / (one.wall.width * one.wall.height)
         tallest = max((wedge.mask.shape[0] for wedge in wall.wedges), default=0)
-        yield (
-            f"Wall {one.wall.number} ({one.wall.name}), seed {found.seeds[0]}: {len(wall.wedges)} "
-            f"wedges under {len({w.under for w in wall.wedges})} of {figures['placed']} stones, "
-            f"{share:.2f} % of the wall's area; the tallest has "
-            f"{tallest / _mean_height_px(wall):.0%} of the mean height of a stone."
+        yield Finding(
+            f"Wall {one.wall.number} ({one.wall.name}) needs wedges.",
+            f"{len(wall.wedges)} under {len({w.under for w in wall.wedges})} of "
+            f"{figures['placed']} stones, {share:.2f} % of the wall's area; the tallest has "
+            f"{tallest / _mean_height_px(wall):.0%} of the mean height of a stone.",
+            bool(wall.wedges),
         )
 
 
@@ -308,7 +296,7 @@ WEDGES = Item(
         "in the picture only.",
     ),
     study=Study(walls=(IR, LIU_5), seeds=1, quick_seeds=1),
-    ours=lambda found: tuple(_wedges_found(found)),
+    claims=_wedges_claims,
     tables={"fig19": _wedges_table},
     pictures=lambda found: [_wedges_picture(one, found.wall(one)) for one in found],
     needs=(IR.source.name,),

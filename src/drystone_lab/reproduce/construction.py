@@ -1,19 +1,27 @@
-"""A wall of the paper's method step by step, with what the next stone could do at each."""
+"""A wall of the paper's method step by step, and where the next stone could rest."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+from drystone.indices.dice_score import geometrical_dice_score_at
+from drystone.indices.interlocking import interlocking_width_ratio, joints_below
+from drystone.indices.inward_slope import inward_slope, is_boundary, peak_columns
+from drystone.indices.local_filling import local_filling_ratio_at, swept_pixels
+from drystone.indices.neighbour_height import left_neighbour, neighbour_height_ratio
+from drystone.indices.shape_factor import shape_factor
 from drystone.kernels.lowering import Positions
-from drystone.model.landscape import Landscape
+from drystone.model.landscape import Box, Landscape, view_box
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Wall
 from drystone.placement.best import best_spots
 from drystone.placement.feasible import feasible_positions
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
+from drystone.stabilise.stabilise import falls_to
 from drystone.stabilise.support import Pose
 from drystone.verify.replay import Stage, replay_plan
+from drystone_lab.pictures.action import Action, Beside
 from drystone_lab.reproduce.item import Context
 from drystone_lab.runs.spec import RunSpec
 
@@ -107,3 +115,115 @@ def construction(context: Context, spec: RunSpec) -> Construction:
     replay = replay_plan(outcome.as_plan, stones)
     workshop = Workshop.prepare(stones, replay.site, replay.settings)
     return Construction(replay.stages, workshop, replay.settings)
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A stone where it would rest.
+
+    Parameters
+    ----------
+    posed : PosedStone
+        The stone.
+    row, col : int
+        Top-left corner of its mask.
+    values : mapping of str to float
+        SF, LFR, GDS, NHR, IWR and IS that have a meaning here: NHR beside a neighbour, IWR of an
+        inner stone over two joints, IS of a boundary stone.
+    """
+
+    posed: PosedStone
+    row: int
+    col: int
+    values: Mapping[str, float]
+
+    @property
+    def order(self) -> tuple[int, int, int]:
+        """Lower places first, then those further to the left, then the smaller id."""
+        return -(self.row + self.posed.height_px), self.col, self.posed.stone.id
+
+
+def resting_places(moment: Moment) -> tuple[Place, ...]:
+    """Return every feasible position of every stone that is left at which it rests by itself."""
+    occupied, settings = moment.wall.occupied, moment.settings.stabilise
+    found = []
+    for stone_id in moment.remaining:
+        for posed in moment.workshop.poses(stone_id):
+            factor = shape_factor(posed)
+            found += [
+                place_of(moment, posed, row, col, factor)
+                for row, col in moment.positions(posed).tolist()
+                if falls_to(occupied, (posed, row, col), settings) == 0
+            ]
+    return tuple(found)
+
+
+def place_of(moment: Moment, posed: PosedStone, row: int, col: int, factor: float) -> Place:
+    """Return a place with its indices."""
+    landscape, end_px = moment.landscape, moment.workshop.stock.narrowest_px
+    box = view_box(posed, row, col, landscape.height_px)
+    values = {
+        "SF": factor,
+        "LFR": local_filling_ratio_at(landscape, posed, row, col),
+        "GDS": geometrical_dice_score_at(landscape, posed, row),
+    }
+    neighbour = left_neighbour(landscape, box)
+    if neighbour is not None:
+        values["NHR"] = neighbour_height_ratio(box, neighbour, None)
+    if is_boundary(landscape, box, end_px):
+        values["IS"] = inward_slope(landscape, posed, col)
+    elif box.bottom > 0 and None not in joints_below(landscape, box, end_px):
+        values["IWR"] = interlocking_width_ratio(landscape, box, end_px)
+    return Place(posed, row, col, values)
+
+
+def extreme(places: Sequence[Place], name: str, *, best: bool) -> Place | None:
+    """Return the place where an index is best, or worst; None when it has a meaning nowhere.
+
+    Of equal ones the lowest, then that furthest to the left, then that of the smaller id.
+    """
+    meant = [place for place in places if name in place.values]
+    # NHR is best at 0, the others when they are large.
+    sign = 1.0 if (name == "NHR") == best else -1.0
+    return min(meant, key=lambda p: (sign * p.values[name], p.order), default=None)
+
+
+def amid_course(built: Construction) -> tuple[Moment, Place]:
+    """Return a stone of a run that has a left neighbour and two joints below, and when it came.
+
+    The first in the second half of the run, or else the stone that comes next halfway; where it
+    was placed.
+    """
+    halfway = built.halfway.number
+    steps = [(built.moment(n + 1), built.stages[n]) for n in range(halfway - 1, len(built.stages))]
+    found = []
+    for moment, stage in steps:
+        at = stage.group.placement
+        place = place_of(moment, at.posed, at.row, at.col, shape_factor(at.posed))
+        if {"NHR", "IWR"} <= place.values.keys():
+            return moment, place
+        found.append((moment, place))
+    return found[0]
+
+
+def action_at(moment: Moment, posed: PosedStone, row: int, col: int) -> Action:
+    """Return what the indices of a stone at a place measure, to be drawn."""
+    landscape, end_px = moment.landscape, moment.workshop.stock.narrowest_px
+    box = view_box(posed, row, col, landscape.height_px)
+    ids = [placement.stone_id for placement in moment.wall.placements]
+
+    def beside(found: Box | None) -> Beside | None:
+        return None if found is None else Beside(ids[landscape.boxes.index(found)], found)
+
+    below1, below2 = joints_below(landscape, box, end_px)
+    return Action(
+        labels=moment.wall.labels,
+        posed=posed,
+        row=row,
+        col=col,
+        swept=swept_pixels(landscape, posed, row, col),
+        built_height=landscape.built_height_px,
+        neighbour=beside(left_neighbour(landscape, box)),
+        below=(beside(below1), beside(below2)),
+        peaks=peak_columns(posed),
+    )

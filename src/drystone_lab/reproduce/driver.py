@@ -8,35 +8,24 @@ from pathlib import Path
 from typing import Any, Literal
 
 from drystone.errors import DrystoneError, InputError
-from drystone_lab.reproduce.folder import ReportFolder
+from drystone_lab.reproduce.folder import (
+    Clock,
+    ReportFolder,
+    Request,
+    made_with,
+    request_of,
+    utc_now,
+)
 from drystone_lab.reproduce.item import Context, Item, Output
 from drystone_lab.reproduce.items import ITEMS, item_named
-from drystone_lab.reproduce.request import Clock, Request, made_with, request_of, utc_now
-from drystone_lab.runs.failures import absent_data
-from drystone_lab.runs.runner import Runner, Work, one_by_one
-from drystone_lab.runs.source import published
-from drystone_lab.runs.store import RunStore
+from drystone_lab.runs.outcome import RunStore
+from drystone_lab.runs.runner import Runner, Work, absent_data, one_by_one
+from drystone_lab.runs.spec import published
 
 Status = Literal["made", "kept", "missing data", "failed"]
 
 EVERY_S = 2.0
 """Walls are told of no oftener than that."""
-
-
-class PaperItems(Mapping[str, Item]):
-    """The items of the paper by name, in its order; each is loaded when it is asked for."""
-
-    def __getitem__(self, name: str) -> Item:
-        """Return an item."""
-        return item_named(name)
-
-    def __iter__(self) -> Iterator[str]:
-        """Iterate over the names."""
-        return iter(ITEMS)
-
-    def __len__(self) -> int:
-        """Return how many there are."""
-        return len(ITEMS)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,7 +109,7 @@ def reproduce(
     InputError
         E100: there is no such image.
     """
-    items = PaperItems() if items is None else items
+    items = {name: item_named(name) for name in ITEMS} if items is None else items
     request = request_of(
         quick=options.quick, seed=options.seed, image=options.image, data=options.data
     )

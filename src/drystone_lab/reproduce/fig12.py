@@ -6,19 +6,97 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from drystone.contacts.blocks import model_from_labels
+from drystone.drawing.canvas import draw_block, draw_ground, draw_legend, fit_axes
+from drystone.drawing.drawing import Lines
+from drystone.drawing.outlines import label_regions
+from drystone.drawing.palette import GREY, PALE
+from drystone.drawing.pictures.contacts import JOINT, NORMAL, plot_contacts
 from drystone.drawing.pictures.stones import plot_labels
 from drystone.kernels.boundary import EMPTY, boundary_of
 from drystone.model.wall import Labels, Wall
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
-from drystone_lab.pictures.interfaces import plot_blocks, plot_boundary_edges
+from drystone_lab.reproduce.cells import Finding
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
+
+CENTRE = "#0072b2"
+NORMAL_PX = 2.5
+"""Length of the normal of a pixel edge."""
+
+
+def plot_boundary_edges(
+    labels: Labels,
+    starts: NDArray[np.floating],
+    ends: NDArray[np.floating],
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw the pixel edges on which blocks touch, each with its normal.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        Row 0 at the top; the wall stands on the last row.
+    starts, ends : (n, 2) float arrays
+        Ends (x, y) of each edge, px, y up from the ground; the normal is to the left of the way
+        from start to end.
+    ax : Axes, optional
+        Where to draw; None makes a figure.
+    """
+    height, width = labels.shape
+    depth = 0.06 * max(height, 0.2 * width)
+    ax = fit_axes(ax, (-2.0, -depth, width + 2.0, height + 2.0))
+    ax.set_axis_off()
+    draw_ground(ax, -2.0, width + 2.0, depth)
+    for region in label_regions(labels):
+        draw_block(ax, region.loops, f"block-{region.id}", fill=PALE, edgecolor=GREY, linewidth=0.4)
+    way = ends - starts
+    normals = np.column_stack([-way[:, 1], way[:, 0]])
+    middles = (starts + ends) / 2.0
+    edges = np.stack([starts, ends], axis=1)
+    arrows = np.stack([middles, middles + NORMAL_PX * normals], axis=1)
+    for lines, colour, thick, gid in (
+        (edges, JOINT, 1.6, "edges"),
+        (arrows, NORMAL, 0.6, "normals"),
+    ):
+        drawn = LineCollection(list(lines), colors=colour, linewidths=thick, gid=gid, zorder=4)
+        ax.add_collection(drawn, autolim=False)
+    legend = {
+        "pixel edge between blocks": Lines("", [], JOINT, 1.6),
+        "its normal": Lines("", [], NORMAL, 0.8),
+    }
+    draw_legend(ax, legend)
+    return ax
+
+
+def plot_blocks(labels: Labels, model: RigidBlockModel, ax: Axes | None = None) -> Axes:
+    """Draw rigid blocks: interfaces, their ends and normals, and the centres of mass.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        Row 0 at the top.
+    model : RigidBlockModel
+        Of this image.
+    ax : Axes, optional
+        Where to draw; None makes a figure.
+    """
+    ax = plot_contacts(labels, model, ax)
+    for block in model.blocks:
+        ax.plot(*block.centroid, "^", color=CENTRE, markersize=7, gid=f"centre-{block.id}",
+                zorder=5)  # fmt: skip
+    return ax
+
+
+WAYS = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
+"""(x, y) of the headings of :func:`drystone.kernels.boundary.touching_edges`."""
 
 MARGIN_PX = 2
 TILTED_DEG = 1.0
@@ -105,25 +183,6 @@ def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.floa
     return np.delete(points, last, axis=0), np.delete(points, boundary.begins[:-1], axis=0)
 
 
-def _found(found: Blocks) -> Iterator[str]:
-    model = found.model
-    long = sum(len(interface.points) == 2 for interface in model.interfaces)
-    yield (
-        f"Stones {', '.join(str(block.id) for block in model.blocks)} touch each other and the "
-        f"ground on {len(found.edges[0])} pixel edges, which make {long} straight interfaces and "
-        f"{len(model.interfaces) - long} contacts at a point, {model.contact_count} contact points "
-        "in all, at the corners of pixels."
-    )
-    angles = sorted(_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2)
-    yield (
-        "The planner takes the normal of the line fitted to a run. The paper takes the mean of the "
-        "normals of its pixels, which depends on the two ends of the run alone. In the finished "
-        f"wall the two differ by more than {TILTED_DEG:g} degree in "
-        f"{sum(angle > TILTED_DEG for angle in angles)} of {len(angles)} interfaces, by "
-        f"{angles[-1]:.1f} degrees at most."
-    )
-
-
 def _mean_normal(interface: Interface) -> NDArray[np.float64]:
     """Return the mean of the normals of the pixel edges of a run.
 
@@ -151,9 +210,9 @@ def _blocks(model: RigidBlockModel) -> Table:
     )
 
 
-def _interfaces(model: RigidBlockModel) -> Table:
+def _interfaces(found: Blocks) -> Table:
     rows: list[tuple[Cell, ...]] = []
-    for interface in model.interfaces:
+    for interface in found.model.interfaces:
         long = len(interface.points) == 2
         ends = [*interface.points[0].tolist(), *interface.points[-1].tolist()]
         rows.append(
@@ -164,7 +223,8 @@ def _interfaces(model: RigidBlockModel) -> Table:
             )
         )  # fmt: skip
     return Table(
-        "Interfaces; the normal points from the second into the first",
+        f"Interfaces of {len(found.edges[0])} pixel edges; the normal points from the second "
+        "into the first",
         ("stone", "other", "x0", "y0", "x1", "y1", "length px", "normal x", "normal y",
          "from the mean of the edges' normals deg"),
         tuple(rows),
@@ -188,6 +248,17 @@ def _picture(found: Blocks) -> Picture:
     )  # fmt: skip
 
 
+def _claims(found: Blocks) -> Iterator[Finding]:
+    angles = sorted(_apart_deg(i) for i in found.whole.interfaces if len(i.points) == 2)
+    yield Finding(
+        "The normal of an interface is the mean of the normals of its pixels.",
+        "the planner takes that of the fitted line, which differs by more than "
+        f"{TILTED_DEG:g} degree in {sum(angle > TILTED_DEG for angle in angles)} of {len(angles)} "
+        f"interfaces of the finished wall, by {angles[-1]:.1f} degrees at most.",
+        None,
+    )
+
+
 PIC_TO_RI = Item(
     title="Pic-to-Ri: from pixels to rigid blocks",
     section="§4.2",
@@ -199,10 +270,13 @@ PIC_TO_RI = Item(
         "normal vectors in a given interface' (§4.2). There are no numbers.",
     ),
     study=blocks,
-    ours=lambda found: tuple(_found(found)),
+    notes=(
+        "The mean of the normals of a run depends on its two ends alone; the planner fits a line.",
+    ),
+    claims=_claims,
     tables={
         "blocks": lambda found: _blocks(found.model),
-        "interfaces": lambda found: _interfaces(found.model),
+        "interfaces": _interfaces,
     },
     pictures=lambda found: (_picture(found),),
     needs=(PR.source.name,),

@@ -4,18 +4,119 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.cluster.hierarchy import ward
 
 from drystone.clusters import ClusterSettings, cluster_stones, stone_features
+from drystone.drawing.palette import OUTLINE_COLOUR, WEDGE_COLOUR, cluster_colour
 from drystone.drawing.pictures.stones import plot_stones
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
-from drystone_lab.pictures.features import COUNTS_IN, plot_counts, plot_features
+from drystone_lab.pictures.charts import name_axes
+from drystone_lab.reproduce.cells import Finding
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import MASONS, PR, Target
+
+SQUARE_IN = (4.6, 4.0)
+COUNTS_IN = (5.6, 3.6)
+MARKERS = ("o", "s", "D", "^", "v", "P", "X", "p")
+"""By cluster, then round again: colour alone need not tell them apart."""
+
+MARKER_PT = 6.0
+LABEL_PT = 8.0
+"""Size of a point, and how far from it its id is written."""
+
+COUNT_LOOKS = (("#0072b2", "o"), (WEDGE_COLOUR, "s"), ("#008655", "^"))
+"""Colour and marker of a set."""
+
+
+def plot_features(
+    features: NDArray[np.floating],
+    stone_ids: Sequence[int],
+    clusters: Mapping[int, int],
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw stones by eccentricity and size, coloured by cluster and numbered by id.
+
+    Parameters
+    ----------
+    features : (n, 2) float array
+        From :func:`drystone.clusters.stone_features`.
+    stone_ids : sequence of int
+        Their ids.
+    clusters : mapping of int to int
+        Cluster of each id, from 1.
+    ax : Axes, optional
+        Where to draw; None makes a figure.
+    """
+    ax = Figure(figsize=SQUARE_IN, layout="constrained").add_subplot() if ax is None else ax
+    for stone_id, (across, up) in zip(stone_ids, features.tolist(), strict=True):
+        cluster = clusters[stone_id]
+        fill = cluster_colour(cluster)
+        ax.plot(
+            [across], [up], MARKERS[(cluster - 1) % len(MARKERS)], color=fill,
+            markersize=MARKER_PT, markeredgecolor=OUTLINE_COLOUR, markeredgewidth=0.5,
+            gid=f"stone-{stone_id}",
+        )  # fmt: skip
+    name_axes(ax, "eccentricity", "area of the bounding box / largest")
+    ax.margins(0.08)
+    _write_ids(ax, features, stone_ids)
+    return ax
+
+
+def _write_ids(ax: Axes, features: NDArray[np.floating], stone_ids: Sequence[int]) -> None:
+    """Write an id beside each point, where it is farthest from the other points and ids."""
+    points = ax.transData.transform(features)
+    turns = np.arange(8) * np.pi / 4
+    ways = LABEL_PT * np.column_stack([1.2 * np.cos(turns), np.sin(turns)])
+    taken = points
+    for number, stone_id in enumerate(stone_ids):
+        places = points[number] + ways * ax.figure.dpi / 72
+        others = np.delete(taken, number, axis=0)
+        room = np.hypot(*(places[:, None] - others).T).min(axis=0, initial=np.inf)
+        best = int(np.argmax(room))
+        taken = np.vstack([taken, places[best]])
+        ax.annotate(
+            str(stone_id), features[number].tolist(), ways[best].tolist(), size=6,
+            textcoords="offset points", ha="center", va="center_baseline",
+        )  # fmt: skip
+
+
+def plot_counts(
+    counts: Mapping[str, Sequence[tuple[float, int]]],
+    ax: Axes | None = None,
+    *,
+    claim: tuple[float, int, str] | None = None,
+) -> Axes:
+    """Draw how many clusters there are over the distance threshold.
+
+    Parameters
+    ----------
+    counts : mapping of str to sequence of (float, int)
+        By name of the stones: threshold and clusters, thresholds ascending.
+    ax : Axes, optional
+        Where to draw; None makes a figure.
+    claim : (float, int, str), optional
+        Threshold, clusters, and who found them.
+    """
+    ax = Figure(figsize=COUNTS_IN, layout="constrained").add_subplot() if ax is None else ax
+    for rank, (name, points) in enumerate(counts.items()):
+        colour, marker = COUNT_LOOKS[rank % len(COUNT_LOOKS)]
+        ax.plot(*zip(*points, strict=True), marker, color=colour, linestyle="-", markersize=4,
+                linewidth=1.2, label=name, gid=f"counts-{name}")  # fmt: skip
+    if claim is not None:
+        distance, number, who = claim
+        ax.plot([distance], [number], "x", color=OUTLINE_COLOUR, markersize=9,
+                markeredgewidth=1.6, label=who, gid="claim", zorder=5)  # fmt: skip
+    name_axes(ax, "distance threshold of Ward's linkage", "clusters")
+    ax.set_ylim(bottom=0)
+    ax.grid(visible=True, axis="y", linewidth=0.3)
+    ax.legend(fontsize=7, frameon=False)
+    return ax
+
 
 DISTANCE = ClusterSettings().distance
 DISTANCES = (0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4)
@@ -68,22 +169,6 @@ def grouped(
     """Group the stones of a wall, which are drawn, and of others whose stones are there."""
     sets = {one.name: one.stones(context.data) for one in (wall, *others)}
     return [Grouped.of(name, stones) for name, stones in sets.items() if stones is not None]
-
-
-def _found(counted: Sequence[Grouped]) -> Iterator[str]:
-    drawn = counted[0]
-    low, high = drawn.between(PAPER_CLUSTERS)
-    yield (
-        f"The {len(drawn.stones)} stones {drawn.name} fall into {drawn.number} clusters at a "
-        f"distance of {DISTANCE:g}; the paper has {PAPER_CLUSTERS}. There are so many for every "
-        f"threshold from {low:.3f} to {high:.3f}."
-    )
-    sets = "; ".join(f"{one.name}: {one.number} of {len(one.stones)} stones" for one in counted)
-    yield (
-        f"Clusters at {DISTANCE:g} by set: {sets}. Size is relative to the largest of a set, so "
-        "the number depends on how far its sizes spread, and one very large stone makes fewer "
-        "clusters of the others."
-    )
 
 
 def _clusters(drawn: Grouped) -> Table:
@@ -153,6 +238,16 @@ def _counts_picture(counted: Sequence[Grouped]) -> Picture:
     )  # fmt: skip
 
 
+def _claims(counted: Sequence[Grouped]) -> Iterator[Finding]:
+    drawn = counted[0]
+    low, high = drawn.between(PAPER_CLUSTERS)
+    yield Finding(
+        f"The stones PR fall into {PAPER_CLUSTERS} clusters at a distance of {DISTANCE:g}.",
+        f"{drawn.number}; {PAPER_CLUSTERS} for every threshold from {low:.3f} to {high:.3f}.",
+        drawn.number == PAPER_CLUSTERS,
+    )
+
+
 CLUSTERS = Item(
     title="clusters of the stones PR",
     section="§3.4",
@@ -164,7 +259,11 @@ CLUSTERS = Item(
         "in the set. The members of the clusters are only in the picture.",
     ),
     study=grouped,
-    ours=lambda sets: tuple(_found(sets)),
+    notes=(
+        "Size is relative to the largest of a set, so the number depends on how far its sizes "
+        "spread, and one very large stone makes fewer clusters of the others.",
+    ),
+    claims=_claims,
     tables={
         "clusters": lambda sets: _clusters(sets[0]),
         "stones": lambda sets: _stones(sets[0]),

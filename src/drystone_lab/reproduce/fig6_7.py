@@ -1,25 +1,105 @@
 """Fig. 6 and Fig. 7: what the indices measure, on real stones (§3.5)."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
+import numpy as np
 from matplotlib.figure import Figure
 
-from drystone_lab.pictures.action import Mark, plot_action
-from drystone_lab.reproduce.construction import Moment, construction
-from drystone_lab.reproduce.item import Context, Item, Picture
-from drystone_lab.reproduce.places import (
+from drystone.kernels.raster import Mask
+from drystone.model.wall import Labels
+from drystone_lab.pictures.action import Action, Mark, plot_action
+from drystone_lab.reproduce.construction import (
+    Moment,
     Place,
     action_at,
     amid_course,
+    construction,
     extreme,
     resting_places,
 )
-from drystone_lab.reproduce.recounted import recounted
+from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import PR, Target
+
+
+def recounted(action: Action, name: str) -> float | None:
+    """Return an index counted in the label image; None where the picture does not show it.
+
+    Parameters
+    ----------
+    action : Action
+        The stone where it is, and what its indices measure.
+    name : {"SF", "LFR", "GDS", "NHR", "IWR", "IS"}
+        Which.  SF is that of the working pixels here; the planner's is that of the source image.
+    """
+    counts = {"SF": _shape, "LFR": _filling, "GDS": _dice, "NHR": _height, "IWR": _joints,
+              "IS": _slope}  # fmt: skip
+    return counts[name](action)
+
+
+def _shape(action: Action) -> float:
+    return float(action.posed.mask.mean())
+
+
+def _filling(action: Action) -> float:
+    swept = action.labels[action.swept] > 0
+    return float(swept.mean()) if swept.size else 1.0
+
+
+def _dice(action: Action) -> float:
+    built = np.zeros(action.labels.shape, bool)
+    filled = np.flatnonzero((action.labels > 0).any(axis=1))
+    built[filled[0] if filled.size else len(built) :] = True
+    stone = action.stone_pixels
+    area = np.count_nonzero(stone)
+    inside = np.count_nonzero(stone & built)
+    return float(np.count_nonzero(built) / area * inside / np.count_nonzero(stone | built))
+
+
+def _height(action: Action) -> float | None:
+    if action.neighbour is None:
+        return None
+    top, other = _rows(action.stone_pixels), _rows(_pixels(action.labels, action.neighbour.id))
+    return abs(top[0] - other[0]) / (top[1] - top[0])
+
+
+def _joints(action: Action) -> float | None:
+    below1, below2 = action.below
+    if below1 is None or below2 is None:
+        return None
+    left, right = _cols(action.stone_pixels)
+    start1, end1 = _cols(_pixels(action.labels, below1.id))
+    start2, end2 = _cols(_pixels(action.labels, below2.id))
+    terms = (abs(left - end1) / (end1 - start1), abs(right - start2) / (end2 - start2))
+    return sum(min(1.0, term) for term in terms) / 2
+
+
+def _slope(action: Action) -> float | None:
+    if action.peaks is None or action.peaks[0] == action.peaks[1]:
+        return None
+    left, right = (action.col + column for column in action.peaks)
+    stone = action.stone_pixels
+    fall = int(np.argmax(stone[:, right])) - int(np.argmax(stone[:, left]))
+    side = np.sign(action.col + action.posed.anchor[0] - action.labels.shape[1] / 2)
+    return float(np.clip(fall / (left - right) * side, -1.0, 1.0))
+
+
+def _pixels(labels: Labels, block: int) -> Mask:
+    return np.asarray(labels == block)
+
+
+def _rows(pixels: Mask) -> tuple[int, int]:
+    """Return the first row of some pixels and the row after the last."""
+    rows = np.flatnonzero(pixels.any(axis=1))
+    return int(rows[0]), int(rows[-1]) + 1
+
+
+def _cols(pixels: Mask) -> tuple[int, int]:
+    return _rows(pixels.T)
+
 
 MARKS: Mapping[str, Mark] = MappingProxyType(
     {
@@ -64,23 +144,6 @@ def places(context: Context, wall: Target = PR) -> Places:
     return Places(wall, moment, place, resting_places(moment), (spec,))
 
 
-def _found(found: Places) -> Iterator[str]:
-    moment, place = found.moment, found.place
-    yield (
-        f"With {len(moment.wall.placements)} stones placed, {len(moment.remaining)} are left, and "
-        f"there are {len(found.all)} feasible positions at which one of them rests by itself. NHR "
-        "is taken where there is a left neighbour, IWR of inner stones over two joints, IS of "
-        "boundary stones. The column of values counted again is worked out from the pixels of the "
-        "picture alone; SF differs there because the planner takes the area and the box from the "
-        "source image."
-    )
-    values = ", ".join(f"{name} = {value:.3f}" for name, value in place.values.items())
-    yield (
-        f"Fig. 7 shows stone {place.posed.stone.id}, number {moment.number} of the run, where it "
-        f"ended: {values}."
-    )
-
-
 def _row(moment: Moment, place: Place, name: str) -> tuple[Cell, ...]:
     action = action_at(moment, place.posed, place.row, place.col)
     again, box = recounted(action, name), action.box
@@ -119,7 +182,7 @@ def _ranges(places: Sequence[Place]) -> Table:
 
 def _one(moment: Moment, place: Place) -> Table:
     return Table(
-        "Indices of the stone of Fig. 7",
+        f"Indices of the stone of Fig. 7, number {moment.number} of the run",
         ("index", "stone", "left px", "bottom px", "value", "counted again"),
         tuple((name, *_row(moment, place, name)) for name in place.values),
     )
@@ -174,7 +237,12 @@ INDICES = Item(
         "below.",
     ),
     study=places,
-    ours=lambda found: tuple(_found(found)),
+    notes=(
+        "NHR is taken where there is a left neighbour, IWR of inner stones over two joints, IS of "
+        "boundary stones. The column of values counted again is worked out from the pixels of the "
+        "picture alone; SF differs there because the planner takes the area and the box from the "
+        "source image.",
+    ),
     tables={
         "extremes": lambda found: _extremes(found.moment, found.cases),
         "ranges": lambda found: _ranges(found.all),

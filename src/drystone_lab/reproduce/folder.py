@@ -1,18 +1,216 @@
-"""A folder of items that were made, and what it says of them."""
+"""A folder of items that were made: their files, and what was asked for."""
 
+import csv
+import io
 import json
-from collections.abc import Iterable, Mapping
+import math
+import os
+import platform
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from hashlib import sha256
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from drystone.errors import DrystoneError, UsageError
+from PIL import PngImagePlugin
+
+from drystone.drawing.files import save
+from drystone.errors import DrystoneError, InputError, UsageError
 from drystone.io.folder_lock import has_files
+from drystone.io.published_sets import SETS
+from drystone.kernels.backend import describe
 from drystone.whole_files import write_whole
-from drystone_lab.reproduce.files import files_of, write_picture, write_tables
-from drystone_lab.reproduce.item import Item, Output
+from drystone_lab.reproduce.item import Item, Output, Picture
 from drystone_lab.reproduce.page import PAGE, Miss, write_item_page, write_page
-from drystone_lab.reproduce.request import Request
-from drystone_lab.runs.store import RunStore
+from drystone_lab.runs.outcome import RunStore
+from drystone_lab.table import Cell, Table
+
+PACKAGES = (
+    "numpy", "scipy", "scikit-image", "shapely", "highspy", "clarabel", "pillow", "matplotlib",
+)  # fmt: skip
+"""That results depend on, beside drystone itself."""
+
+Clock = Callable[[], datetime]
+
+
+def utc_now() -> datetime:
+    """Return the time of day."""
+    return datetime.now(UTC)
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the contents of an item depend on, beside its name.
+
+    Parameters
+    ----------
+    version : str
+        Of drystone.
+    quick : bool
+        The smaller version.
+    seed : int
+        Of all random choices, or the first of several.
+    image_sha256 : str or None
+        Of a user's own stones.
+    published : tuple of str
+        Published files that are there; some items leave out rows whose stones are not.
+    """
+
+    version: str
+    quick: bool
+    seed: int
+    image_sha256: str | None
+    published: tuple[str, ...]
+
+    def is_met_by(self, record: Mapping[str, Any]) -> bool:
+        """Return whether an item that was made before is what is asked for now.
+
+        Examples
+        --------
+        >>> full = Request("1", False, 1, None, ("almeida/R.png",))
+        >>> less = Request("1", False, 1, None, ())
+        >>> less.is_met_by(full.as_dict()), full.is_met_by(less.as_dict())
+        (True, False)
+        """
+        same = all(
+            record[name] == getattr(self, name)
+            for name in ("version", "quick", "seed", "image_sha256")
+        )
+        return same and {*self.published} <= {*record["published"]}
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what JSON writes."""
+        return {
+            "version": self.version, "quick": self.quick, "seed": self.seed,
+            "image_sha256": self.image_sha256, "published": list(self.published),
+        }  # fmt: skip
+
+
+def request_of(*, quick: bool, seed: int, image: Path | None, data: Path | None) -> Request:
+    """Return what is asked for.
+
+    Raises
+    ------
+    InputError
+        E100: there is no such image.
+    """
+    files = [file.name for each in SETS.values() for file in each.files]
+    there = tuple(name for name in files if data is not None and (data / name).is_file())
+    digest = None if image is None else _sha256(image)
+    return Request(version("drystone"), quick, seed, digest, there)
+
+
+def made_with(now: Clock) -> dict[str, Any]:
+    """Return when, and on what kind of machine with what packages, something is made."""
+    return {
+        "date": now().strftime("%Y-%m-%d %H:%M UTC"),
+        "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
+        "python": platform.python_version(),
+        "kernels": describe(),
+        "packages": {name: version(name) for name in PACKAGES},
+    }
+
+
+def _sha256(image: Path) -> str:
+    """Return the hash of a file, or of the names and contents of all files of a folder."""
+    if not image.exists():
+        raise InputError(
+            "E100", "the picture does not exist.", where=str(image), cure="Check the path."
+        )
+    if image.is_file():
+        return sha256(image.read_bytes()).hexdigest()
+    whole = sha256()
+    for path in sorted(path for path in image.iterdir() if path.is_file()):
+        whole.update(f"{path.name}\0".encode() + sha256(path.read_bytes()).digest())
+    return whole.hexdigest()
+
+
+TIMES = "_times"
+
+
+def write_tables(folder: Path, output: Output) -> dict[str, list[dict[str, Any]]]:
+    """Write the tables of an item; those of times under names that end with ``_times.csv``.
+
+    Returns
+    -------
+    dict
+        ``"tables"`` and ``"times"``, as JSON writes them, each with its ``"file"``.
+
+    Raises
+    ------
+    ValueError
+        Two tables have one name, or a number is not finite: both are faults of the item.
+    """
+    tables = [(name, table) for name, table in output.tables]
+    times = [(name.removesuffix(TIMES) + TIMES, table) for name, table in output.times]
+    names = [name for name, _ in (*tables, *times)]
+    if len({*names}) < len(names) or any(name.endswith(TIMES) for name, _ in tables):
+        raise ValueError(f"names of tables are not unique: {', '.join(names)}")
+    return {
+        "tables": [_write_table(folder, name, table) for name, table in tables],
+        "times": [_write_table(folder, name, table) for name, table in times],
+    }
+
+
+def write_picture(folder: Path, picture: Picture) -> dict[str, Any]:
+    """Write a picture as PNG and SVG; return its names, size in px and caption for JSON."""
+    png, svg = f"{picture.name}.png", f"{picture.name}.svg"
+    for name in (png, svg):
+        save(picture.figure, folder / name)
+    with PngImagePlugin.PngImageFile(folder / png) as image:
+        width, height = image.size
+    return {
+        "name": picture.name, "png": png, "svg": svg, "width_px": width, "height_px": height,
+        "caption": picture.caption,
+    }  # fmt: skip
+
+
+def files_of(record: dict[str, Any]) -> Iterator[str]:
+    """Yield the names of the files of an item, without its JSON and page."""
+    for table in (*record["tables"], *record["times"]):
+        yield table["file"]
+    for picture in record["pictures"]:
+        yield picture["png"]
+        yield picture["svg"]
+
+
+def csv_text(table: Table) -> str:
+    r"""Return a table as CSV: numbers that read back as they were, nothing for None.
+
+    Examples
+    --------
+    >>> csv_text(Table("Blocks", ("name", "alpha"), (("tall", 0.1 + 0.2), ("flat", None))))
+    'name,alpha\ntall,0.30000000000000004\nflat,\n'
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(table.columns)
+    writer.writerows([_written(cell) for cell in row] for row in table.rows)
+    return text.getvalue()
+
+
+def _write_table(folder: Path, name: str, table: Table) -> dict[str, Any]:
+    for row in table.rows:
+        if any(isinstance(cell, float) and not math.isfinite(cell) for cell in row):
+            raise ValueError(f"{name}: a number of {row} is not finite; None says there is none")
+    file = f"{name}.csv"
+    write_whole(folder / file, csv_text(table).encode())
+    return {
+        "name": name, "file": file, "title": table.title, "columns": list(table.columns),
+        "rows": [list(row) for row in table.rows], "notes": list(table.notes),
+    }  # fmt: skip
+
+
+def _written(cell: Cell) -> str:
+    if cell is None:
+        return ""
+    if isinstance(cell, bool):
+        return "yes" if cell else "no"
+    # Floats of NumPy are floats, but write their type.
+    return repr(float(cell)) if isinstance(cell, float) else str(cell)
+
 
 MARK = "reproduce.json"
 MARK_SCHEMA = "drystone-reproduce/1"

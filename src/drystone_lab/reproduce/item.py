@@ -1,6 +1,6 @@
 """A table or figure of the paper that can be made again."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -8,6 +8,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from drystone.model.wall import Wall
+from drystone_lab.reproduce.cells import Finding, findings_table, sentences
 from drystone_lab.runs.outcome import Outcome
 from drystone_lab.runs.runner import Runner
 from drystone_lab.runs.spec import RunSpec
@@ -115,8 +116,10 @@ class Item:
     study : callable
         Does what the item is about: builds walls (:class:`~drystone_lab.reproduce.study.Study`)
         or times them.  All others take what it returns; its `runs` are those of the item.
-    ours : callable
-        Says what was found, in sentences whose numbers are computed, and why it differs.
+    notes : tuple of str
+        What a reader of the results must know; a paragraph each.
+    claims : callable
+        Compares what was found with claims of the paper; they are a table too.
     tables, times : mapping of str to callable
         By the name of the CSV file; times differ from machine to machine.
     pictures : callable
@@ -129,7 +132,8 @@ class Item:
     section: str
     paper: tuple[str, ...]
     study: Callable[[Context], Any]
-    ours: Callable[[Any], Sequence[str]]
+    notes: tuple[str, ...] = ()
+    claims: Callable[[Any], Iterable[Finding]] = lambda _: ()
     tables: Mapping[str, Callable[[Any], Table]] = field(default_factory=dict)
     times: Mapping[str, Callable[[Any], Table]] = field(default_factory=dict)
     pictures: Callable[[Any], Sequence[Picture]] = lambda _: ()
@@ -138,10 +142,14 @@ class Item:
     def make(self, context: Context) -> Output:
         """Do the study, and read everything off it."""
         found = self.study(context)
+        claims = tuple(self.claims(found))
+        tables = [(name, table(found)) for name, table in self.tables.items()]
+        if claims:
+            tables.append(("claims", findings_table("The paper's claims", claims)))
         return Output(
             paper=self.paper,
-            ours=tuple(self.ours(found)),
-            tables=tuple((name, table(found)) for name, table in self.tables.items()),
+            ours=(*self.notes, *(sentences(claims) if claims else ())),
+            tables=tuple(tables),
             times=tuple((name, table(found)) for name, table in self.times.items()),
             pictures=tuple(self.pictures(found)),
             runs=tuple(getattr(found, "runs", ())),

@@ -8,19 +8,23 @@ from statistics import median
 from matplotlib.figure import Figure
 from scipy.stats import binomtest
 
-from drystone_lab.pictures.groups import TWO_IN, group_panels, plot_two_figures
-from drystone_lab.pictures.noise import NoiseNames, NoisePanel, noise_panels
-from drystone_lab.pictures.wall_grid import plot_walls
+from drystone_lab.pictures.charts import (
+    TWO_IN,
+    NoiseNames,
+    NoisePanel,
+    group_panels,
+    noise_panels,
+    plot_two_figures,
+)
+from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import (
     LEVEL,
     METRICS,
     Finding,
     Trend,
     figures_of,
-    findings_table,
     metric_cells,
     rounded,
-    sentences,
     trend,
 )
 from drystone_lab.reproduce.item import Context, Item, Picture
@@ -403,18 +407,15 @@ NOISE = Item(
             quick_walls=tuple(noise_set(noise, 0.15) for noise in NOISES),
         ),
     ),
-    ours=lambda levels: (
+    notes=(
         f"The stones of {', '.join(map(str, PUBLISHED))} % are the published ones and the wall has "
         "the size of their image, as these stones are those of a finished wall. The other levels "
         "are not public: their stones are our own noisy polygons, marked as generated everywhere, "
         "and their wall is as large as the published walls are for their stones.",
-        *sentences(noise_findings(levels)),
     ),
+    claims=noise_findings,
     tables={
         "levels": lambda levels: _levels_table(levels.built),
-        "claims": lambda levels: findings_table(
-            "The paper's claims about noise", noise_findings(levels)
-        ),
         "trends": _trends_table,
         "reference": _reference_table,
         "walls": lambda levels: _walls_table(levels.built),
@@ -516,20 +517,17 @@ TURNED = Item(
         # A few generated stones: 36 orientations of each are still a thousand candidates.
         quick_walls=(generated_set(70, 10, 0.1),),
     ),
-    ours=lambda found: (
+    notes=(
         "Which sets the paper draws is not in its text. With few orientations a stone has that of "
         "its largest shape factor; the paper's 'minimized' is read as a slip, as Eq. 12d has "
         "argmax. Pairs of one set share its stones, so that the test below is lenient with a gain.",
-        *sentences(turned_findings(found)),
     ),
+    claims=turned_findings,
     tables={
         "sets": ways_table(
             "Medians and ranges with few and with many orientations, from two sides",
             ("set", "orientations"),
             lambda one: (one.wall.name, one.way),
-        ),
-        "claims": lambda found: findings_table(
-            "The paper's claims about orientations", turned_findings(found)
         ),
         "walls": walls_table(
             "Walls with few and with many orientations",

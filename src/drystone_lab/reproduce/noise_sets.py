@@ -11,7 +11,7 @@ from drystone.metrics.measure import measure_labels
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone.statics.limit import lateral_resistance
-from drystone_lab.runs.source import generated, published
+from drystone_lab.runs.spec import generated, published
 from drystone_lab.walls import Target
 
 NOISES = tuple(range(10, 90, 10))

@@ -2,30 +2,27 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from statistics import median
 
 from matplotlib.figure import Figure
 from scipy.stats import mannwhitneyu
 
 from drystone.generate.fourier import FourierSettings, fourier_descriptors
-from drystone_lab.pictures.groups import TWO_IN, plot_two_figures
-from drystone_lab.pictures.wall_grid import plot_walls
+from drystone_lab.pictures.charts import TWO_IN, plot_two_figures
+from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import (
     COLUMNS,
     LEVEL,
     METRICS,
     Finding,
     figures_of,
-    findings_table,
     metric_cells,
-    sentences,
     summary,
 )
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.study import Built, Trials
-from drystone_lab.runs.source import generated
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.spec import RunSpec, generated
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import TWO_SIDED, Target
 
@@ -169,21 +166,6 @@ def _compared(claim: str, name: str, fixed: Sequence[float], varied: Sequence[fl
     return Finding(claim, f"{words} (rank-sum test, one-sided: p {p:.2g}).", p < LEVEL)
 
 
-def _found(found: Rounded) -> Iterator[str]:
-    first, second = AREA_RATIOS
-    yield (
-        f"The paper does not say how many stones a set has; here their area is {first:g} times "
-        f"that of the wall. We took it for the main version after we had seen the walls of "
-        f"both {first:g} and {second:g} times, so agreement with the paper is in part our choice; "
-        "the full version tells both. Every wall has stones of its own, so that what differs is "
-        "their kind and not the luck of one set; the paper may have used one set of each, and its "
-        "20 walls may be of all kinds together."
-    )
-    for ratio, built in found.by_ratio.items():
-        yield f"With {ratio:g} times the area of the wall:"
-        yield from sentences(rounded_findings(found.kinds, built))
-
-
 def _kinds_table(found: Rounded) -> Table:
     rows = tuple(
         (ratio, one.way, *summary(one.outcomes))
@@ -234,6 +216,12 @@ def _pictures(found: Rounded) -> Iterator[Picture]:
     )  # fmt: skip
 
 
+def _claims(found: Rounded) -> Iterator[Finding]:
+    for ratio, built in found.by_ratio.items():
+        for one in rounded_findings(found.kinds, built):
+            yield replace(one, found=f"with {ratio:g} times the area of the wall, {one.found}")
+
+
 ROUNDED = Item(
     title="Fourier stones of four kinds",
     section="§5.3",
@@ -247,12 +235,17 @@ ROUNDED = Item(
         "varying sizes are easier to stack, and their variety enhances interlocking.",
     ),
     study=rounded_walls,
-    ours=lambda found: tuple(_found(found)),
+    notes=(
+        "The paper does not say how many stones a set has; here their area is "
+        f"{AREA_RATIOS[0]:g} times that of the wall. We took it for the main version after we had "
+        f"seen the walls of both {AREA_RATIOS[0]:g} and {AREA_RATIOS[1]:g} times, so agreement "
+        "with the paper is in part our choice; the full version tells both. Every wall has stones "
+        "of its own, so that what differs is their kind and not the luck of one set; the paper may "
+        "have used one set of each, and its 20 walls may be of all kinds together.",
+    ),
+    claims=_claims,
     tables={
         "kinds": _kinds_table,
-        "claims": lambda found: findings_table(
-            "The paper's claims about rounded stones", rounded_findings(found.kinds, found.first)
-        ),
         "walls": _walls_table,
     },
     pictures=lambda found: tuple(_pictures(found)),

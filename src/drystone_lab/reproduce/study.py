@@ -4,13 +4,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from drystone.model.wall import Wall
-from drystone_lab.pictures.groups import group_panels
-from drystone_lab.pictures.wall_grid import TitledWall, plot_walls
+from drystone_lab.pictures.charts import group_panels
+from drystone_lab.pictures.walls import TitledWall, plot_walls
 from drystone_lab.reproduce import cells
 from drystone_lab.reproduce.item import Context, Picture
-from drystone_lab.runs.changes import Changes
 from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.spec import Changes, RunSpec
 from drystone_lab.table import Cell, Table
 from drystone_lab.walls import Target
 

@@ -12,28 +12,26 @@ from drystone.planner.settings import method_settings
 from drystone.poses import PoseBook
 from drystone.selection.sampling import Sampling
 from drystone_lab.pictures.growth import GROWTH_IN, Series, plot_growth
-from drystone_lab.pictures.wall_grid import plot_walls
+from drystone_lab.pictures.walls import plot_walls
 from drystone_lab.reproduce.cells import METRICS, Finding, findings_table, metric_cells, trend
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.reproduce.study import ONE_WAY, Built, built
 from drystone_lab.runs.spec import RunSpec
 from drystone_lab.table import Cell, Table
-from drystone_lab.time_tables import (
+from drystone_lab.timed_walls import (
     PAPER_STEP_S,
     PAPER_WALL_S,
     SAMPLINGS,
-    pixels_table,
-    plot_pixels,
-    steps_figure,
-    steps_table,
-)
-from drystone_lab.timed_walls import (
     Planned,
     exponent,
     fitted,
+    pixels_table,
     planned,
+    plot_pixels,
     rubble,
     size_of,
+    steps_figure,
+    steps_table,
     three_digits,
 )
 from drystone_lab.walls import PR, Target
@@ -144,16 +142,6 @@ def step_findings(walls: BySampling) -> tuple[Finding, ...]:
     )
 
 
-def _steps_found(walls: BySampling) -> Iterator[str]:
-    for name, wall in walls.items():
-        counts = [step.candidates for step in wall.steps]
-        yield (
-            f"{SAMPLINGS[name]}: {len(counts)} steps of {fmean(counts):.1f} candidates each, "
-            f"{sum(counts)} in all."
-        )
-    yield HOW_TIMED
-
-
 def _candidates(walls: BySampling) -> Table:
     rows: list[tuple[Cell, ...]] = [
         (sampling, number, step.stones, step.candidates)
@@ -187,7 +175,7 @@ STEPS = Item(
         "candidates get fewer.",
     ),
     study=by_sampling,
-    ours=lambda walls: tuple(_steps_found(walls)),
+    notes=(HOW_TIMED,),
     tables={"candidates": _candidates},
     times={
         "claims": lambda walls: findings_table(
@@ -253,19 +241,6 @@ def scale_findings(walls: Mapping[float, Planned]) -> Iterator[Finding]:
                 yield Finding(claim, words, seconds(wall) <= said)
 
 
-def _scales_found(found: Scaled) -> Iterator[str]:
-    for scale, one in zip(found.timed, found.built, strict=True):
-        outcome = one.outcomes[0]
-        first = " ".join(map(str, tuple(outcome.clusters)[:4]))
-        yield f"Scale {scale:g}: {outcome.figures['placed']} stones, ids {first} first."
-    yield (
-        "All walls have the seed of the plan in common and come out the same whenever they are "
-        "planned again. Every resolution has positions and indices of its own, and one other "
-        "choice changes all that follow."
-    )
-    yield HOW_TIMED
-
-
 def _scales_table(found: Scaled) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for (scale, wall), one in zip(found.timed.items(), found.built, strict=True):
@@ -316,7 +291,12 @@ RESOLUTION = Item(
         "algorithm.'",
     ),
     study=by_scale,
-    ours=lambda found: tuple(_scales_found(found)),
+    notes=(
+        "All walls have the seed of the plan in common and come out the same whenever they are "
+        "planned again. Every resolution has positions and indices of its own, and one other "
+        "choice changes all that follow.",
+        HOW_TIMED,
+    ),
     tables={"walls": _scales_table},
     times={
         "claims": lambda found: findings_table(
@@ -492,19 +472,14 @@ GROWTH = Item(
         "O(Q^2).' It is derived, not measured, and takes the cost of a candidate as constant.",
     ),
     study=by_stones,
-    ours=lambda walls: (
+    notes=(
         f"Generated rubble for a wall of {WALL_PX[0]} x {WALL_PX[1]} px, smaller stones the more "
         "there are. A count of candidates is the same on every machine: what the paper derives is "
         "that count.",
-        *(f"{one.claim} Here: {one.found}" for one in counts(walls)),
         HOW_TIMED,
     ),
-    tables={
-        "claims": lambda walls: findings_table(
-            "The paper's claims in numbers of candidates", counts(walls)
-        ),
-        "walls": _counted,
-    },
+    claims=counts,
+    tables={"walls": _counted},
     times={
         "time-claims": lambda walls: findings_table(
             "The paper's claims in seconds", seconds(walls)

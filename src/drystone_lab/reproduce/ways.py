@@ -4,10 +4,9 @@ from collections import Counter
 from collections.abc import Iterator
 from statistics import median
 
-from drystone.model.site import working_px
-from drystone_lab.pictures.groups import group_panels, plot_two_figures
+from drystone_lab.pictures.charts import group_panels, plot_two_figures
 from drystone_lab.reproduce import cells
-from drystone_lab.reproduce.cells import METRICS, rounded
+from drystone_lab.reproduce.cells import METRICS, Finding, rounded
 from drystone_lab.reproduce.item import Item, Picture
 from drystone_lab.reproduce.study import (
     Built,
@@ -19,7 +18,7 @@ from drystone_lab.reproduce.study import (
     walls_table,
     ways_table,
 )
-from drystone_lab.runs.changes import Changes
+from drystone_lab.runs.spec import Changes
 from drystone_lab.table import Table
 from drystone_lab.walls import IR, LIU_5, MASONS, PR, TWO_SIDED, R, coarser
 
@@ -28,23 +27,6 @@ MASONS_STONES = tuple(wall.source.name for wall in MASONS)
 BETAS = ("0", "0.5", "0.7", "0.9")
 PAPERS = "0.7"
 """The threshold that the paper found best."""
-
-
-def _beta_found(found: Built) -> Iterator[str]:
-    yield (
-        "GDS alone and beta = 0 are one function, as GDS is never below 0: H(x, 0) = x. The paper "
-        "names both; perhaps its GDS alone is an objective without LFR and without the distance "
-        "from the end."
-    )
-    for other in BETAS:
-        if other != PAPERS:
-            each = {name: found.wins(PAPERS, other, name) for name in METRICS}
-            counts = ", ".join(f"{w.better} to {w.worse} by {name}" for name, w in each.items())
-            most = " and ".join(name for name, w in each.items() if w.is_majority) or "no figure"
-            yield (
-                f"beta = {PAPERS} against {other}: better to worse walls of one seed are {counts}; "
-                f"more than half of all pairs are better by {most}."
-            )
 
 
 def _beta_picture(found: Built) -> Picture:
@@ -70,7 +52,11 @@ BETA = Item(
         "nor the numbers are given.",
     ),
     study=Study(walls=MASONS, ways={beta: (("placement.beta", float(beta)),) for beta in BETAS}),
-    ours=lambda found: tuple(_beta_found(found)),
+    notes=(
+        "GDS alone and beta = 0 are one function, as GDS is never below 0: H(x, 0) = x. The paper "
+        "names both; perhaps its GDS alone is an objective without LFR and without the distance "
+        "from the end.",
+    ),
     tables={
         "beta": ways_table(
             "Walls by the threshold of GDS",
@@ -94,30 +80,31 @@ SAMPLED: dict[str, Changes] = {name: (("sampling", name),) for name in SAMPLINGS
 PARTS = ("placement", "stabilisation", "contacts", "limit analysis", "indices")
 
 
-def _sampling_found(found: Built) -> Iterator[str]:
+def _sampling_claims(found: Built) -> Iterator[Finding]:
     counts = {one.way: one.median("candidates") or 0.0 for one in found}
-    words = ", ".join(
-        f"{way} {count:.0f} ({count / counts['variant']:.2f} times variant)"
-        for way, count in counts.items()
+    times = {way: count / counts["variant"] for way, count in counts.items()}
+    yield Finding(
+        "Two-fold sampling is twice as expensive as variant sampling.",
+        "candidates of a wall over those of variant sampling, medians: "
+        f"{', '.join(f'{way} {ratio:.2f}' for way, ratio in times.items())}.",
+        None,  # the paper counts sub-iterations
     )
-    yield (
-        f"Candidates evaluated for a wall, median of {len(found.seeds)} seeds: {words}. The "
-        "paper's 'twice as computationally expensive' counts sub-iterations; the second one tries "
-        "the stones of a single cluster only."
+    whole = {one.way: _whole(one) for one in found}
+    ends = Counter(outcome.plan["stopped"] for one in found for outcome in one.outcomes)
+    stopped = ", ".join(f"'{reason}' {count} times" for reason, count in ends.most_common())
+    yield Finding(
+        "All methods stack stones to fill the wall.",
+        f"all stones are placed by {', '.join(f'{way} {n}' for way, n in whole.items())} of "
+        f"{len(found.seeds)} walls each; construction ended with {stopped}.",
+        None,
     )
     (full,) = found.of("full")
     plans = [outcome.plan["steps"] for outcome in full.outcomes]
     kinds = sum(plan not in plans[:place] for place, plan in enumerate(plans))
-    yield f"Full batch has nothing to choose at random: its seeds give {kinds} different walls."
-    for name in ("F_AH", "F_SF"):
-        medians = ", ".join(f"{one.way} {one.median(name) or 0.0:.3g}" for one in found)
-        yield f"Medians of {name}: {medians}."
-    whole = ", ".join(f"{one.way} {_whole(one)} of {len(one.outcomes)}" for one in found)
-    ends = Counter(outcome.plan["stopped"] for one in found for outcome in one.outcomes)
-    stopped = ", ".join(f"'{reason}' {count} times" for reason, count in ends.most_common())
-    yield (
-        f"Walls with all stones placed: {whole}. Construction ended with {stopped}. Which filling "
-        "the paper calls complete is not said; Algorithm 1 ends above .99."
+    yield Finding(
+        "Full batch has nothing to choose at random.",
+        f"its seeds give {kinds} different walls.",
+        kinds == 1,
     )
 
 
@@ -154,7 +141,8 @@ SAMPLING = Item(
         "stacking stones to fill the target wall volume'.",
     ),
     study=Study(walls=(PR,), ways=SAMPLED),
-    ours=lambda found: tuple(_sampling_found(found)),
+    notes=("Which filling the paper calls complete is not said; Algorithm 1 ends above .99.",),
+    claims=_sampling_claims,
     tables={
         "fig16": ways_table(
             "{wall} by the sampling of candidates, one-sided",
@@ -183,22 +171,15 @@ def _wedge_share(trials: Trials) -> tuple[float | None, ...]:
     )
 
 
-def _stabilised_found(found: Built) -> Iterator[str]:
+def _stabilised_claims(found: Built) -> Iterator[Finding]:
     for group in found.by_wall:
         medians = {one.way: one.median("F_SF") or 0.0 for one in group}
         best = max(medians, key=lambda way: medians[way])
-        listed = ", ".join(f"{way} {value:.3f}" for way, value in medians.items())
-        pairs = ((other, group.wins("both", other, "F_SF")) for other in STABILISED[1:])
-        better = ", ".join(f"{won.better} of {won.pairs} of {other}" for other, won in pairs)
-        yield (
-            f"{group.name}: the median filling is largest with {best} ({listed}); in the paper it "
-            f"is both. With both it is larger than that of the same seed in {better}."
+        yield Finding(
+            f"Rotation and wedging together fill a wall best ({group.name}).",
+            f"the median filling is largest with {best}.",
+            best == "both",
         )
-    stand_ins = ", ".join(group.name for group in found.by_wall if group.all[0].wall.stand_in)
-    yield (
-        f"The stones of Liu et al. (2018) are not public: {stand_ins} is a set of generated "
-        "polygons of much noise, not theirs."
-    )
 
 
 def _wedges_picture(group: Built, number: int) -> Picture:
@@ -242,7 +223,11 @@ STABILISATION = Item(
         quick_walls=(coarser(LIU_5, 0.2), coarser(IR, 0.2)),
         at_hand=True,
     ),
-    ours=lambda found: tuple(_stabilised_found(found)),
+    notes=(
+        "The stones of Liu et al. (2018) are not public: a stand-in is a set of generated polygons "
+        "of much noise, not theirs.",
+    ),
+    claims=_stabilised_claims,
     tables={
         "fig20": ways_table(
             "Walls by the way to stabilise",
@@ -265,20 +250,6 @@ SIDES: dict[str, Changes] = {ONE: (), TWO: TWO_SIDED}
 FLUSH = (*METRICS, "E_FLUSH")
 
 
-def _sides_found(found: Built) -> Iterator[str]:
-    for group in found.by_wall:
-        one, two = group.all
-        parts = []
-        for name in FLUSH:
-            won = group.wins(TWO, ONE, name)
-            before, after = one.median(name), two.median(name)
-            if before is not None and after is not None:
-                parts.append(f"{name} {after:.3g} after {before:.3g} (better in {won.better} of "
-                             f"{won.pairs})")  # fmt: skip
-        yield f"{group.name}, median of two-sided after one-sided: {', '.join(parts)}."
-    yield "Where the voids are was not measured: the picture shows it for one seed."
-
-
 BOTH_ENDS = Item(
     title="Walls built from both ends",
     section="§5.2, Fig. 21",
@@ -288,7 +259,7 @@ BOTH_ENDS = Item(
         "the middle, where both halves meet. No metrics are given.",
     ),
     study=Study(walls=MASONS, ways=SIDES, quick_seeds=4),
-    ours=lambda found: tuple(_sides_found(found)),
+    notes=("Where the voids are was not measured: the picture shows it for one seed.",),
     tables={
         "fig21": ways_table(
             "Walls built from one end and from both",
@@ -318,23 +289,6 @@ BOTH_ENDS = Item(
 NUMBERS = {"R": "B.30", "PR": "B.31", "IR": "B.32"}
 
 
-def _methods_found(found: Built) -> Iterator[str]:
-    for group in found.by_wall:
-        filled = {one.way: one.values("F_SF")[0] or 0.0 for one in group}
-        full = max(filled, key=lambda way: filled[way])
-        wall = group.all[0].wall
-        size = " x ".join(f"{working_px(side, wall.scale)}" for side in (wall.width, wall.height))
-        yield (
-            f"{wall.name} on {size} px: F_SF from {min(filled.values()):.3f} to "
-            f"{filled[full]:.3f}, the fullest by {full}; {sum(map(_whole, group))} of "
-            f"{len(group.all)} walls have all stones."
-        )
-    yield (
-        "One seed a method; how much walls of one method differ from seed to seed is seen in "
-        "table2, fig16 and fig21. The quick version has coarser walls, and none of IR."
-    )
-
-
 def _methods_picture(group: Built) -> Picture:
     number = NUMBERS.get(group.name, "B.1")
     caption = f"Fig. {number}, stones {group.name}: left from one end, right from both."
@@ -360,7 +314,10 @@ ALL_METHODS = Item(
         quick_seeds=1,
         quick_walls=(coarser(R, 0.1), coarser(PR, 0.25)),  # the many stones of IR take longest
     ),
-    ours=lambda found: tuple(_methods_found(found)),
+    notes=(
+        "One seed a method; how much walls of one method differ from seed to seed is seen in "
+        "table2, fig16 and fig21. The quick version has coarser walls, and none of IR.",
+    ),
     tables={
         "figB30_32": walls_table(
             "Walls of one seed by all methods of construction",

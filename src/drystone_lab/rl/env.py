@@ -1,6 +1,6 @@
 """The environment ``drystone/Wall-v0``: stones arrive, each is built where it is offered."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from copy import copy, deepcopy
 from dataclasses import asdict
 from operator import index
@@ -9,16 +9,111 @@ from typing import Any, Literal, get_args
 import gymnasium
 import numpy as np
 from gymnasium import spaces
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from drystone.drawing.pictures.wall import plot_wall
 from drystone.errors import UsageError
+from drystone.metrics.level import top_profile
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
+from drystone.model.wall import Wall
 from drystone.planner.settings import PlannerSettings
+from drystone.selection.policies.learned import FEATURES, features
+from drystone.selection.policy import Offer
 from drystone_lab.rl.draw import DrawSettings, draw_wall
 from drystone_lab.rl.episode import ARRIVING, Episode, prepared
-from drystone_lab.rl.observation import Observation, observation, observation_space
-from drystone_lab.rl.picture import wall_picture
+
+Floats32 = NDArray[np.float32]
+Observation = dict[str, Floats32]
+
+STONE = ("area", "width", "height")
+"""Of an offer, beside its features: of the stone over the wall's, the same for all its offers but
+for how it lies."""
+
+
+def observation_space(offers: int, columns: int) -> spaces.Space[Observation]:
+    """Return the space of :func:`observation`."""
+    shape = (offers, len(FEATURES) + len(STONE))
+    space: Any = spaces.Dict(
+        {
+            "offers": spaces.Box(-1.0, 1.0, shape, np.float32),
+            "profile": spaces.Box(0.0, 1.0, (columns,), np.float32),
+            "left": spaces.Box(0.0, 1.0, (2,), np.float32),
+        }
+    )
+    found: spaces.Space[Observation] = space  # a Dict does not know of what its values are
+    return found
+
+
+def observation(episode: Episode, offers: int, columns: int) -> Observation:
+    """Return what is seen.
+
+    Returns
+    -------
+    dict of str to float32 arrays
+        ``"offers"``, (offers, F): a row an offer (:data:`FEATURES`, then :data:`STONE`), zeros
+        where there is none.  ``"profile"``, (columns,): height of the wall's top from its left to
+        its right end, over the height that it is to have; means of equal parts of its width.
+        ``"left"``, (2,): the share of the stones that have not arrived yet, and of the wall that
+        is still to be filled.
+    """
+    fitting = max(1, len(episode.workshop.fitting))
+    left = np.array([episode.waiting / fitting, 1.0 - episode.build.wall.filling])
+    return {
+        "offers": _rows(episode.offers, offers),
+        "profile": _profile(episode.build.wall, columns),
+        "left": np.clip(left, 0.0, 1.0).astype(np.float32),
+    }
+
+
+def _rows(offered: Sequence[Offer], offers: int) -> Floats32:
+    rows = np.zeros((offers, len(FEATURES) + len(STONE)), np.float32)
+    if offered:
+        stone = [
+            (
+                o.area_px / (o.wall_width_px * o.wall_height_px),
+                o.width_px / o.wall_width_px,
+                (o.top_px - o.bottom_px) / o.wall_height_px,
+            )
+            for o in offered
+        ]
+        seen = np.column_stack([features(offered), np.clip(stone, 0.0, 1.0)])
+        rows[: len(offered)] = seen
+    return rows
+
+
+def _profile(wall: Wall, columns: int) -> Floats32:
+    heights = top_profile(wall.labels) / wall.site.height_px
+    # Parts need not be whole columns of pixels: the mean is that of the integral between its ends.
+    integral = np.concatenate([[0.0], np.cumsum(heights)])
+    ends = np.linspace(0.0, wall.site.width_px, columns + 1)
+    at_ends = np.interp(ends, np.arange(len(integral)), integral)
+    means = np.diff(at_ends) / np.diff(ends)
+    return np.asarray(np.clip(means, 0.0, 1.0), np.float32)
+
+
+SIZE_IN = (8.0, 4.0)
+DPI = 100
+"""Size of a picture: always the same, as a film wants it."""
+
+
+def wall_picture(episode: Episode) -> NDArray[np.uint8]:
+    """Draw what is built, with what it carries above, (400, 800, 3) RGB."""
+    figure = Figure(figsize=SIZE_IN, dpi=DPI)
+    canvas: Any = FigureCanvasAgg(figure)
+    ax = figure.add_axes((0.05, 0.14, 0.9, 0.76))
+    wall, actions = episode.build.wall, episode.build.actions
+    carried = (actions[-1].resistance.value or 0.0) if actions else 0.0
+    title = (
+        f"{len(actions)} stones built, {episode.aside} put aside, {episode.waiting} to come; "
+        f"F_SF {wall.filling:.2f}, F_LR {carried:.2f}"
+    )
+    plot_wall(wall, episode.workshop.clusters, ax, title=title)
+    canvas.draw()
+    return np.array(np.asarray(canvas.buffer_rgba())[..., :3])
+
 
 Illegal = Literal["aside", "error"]
 

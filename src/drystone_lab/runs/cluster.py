@@ -12,9 +12,8 @@ from typing import Any
 
 from drystone.errors import DrystoneError, UsageError
 from drystone.model.stone import StoneSet
-from drystone_lab.runs.failures import died
 from drystone_lab.runs.outcome import Outcome, execute
-from drystone_lab.runs.runner import Work
+from drystone_lab.runs.runner import Work, died
 from drystone_lab.runs.spec import RunSpec
 
 PATIENCE_S = 5.0

@@ -1,10 +1,12 @@
-"""What came out of a run."""
+"""What came out of a run, and the folder that keeps it, so that no run is done twice."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from drystone.errors import InputError
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.model.plan import Plan, StoneStep, WedgeStep
 from drystone.model.stone import StoneSet
@@ -12,6 +14,7 @@ from drystone.model.wall import Wall
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.verify.replay import replay_plan
+from drystone.whole_files import write_whole
 from drystone_lab.runs.spec import STRIPS, RunSpec
 
 FIGURES = (
@@ -74,14 +77,14 @@ def execute(spec: RunSpec, data: Path | None, stones: StoneSet | None = None) ->
 
     Examples
     --------
-    >>> from drystone_lab.runs.source import generated
+    >>> from drystone_lab.runs.spec import generated
     >>> spec = RunSpec(source=generated("brick", 1, count=6, height_px=10, aspect=2),
     ...                width=60, height=20)
     >>> execute(spec, None).figures["placed"]
     6
     """
     if spec.method == STRIPS:
-        from drystone_lab.runs.strips import packed  # noqa: PLC0415 - it needs this module
+        from drystone_lab.packing import packed  # noqa: PLC0415 - it needs this module
 
         return packed(spec, data)
     stones = spec.source.stones(data) if stones is None else stones
@@ -124,3 +127,55 @@ def uninterrupted(result: PlanResult) -> PlanResult:
     if result.status == "interrupted":
         raise KeyboardInterrupt
     return result
+
+
+class RunStore:
+    """Outcomes as files, one a run.
+
+    Parameters
+    ----------
+    folder : Path
+        Made when the first outcome is kept.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def get(self, key: str) -> Outcome | None:
+        """Return the outcome of a run; None when it is not there.
+
+        Raises
+        ------
+        InputError
+            E401: its file is no outcome; it was cut short or changed.
+        """
+        path = self._path(key)
+        try:
+            return _outcome(key, json.loads(path.read_text(encoding="utf-8")))
+        except FileNotFoundError:
+            return None
+        except (ValueError, TypeError, KeyError) as error:
+            raise InputError(
+                "E401",
+                "the outcome of a run that is kept here is damaged.",
+                where=str(path),
+                cure="Delete the file: its run is then done again.",
+            ) from error
+
+    def put(self, outcome: Outcome) -> None:
+        """Keep an outcome; the file is whole or not there."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        data = {"figures": outcome.figures, "plan": outcome.plan, "times": outcome.times}
+        text = json.dumps(data, ensure_ascii=False, allow_nan=False)
+        write_whole(self._path(outcome.key), text.encode())
+
+    def _path(self, key: str) -> Path:
+        return self.folder / f"{key}.json"
+
+
+def _outcome(key: str, data: Any) -> Outcome:
+    """Return what a file holds; anything else is one of the errors of plain Python."""
+    figures, plan, times = (dict(data[name]) for name in ("figures", "plan", "times"))
+    if not {"wall"} <= times.keys() or not set(FIGURES) <= figures.keys() or "steps" not in plan:
+        raise KeyError(key)
+    return Outcome(key, figures, plan, times)

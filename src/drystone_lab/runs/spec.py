@@ -1,17 +1,200 @@
-"""One run: everything that a plan depends on, and nothing else."""
+"""One run: its stones, the settings that it replaces, all that a plan depends on."""
 
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
-from typing import Any
+from pathlib import Path
+from typing import Any, Literal
 
+import numpy as np
+
+from drystone.errors import InputError
+from drystone.generate import GENERATORS
+from drystone.io.published import published_file
+from drystone.io.read_stones import read_stones
+from drystone.model.stone import StoneSet
 from drystone.planner.settings import PlannerSettings, method_settings
-from drystone_lab.runs.changes import Changes, nested
-from drystone_lab.runs.source import StoneSource
+
+Scalar = bool | int | float | str
+Changes = tuple[tuple[str, Scalar], ...]
+"""Settings that an experiment replaces, as flat pairs that can be kept, compared and printed."""
+
+
+def flat(settings: Mapping[str, Any]) -> Changes:
+    """Return nested settings with their names in full, in order.
+
+    Examples
+    --------
+    >>> flat({"sampling": "full", "placement": {"beta": 0.5}})
+    (('placement.beta', 0.5), ('sampling', 'full'))
+    """
+    return tuple(sorted(_pairs(settings, "")))
+
+
+def _pairs(settings: Mapping[str, Any], prefix: str) -> list[tuple[str, Scalar]]:
+    found: list[tuple[str, Scalar]] = []
+    for name, value in settings.items():
+        if isinstance(value, Mapping):
+            found.extend(_pairs(value, f"{prefix}{name}."))
+        else:
+            found.append((prefix + name, value))
+    return found
+
+
+def nested(changes: Changes) -> dict[str, Any]:
+    """Return what :meth:`drystone.planner.settings.PlannerSettings.updated` takes.
+
+    Examples
+    --------
+    >>> nested((("placement.beta", 0.5), ("sampling", "full")))
+    {'placement': {'beta': 0.5}, 'sampling': 'full'}
+    """
+    tables: dict[str, Any] = {}
+    for name, value in changes:
+        *above, last = name.split(".")
+        table = tables
+        for part in above:
+            table = table.setdefault(part, {})
+        table[last] = value
+    return tables
+
+
+def told(changes: Changes) -> str:
+    """Return them for people.
+
+    Examples
+    --------
+    >>> told((("goal.F_AH", 3.6), ("goal.F_AV", 24.0)))
+    'goal.F_AH = 3.6, goal.F_AV = 24.0'
+    """
+    return ", ".join(f"{name} = {value}" for name, value in changes)
+
+
+Kind = Literal["published", "file", "fourier", "polygon", "brick", "rubble"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class StoneSource:
+    """Stones by name: published ones, a file, or what a generator makes from a seed.
+
+    Parameters
+    ----------
+    kind : {"published", "file", "fourier", "polygon", "brick", "rubble"}
+        Of the source.
+    name : str
+        Path in the folder of published data (``"almeida/PR.png"``), or of the file.
+    seed : int
+        Of the generator.
+    settings : tuple of (str, value)
+        Of the generator; see :func:`generated`.
+    sha256 : str
+        Of the file, see :func:`from_file`; empty if it may be any.
+    """
+
+    kind: Kind
+    name: str = ""
+    seed: int = 0
+    settings: tuple[tuple[str, Scalar], ...] = ()
+    sha256: str = ""
+
+    def __str__(self) -> str:
+        """Return a few words for messages."""
+        return self.name or f"{self.kind} {self.seed}"
+
+    def is_there(self, data: Path | None) -> bool:
+        """Return False when published stones are asked for and the folder has none of this name."""
+        return self.kind != "published" or (data is not None and (data / self.name).is_file())
+
+    def check(self, data: Path | None) -> None:
+        """Refuse other stones in the place of published ones.
+
+        Raises
+        ------
+        InputError
+            E160: the file in the folder has other contents than the one that was released.
+        """
+        if self.kind == "published" and data is not None:
+            published_file(data, self.name)
+
+    def stones(self, data: Path | None) -> StoneSet:
+        """Return the stones.
+
+        Raises
+        ------
+        FileNotFoundError
+            Published data that are not there (:meth:`is_there`).
+        InputError
+            E100 ... E111, see :func:`drystone.read_stones`; E100 also for a file that is no longer
+            the one that was meant; E160 for another file in the place of a published one.
+        """
+        if self.kind == "published":
+            if data is None:
+                raise FileNotFoundError(self.name)
+            return read_stones(published_file(data, self.name))
+        if self.kind == "file":
+            return _same(read_stones(Path(self.name)), self)
+        settings, make = GENERATORS[self.kind]
+        return make(settings(**dict(self.settings)), np.random.default_rng(self.seed))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return what JSON writes."""
+        return {
+            "kind": self.kind, "name": self.name, "seed": self.seed,
+            "settings": dict(self.settings), "sha256": self.sha256,
+        }  # fmt: skip
+
+
+def _same(stones: StoneSet, source: StoneSource) -> StoneSet:
+    """Refuse a file of other contents than the source's."""
+    if source.sha256 and stones.source.sha256 != source.sha256:
+        raise InputError(
+            "E100",
+            "the file was changed since its runs were asked for.",
+            where=source.name,
+            cure="Give the command again.",
+        )
+    return stones
+
+
+def published(name: str) -> StoneSource:
+    """Return the source of a published set.
+
+    Examples
+    --------
+    >>> published("almeida/PR.png").is_there(None)
+    False
+    """
+    return StoneSource(kind="published", name=name)
+
+
+def from_file(path: Path) -> StoneSource:
+    """Return the source of stones in a file or a folder of masks, as it is now.
+
+    Runs of it are found again as long as its contents are the same.
+
+    Raises
+    ------
+    InputError
+        E100 ... E111, see :func:`drystone.read_stones`.
+    """
+    return StoneSource(kind="file", name=str(path), sha256=read_stones(path).source.sha256)
+
+
+def generated(kind: Kind, seed: int, **settings: Scalar) -> StoneSource:
+    """Return the source of stones that a generator makes.
+
+    Examples
+    --------
+    >>> len(generated("brick", 1, count=6).stones(None))
+    6
+    """
+    return StoneSource(kind=kind, seed=seed, settings=tuple(sorted(settings.items())))
+
 
 STRIPS = "spyrrow"
-"""Method of runs that are no walls (:mod:`drystone_lab.runs.strips`)."""
+"""Method of runs that are no walls (:mod:`drystone_lab.packing`)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +219,7 @@ class RunSpec:
 
     Examples
     --------
-    >>> from drystone_lab.runs.source import generated
+    >>> from drystone_lab.runs.spec import generated
     >>> spec = RunSpec(source=generated("brick", 1, count=6), width=60, height=20, scale=1.0,
     ...                changes=(("placement.beta", 0.5),))
     >>> spec.settings().placement.beta

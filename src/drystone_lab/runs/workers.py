@@ -1,12 +1,164 @@
-"""Who does runs, as the command line names it."""
+"""Who does runs: processes of this machine, or a cluster, as the command line names it."""
 
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeVar
 
 from drystone.errors import UsageError
+from drystone.search.processes import MUCH_MEMORY, process_pool
 from drystone_lab.runs.cluster import cluster_at_work
-from drystone_lab.runs.processes import processes_at_work
-from drystone_lab.runs.runner import Work
+from drystone_lab.runs.outcome import Outcome, execute
+from drystone_lab.runs.runner import Work, died, one_by_one
+from drystone_lab.runs.spec import RunSpec
+
+ONE_THREAD = (
+    "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS",
+)  # fmt: skip
+"""Variables that BLAS libraries take their number of threads from.
+
+The matrices of a run are small: a search of four walls of PR came to the same bytes with one
+thread and with two, and took 3 to 5 % more processor time with two.
+"""
+
+
+Task = TypeVar("Task")
+Done = TypeVar("Done")
+Process = Any
+"""An executor of loky, which tells nothing of its types, with one process."""
+
+
+@contextmanager
+def processes_at_work(jobs: int) -> Iterator[Work]:
+    """Start processes that do runs; they end with the block, whatever they do then.
+
+    Yields
+    ------
+    Work
+        Fails and is interrupted as :meth:`Crew.work`.
+    """
+    if jobs == 1:
+        yield one_by_one
+        return
+    with crew(jobs) as found:
+
+        def work(specs: Sequence[RunSpec], data: Path | None) -> Iterator[Outcome]:
+            return found.work(partial(execute, data=data), specs)
+
+        yield work
+
+
+@contextmanager
+def crew(jobs: int, *, fresh: bool = False) -> Iterator["Crew"]:
+    """Start processes; they end with the block, whatever they do then.
+
+    Parameters
+    ----------
+    jobs : int
+        How many.
+    fresh : bool
+        Whether each task has a new process, so that what one remembers takes no time from another.
+    """
+    found = Crew(jobs, fresh)
+    try:
+        yield found
+    finally:
+        found.end()
+
+
+class Crew:
+    """Processes with one worker each, so that it is known at which task one died."""
+
+    def __init__(self, jobs: int, fresh: bool) -> None:
+        self.free = [_process() for _ in range(jobs)]
+        self.fresh = fresh
+
+    def work(self, do: Callable[[Task], Done], tasks: Sequence[Task]) -> Iterator[Done]:
+        """Do tasks, and give what comes of them in whatever order they end.
+
+        An interrupt (Ctrl-C) goes to the caller after the results of the tasks that have ended.
+        When a task fails, those that are being done are done to their end, no other is begun, and
+        the error of the first in order that failed is raised: its own, or E402 when its process
+        died.
+
+        Parameters
+        ----------
+        do : callable
+            What is done with a task, in a process of its own; found there by its name.
+        tasks : sequence
+            Their words (``str``) tell where a process died.
+        """
+        waiting = deque(enumerate(tasks))
+        busy: dict[Future[Done], tuple[int, Process]] = {}
+        failed: dict[int, BaseException] = {}
+        try:
+            while busy or (waiting and not failed):
+                while waiting and self.free and not failed:
+                    (number, task), process = waiting.popleft(), self.free.pop()
+                    busy[_begun(process, do, task)] = number, process
+                for future in wait(busy, return_when=FIRST_COMPLETED).done:
+                    number, process = busy.pop(future)
+                    error = future.exception()
+                    self.free.append(self._next(process, error))
+                    if error is None:
+                        yield future.result()
+                    else:
+                        failed[number] = error
+        except KeyboardInterrupt:
+            yield from _ended(busy)
+            raise
+        finally:
+            self.free += [process for _, process in busy.values()]
+        if failed:
+            first = min(failed)
+            raise _told(failed[first], str(tasks[first]))
+
+    def _next(self, process: Process, error: BaseException | None) -> Process:
+        """Return the process, or another one in its place if it died or is used once."""
+        if not self.fresh and not isinstance(error, BrokenProcessPool):
+            return process
+        process.shutdown(wait=True, kill_workers=True)
+        return _process()
+
+    def end(self) -> None:
+        """End the processes."""
+        for process in self.free:
+            process.shutdown(wait=True, kill_workers=True)
+
+
+def _process() -> Process:
+    """Return an executor of one process, which starts when it has something to do."""
+    return process_pool(1, {**dict.fromkeys(ONE_THREAD, "1"), **MUCH_MEMORY})
+
+
+def _begun(process: Process, do: Callable[[Task], Done], task: Task) -> Future[Done]:
+    """Give a task to a process; it fails at once if that died when it had nothing to do."""
+    future: Future[Done] = Future()
+    try:
+        future = process.submit(do, task)
+    except BrokenProcessPool as error:
+        future.set_exception(error)
+    return future
+
+
+def _ended(busy: dict[Future[Done], tuple[int, Process]]) -> Iterator[Done]:
+    """Give the results of the tasks that have ended well by now."""
+    for future in tuple(busy):
+        if future.done() and future.exception() is None:
+            yield future.result()
+
+
+def _told(error: BaseException, task: str) -> BaseException:
+    """Return what is raised for a task."""
+    if not isinstance(error, BrokenProcessPool):
+        return error
+    told = died(task, "process")
+    told.__cause__ = error
+    return told
 
 
 @contextmanager
@@ -31,7 +183,7 @@ def work_of(jobs: int | None, dask_address: str | None) -> Iterator[Work]:
 
     Examples
     --------
-    >>> from drystone_lab.runs.source import generated
+    >>> from drystone_lab.runs.spec import generated
     >>> from drystone_lab.runs.spec import RunSpec
     >>> bricks = generated("brick", 1, count=6, height_px=10, aspect=2)
     >>> with work_of(1, None) as work:

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from drystone.drawing.palette import rgb
-from drystone_lab.pictures.bench_history import LINES, history_panels, plot_history
+from drystone_lab.pictures.charts import LOOKS, history_panels, plot_history
 
 
 def test_versions_without_a_value_have_no_point():
@@ -26,10 +26,10 @@ def test_a_panel_a_figure_and_one_legend():
 
 
 def test_methods_look_different():
-    lines = {str(number): [float(number)] for number in range(len(LINES) + 2)}
+    lines = {str(number): [float(number)] for number in range(len(LOOKS) + 2)}
     drawn = plot_history(["1"], lines).lines
     looks = {(line.get_color(), line.get_marker(), line.get_linestyle()) for line in drawn}
     assert len(looks) == len(lines)
-    colours = [np.array(rgb(colour)) for colour, _ in LINES]
+    colours = [np.array(rgb(colour)) for colour, _ in LOOKS]
     gaps = [np.abs(a - b).max() for i, a in enumerate(colours) for b in colours[:i]]
     assert min(gaps) > 0.1

@@ -2,7 +2,7 @@ import numpy as np
 from matplotlib.colors import to_hex
 
 from drystone.drawing.palette import cluster_colour
-from drystone_lab.pictures.features import plot_counts, plot_features
+from drystone_lab.reproduce.fig5 import plot_counts, plot_features
 
 FEATURES = np.array([[0.2, 1.0], [0.8, 0.5], [0.81, 0.5]])
 

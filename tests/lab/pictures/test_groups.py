@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from drystone.drawing import save
-from drystone_lab.pictures.groups import SPREAD, group_panels, plot_groups, plot_two_figures
+from drystone_lab.pictures.charts import SPREAD, group_panels, plot_groups, plot_two_figures
 
 VALUES = {"both": [0.8, 0.7, 0.9, 0.75, 0.72, 0.71], "none": [0.5, None, 0.4], "empty": [None]}
 

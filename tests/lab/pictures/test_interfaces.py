@@ -1,7 +1,7 @@
 import numpy as np
 
 from drystone.contacts.blocks import model_from_labels
-from drystone_lab.pictures.interfaces import NORMAL_PX, plot_blocks, plot_boundary_edges
+from drystone_lab.reproduce.fig12 import NORMAL_PX, plot_blocks, plot_boundary_edges
 
 LABELS = np.repeat(np.array([[0, 7, 7], [3, 3, 5]], np.uint32), 4, axis=0).repeat(4, axis=1)
 

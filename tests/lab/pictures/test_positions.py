@@ -2,7 +2,7 @@ import numpy as np
 
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
-from drystone_lab.pictures.positions import Layer, plot_position_layers, plot_position_values
+from drystone_lab.reproduce.fig8 import Layer, plot_position_layers, plot_position_values
 
 LABELS = np.zeros((6, 10), np.uint32)
 LABELS[4:, :5] = 1

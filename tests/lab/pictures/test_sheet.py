@@ -2,7 +2,7 @@
 
 import pytest
 
-from drystone_lab.pictures.sheet import EMPTY, FIGURE_IN, NARROWEST_IN, Panel, sheet_of
+from drystone_lab.pictures.walls import EMPTY, FIGURE_IN, NARROWEST_IN, Panel, sheet_of
 
 
 def _panel(title: str, aspect: float) -> Panel:

@@ -7,9 +7,13 @@ import pytest
 
 from drystone.drawing import plot_wall, save
 from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
-from drystone_lab.pictures.masonry import masonry_panel, plot_masonry
-from drystone_lab.pictures.sheet import sheet_of
-from drystone_lab.pictures.wall_grid import plot_walls, wall_aspect
+from drystone_lab.pictures.walls import (
+    masonry_panel,
+    plot_masonry,
+    plot_walls,
+    sheet_of,
+    wall_aspect,
+)
 from tests.drawing.examples import CLUSTERS, WEDGE, wall
 
 

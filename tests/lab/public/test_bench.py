@@ -6,16 +6,15 @@ import pytest
 
 from drystone.errors import InputError
 from drystone.physics.shake import ShakeTrial
-from drystone_lab.public import bench, shaken
+from drystone_lab.public import bench
 from drystone_lab.public.bench import PublicSettings, run_public
 from drystone_lab.public.store import BenchStore, Stamp
 from drystone_lab.runs.outcome import execute
 from drystone_lab.runs.runner import one_by_one
-from drystone_lab.runs.source import generated
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.spec import RunSpec, generated
 
-STAMP = Stamp((), "1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
-SETTINGS = PublicSettings(suite="bricks", methods=("paper", "random"), stamp=STAMP, quick=True)
+STAMP = Stamp("1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
+SETTINGS = PublicSettings(suite="bricks", policies=("paper", "random"), stamp=STAMP, quick=True)
 
 
 @pytest.fixture
@@ -36,7 +35,7 @@ def figures(tables):
 
 
 def test_every_method_builds_every_wall_with_every_seed(counted):
-    walls, everything, seconds, *_ = run_public(replace(SETTINGS, first_seed=3))
+    walls, everything, seconds, *_ = run_public(replace(SETTINGS, seed=3))
     assert [(row["wall"], row["method"], row["seeds"]) for row in walls.records()] == [
         ("bricks 2:1", "paper", 2),
         ("bricks 2:1", "random", 2),
@@ -69,8 +68,8 @@ def test_runs_of_a_store_are_not_done_again(tmp_path, counted):
 
 
 def test_settings_are_in_the_store(tmp_path):
-    stamp = replace(STAMP, settings=(("sampling", "full"),))
-    run_public(replace(SETTINGS, methods=("paper",), seeds=1, store=tmp_path, stamp=stamp))
+    changes = (("sampling", "full"),)
+    run_public(replace(SETTINGS, policies=("paper",), seeds=1, store=tmp_path, changes=changes))
     (row,) = BenchStore(tmp_path).runs()
     assert row.settings == '{"sampling": "full"}'
     assert (row.suite, row.suite_version, row.placed, row.shaken) == ("bricks", 1, 30, "no")
@@ -105,7 +104,7 @@ def test_shaken_walls_are_shaken_once(tmp_path, monkeypatch):
         return None if len(keys) == 1 else 0.25
 
     monkeypatch.setattr(bench, "pga_of", pga_of)
-    settings = replace(SETTINGS, methods=("paper",), store=tmp_path, shake=True)
+    settings = replace(SETTINGS, policies=("paper",), store=tmp_path, shake=True)
     first = run_public(settings)[0]
     assert first.records()[0]["PGA, g"] == 0.25
     assert run_public(settings)[0] == first
@@ -127,10 +126,10 @@ def test_a_wall_of_bricks_on_the_table(monkeypatch):
         seen.append((scene, watched))
         return ShakeTrial(0.3, 0.0, (), 0.0)
 
-    monkeypatch.setattr(shaken, "shake_once", shake)
+    monkeypatch.setattr(bench, "shake_once", shake)
     source = generated("brick", 1, count=6, height_px=10, aspect=2)
     spec = RunSpec(source=source, width=60, height=20)
-    assert shaken.pga_of(spec, execute(spec, None), None) == 0.3
+    assert bench.pga_of(spec, execute(spec, None), None) == 0.3
     ((scene, watched),) = seen
     assert scene.mu == 0.58
     assert watched == frozenset(range(1, 7)) == frozenset(scene.shapes)

@@ -4,8 +4,7 @@ from statistics import fmean, stdev
 
 import pytest
 
-from drystone_lab.public.compare import comparison
-from drystone_lab.public.results import SHAKE, Results
+from drystone_lab.public.tables import SHAKE, Results, comparison
 from tests.lab.public.test_pairs import WALLS, result
 
 

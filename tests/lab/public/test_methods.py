@@ -3,8 +3,7 @@
 import pytest
 
 from drystone.errors import UsageError
-from drystone_lab.public.methods import flat_changes, known_methods, method_named
-from drystone_lab.public.suites import walls_of
+from drystone_lab.public.suites import flat_changes, known_methods, method_named, walls_of
 
 WALL = walls_of("bricks")[0]
 

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from scipy.stats import norm, rankdata, wilcoxon
 
-from drystone_lab.public.pairs import compared, holm, pair_tables
-from drystone_lab.public.results import FIGURES, Result, Results
 from drystone_lab.public.suites import walls_of
+from drystone_lab.public.tables import FIGURES, Result, Results, compared, holm, pair_tables
 
 WALLS = walls_of("bricks")[:2]
 

@@ -10,13 +10,11 @@ from drystone_lab import packing
 from drystone_lab.public import bench
 from drystone_lab.public.bench import PublicSettings, run_public
 from drystone_lab.public.history import history_table, medians_of
-from drystone_lab.public.methods import known_methods, method_named
 from drystone_lab.public.store import BenchStore, Stamp
-from drystone_lab.public.suites import walls_of
-from drystone_lab.runs import strips
+from drystone_lab.public.suites import known_methods, method_named, walls_of
 from drystone_lab.runs.outcome import FIGURES, execute
 
-STAMP = Stamp((), "0.1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
+STAMP = Stamp("0.1.0", "2026-01-01T00:00:00+00:00", "Linux x86_64")
 WALL = walls_of("bricks")[0]
 
 
@@ -28,9 +26,9 @@ def packing_into(monkeypatch: pytest.MonkeyPatch, width: float) -> list[tuple[ob
         asked.append((len(stones), height, turns, seconds, seed))
         return width
 
-    monkeypatch.setattr(strips, "load_packer", lambda: None)
+    monkeypatch.setattr(packing, "load_packer", lambda: None)
     monkeypatch.setattr(bench, "load_packer", lambda: None)
-    monkeypatch.setattr(strips, "packed_width_px", packed)
+    monkeypatch.setattr(packing, "packed_width_px", packed)
     return asked
 
 
@@ -51,7 +49,7 @@ def test_it_fills_a_strip_as_high_as_the_wall(
 def test_it_is_in_tables_but_in_no_pairs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     packing_into(monkeypatch, 150.0)
     settings = PublicSettings(
-        suite="bricks", methods=("paper", "spyrrow", "lowest"), stamp=STAMP, quick=True, seeds=1,
+        suite="bricks", policies=("paper", "spyrrow", "lowest"), stamp=STAMP, quick=True, seeds=1,
         store=tmp_path,
     )  # fmt: skip
     walls, everything, seconds, *others = run_public(settings)
@@ -69,7 +67,7 @@ def test_it_is_in_tables_but_in_no_pairs(monkeypatch: pytest.MonkeyPatch, tmp_pa
     assert shares["spyrrow"] is None
     assert shares["paper"] > 0.5
     # What is kept is not packed again.
-    monkeypatch.setattr(strips, "packed_width_px", None)
+    monkeypatch.setattr(packing, "packed_width_px", None)
     assert run_public(settings)[0].rows == walls.rows
 
 
@@ -94,7 +92,7 @@ def test_what_is_missing_is_said_before_anything_is_done(monkeypatch: pytest.Mon
     monkeypatch.setattr(packing, "import_module", absent)
     monkeypatch.setattr(bench, "_workers", None)
     with pytest.raises(UsageError) as caught:
-        run_public(PublicSettings(suite="bricks", methods=("paper", "spyrrow"), stamp=STAMP))
+        run_public(PublicSettings(suite="bricks", policies=("paper", "spyrrow"), stamp=STAMP))
     assert caught.value.code == "E305"
 
 

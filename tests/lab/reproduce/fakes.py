@@ -8,8 +8,7 @@ from matplotlib.figure import Figure
 from drystone.errors import InputError
 from drystone_lab.reproduce.item import Context, Item, Picture
 from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.source import generated
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.spec import RunSpec, generated
 from drystone_lab.table import Table
 
 BRICKS = generated("brick", 1, count=4, height_px=10, aspect=2)
@@ -67,7 +66,7 @@ FILLING = Item(
     section="§3.4",
     paper=("Walls & <joints>.",),
     study=walls,
-    ours=lambda found: (f"We have {len(found.runs)} walls.",),
+    notes=("Walls of bricks.",),
     tables={"walls": _table},
     times={"walls": _times},
     pictures=lambda found: (_picture(found),),
@@ -77,7 +76,7 @@ WORDS = Item(
     section="5.1",
     paper=("Words.",),
     study=lambda context: context,
-    ours=lambda context: (f"Seed {context.seed}, image {context.image}.",),
+    notes=("Only words.",),
 )
 NEEDY = replace(WORDS, title="published stones", section="§5.1",
                 needs=("almeida/PR.png", "ferris/x.json"))  # fmt: skip

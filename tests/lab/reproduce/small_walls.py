@@ -7,9 +7,9 @@ from typing import Any
 
 from drystone_lab.reproduce.construction import Construction, construction
 from drystone_lab.reproduce.item import Context, Item, Output
+from drystone_lab.runs.outcome import RunStore
 from drystone_lab.runs.runner import Runner
-from drystone_lab.runs.source import generated
-from drystone_lab.runs.store import RunStore
+from drystone_lab.runs.spec import generated
 from drystone_lab.walls import Target
 
 RUBBLE = Target(

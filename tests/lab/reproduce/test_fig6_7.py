@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from drystone_lab.reproduce import fig6_7
-from drystone_lab.reproduce.places import action_at, amid_course, resting_places
-from drystone_lab.reproduce.recounted import recounted
+from drystone_lab.reproduce.construction import action_at, amid_course, resting_places
+from drystone_lab.reproduce.fig6_7 import recounted
 from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, of, rows
 from tests.naive import indices as naive
 from tests.naive.rays import local_filling_ratio

@@ -3,7 +3,7 @@ import pytest
 from scipy import ndimage
 
 from drystone_lab.reproduce import fig8
-from drystone_lab.reproduce.places import amid_course
+from drystone_lab.reproduce.construction import amid_course
 from tests.lab.reproduce.small_walls import RUBBLE, built, context, gids, of, rows
 from tests.naive import indices as naive
 from tests.naive.rays import local_filling_ratio

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from drystone_lab.reproduce import fig9
-from drystone_lab.reproduce.unstable import unstable_trials
+from drystone_lab.reproduce.fig9 import unstable_trials
 from tests.lab.reproduce.small_walls import SHARP, built, context, gids, of, rows
 from tests.naive.support import rests_stably, support_ends
 

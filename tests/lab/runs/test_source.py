@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from drystone.errors import DrystoneError, InputError
-from drystone_lab.runs.source import GENERATORS, from_file, generated, published
+from drystone_lab.runs.spec import GENERATORS, from_file, generated, published
 from tests.lab.runs.bricks import SOURCE, picture
 
 

@@ -5,8 +5,7 @@ import pytest
 
 from drystone.planner.settings import method_settings
 from drystone_lab.runs import spec as spec_module
-from drystone_lab.runs.source import StoneSource
-from drystone_lab.runs.spec import RunSpec
+from drystone_lab.runs.spec import RunSpec, StoneSource
 from tests.lab.runs.bricks import SOURCE
 
 SPEC = RunSpec(source=SOURCE, width=60, height=20)

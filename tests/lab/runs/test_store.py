@@ -4,8 +4,7 @@ from pathlib import Path
 import pytest
 
 from drystone.errors import DrystoneError
-from drystone_lab.runs.outcome import Outcome, execute
-from drystone_lab.runs.store import RunStore
+from drystone_lab.runs.outcome import Outcome, RunStore, execute
 from tests.lab.runs.bricks import run
 
 

@@ -19,7 +19,7 @@ from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.lp.program import assemble
 from drystone.statics.result import LimitStatus, Mechanism
-from drystone_lab.arches import arch
+from drystone_lab.statics_cases import arch
 from tests.naive.release import greatest_power_of_a_fall
 from tests.statics.walls import (
     JAMS,

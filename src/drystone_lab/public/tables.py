@@ -1,16 +1,242 @@
-"""Methods beside each other: differences of pairs of walls of the same seed, and a ranking."""
+"""What methods came to on walls, and the tables that compare them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations, compress
-from statistics import fmean
+from itertools import combinations, compress, groupby
+from math import fsum, sqrt
+from statistics import fmean, stdev
+from types import MappingProxyType
 
 import numpy as np
 from scipy.stats import rankdata, wilcoxon
 
 from drystone_lab.paired import COVERED, RESAMPLES
-from drystone_lab.public.results import DECIMALS, HIGHER_IS_BETTER, Results
+from drystone_lab.runs.outcome import Outcome
 from drystone_lab.table import Cell, Table
+from drystone_lab.walls import Target
+
+PLACED = "placed"
+SHAKE = "PGA"
+
+HIGHER_IS_BETTER: Mapping[str, bool] = MappingProxyType(
+    {PLACED: True, "F_SF": True, "F_AV": True, "F_AH": False, "F_LR": True, SHAKE: True}
+)
+"""The figures that are compared: share of the stones that is placed, the paper's four, and the
+amplitude that a wall stands on a shaking table, in g, where it was shaken."""
+
+FIGURES = tuple(name for name in HIGHER_IS_BETTER if name != SHAKE)
+"""Of walls that were not shaken."""
+
+DECIMALS = 9
+"""Values that agree so far are equal: they differ by rounding errors of sums."""
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A wall that a method built.
+
+    Parameters
+    ----------
+    wall : Target
+        What was to be built.
+    method : str
+        Name of the method.
+    seed : int
+        Of the plan.
+    figures : dict of str to float or None
+        By the names of :data:`HIGHER_IS_BETTER`; None where a figure is not defined, such as F_LR
+        of a wall that could not be analysed.
+    seconds : float
+        From the stones to the last step.
+    """
+
+    wall: Target
+    method: str
+    seed: int
+    figures: Mapping[str, float | None]
+    seconds: float
+
+    @classmethod
+    def of(cls, wall: Target, method: str, seed: int, outcome: Outcome) -> "Result":
+        """Take the figures of an outcome."""
+        found = outcome.figures
+        figures: dict[str, float | None] = {name: found[name] for name in FIGURES[1:]}
+        placed, stones = found["placed"], found["stones"]
+        figures[PLACED] = None if placed is None or not stones else placed / stones
+        return cls(wall, method, seed, figures, outcome.times["wall"])
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """Results of every method on every wall with every seed.
+
+    Parameters
+    ----------
+    all : tuple of Result
+        Of each method on each wall for the same seeds.
+    """
+
+    all: tuple[Result, ...]
+
+    @property
+    def walls(self) -> tuple[Target, ...]:
+        """Walls, in order."""
+        return tuple(dict.fromkeys(result.wall for result in self.all))
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """Methods, in order."""
+        return tuple(dict.fromkeys(result.method for result in self.all))
+
+    @property
+    def figures(self) -> tuple[str, ...]:
+        """Figures that walls have."""
+        shaken = any(SHAKE in result.figures for result in self.all)
+        return (*FIGURES, SHAKE) if shaken else FIGURES
+
+    def of(self, method: str, wall: Target | None = None) -> tuple[Result, ...]:
+        """Return the results of a method on a wall or on all, in one order for all methods."""
+        found = [r for r in self.all if r.method == method and wall in (None, r.wall)]
+        order = {known: number for number, known in enumerate(self.walls)}
+        return tuple(sorted(found, key=lambda result: (order[result.wall], result.seed)))
+
+    def values(
+        self, method: str, figure: str, wall: Target | None = None
+    ) -> tuple[float | None, ...]:
+        """Return a figure of the results of a method, as :meth:`of` orders them."""
+        return tuple(result.figures[figure] for result in self.of(method, wall))
+
+    def counting(self, one: str, other: str) -> tuple[bool, ...]:
+        """Say which results of two methods, as :meth:`of` orders them, count as pairs.
+
+        On a wall where neither method depends on the seed all pairs are copies of one, which
+        counts once: they are no more evidence than it.
+        """
+        counts: list[bool] = []
+        pairs = zip(self.of(one), self.of(other), strict=True)
+        for _, group in groupby(pairs, key=lambda pair: pair[0].wall):
+            figures = [(_comparable(first), _comparable(second)) for first, second in group]
+            copies = len(set(figures)) == 1
+            counts += [number == 0 or not copies for number in range(len(figures))]
+        return tuple(counts)
+
+
+def _comparable(result: Result) -> tuple[float | None, ...]:
+    """Return the figures without the rounding errors of sums."""
+    figures = (result.figures[name] for name in sorted(result.figures))
+    return tuple(None if value is None else round(value, DECIMALS) for value in figures)
+
+
+def best_of(values: Sequence[float], figure: str) -> float:
+    """Return the best of at least one value of a figure."""
+    return max(values) if HIGHER_IS_BETTER[figure] else min(values)
+
+
+UNITS = {PLACED: "placed share", SHAKE: "PGA, g"}
+"""Figures that are written otherwise in tables."""
+
+
+def comparison(results: Results) -> tuple[Table, ...]:
+    """Return the figures of every method on every wall, on all walls, and the times."""
+    walls = Table(
+        "Walls: mean over seeds, standard deviation (±), best",
+        ("wall", "method", "seeds", *_columns(results.figures)),
+        tuple(
+            (wall.name, method, len(results.of(method, wall)),
+             *_cells(results.figures, [results.of(method, wall)]))
+            for wall in results.walls
+            for method in results.methods
+        ),
+        (
+            "Higher is better, for F_AH lower. Seconds are in a table of their own.",
+            *_undefined(results),
+        ),
+    )  # fmt: skip
+    everything = Table(
+        "All walls",
+        ("method", "walls", *_columns(results.figures)),
+        tuple(
+            (method, len(results.of(method)),
+             *_cells(results.figures, [results.of(method, wall) for wall in results.walls]))
+            for method in results.methods
+        ),
+        (
+            "Means over walls of their means and of their best; ±: the spread over seeds, root "
+            "mean square of the walls' standard deviations.",
+        ),
+    )  # fmt: skip
+    return walls, everything, _times(results)
+
+
+def _columns(figures: Sequence[str]) -> tuple[str, ...]:
+    named = ((UNITS.get(figure, figure), figure) for figure in figures)
+    return tuple(text for name, short in named for text in (name, f"±{short}", f"best {short}"))
+
+
+def _cells(figures: Sequence[str], walls: Sequence[Sequence[Result]]) -> tuple[Cell, ...]:
+    """Return mean, spread and best of every figure; None where no wall of the method has it."""
+    cells: list[Cell] = []
+    for figure in figures:
+        defined = [
+            [value for result in each if (value := result.figures[figure]) is not None]
+            for each in walls
+        ]
+        found = [values for values in defined if values]
+        spreads = [stdev(values) for values in found if len(values) > 1]
+        cells += [
+            _mean([fmean(values) for values in found]),
+            _rounded(sqrt(fsum(s * s for s in spreads) / len(spreads))) if spreads else None,
+            _mean([best_of(values, figure) for values in found]),
+        ]
+    return tuple(cells)
+
+
+_NOT_SHAKEN = "nothing was built, or it does not stand at rest in the engine"
+
+
+def _undefined(results: Results) -> tuple[str, ...]:
+    """Say how many walls have no value of a figure, which is left out of means and never 0."""
+    notes = []
+    for figure in results.figures:
+        counts = {m: results.values(m, figure).count(None) for m in results.methods}
+        if any(counts.values()):
+            said = ", ".join(
+                f"{method} {count} of {len(results.of(method))}"
+                for method, count in counts.items()
+                if count
+            )
+            why = f"{_NOT_SHAKEN}; " if figure == SHAKE else ""
+            notes.append(
+                f"{figure} is not defined for walls of {said}: {why}left out of means, never 0."
+            )
+    return tuple(notes)
+
+
+def _times(results: Results) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for wall in results.walls:
+        for method in results.methods:
+            found = results.of(method, wall)
+            seconds = [result.seconds for result in found]
+            spread = _rounded(stdev(seconds), 3) if len(seconds) > 1 else None
+            rows.append(
+                (wall.name, method, _rounded(fmean(seconds), 3), spread, _rounded(min(seconds), 3))
+            )
+    return Table(
+        "Seconds a wall, from the stones to the last step",
+        ("wall", "method", "s", "±s", "least s"),
+        tuple(rows),
+        ("They depend on the machine and on what else it did; all else here does not.",),
+    )
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    return _rounded(fmean(values)) if values else None
+
+
+def _rounded(value: float, digits: int = 4) -> float:
+    return float(f"{value:.{digits}g}")
+
 
 LEVEL = 1 - COVERED
 """Of significance."""

@@ -1,0 +1,214 @@
+"""Walls side by side on a sheet, each with a title."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from drystone.drawing.canvas import draw_block, draw_ground, fit_axes
+from drystone.drawing.outlines import label_regions
+from drystone.drawing.palette import PLAIN_COLOUR, cluster_colour
+from drystone.drawing.pictures.wall import plot_wall
+from drystone.model.wall import Labels, Wall
+
+FIGURE_IN = 11.0
+"""Width of the sheet where that leaves room for its panels."""
+
+NARROWEST_IN = 3.2
+"""Width of a panel at least."""
+
+LEFT_IN, BELOW_IN = 0.4, 0.38
+"""Beside a panel and below it, for its ticks."""
+
+LINE_IN, ABOVE_IN = 0.16, 0.12
+"""Above it: a line of its title, and some room."""
+
+TITLE_PT = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """A picture on a sheet.
+
+    Parameters
+    ----------
+    title : str
+        Written above, in lines, or "".
+    aspect : float
+        Height over width of what is drawn.
+    draw : callable
+        Draws it on axes; without it the place stays empty.
+    """
+
+    title: str
+    aspect: float
+    draw: Callable[[Axes], object] | None
+
+
+EMPTY = Panel("", 0.0, None)
+"""A place without a picture."""
+
+
+def sheet_of(panels: Sequence[Panel], columns: int) -> Figure:
+    """Draw panels in rows, all of one width.
+
+    Parameters
+    ----------
+    panels : sequence of Panel
+        At least one.
+    columns : int
+        Panels in a row.
+
+    Returns
+    -------
+    Figure
+        An axes a panel that is not empty, in their order, without legends: one below every small
+        picture would say the same again and again.
+
+    Raises
+    ------
+    ValueError
+        There is no panel, or no column.
+
+    Examples
+    --------
+    >>> figure = sheet_of([Panel("a", 0.5, lambda ax: ax.plot([1, 2])), EMPTY], 2)
+    >>> [ax.get_title(loc="left") for ax in figure.axes]
+    ['a']
+    """
+    if not panels or columns < 1:
+        raise ValueError("there must be a panel and a column")
+    columns = min(columns, len(panels))
+    across = max(NARROWEST_IN, FIGURE_IN / columns - LEFT_IN)
+    rows = [panels[first : first + columns] for first in range(0, len(panels), columns)]
+    above = [ABOVE_IN + LINE_IN * max(len(p.title.splitlines()) for p in row) for row in rows]
+    tall = [across * max(panel.aspect for panel in row) for row in rows]
+    width = columns * (across + LEFT_IN)
+    height = sum(above) + sum(tall) + BELOW_IN * len(rows)
+    figure = Figure(figsize=(width, height))
+    bottom = height
+    for row, up, high in zip(rows, above, tall, strict=True):
+        bottom -= up + high
+        for column, panel in enumerate(row):
+            left = LEFT_IN + column * (across + LEFT_IN)
+            box = (left / width, bottom / height, across / width, high / height)
+            _draw(figure, box, panel)
+        bottom -= BELOW_IN
+    return figure
+
+
+def _draw(figure: Figure, box: tuple[float, float, float, float], panel: Panel) -> None:
+    if panel.draw is None:
+        return
+    ax = figure.add_axes(box)
+    # Pictures lower than their row hang from its title.
+    ax.set_anchor("NW")
+    panel.draw(ax)
+    legend = ax.get_legend()
+    if legend is not None:
+        legend.remove()
+    ax.tick_params(labelsize=6)
+    ax.set_title(panel.title, fontsize=TITLE_PT, loc="left", pad=3)
+
+
+TitledWall = tuple[str, Wall, Mapping[int, int] | None]
+"""What is written above a wall, the wall, and the cluster of each of its stones by id."""
+
+MARGIN, GROUND = 0.015, 0.035
+"""What pictures of walls leave beside and above them, over their width, and the depth of the ground
+over their height or a fifth of their width."""
+
+
+def plot_walls(walls: Sequence[TitledWall], columns: int) -> Figure:
+    """Draw walls in rows, stones coloured by cluster and numbered in order, wedges dark red.
+
+    Parameters
+    ----------
+    walls : sequence of (str, Wall, mapping or None)
+        At least one: title (of lines, or ""), wall, and clusters by stone or None for stones in
+        one colour.
+    columns : int
+        Walls in a row.
+
+    Returns
+    -------
+    Figure
+        An axes a wall, in their order, each in its own scale; px or m as in
+        :func:`drystone.drawing.plot_wall`.
+
+    Raises
+    ------
+    ValueError
+        There is no wall, or no column.
+    """
+    return sheet_of([wall_panel(*wall) for wall in walls], columns)
+
+
+def wall_panel(title: str, wall: Wall, clusters: Mapping[int, int] | None) -> Panel:
+    """Return a wall as a panel of a sheet; see :func:`plot_walls`."""
+
+    def draw(ax: Axes) -> Axes:
+        return plot_wall(wall, clusters, ax)
+
+    return Panel(title, wall_aspect(wall.site.height_px / wall.site.width_px), draw)
+
+
+def wall_aspect(aspect: float) -> float:
+    """Return height over width of a wall's picture, the ground included, from those of the wall.
+
+    Examples
+    --------
+    >>> round(wall_aspect(0.5), 4)
+    0.517
+    """
+    return (aspect + MARGIN + GROUND * max(aspect, 0.2)) / (1 + 2 * MARGIN)
+
+
+def plot_masonry(
+    labels: Labels,
+    clusters: Mapping[int, int] | None = None,
+    ax: Axes | None = None,
+    *,
+    units_per_px: float = 1.0,
+) -> Axes:
+    """Draw the stones of a wall, coloured by cluster, on the ground.
+
+    Parameters
+    ----------
+    labels : (h, w) integer array
+        0 where nothing is; row 0 at the top, the ground below the last row.
+    clusters : mapping of int to int, optional
+        Cluster of each stone's id, from 1; None, or a stone that it does not name: one colour.
+    ax : Axes, optional
+        Where to draw; None makes a figure.
+    units_per_px : float
+        Source px in a px of the image.
+
+    Returns
+    -------
+    ax : Axes
+        In source px, y up from the ground.
+    """
+    height, width = (units_per_px * size for size in labels.shape)
+    margin, depth = 0.015 * width, 0.035 * max(height, 0.2 * width)
+    ax = fit_axes(ax, (-margin, -depth, width + margin, height + margin))
+    draw_ground(ax, -margin, width + margin, depth)
+    for region in label_regions(labels):
+        cluster = (clusters or {}).get(region.id)
+        fill = PLAIN_COLOUR if cluster is None else cluster_colour(cluster)
+        loops = tuple(loop * units_per_px for loop in region.loops)
+        draw_block(ax, loops, f"stone-{region.id}", fill=fill, zorder=1)
+    ax.set_xlabel("px", fontsize=7, labelpad=1)
+    return ax
+
+
+def masonry_panel(
+    title: str, labels: Labels, clusters: Mapping[int, int] | None, units_per_px: float
+) -> Panel:
+    """Return such a wall as a panel of a sheet; see :func:`plot_masonry`."""
+
+    def draw(ax: Axes) -> Axes:
+        return plot_masonry(labels, clusters, ax, units_per_px=units_per_px)
+
+    return Panel(title, wall_aspect(labels.shape[0] / labels.shape[1]), draw)

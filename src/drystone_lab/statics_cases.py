@@ -1,0 +1,342 @@
+"""Walls and arches whose load factor is known from a formula, or from other people's programs."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from drystone.contacts.given import model_from_json
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import RigidBlockModel
+
+Rectangle = tuple[float, float, float, float]
+"""x, y of the lower left corner, width, height."""
+
+BLOCKS = (
+    (1.0, 1.0, 0.3),
+    (1.0, 2.0, 0.7),
+    (1.0, 4.0, 0.65),
+    (2.0, 1.0, 0.65),
+    (0.2, 1.0, 0.7),
+)
+"""Width, height and mu of single blocks; the last is that of Portioli's examples."""
+
+PAIRS = ((1.0, 1.0, 0.65), (2.0, 1.0, 0.65), (3.0, 0.5, 0.9))
+"""Width, height and mu of two equal blocks, one on the other."""
+
+SHIFTS = (0.0, 0.1, 0.2, 0.4, 0.5)
+"""How far the upper of two unit blocks is shifted towards +x."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """Rectangles on the ground and the load factors they must have.
+
+    Parameters
+    ----------
+    name : str
+        For people.
+    rectangles : tuple of (x, y, width, height)
+        Blocks 1, 2, ...
+    mu : float
+        Coefficient of friction.
+    left, right : float
+        Load factors towards -x and +x on the tilting table, the same for both flow rules: a
+        stack with one bed a course is statically determinate.
+    """
+
+    name: str
+    rectangles: tuple[Rectangle, ...]
+    mu: float
+    left: float
+    right: float
+
+    @property
+    def data(self) -> Mapping[str, Any]:
+        """The case as a block model file."""
+        return {"blocks_xywh": self.rectangles, "mu": self.mu}
+
+    @property
+    def model(self) -> RigidBlockModel:
+        """The case as a model.
+
+        Examples
+        --------
+        >>> len(running_bond().model.blocks)
+        10
+        """
+        return model_from_json(self.data)
+
+
+def single_block(width: float, height: float, mu: float) -> Case:
+    """Return a block that slides at mu or overturns about its toe at b/h."""
+    alpha = min(mu, width / height)
+    name = f"block {width:g} x {height:g}: min(mu, b/h)"
+    return Case(name, ((0.0, 0.0, width, height),), mu, alpha, alpha)
+
+
+def two_equal_blocks(width: float, height: float, mu: float) -> Case:
+    """Return two aligned blocks, which overturn as one at b/(2h)."""
+    alpha = min(mu, width / (2.0 * height))
+    rows = ((0.0, 0.0, width, height), (0.0, height, width, height))
+    return Case(f"two blocks {width:g} x {height:g}: min(mu, b/(2h))", rows, mu, alpha, alpha)
+
+
+def offset_stack(shift: float, mu: float) -> Case:
+    """Return a unit block on a unit block, shifted by 0 to .5 towards +x.
+
+    Towards +x the upper block overturns about the lower one's edge at (.5 - s) / .5, both about
+    the ground at (.5 + .5 - s) / (.5 + 1.5); towards -x the upper block at 1, both at
+    (.5 + .5 + s) / (.5 + 1.5).
+
+    Examples
+    --------
+    >>> case = offset_stack(0.25, mu=0.9)
+    >>> case.left, case.right
+    (0.625, 0.375)
+    """
+    right = min(mu, (0.5 - shift) / 0.5, (1.0 - shift) / 2.0)
+    left = min(mu, 1.0, (1.0 + shift) / 2.0)
+    rows = ((0.0, 0.0, 1.0, 1.0), (shift, 1.0, 1.0, 1.0))
+    return Case(f"unit block on unit block, shifted by {shift:g}", rows, mu, left, right)
+
+
+def running_bond() -> Case:
+    """Return bricks 2 x 1 in four courses of running bond, 4 wide; they slide at mu = .58.
+
+    No closed form; the value that a public program for block assemblies prints for this wall.
+    """
+    whole = ((0.0, 2.0), (2.0, 2.0))
+    halves = ((0.0, 1.0), (1.0, 2.0), (3.0, 1.0))
+    rows = tuple(
+        (x, float(course), width, 1.0)
+        for course in range(4)
+        for x, width in (whole, halves)[course % 2]
+    )
+    return Case("running bond of four courses, bricks 2 x 1: mu", rows, 0.58, 0.58, 0.58)
+
+
+def closed_forms() -> tuple[Case, ...]:
+    """Return all cases of this page."""
+    return (
+        *(single_block(*block) for block in BLOCKS),
+        *(two_equal_blocks(*pair) for pair in PAIRS),
+        *(offset_stack(shift, mu) for mu in (0.9, 0.3) for shift in SHIFTS),
+        running_bond(),
+    )
+
+
+NO_SLIDING = 50.0
+"""A coefficient of friction at which nothing slides in an arch."""
+
+THINNEST, THICKEST = 0.01, 0.4
+"""Range of t/R in which the least thickness is sought."""
+
+
+@dataclass(frozen=True)
+class ArchCase:
+    """An arch and the least thickness it must have.
+
+    Parameters
+    ----------
+    count : int
+        Voussoirs.
+    mu : float
+        Coefficient of friction.
+    least : float or None
+        Least t/R, to five digits; None when no thickness up to `THICKEST` stands.
+    """
+
+    count: int
+    mu: float
+    least: float | None
+
+
+WITHOUT_SLIDING = (
+    ArchCase(9, NO_SLIDING, 0.10213),
+    ArchCase(11, NO_SLIDING, 0.10491),
+    ArchCase(16, NO_SLIDING, 0.10724),
+    ArchCase(20, NO_SLIDING, 0.10746),
+    ArchCase(27, NO_SLIDING, 0.10678),
+    ArchCase(40, NO_SLIDING, 0.10746),
+    ArchCase(100, NO_SLIDING, 0.10746),
+)
+
+WITH_FRICTION = (
+    ArchCase(40, 0.5, 0.10746),
+    ArchCase(40, 0.4, 0.10746),
+    ArchCase(40, 0.35, 0.15182),
+    ArchCase(40, 0.32, 0.18544),
+    ArchCase(40, 0.3, None),
+)
+
+
+def arch(count: int, thickness: float, mu: float) -> RigidBlockModel:
+    """Make an arch with the joints of its corners, and area and centroid of annular sectors.
+
+    Examples
+    --------
+    >>> model = arch(9, 0.2, mu=0.6)
+    >>> len(model.blocks), len(model.interfaces)
+    (9, 10)
+    """
+    inner, outer = 1.0 - thickness / 2.0, 1.0 + thickness / 2.0
+    angles = np.linspace(0.0, math.pi, count + 1)
+    blocks = []
+    for number, (first, last) in enumerate(pairwise(angles.tolist()), start=1):
+        polar = ((inner, first), (outer, first), (outer, last), (inner, last))
+        corners = [[r * math.cos(t), max(0.0, r * math.sin(t))] for r, t in polar]
+        blocks.append({"id": number, "polygon": corners})
+    model = model_from_json({"blocks": blocks, "mu": mu})
+    half = math.pi / count / 2.0
+    area = half * (outer**2 - inner**2)
+    radius = 2.0 / 3.0 * math.sin(half) / half * (outer**3 - inner**3) / (outer**2 - inner**2)
+    sectors = tuple(
+        replace(
+            block,
+            area=area,
+            centroid=(radius * math.cos(middle), radius * math.sin(middle)),
+        )
+        for block, middle in zip(model.blocks, (angles[:-1] + half).tolist(), strict=True)
+    )
+    return RigidBlockModel(sectors, model.interfaces, mu)
+
+
+def stands(count: int, thickness: float, mu: float) -> bool:
+    """Tell whether an arch stands under its own weight."""
+    return lateral_resistance(arch(count, thickness, mu)).stable
+
+
+def least_thickness(count: int, mu: float, tolerance: float) -> float | None:
+    """Find the thickness over the mean radius at which an arch first stands, by bisection.
+
+    Parameters
+    ----------
+    count : int
+        Voussoirs.
+    mu : float
+        Coefficient of friction.
+    tolerance : float
+        The arch stands at what is returned, and falls at this much less.
+
+    Returns
+    -------
+    float or None
+        None when it does not stand at `THICKEST` either.
+    """
+    falls, carries = THINNEST, THICKEST
+    if not stands(count, carries, mu):
+        return None
+    while carries - falls > tolerance:
+        middle = (falls + carries) / 2.0
+        if stands(count, middle, mu):
+            carries = middle
+        else:
+            falls = middle
+    return carries
+
+
+HEIGHT, MU = 1.75, 0.65
+
+Course = tuple[tuple[int, int], ...]
+"""Where blocks begin and end."""
+
+A: Course = ((0, 2), (2, 6), (6, 10), (10, 14), (14, 18), (18, 20))
+B: Course = ((0, 4), (4, 8), (8, 12), (12, 16), (16, 20))
+P: Course = ((0, 4), (4, 8), (8, 12), (12, 16))
+Q: Course = ((0, 2), (2, 6), (6, 10), (10, 14), (14, 16))
+Q_OPEN: Course = ((0, 2), (2, 6), (10, 14), (14, 16))
+P_OPEN: Course = ((0, 4), (4, 6), (10, 12), (12, 16))
+A_OPEN: Course = ((0, 4), (8, 12), (16, 20))
+B_OPEN: Course = ((0, 2), (2, 4), (8, 10), (10, 12), (16, 18), (18, 20))
+C: Course = ((0, 2), (2, 6), (6, 10), (10, 12))
+D: Course = ((0, 4), (4, 8), (8, 12))
+C_OPEN: Course = ((0, 4), (8, 12))
+D_OPEN: Course = ((0, 2), (2, 4), (8, 10), (10, 12))
+E: Course = ((0, 2), (2, 6), (6, 10), (10, 14), (14, 18), (18, 22), (22, 26), (26, 28))
+F: Course = ((0, 4), (4, 8), (8, 12), (12, 16), (16, 20), (20, 24), (24, 28))
+E_OPEN: Course = ((0, 2), (2, 6), (10, 14), (14, 18), (22, 26), (26, 28))
+F_OPEN: Course = ((0, 4), (4, 6), (10, 12), (12, 16), (16, 18), (22, 24), (24, 28))
+
+
+@dataclass(frozen=True)
+class FerrisWall:
+    """One of the examples.
+
+    Parameters
+    ----------
+    number : int
+        1 to 6, as published.
+    courses : tuple of courses
+        Bottom first.
+    blocks, contacts : int
+        How many there are.
+    associative : float
+        Load factor, the same in both directions.
+    nonassociative : (float, float)
+        Range of accepted load factors without dilatancy; never above the associative one.
+    may_not_converge : bool
+        An answer without a factor is accepted too.
+    """
+
+    number: int
+    courses: tuple[Course, ...]
+    blocks: int
+    contacts: int
+    associative: float
+    nonassociative: tuple[float, float]
+    may_not_converge: bool = False
+
+    @property
+    def rectangles(self) -> tuple[tuple[float, float, float, float], ...]:
+        """Blocks as x, y, width, height, course by course and from left to right."""
+        return tuple(
+            (float(left), HEIGHT * course, float(right - left), HEIGHT)
+            for course, ranges in enumerate(self.courses)
+            for left, right in ranges
+        )
+
+    @property
+    def model(self) -> RigidBlockModel:
+        """The wall as a model.
+
+        Examples
+        --------
+        >>> model = WALLS[0].model
+        >>> len(model.blocks), len(model.interfaces)
+        (33, 83)
+        """
+        return model_from_json({"blocks_xywh": self.rectangles, "mu": MU})
+
+
+_DOORS_3 = (Q_OPEN, P_OPEN)
+_DOORS_4 = (A_OPEN, B_OPEN)
+_DOORS_5 = (C_OPEN, D_OPEN)
+_DOORS_6 = (E_OPEN, F_OPEN)
+
+WALLS = (
+    FerrisWall(1, (A, B) * 3, 33, 83, 0.64286, (0.638, 0.650)),
+    FerrisWall(2, (A, B) * 5, 55, 141, 0.58000, (0.550, 0.564)),
+    FerrisWall(3, (P, Q, P, *_DOORS_3 * 2, Q_OPEN, P, Q, P), 46, 102, 0.40369, (0.350, 0.361)),
+    FerrisWall(4, (A, B, A, *_DOORS_4 * 2, A_OPEN, A, B, A), 55, 116, 0.33195, (0.262, 0.267)),
+    FerrisWall(
+        5,
+        (*(C, D, C, *_DOORS_5 * 2, C_OPEN) * 2, C, D, C),
+        61,
+        120,
+        0.23964,
+        (0.205, 0.217),
+    ),
+    FerrisWall(
+        6,
+        (E, F, E, F, *_DOORS_6 * 2, E_OPEN, F, E, F, *_DOORS_6 * 2, E_OPEN, F, E, F, E),
+        146,
+        345,
+        0.34782,
+        (0.0, 0.34783),
+        may_not_converge=True,
+    ),
+)
