@@ -34,15 +34,7 @@ BESIDE_PT = ((10.0, 9.0), (-10.0, 9.0), (10.0, -9.0), (-10.0, -9.0))
 
 
 def draw(drawing: Drawing, ax: Axes | None = None) -> Axes:
-    """Draw all of a drawing.
-
-    Parameters
-    ----------
-    drawing : Drawing
-        What is drawn.
-    ax : Axes, optional
-        Where; None makes a figure.
-    """
+    """Draw all of a drawing, on axes of its own when there are none."""
     ax = fit_axes(ax, drawing.box)
     add(ax, drawing.items)
     if drawing.unit:

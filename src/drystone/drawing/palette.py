@@ -38,11 +38,6 @@ def cluster_colour(cluster: int) -> str:
 
     The sixteen colours come round again in a darker tone for clusters 17 to 32, then all over.
 
-    Raises
-    ------
-    ValueError
-        When the number is below 1.
-
     Examples
     --------
     >>> cluster_colour(1), cluster_colour(17), cluster_colour(33)

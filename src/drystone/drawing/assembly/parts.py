@@ -207,13 +207,7 @@ class Assembly:
         return tuple(sorted(found))
 
     def source_corners(self, part: Part) -> Points:
-        """Return the outline of a stone where it lies in the source image, px, y up.
-
-        Raises
-        ------
-        ValueError
-            For a wedge, which is in no image.
-        """
+        """Return the outline of a stone where it lies in the source image, px, y up."""
         step = part.plan_step
         if not isinstance(step, StoneStep):
             raise TypeError(f"{part.name} is in no image")

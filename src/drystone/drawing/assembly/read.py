@@ -104,11 +104,6 @@ def outer_loop(loops: Sequence[Points]) -> Points:
 
     A pit that meets the outside at a corner of a pixel is a hole too: an outline with it would
     touch itself, and bound no solid.
-
-    Parameters
-    ----------
-    loops : sequence of (n, 2) float array
-        Outlines and holes, not closed; holes are clockwise.
     """
     largest = max(loops, key=lambda loop: area_and_centroid(loop)[0])
     polygon = shapely.Polygon(largest)

@@ -23,19 +23,10 @@ written when one of several formats cannot be.
 
 @dataclass(frozen=True)
 class Format:
-    """A format.
+    """A format: its files, what they are in words, and whether it needs a scale (E131).
 
-    Parameters
-    ----------
-    made_by : str
-        Module of :mod:`drystone.drawing.export` and, of the name of the format, its function, which
-        is given an assembly and settings and returns `Files`.
-    writes : tuple of str
-        The names of its files; a folder of its own ends in ``/``.
-    text : str
-        What they are, for people.
-    metric : bool
-        Whether it means nothing without a scale (E131).
+    `made_by` names a module of this package and, as the format is called, its function from an
+    assembly and settings to `Files`.  In `writes` a folder ends in ``/``.
     """
 
     made_by: str
@@ -71,13 +62,7 @@ def write_files(files: Files, folder: "Path") -> "tuple[Path, ...]":
 
 
 def load_extra(module: str, extra: str, code: str, where: str) -> Any:
-    """Return a module that not every installation has.
-
-    Raises
-    ------
-    UsageError
-        Of this code, with what to install.
-    """
+    """Return a module that not every installation has; UsageError says what to install."""
     try:
         return import_module(module)
     except ImportError as error:

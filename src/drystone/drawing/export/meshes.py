@@ -100,14 +100,7 @@ def stl(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
 
 
 def stl_bytes(solid: Solid, title: str) -> bytes:
-    """Return a solid as binary STL; its 80 bytes of header hold a title.
-
-    Examples
-    --------
-    >>> box = Solid(np.zeros((3, 3)), np.zeros((0, 3), int))
-    >>> len(stl_bytes(box, "nothing"))
-    84
-    """
+    """Return a solid as binary STL; its 80 bytes of header hold a title."""
     facets = np.zeros(len(solid.triangles), _FACET)
     facets["normal"] = solid.normals
     facets["corners"] = solid.vertices[solid.triangles]

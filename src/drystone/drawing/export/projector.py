@@ -32,10 +32,7 @@ BAR_M = 0.1
 def projector(assembly: Assembly, settings: ExportSettings) -> Files:
     """Return a picture of the empty wall, which the projector is aligned by, and one a step.
 
-    Raises
-    ------
-    UsageError
-        E187 when the wall is not in the picture of the projector, marks included.
+    E187 when the wall, marks included, is not in the picture of the projector.
     """
     view = _view(assembly, settings)
     parts: list[Part | None] = [None, *assembly.parts]

@@ -28,15 +28,7 @@ NOTABLE = 0.02
 
 @dataclass(frozen=True)
 class Drawn:
-    """A picture that was written, or not.
-
-    Parameters
-    ----------
-    path : str or None
-        Where it is; None when it could not be written.
-    words : str
-        The same, with what there is to know.
-    """
+    """A picture: its path, None when it could not be written, and the same in words."""
 
     path: str | None
     words: str

@@ -30,20 +30,8 @@ HEIGHT_IN = 5.0
 class FailureView:
     """A wall and what fails in it; lengths in source px, wall frame.
 
-    Parameters
-    ----------
-    title : str
-        What it shows, in a line.
-    planned : mapping of int to (n, 2) float array
-        Every block where it was planned.
-    concerned : sequence of int
-        Ids of the blocks that fail.
-    ended : mapping of int to (n, 2) float array
-        Where blocks ended; the others are where they were planned.
-    common : sequence of (n, 2) float arrays
-        Areas that two blocks claim.
-    size : (float, float) or None
-        Width and height of the wall that was to be built.
+    `concerned` are the blocks that fail, `ended` where blocks ended that moved, `common` areas that
+    two blocks claim, `size` that of the wall that was to be built.
     """
 
     title: str
@@ -64,18 +52,7 @@ class FailureView:
 
 
 def plot_failures(views: Sequence[FailureView]) -> Figure:
-    """Draw one or more views under each other.
-
-    Parameters
-    ----------
-    views : sequence of FailureView
-        At least one.
-
-    Returns
-    -------
-    Figure
-        To be written with :func:`drystone.drawing.save`.
-    """
+    """Draw one or more views under each other."""
     boxes = [view.box for view in views]
     heights = [min(WIDTH_IN * (y1 - y0) / (x1 - x0), HEIGHT_IN) for x0, y0, x1, y1 in boxes]
     gap = TITLE_IN + LEGEND_IN
@@ -90,22 +67,10 @@ def plot_failures(views: Sequence[FailureView]) -> Figure:
 
 
 def plot_failure(view: FailureView, ax: Axes | None = None) -> Axes:
-    """Draw a wall and what fails in it.
+    """Draw a wall and what fails in it, in source px.
 
     Blocks are drawn where they ended; those that fail are coloured and numbered, dashed lines
     show where they, and others that have moved, were planned.
-
-    Parameters
-    ----------
-    view : FailureView
-        What to draw.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-
-    Returns
-    -------
-    ax : Axes
-        Wall frame, source px.
     """
     items: list[Item] = [*ground(view.box)]
     legend: dict[str, Area | Lines] = {}

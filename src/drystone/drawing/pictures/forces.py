@@ -37,16 +37,9 @@ VISIBLE_SHARE = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Resultant:
-    """What an interface carries.
+    """What an interface carries: the force on the block that its normal points into.
 
-    Parameters
-    ----------
-    interface : Interface
-        Which one.
-    point : (2,) float array
-        Where the line of the force crosses that of the interface, wall frame.
-    force : (2,) float array
-        On the block that the normal points into, to the right and up, weights of the model.
+    The line of the force crosses that of the interface at `point`.
     """
 
     interface: Interface
@@ -60,25 +53,10 @@ class Resultant:
 
 
 def resultants(model: RigidBlockModel, forces: Floats) -> tuple[Resultant, ...]:
-    """Add up the forces at the contact points of every interface.
+    """Add up the forces at the contact points of every interface that carries anything.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Interfaces with one or two points.
-    forces : (m, 2) float array
-        Normal and tangential force at every contact point as
-        :attr:`drystone.statics.result.LimitResult.forces` has them.
-
-    Returns
-    -------
-    tuple of Resultant
-        Of the interfaces that carry anything.
-
-    Raises
-    ------
-    ValueError
-        When there are more or fewer forces than contact points.
+    `forces` are normal and tangential, (m, 2), as in
+    :attr:`drystone.statics.result.LimitResult.forces`.
 
     Examples
     --------

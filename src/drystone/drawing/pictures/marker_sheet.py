@@ -34,20 +34,10 @@ _GREY = "#444444"
 
 @dataclass(frozen=True)
 class MarkerSheets:
-    """What is to be printed.
+    """What is to be printed: markers in their order, four a sheet, or one a page.
 
-    Parameters
-    ----------
-    ids : tuple of int
-        Markers in their order; sheets take four each.
-    size_m : float
-        Side of the black square, metres.
-    dictionary : str
-        ``"aruco"`` or ``"apriltag"``.
-    page : str
-        ``"A4"``, ``"A3"`` or ``"letter"``.
-    single : bool
-        One marker a page instead of four.
+    `size_m` is the side of the black square, `dictionary` ``"aruco"`` or ``"apriltag"``, `page`
+    ``"A4"``, ``"A3"`` or ``"letter"``.
     """
 
     ids: tuple[int, ...]
@@ -66,12 +56,8 @@ class MarkerSheets:
 def write_marker_sheets(sheets: MarkerSheets, path: str | Path) -> None:
     """Write a PDF, 1:1, with the same bytes for the same sheets.
 
-    Raises
-    ------
-    UsageError
-        E174: they do not fit on the page, or the family has no such markers; E305 without OpenCV.
-    PlanError
-        E206 when the file cannot be written; an existing one is as it was.
+    E174 when they do not fit on the page, or the family has no such markers; E305 without OpenCV;
+    E206 when the file cannot be written.
     """
     undated = {"CreationDate": None, "Producer": None, "Creator": None}
     with BytesIO() as file:
@@ -83,13 +69,7 @@ def write_marker_sheets(sheets: MarkerSheets, path: str | Path) -> None:
 
 
 def marker_page(sheets: MarkerSheets, ids: Sequence[int]) -> Figure:
-    """Draw one page; the axes are millimetres from its upper left corner, y down.
-
-    Raises
-    ------
-    UsageError
-        As in :func:`write_marker_sheets`.
-    """
+    """Draw one page; the axes are millimetres from its upper left corner, y down."""
     width, height = page_mm(sheets.page)
     if sheets.single:
         places = single_position_m(sheets.page, sheets.size_m)[None] * 1000.0

@@ -37,13 +37,8 @@ light enough for outlines to show."""
 class Motion:
     """The blocks of a wall on their way from rest to the picture of a mechanism.
 
-    Parameters
-    ----------
-    regions : tuple of Region
-        The blocks at rest, wall frame.
-    displacement : (n, 3) float array
-        To the right, up, and the angle (rad, counter-clockwise) at the centroid of each block, as
-        large as the picture shows it.
+    `displacement` is to the right, up, and the angle (rad, counter-clockwise) at the centroid of
+    each block, as large as the picture shows it.
     """
 
     regions: tuple[Region, ...]
@@ -76,25 +71,11 @@ class Motion:
 
 
 def motion_of(wall: Labels | Mapping[int, Loop], mechanism: Mechanism) -> Motion:
-    """Scale a mechanism for pictures.
+    """Scale a mechanism of a wall, a label image or polygons, for pictures.
 
-    Parameters
-    ----------
-    wall : (h, w) integer array, or mapping of int to (n, 2) float array
-        Label image or polygons.
-    mechanism : Mechanism
-        Velocities of its blocks; those it does not name stay where they are.
-
-    Returns
-    -------
-    Motion
-        No point moves by more than `LARGEST_SHARE` of the wall's height (or of a fifth of its
-        length, if that is more), no block turns by more than `LARGEST_TURN`, and one of them does.
-
-    Raises
-    ------
-    ValueError
-        When the mechanism names a block that the wall does not have.
+    No point moves by more than `LARGEST_SHARE` of the wall's height (or of a fifth of its length,
+    if that is more), no block turns by more than `LARGEST_TURN`, and one of them does.  Blocks that
+    the mechanism does not name stay; one that the wall does not have is a ValueError.
     """
     regions = wall_regions(wall)
     velocities = _velocities(regions, mechanism)

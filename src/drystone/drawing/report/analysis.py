@@ -41,18 +41,8 @@ def write_analysis(
 ) -> Path:
     """Write report.html of a wall that was analysed.
 
-    Parameters
-    ----------
-    path : Path
-        The file; pictures of mechanisms that lie beside it are put into it.
-    wall : ModelledWall
-        What was looked at.
-    card : Card
-        What was found out.
-    per_unit_m : float or None
-        Metres in a unit of the model.
-    curve : sequence of AtFriction
-        Load multipliers over friction.
+    Pictures of mechanisms that lie beside it are put into it.  `per_unit_m` is metres in a unit of
+    the model, where that is known.
     """
     shapes, model, resistance = wall.shapes, card.model, card.resistance
     if per_unit_m is not None:

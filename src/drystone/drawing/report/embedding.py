@@ -56,12 +56,8 @@ def json_in_html(data: Any) -> Markup:
 def viewer_page(view: View, options: Mapping[str, Any] | None = None) -> str:
     """Return a page with the viewer and nothing else.
 
-    Parameters
-    ----------
-    view : dict
-        From :mod:`drystone.drawing.report.viewer_data`.
-    options : mapping, optional
-        Of the viewer's ``mount``: ``chart``, ``metrics``, ``about``, ``title``, ``step``.
+    Options are those of the viewer's ``mount``: ``chart``, ``metrics``, ``about``, ``title``,
+    ``step``.
     """
     return (
         environment()
@@ -78,19 +74,9 @@ def viewer_page(view: View, options: Mapping[str, Any] | None = None) -> str:
 
 
 def viewer_frame(view: View, options: Mapping[str, Any] | None = None) -> str:
-    """Return an element that shows the viewer in a page of others, such as a notebook.
+    """Return an element, in one line, that shows the viewer in a page of others: a notebook.
 
     The page in the frame has its own styles, and is as high as it needs to be.
-
-    Parameters
-    ----------
-    view, options
-        As for :func:`viewer_page`.
-
-    Returns
-    -------
-    html : str
-        One line.
     """
     page = html.escape(viewer_page(view, options)).replace("\n", "&#10;")
     title = html.escape(str(view["title"]))

@@ -67,15 +67,10 @@ class Statics:
 
 
 def scaled_resistance(resistance: LateralResistance, factor: float) -> LateralResistance:
-    """Return a limit analysis in another unit of length.
+    """Return a limit analysis in another unit of length, `factor` of them in an old one.
 
-    Parameters
-    ----------
-    resistance : LateralResistance
-        Of a model.
-    factor : float
-        New units in an old one.  Weights are areas, so forces grow by its square; the largest
-        displacement of a mechanism stays 1, so what turns does so slower in finer units.
+    Weights are areas, so forces grow by its square; the largest displacement of a mechanism stays
+    1, so what turns does so slower in finer units.
     """
     return replace(
         resistance,
@@ -95,16 +90,11 @@ def _scaled(result: LimitResult, factor: float) -> LimitResult:
 
 
 def forces_by_case(resistance: LateralResistance) -> dict[str, Floats]:
-    """Return the forces of each load case that has them.
+    """Return normal and tangential forces of the load cases "self", "left", "right" that have them.
 
     Under its own weight alone a wall has many states of forces.  One is given: the mixture of
     those at the two limit loads in which the live loads cancel, which is in equilibrium and
     within friction as both are.
-
-    Returns
-    -------
-    forces : dict of str to (m, 2) float array
-        "self", "left" and "right": normal and tangential at every contact point.
     """
     left, right = resistance.left, resistance.right
     found = {

@@ -42,15 +42,7 @@ CROP_SPARE = 0.14
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """What all lines of a build sheet have in common.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        The wall.
-    photo : Photo or None
-        Of the stones.
-    """
+    """What all lines of a build sheet have in common."""
 
     assembly: Assembly
     photo: Photo | None

@@ -29,14 +29,9 @@ NOT_TO_SCALE = "NOT TO SCALE"
 
 @dataclass(frozen=True)
 class Scale:
-    """How large the wall is on paper.
+    """How large the wall is on paper: 1 to the denominator, None when nobody knows its size.
 
-    Parameters
-    ----------
-    denominator : float or None
-        1 to this; None when nobody knows how large the wall is.
-    mm_per_unit : float
-        Mm on paper for a unit of the assembly.
+    `mm_per_unit` is mm on paper for a unit of the assembly.
     """
 
     denominator: float | None
@@ -49,15 +44,7 @@ class Scale:
 
 
 def paper_scale(assembly: Assembly, wished: float) -> Scale:
-    """Return the scale of the drawing.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        The wall.
-    wished : float
-        1 to this when it fits, or else the next usual scale.
-    """
+    """Return the scale of the drawing: 1 to what is wished when it fits, or the next usual one."""
     width, height = assembly.size
     if assembly.unit != "m":
         return Scale(None, min(DRAWING_MM[0] / width, DRAWING_MM[1] / height))

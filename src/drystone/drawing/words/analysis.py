@@ -41,20 +41,8 @@ Shapes = Labels | Mapping[int, NDArray[np.float64]]
 class ModelledWall:
     """A wall as blocks and contacts, and what it looks like.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and contacts.
-    shapes : label image or polygons by id
-        To draw.
-    noun : {"stone", "block"}
-        What a block is called.
-    wedge_ids : frozenset of int
-        Blocks that are wedges.
-    notices : tuple of Notice
-        What the user should know.
-    remarks : mapping
-        Lines for the card, such as what closing gaps changes.
+    `noun` is what a block is called; `remarks` are lines for the card, such as what closing gaps
+    changes.
     """
 
     model: RigidBlockModel
@@ -83,33 +71,10 @@ class ModelledWall:
 class Card:
     """Everything that was found out about a wall.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and contacts.
-    load_case : str
-        In words.
-    resistance : LateralResistance
-        With associated flow.
-    nonassociative : NonassociativeResistance or None
-        Without dilatancy; None when it was not asked for.
-    failures : mapping of {"left", "right"} to Failure
-        How it fails, where that is known.
-    loose : mapping of {"left", "right"} to Failure
-        What moves without dilatancy, where that is at a clearly smaller load.
-    upright : tuple of int or None
-        Blocks that only friction on upright faces holds under the dead load; None where the wall
-        does not stand, or nothing is known.
-    names : Names
-        What blocks are called.
-    sensitivity : mapping of {"left", "right"} to float
-        d alpha / d mu, where that is known.
-    sha256 : str
-        Of the input file.
-    version : str
-        Of this package.
-    remarks : mapping
-        Further lines, such as what closing gaps changes.
+    `failures` are how it fails by direction, `loose` what moves without dilatancy where that is at
+    a clearly smaller load, `sensitivity` d alpha / d mu.  `upright` are blocks that only friction on
+    upright faces holds under the dead load; None where the wall does not stand, or nothing is
+    known.  `sha256` is that of the input file.
     """
 
     model: RigidBlockModel
@@ -256,20 +221,8 @@ def analysis_of(
 ) -> Card:
     """Find out what there is to say of a wall beside its load multipliers.
 
-    Parameters
-    ----------
-    wall : ModelledWall
-        The wall.
-    loads : Loads
-        Dead and live loads.
-    resistance : LateralResistance
-        Under these loads, with mechanisms.
-    sha256 : str
-        Of the input file.
-    associative_only : bool
-        Leave out the analysis without dilatancy.
-    solver : str, optional
-        See :func:`drystone.statics.limit.lateral_resistance`.
+    `resistance` is under the loads, with mechanisms; `solver` as in
+    :func:`drystone.statics.limit.lateral_resistance`.
     """
     model, both = wall.model, (resistance.left, resistance.right)
     without = None if associative_only else nonassociative_resistance(model, loads=loads)

@@ -24,20 +24,10 @@ NOTEWORTHY_PX = 0.01
 
 @dataclass(frozen=True, eq=False)
 class PhysicsCard:
-    """What the engine says of a plan.
+    """What the engine says of a plan, beside the metrics of its limit analysis.
 
-    Parameters
-    ----------
-    plan : Plan
-        The plan.
-    built : BuildUp
-        Its wall in the engine.
-    overlap_px : float
-        How deep outlines overlap by the plan itself.
-    tilts : (TiltResult, TiltResult) or None
-        To the left and to the right; None for a wall that fell or did not come to rest.
-    metrics : PlanMetrics or None
-        What the limit analysis says of the wall, to stand beside.
+    `tilts` are to the left and to the right; None for a wall that fell or did not come to rest.
+    `overlap_px` is how deep outlines overlap by the plan itself.
     """
 
     plan: Plan
@@ -147,22 +137,9 @@ class PhysicsCard:
 
 @dataclass(frozen=True, eq=False)
 class Checked:
-    """A plan and what was found.
+    """A plan and what was found, with the polygons of its stones and wedges.
 
-    Parameters
-    ----------
-    plan : Plan
-        What was checked.
-    stones : StoneSet
-        Its stones.
-    report : CheckReport
-        What does not hold.
-    groups : sequence of Group
-        The polygons of its stones and wedges.
-    asked_physics : bool
-        The engine was asked for.
-    physics : PhysicsCard or None
-        What the engine says; None when it was not asked, or the wall cannot be built there.
+    `physics` is None when the engine was not asked, or the wall cannot be built there.
     """
 
     plan: Plan

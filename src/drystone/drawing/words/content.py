@@ -135,12 +135,7 @@ def assumptions(plan: Plan) -> tuple[str, ...]:
 
 
 def wall_assumptions(load_case: str = TILTING) -> tuple[str, ...]:
-    """Return what the analysis of a wall that was not planned rests on.
-
-    Parameters
-    ----------
-    load_case : str
-        Name of the loads, as in :class:`drystone.statics.loads.Loads`.
+    """Return what the analysis of a wall that was not planned rests on, by the name of its loads.
 
     Examples
     --------

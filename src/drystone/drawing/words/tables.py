@@ -18,18 +18,9 @@ Cell = str | int | float
 def write_tables(
     folder: Path, model: RigidBlockModel, ends: Sequence[LimitResult], per_unit_m: float | None
 ) -> None:
-    """Write both tables.
+    """Write both tables into a folder that exists, of both directions.
 
-    Parameters
-    ----------
-    folder : Path
-        Exists.
-    model : RigidBlockModel
-        The wall.
-    ends : sequence of LimitResult
-        Both directions, with mechanisms and forces where there are any.
-    per_unit_m : float or None
-        Metres in a unit of the model; None leaves lengths in its own unit.
+    `per_unit_m` is metres in a unit of the model; None leaves lengths in its own unit.
     """
     unit, factor = ("", 1.0) if per_unit_m is None else ("_m", per_unit_m)
     _write(folder / CONTACTS, contact_rows(model, ends, unit, factor))
