@@ -10,8 +10,7 @@ import shapely
 from compas.datastructures import Mesh
 from compas.geometry import Frame, Transformation
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.errors import UsageError
 from tests.drawing.export.robot_plans import METRIC, THICKNESS_M, assembly
 

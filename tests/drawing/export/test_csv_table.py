@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 import shapely
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.model.plan import StoneStep
 from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly
 

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 import shapely
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.errors import UsageError
 from tests.drawing.export.drawn_walls import assembly
 

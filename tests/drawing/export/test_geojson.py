@@ -7,8 +7,7 @@ from typing import Any
 import pytest
 import shapely
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from tests.drawing.export.robot_plans import METRIC, PX_PER_M, assembly
 
 SETTINGS = ExportSettings()

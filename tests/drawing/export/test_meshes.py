@@ -10,8 +10,7 @@ import pytest
 import shapely
 import trimesh
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.export.solids import material, materials
 from drystone.errors import UsageError
 from tests.drawing.export.robot_plans import METRIC, THICKNESS_M, assembly

@@ -10,8 +10,7 @@ import shapely
 import trimesh
 import yaml
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.errors import UsageError
 from tests.drawing.export.robot_plans import METRIC, THICKNESS_M, assembly
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from drystone.drawing.export.film import PLACING_COLOUR, Film
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.palette import rgb
 from drystone.errors import UsageError
 from tests.drawing.export.drawn_walls import assembly

@@ -8,8 +8,7 @@ import pypdfium2
 import pytest
 from PIL import Image
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.sheet.lists import drawn_factor, in_photo_order
 from drystone.drawing.sheet.pages import sheet
 from drystone.drawing.sheet.rows import Rows

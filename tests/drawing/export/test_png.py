@@ -5,8 +5,7 @@ import pytest
 from PIL import Image
 
 from drystone.drawing.canvas import draw
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.wall import drawing_of_assembly
 from tests.drawing.export.drawn_walls import assembly
 

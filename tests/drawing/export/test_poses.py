@@ -9,8 +9,7 @@ import pytest
 import shapely
 from scipy.spatial.transform import Rotation
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.errors import UsageError
 from drystone.model.plan import StoneStep
 from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly

@@ -7,8 +7,7 @@ import pytest
 from PIL import Image
 
 from drystone.drawing.export import projector
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.errors import UsageError
 from tests.drawing.export.drawn_walls import assembly
 

@@ -11,8 +11,7 @@ from compas.geometry import Transformation
 from compas_robots import RobotModel
 from compas_robots.resources import DefaultMeshLoader
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.export.solids import inertia, solid_of_part
 from drystone.errors import UsageError
 from tests.drawing.export.robot_plans import METRIC, THICKNESS_M, assembly

@@ -14,11 +14,10 @@ import drystone as ds
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.drawing import view_of_assembly, view_of_result, view_of_wall, write_report
-from drystone.drawing.assembly.read import read_assembly
+from drystone.drawing.assembly.read import read_assembly, scaled_resistance
 from drystone.drawing.palette import cluster_colour
 from drystone.drawing.photo import VIEWER_PX, Photo
-from drystone.drawing.report.view_parts import PATTERNS, turned
-from drystone.drawing.report.view_statics import scaled_resistance
+from drystone.drawing.report.viewer_data import PATTERNS, turned
 from drystone.drawing.words.content import Card
 from drystone.drawing.words.masons import WALLS, masons_wall, masons_words
 from drystone.io.published_sets import SETS

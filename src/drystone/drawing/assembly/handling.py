@@ -81,7 +81,7 @@ def pick_approach(assembly: Assembly, part: Part) -> Approach | None:
 
 
 def pick_to_place(assembly: Assembly, part: Part) -> Matrix | None:
-    """Return the (4, 4) transform of a stone from the photo (P) to the wall (W); None for wedges."""
+    """Return the (4, 4) transform of a stone from photo (P) to wall (W); None for a wedge."""
     pick = assembly.pick_pose(part)
     if pick is None:
         return None

@@ -12,8 +12,7 @@ from drystone.drawing import svg as svg_end
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.canvas import draw
 from drystone.drawing.drawing import Area, Dots, Drawing, Item, Lines, placed
-from drystone.drawing.export.formats import Files, load_extra
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.files import figure_bytes
 from drystone.drawing.lettering import one_line
 from drystone.drawing.photo import read_photo

@@ -11,8 +11,7 @@ from PIL import Image, ImageDraw
 
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.drawing import Area, Item
-from drystone.drawing.export.formats import Files, load_extra
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.lettering import font
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PLAIN_COLOUR, WEDGE_COLOUR, rgb
 from drystone.drawing.pixels import View, gif_bytes, paint, palette_of

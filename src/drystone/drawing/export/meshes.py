@@ -10,8 +10,7 @@ from functools import partial
 import numpy as np
 
 from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.export.formats import Files, load_extra
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.export.solids import (
     Solid,
     material,

@@ -2,15 +2,12 @@
 
 from typing import Any
 
-import numpy as np
-
 from drystone.drawing.assembly import handling
 from drystone.drawing.assembly.handling import Approach, Grasp
 from drystone.drawing.assembly.parts import Assembly, Part
-from drystone.drawing.export.formats import Files
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.export.text import json_text
-from drystone.model.frames3d import Matrix, Pose3d, Vector
+from drystone.model.frames3d import Pose3d, Vector
 
 SCHEMA = "drystone-poses/1"
 
@@ -51,7 +48,7 @@ def poses(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG00
 
 
 def to_json(assembly: Assembly) -> dict[str, Any]:
-    """Return what poses.json holds; E131 without a scale."""
+    """Return what poses.json holds, matrices as arrays; E131 without a scale."""
     plan = assembly.plan
     width_m, height_m = assembly.size
     return {
@@ -91,7 +88,7 @@ def _part(assembly: Assembly, part: Part) -> dict[str, Any]:
             },
         },
         "pick": pick and down and {**_pose(pick), "approach": _approach(down)},
-        "pick_to_place": _matrix(handling.pick_to_place(assembly, part)),
+        "pick_to_place": handling.pick_to_place(assembly, part),
         "grasp": _grasp(handling.grasp(assembly, part), assembly.thickness),
         "mass_kg": assembly.mass_kg(part),
         "size_m": {"x": width_m, "y": assembly.thickness, "z": height_m},
@@ -106,12 +103,8 @@ def _pose(pose: Pose3d) -> dict[str, Any]:
     return {
         "point": {"x": pose.x_m, "y": pose.y_m, "z": pose.z_m},
         "quaternion": {"x": turn.x, "y": turn.y, "z": turn.z, "w": turn.w},
-        "matrix": _matrix(pose.matrix),
+        "matrix": pose.matrix,
     }
-
-
-def _matrix(matrix: Matrix | None) -> list[list[float]] | None:
-    return None if matrix is None else np.asarray(matrix).tolist()
 
 
 def _approach(approach: Approach) -> dict[str, Any]:

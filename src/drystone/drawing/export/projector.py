@@ -12,8 +12,7 @@ from PIL import Image, ImageDraw
 
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.drawing import Area, Lines
-from drystone.drawing.export.formats import Files
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.lettering import font
 from drystone.drawing.outlines import Loop
 from drystone.drawing.pixels import View, paint

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
-from drystone.drawing.assembly.read import scaled
+from drystone.drawing.assembly.read import scaled, scaled_resistance
 from drystone.drawing.files import save
 from drystone.drawing.outlines import Loop, wall_regions
 from drystone.drawing.pictures.animation import save_mechanism_animation
@@ -13,7 +13,6 @@ from drystone.drawing.pictures.forces import plot_forces
 from drystone.drawing.pictures.friction import plot_friction
 from drystone.drawing.pictures.mechanism import plot_mechanism
 from drystone.drawing.report.html import write_report
-from drystone.drawing.report.view_statics import scaled_resistance
 from drystone.drawing.report.viewer_data import view_of_wall
 from drystone.drawing.words import content
 from drystone.drawing.words.analysis import Card, ModelledWall, Shapes

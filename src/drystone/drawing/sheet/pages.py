@@ -8,7 +8,7 @@ import matplotlib as mpl
 from matplotlib.backends.backend_pdf import PdfPages
 
 from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import ExportSettings
 from drystone.drawing.photo import Photo
 from drystone.drawing.sheet.lists import list_pages
 from drystone.drawing.sheet.page import Page

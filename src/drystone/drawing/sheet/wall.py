@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.canvas import add
 from drystone.drawing.drawing import placed
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import ExportSettings
 from drystone.drawing.palette import GREY, WEDGE_COLOUR
 from drystone.drawing.sheet.page import EDGE_MM, LARGE_PT, PLAIN_PT, SMALL_PT, Page
 from drystone.drawing.wall import drawing_of_assembly

@@ -72,9 +72,9 @@ class Card:
     """Everything that was found out about a wall.
 
     `failures` are how it fails by direction, `loose` what moves without dilatancy where that is at
-    a clearly smaller load, `sensitivity` d alpha / d mu.  `upright` are blocks that only friction on
-    upright faces holds under the dead load; None where the wall does not stand, or nothing is
-    known.  `sha256` is that of the input file.
+    a clearly smaller load, `sensitivity` d alpha / d mu.  `upright` are blocks that friction on
+    upright faces alone holds under the dead load; None where the wall does not stand, or nothing
+    is known.  `sha256` is that of the input file.
     """
 
     model: RigidBlockModel
