@@ -7,7 +7,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from drystone.drawing.report.embedding import HERE
+from drystone.drawing.report.html import HERE
 from drystone.whole_files import write_whole
 from drystone_lab.reproduce.page_words import about, heading, lead, made_rows, part, shown
 

@@ -10,9 +10,8 @@ from PIL import Image
 
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.sheet.lists import drawn_factor, in_photo_order
-from drystone.drawing.sheet.pages import sheet
+from drystone.drawing.sheet.pages import DRAWING_MM, Scale, paper_scale, sheet
 from drystone.drawing.sheet.rows import Rows
-from drystone.drawing.sheet.wall import DRAWING_MM, Scale, paper_scale
 from drystone.errors import InputError
 from drystone.io.plan_json import write_plan
 from tests.drawing.export.drawn_walls import assembly, photo_colour, photograph

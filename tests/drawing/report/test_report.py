@@ -11,7 +11,7 @@ import pytest
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.drawing import view_of_result, view_of_wall, write_pictures, write_report
-from drystone.drawing.report.embedding import viewer_frame, viewer_page, viewer_script, viewer_style
+from drystone.drawing.report.html import viewer_frame, viewer_page, viewer_script, viewer_style
 from drystone.drawing.report.notebook import Shown
 from drystone.drawing.words.content import (
     assumptions,

@@ -17,7 +17,7 @@ from drystone.io.photo_beside import photo_beside
 from drystone.io.walls import GivenWall, read_wall
 from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.model.plan import Plan, StoneStep, WedgeStep
-from drystone.model.steps import first_fault
+from drystone.model.steps import first_fault, piece_id
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance, LimitResult
@@ -199,8 +199,7 @@ def _shapes(wall: GivenWall, plan: Plan) -> tuple[Mapping[int, Points], RigidBlo
 
 def _parts(plan: Plan, outlines: Mapping[int, Points], factor: float) -> tuple[Part, ...]:
     def part(step: StoneStep | WedgeStep) -> Part:
-        block = step.stone if isinstance(step, StoneStep) else step.id
-        outline = np.asarray(outlines[block] * factor)
+        outline = np.asarray(outlines[piece_id(step)] * factor)
         outline.flags.writeable = False
         if isinstance(step, StoneStep):
             return Part(step, outline, (step.centroid[0] * factor, step.centroid[1] * factor))

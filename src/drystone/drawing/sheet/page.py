@@ -22,6 +22,7 @@ PAGE_NUMBER_MM = 30.0
 """Room for it at the right end of the foot."""
 
 SMALL_PT, PLAIN_PT, LARGE_PT = 7.0, 8.5, 12.0
+NOT_TO_SCALE = "NOT TO SCALE"
 
 
 class Page:
