@@ -64,7 +64,6 @@ def dxf_bytes(
 
 @contextmanager
 def _undated(ezdxf: Any) -> Iterator[None]:
-    """Let drawings have a fixed date and fixed GUIDs."""
     before = ezdxf.options.write_fixed_meta_data_for_testing
     ezdxf.options.write_fixed_meta_data_for_testing = True
     try:

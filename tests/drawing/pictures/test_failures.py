@@ -8,7 +8,7 @@ from matplotlib.colors import to_hex
 
 from drystone.drawing import save
 from drystone.drawing.palette import PALE
-from drystone.drawing.pictures.failures import (
+from drystone.drawing.pictures.check import (
     COMMON,
     CONCERNED,
     PLANNED,

@@ -159,7 +159,6 @@ def failed(assembly: Assembly, result: LimitResult) -> list[Area]:
 
 
 def _says(result: LimitResult) -> str:
-    """Say at which load the forces of a direction act and the wall fails."""
     if result.alpha is None:
         return f"to the {result.direction}: {result.status.value}"
     return (

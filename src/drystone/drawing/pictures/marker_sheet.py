@@ -135,7 +135,6 @@ def _lines(
 
 
 def _write_text(ax: Axes, lines: Sequence[str], middle: tuple[float, float]) -> None:
-    """Draw the check line and write below it."""
     x, y = middle
     top = y - MIDDLE_MM / 2 + 10.0
     left, right = x - CHECK_LINE_MM / 2, x + CHECK_LINE_MM / 2

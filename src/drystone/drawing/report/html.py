@@ -57,7 +57,7 @@ def write_report(path: str | Path, view: View, *, pictures: str | Path | None = 
         view=view,
         picture=_embedded(folder, PICTURE),
         mechanisms={side: _embedded(folder, name) for side, name in MECHANISMS.items()},
-        unused=content.unused_stones(view["unused"]),
+        unused=", ".join(map(str, view["unused"])) or "none",
         number=content.number,
         digits=1 if view["unit"] == "px" else 3,
     )

@@ -102,7 +102,6 @@ def _fetch_pages(assembly: Assembly) -> tuple[list[Page], float]:
 
 
 def _wedge_room(top: float) -> int:
-    """Return how many wedges have room below a place on a page."""
     return CARDS_ACROSS * max(0, int((top - WEDGE_HEAD_MM - EDGE_MM) // CARD_MM[1]))
 
 
