@@ -1,14 +1,11 @@
 """build.mp4, read back with PyAV."""
 
-import sys
-
 import numpy as np
 import pytest
 
 from drystone.drawing.export.film import PLACING_COLOUR, Film
 from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.drawing.palette import rgb
-from drystone.errors import UsageError
 from tests.drawing.export.drawn_walls import assembly
 
 SETTINGS = ExportSettings(seconds_per_step=0.2, film_px=320)
@@ -33,13 +30,3 @@ def test_the_film_has_every_step_for_its_time(tmp_path) -> None:
     for frame, seen in ((0, True), (-1, False)):
         placing = np.abs(found[frame] / 255 - np.array(rgb(PLACING_COLOUR))).max(axis=2) < 0.12
         assert (placing.sum() > 500) == seen
-    again = FORMATS["mp4"].files(wall, SETTINGS)[path.name]()
-    assert again == path.read_bytes()
-
-
-def test_without_pyav_the_extra_is_named(monkeypatch) -> None:
-    monkeypatch.setitem(sys.modules, "av", None)
-    with pytest.raises(UsageError, match="not installed") as caught:
-        FORMATS["mp4"].files(assembly(), SETTINGS)
-    assert caught.value.code == "E186"
-    assert "drystone[film]" in caught.value.cure

@@ -1,7 +1,6 @@
 """steps.parquet, read back with pyarrow and compared with the CSV."""
 
 import csv
-import sys
 from pathlib import Path
 
 import pyarrow as pa
@@ -9,7 +8,6 @@ import pytest
 from pyarrow import parquet
 
 from drystone.drawing.export.formats import FORMATS, ExportSettings
-from drystone.errors import UsageError
 from tests.drawing.export.robot_plans import PX_PER_M, assembly
 
 SETTINGS = ExportSettings()
@@ -19,7 +17,6 @@ SETTINGS = ExportSettings()
 def test_it_holds_what_the_csv_holds(px_per_m: float | None, tmp_path: Path) -> None:
     wall = assembly("exact", px_per_m)
     (path,) = FORMATS["parquet"].write(wall, tmp_path, SETTINGS)
-    assert (path.name,) == tuple(FORMATS["parquet"].files(wall, SETTINGS))
     found = parquet.read_table(path).to_pylist()
     (other,) = FORMATS["csv"].write(wall, tmp_path, SETTINGS)
     with other.open(encoding="utf-8", newline="") as file:
@@ -51,17 +48,3 @@ def test_without_a_scale_the_empty_column_of_masses_keeps_its_type(tmp_path: Pat
     table = parquet.read_table(path)
     assert table.schema.field("mass_kg").type == pa.float64()
     assert table["mass_kg"].null_count == len(table)
-
-
-def test_equal_runs_give_equal_bytes(tmp_path: Path) -> None:
-    (one,) = FORMATS["parquet"].write(assembly("exact"), tmp_path / "a", SETTINGS)
-    (other,) = FORMATS["parquet"].write(assembly("exact"), tmp_path / "b", SETTINGS)
-    assert one.read_bytes() == other.read_bytes()
-
-
-def test_without_pyarrow_it_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(UsageError) as caught:
-        FORMATS["parquet"].files(assembly("exact"), SETTINGS)
-    assert caught.value.code == "E181"
-    assert "drystone[io]" in caught.value.cure

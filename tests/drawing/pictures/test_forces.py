@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.drawing import plot_forces
-from drystone.drawing.pictures.forces import LONGEST_SHARE, WIDEST_PT, resultants, round_number
+from drystone.drawing.pictures.forces import LONGEST_SHARE, WIDEST_PT, resultants
 from drystone.statics.limit import limit_load
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 from tests.drawing.pictures.test_contacts import dots, lines
@@ -149,10 +149,3 @@ def test_a_wall_without_forces_is_drawn_pale():
     ax = plot_forces(labels, model, np.zeros((2, 2)))
     assert [lines.get_gid() for lines in ax.collections] == ["ground-line"]
     assert len(ax.patches) == 2
-
-
-@pytest.mark.parametrize(
-    ("most", "expected"), [(1.0, 1.0), (1.99, 1.0), (2.0, 2.0), (49, 20.0), (0.07, 0.05)]
-)
-def test_round_numbers(most, expected):
-    assert round_number(most) == pytest.approx(expected)

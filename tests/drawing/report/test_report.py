@@ -16,7 +16,6 @@ from drystone.drawing.report.notebook import Shown
 from drystone.drawing.words.content import (
     assumptions,
     cards,
-    flat_settings,
     number,
     weaker_direction,
 )
@@ -293,13 +292,3 @@ def test_numbers(value, text):
 def test_weaker_direction(left, right, weaker):
     metrics = replace(examples.plan().metrics, alpha_left=left, alpha_right=right)
     assert weaker_direction(metrics) == weaker
-
-
-def test_settings_are_flat_and_complete():
-    settings = {"mu": 0.58, "a": {"b": {"c": [1, None]}, "d": True}}
-    flat = dict(flat_settings(settings))
-    assert {name: json.loads(value) for name, value in flat.items()} == {
-        "mu": 0.58,
-        "a.b.c": [1, None],
-        "a.d": True,
-    }
