@@ -11,14 +11,6 @@ from drystone.drawing.assembly import handling
 from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly
 
 
-def test_wedges_have_no_way_from_the_photo() -> None:
-    wall = assembly("exact")
-    (wedge,) = wall.wedges
-    assert handling.pick_to_place(wall, wedge) is None
-    assert handling.pick_approach(wall, wedge) is None
-    assert handling.grasp(wall, wedge).direction_photo is None
-
-
 @pytest.mark.parametrize("name", METRIC)
 def test_the_jaws_close_on_the_part_in_every_frame(name: str) -> None:
     wall = assembly(name)

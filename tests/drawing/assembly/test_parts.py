@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
+from drystone.drawing.assembly import handling
 from drystone.drawing.assembly.parts import Part
 from drystone.errors import UsageError
 from drystone.model.plan import StoneStep
@@ -94,6 +95,9 @@ def test_wedges_are_in_no_photo() -> None:
     wall = assembly("exact")
     (wedge,) = wall.wedges
     assert wall.pick_pose(wedge) is None
+    assert handling.pick_to_place(wall, wedge) is None
+    assert handling.pick_approach(wall, wedge) is None
+    assert handling.grasp(wall, wedge).direction_photo is None
     assert (wedge.kind, wedge.name, wedge.angle_deg) == ("wedge", "wedge_010", 0.0)
     assert wedge.under == 8
     with pytest.raises(TypeError, match="wedge_010 is in no image"):
