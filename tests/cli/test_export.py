@@ -12,8 +12,7 @@ from xml.etree import ElementTree as ET
 import ezdxf
 import pytest
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from tests.cli.conftest import WALL, Run
 from tests.drawing.export.robot_plans import assembly, write_plan_folder
 

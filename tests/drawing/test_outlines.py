@@ -43,19 +43,6 @@ def test_every_corner_is_a_corner_and_pixels_that_touch_at_one_are_apart(mask):
         assert ((steps == 0) != np.roll(steps == 0, 1, axis=0)).all()
 
 
-def test_loop_of_an_l_is_not_mirrored():
-    mask = np.array([[1, 0], [1, 1]], bool)
-    (loop,) = pixel_loops(mask)
-    expected = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]
-    assert loop.tolist() == expected
-
-
-def test_holes_are_clockwise():
-    mask = np.ones((3, 3), bool)
-    mask[1, 1] = False
-    assert sorted(naive.signed_area(loop) for loop in pixel_loops(mask)) == [-1, 9]
-
-
 @given(hnp.arrays(np.uint32, (5, 6), elements=st.sampled_from([0, 1, 300, 70_000, 2**32 - 1])))
 def test_regions_are_the_labels(labels):
     regions = label_regions(labels)

@@ -62,7 +62,7 @@ def write_film(result: PlanResult, folder: Path) -> None:
         return
     # What draws is loaded when it draws.
     from drystone.drawing.assembly.read import read_assembly  # noqa: PLC0415
-    from drystone.drawing.export.settings import ExportSettings  # noqa: PLC0415
+    from drystone.drawing.export.formats import ExportSettings  # noqa: PLC0415
 
     FORMATS["gif"].write(read_assembly(folder), folder, ExportSettings())
 

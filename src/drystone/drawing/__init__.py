@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from drystone.drawing.pictures.stones import plot_stones as plot_stones
     from drystone.drawing.pictures.wall import plot_choice as plot_choice
     from drystone.drawing.pictures.wall import plot_wall as plot_wall
-    from drystone.drawing.report.from_result import view_of_result as view_of_result
     from drystone.drawing.report.html import write_report as write_report
     from drystone.drawing.report.viewer_data import view_of_assembly as view_of_assembly
+    from drystone.drawing.report.viewer_data import view_of_result as view_of_result
     from drystone.drawing.report.viewer_data import view_of_wall as view_of_wall
 
 # Names are loaded on first use: the command line knows the formats, and must not wait for
@@ -45,7 +45,7 @@ _HOMES = {
     "plot_stones": "pictures.stones",
     "plot_choice": "pictures.wall",
     "plot_wall": "pictures.wall",
-    "view_of_result": "report.from_result",
+    "view_of_result": "report.viewer_data",
     "write_report": "report.html",
     "view_of_assembly": "report.viewer_data",
     "view_of_wall": "report.viewer_data",

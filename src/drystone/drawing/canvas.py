@@ -34,15 +34,7 @@ BESIDE_PT = ((10.0, 9.0), (-10.0, 9.0), (10.0, -9.0), (-10.0, -9.0))
 
 
 def draw(drawing: Drawing, ax: Axes | None = None) -> Axes:
-    """Draw all of a drawing.
-
-    Parameters
-    ----------
-    drawing : Drawing
-        What is drawn.
-    ax : Axes, optional
-        Where; None makes a figure.
-    """
+    """Draw all of a drawing, on axes of its own when there are none."""
     ax = fit_axes(ax, drawing.box)
     add(ax, drawing.items)
     if drawing.unit:
@@ -112,7 +104,9 @@ def _marker(item: Dots) -> dict[str, Any]:
 def _write(ax: Axes, words: Words) -> None:
     size = words.size_pt
     if words.room is not None:
-        width, height = (side * _points_per_unit(ax) for side in words.room)
+        left, right = ax.get_xlim()
+        per_unit = ax.get_window_extent().width / ax.figure.dpi * 72 / (right - left)
+        width, height = (float(side * per_unit) for side in words.room)
         size = float(np.clip(letters_pt(words.text, width, height), SMALLEST_PT, LARGEST_PT))
     ax.text(
         *words.at, words.text, size=size, color=words.colour or text_colour(words.on), ha="center",
@@ -143,11 +137,6 @@ def _write_beside(ax: Axes, words: Words, all_words: Iterable[Words]) -> None:
         arrowprops={"arrowstyle": "-", "linewidth": 0.6, "color": words.colour, "shrinkA": 3,
                     "shrinkB": 0},
     )  # fmt: skip
-
-
-def _points_per_unit(ax: Axes) -> float:
-    left, right = ax.get_xlim()
-    return float(ax.get_window_extent().width / ax.figure.dpi * 72 / (right - left))
 
 
 def fit_axes(ax: Axes | None, box: Box) -> Axes:

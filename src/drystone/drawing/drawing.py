@@ -203,16 +203,9 @@ class Drawing:
 
 
 def placed(items: Iterable[Item], factor: float, origin: Point = (0.0, 0.0)) -> list[Item]:
-    """Return items in another unit of length, and moved.
+    """Return items in another unit of length, the wall's lower left corner moved to `origin`.
 
-    Parameters
-    ----------
-    items : iterable of Area, Lines, Dots or Words
-        In the unit of a wall.
-    factor : float
-        New units in an old one.
-    origin : (float, float)
-        Where the wall's lower left corner goes.
+    `factor` is new units in an old one.
     """
 
     def there(points: Loop | Point) -> Loop:

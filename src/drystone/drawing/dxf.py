@@ -34,18 +34,8 @@ def dxf_bytes(
 ) -> bytes:
     """Return a drawing as DXF; equal drawings give equal bytes.
 
-    Parameters
-    ----------
-    ezdxf : module
-        An extra; whoever asks has loaded it.
-    drawing : Drawing
-        In metres, or without a unit; hatched areas are left out.
-    size : (float, float)
-        Width and height of the wall.
-    metric : bool
-        Whether the unit is the metre.
-    about : sequence of str
-        Lines of words below the wall.
+    It is in metres, or without a unit; hatched areas are left out.  `about` is written below the
+    wall.  Whoever asks has loaded ezdxf, which is an extra.
     """
     with _undated(ezdxf):
         doc = ezdxf.new("R2010")
@@ -74,7 +64,6 @@ def dxf_bytes(
 
 @contextmanager
 def _undated(ezdxf: Any) -> Iterator[None]:
-    """Let drawings have a fixed date and fixed GUIDs."""
     before = ezdxf.options.write_fixed_meta_data_for_testing
     ezdxf.options.write_fixed_meta_data_for_testing = True
     try:

@@ -1,10 +1,12 @@
 """Pictures as files, with the same bytes for the same picture."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
+from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure, SubFigure
 
 from drystone.drawing.outlines import Loop, source_outlines
@@ -68,6 +70,17 @@ def figure_bytes(figure: Figure | SubFigure, suffix: str, dpi: float = DPI) -> b
             facecolor="white",
             metadata=_UNDATED[suffix],
         )
+        return file.getvalue()
+
+
+def pdf_bytes(figures: Iterable[Figure]) -> bytes:
+    """Return a PDF with a page a figure, each as large as it is."""
+    # Letters are kept as letters, for this file alone: they can be searched for and copied.
+    letters: dict[Any, int] = {"pdf.fonttype": 42, "pdf.compression": 6}
+    with mpl.rc_context(letters), BytesIO() as file:
+        with PdfPages(file, metadata=_UNDATED[".pdf"]) as pages:
+            for figure in figures:
+                pages.savefig(figure)
         return file.getvalue()
 
 

@@ -15,15 +15,7 @@ ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 
 
 def font(size_px: float, *, bold: bool = False) -> ImageFont.FreeTypeFont:
-    """Return DejaVu Sans, which comes with Matplotlib: the same on every machine.
-
-    Parameters
-    ----------
-    size_px : float
-        Height of a line, px.
-    bold : bool
-        Its bold cut.
-    """
+    """Return DejaVu Sans, which comes with Matplotlib: the same on every machine."""
     return ImageFont.truetype(_file(bold=bold), size_px)
 
 
@@ -57,17 +49,6 @@ def drawable(text: str) -> str:
 
 def fitted(text: str, size: float, room: float, *, bold: bool = False) -> str:
     """Return a text that is no wider than there is room for; its end is left out when it has to be.
-
-    Parameters
-    ----------
-    text : str
-        In letters of the typeface.
-    size : float
-        Of the letters.
-    room : float
-        In the same unit.
-    bold : bool
-        Whether it is written in the bold cut.
 
     Examples
     --------

@@ -24,18 +24,9 @@ UNSEEN = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """What a label or a polygon covers.
+    """What a label or a polygon covers, in the wall frame: on pixel edges, px, or as it was given.
 
-    Parameters
-    ----------
-    id : int
-        The label.
-    loops : tuple of (n, 2) float arrays
-        Its boundary in the wall frame: on pixel edges, px, or as the polygon was given.
-    centroid : (float, float)
-        Of its pixel squares, or of the polygon.
-    area_px : float
-        Number of its pixels; of a polygon its area in squares of its unit.
+    `area_px` is the number of its pixels, or the area of a polygon in squares of its unit.
     """
 
     id: int
@@ -46,11 +37,6 @@ class Region:
 
 def label_regions(labels: Labels) -> tuple[Region, ...]:
     """Return the regions of a label image in the order of their ids.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 is background; row 0 at the top.
 
     Examples
     --------
@@ -69,13 +55,7 @@ def label_regions(labels: Labels) -> tuple[Region, ...]:
 
 
 def polygon_regions(polygons: Mapping[int, Loop]) -> tuple[Region, ...]:
-    """Return the regions of polygons in the order of their ids.
-
-    Parameters
-    ----------
-    polygons : mapping of int to (n, 2) float array
-        Corners, either way round, closed or not; for example from
-        :func:`drystone.contacts.given.polygons_from_json`.
+    """Return the regions of polygons, either way round, closed or not, in the order of their ids.
 
     Examples
     --------
@@ -99,13 +79,10 @@ def _of_polygon(block: int, corners: Loop) -> Region:
 
 
 def wall_regions(wall: Labels | Mapping[int, Loop]) -> tuple[Region, ...]:
-    """Return the regions of a wall in the frame of its rigid block model.
+    """Return the regions of a wall, a label image or polygons, in the frame of its block model.
 
-    Parameters
-    ----------
-    wall : (h, w) integer array, or mapping of int to (n, 2) float array
-        A label image, which stands on its lowest stone pixel as
-        :func:`drystone.contacts.blocks.model_from_labels` lets it, or polygons.
+    A label image stands on its lowest stone pixel, as in
+    :func:`drystone.contacts.blocks.model_from_labels`.
 
     Examples
     --------
@@ -151,12 +128,7 @@ def _region(label: int, mask: Mask, window: tuple[slice, slice], height: int) ->
 def pixel_loops(mask: Mask) -> tuple[Loop, ...]:
     """Return the boundary of a mask along pixel edges, without collinear corners.
 
-    Pixels that touch only at a corner get loops of their own.
-
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        Row 0 at the top; its bottom-left corner is the origin.
+    The origin is its lower left corner.  Pixels that touch only at a corner get loops of their own.
 
     Examples
     --------

@@ -38,11 +38,6 @@ def cluster_colour(cluster: int) -> str:
 
     The sixteen colours come round again in a darker tone for clusters 17 to 32, then all over.
 
-    Raises
-    ------
-    ValueError
-        When the number is below 1.
-
     Examples
     --------
     >>> cluster_colour(1), cluster_colour(17), cluster_colour(33)
@@ -52,7 +47,9 @@ def cluster_colour(cluster: int) -> str:
         raise ValueError(f"clusters are numbered from 1, not {cluster}")
     turn, place = divmod(cluster - 1, len(CLUSTER_COLOURS))
     colour = CLUSTER_COLOURS[place]
-    return colour if turn % 2 == 0 else _darker(colour)
+    if turn % 2 == 0:
+        return colour
+    return "#" + "".join(f"{round(part * SECOND_TONE * 255):02x}" for part in rgb(colour))
 
 
 def text_colour(background: str) -> str:
@@ -88,7 +85,3 @@ def linear(part: float) -> float:
     (0.0, 1.0)
     """
     return part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4
-
-
-def _darker(colour: str) -> str:
-    return "#" + "".join(f"{round(part * SECOND_TONE * 255):02x}" for part in rgb(colour))

@@ -24,15 +24,7 @@ around the box of an outline over its longer side."""
 
 @dataclass(frozen=True, eq=False)
 class Photo:
-    """A photograph that shows all of the source image.
-
-    Parameters
-    ----------
-    image : Image
-        RGB.
-    width_px, height_px : float
-        Of the source image that it shows.
-    """
+    """A photograph, RGB, that shows all of a source image of some size."""
 
     image: Image.Image
     width_px: float
@@ -41,14 +33,9 @@ class Photo:
     def crop(
         self, box: tuple[float, float, float, float], longest_px: int = CROP_PX
     ) -> NDArray[np.uint8]:
-        """Return a piece as an (h, w, 3) array.
+        """Return a piece as an (h, w, 3) array; what lies outside the photograph is white.
 
-        Parameters
-        ----------
-        box : (x0, y0, x1, y1)
-            In the source image, px, y up; what lies outside the photograph is white.
-        longest_px : int
-            Longer side of the piece at most.
+        The box (x0, y0, x1, y1) is in the source image, px, y up.
         """
         across, down = self.image.width / self.width_px, self.image.height / self.height_px
         x0, y0, x1, y1 = box
@@ -75,11 +62,8 @@ class Photo:
     def viewer_crops(self, outlines: Mapping[int, Points]) -> dict[int, dict[str, Any]]:
         """Cut stones out, by their outlines in the source image, for the viewer.
 
-        Returns
-        -------
-        crops : dict
-            By id: ``data``, a JPEG as data URL, and ``box``, what it shows (x0, y0, x1, y1;
-            source px, y up).  Stones outside of the picture have none.
+        By id: ``data``, a JPEG as data URL, and ``box``, what it shows (x0, y0, x1, y1; source px,
+        y up).  Stones outside of the picture have none.
         """
         crops = {}
         for stone, corners in sorted(outlines.items()):
@@ -99,13 +83,7 @@ class Photo:
 
 
 def read_photo(assembly: Assembly) -> Photo | None:
-    """Read the photograph of the stones; None when there is none.
-
-    Raises
-    ------
-    InputError
-        E189 when it cannot be read, or shows something of another shape than the source image.
-    """
+    """Read the photograph of the stones; None when there is none, E189 when it cannot be used."""
     if assembly.photo is None:
         return None
     width, height = (float(assembly.plan.source.get(f"{side}_px") or 0) for side in

@@ -23,14 +23,8 @@ SMALLEST_PX, LARGEST_PX = 7.0, 20.0
 class View:
     """Where a wall is in a picture.
 
-    Parameters
-    ----------
-    left_px, ground_px : float
-        Its lower left corner, from the picture's upper left corner.
-    per_unit : float
-        Px in a unit of the wall.
-    finer : int
-        The picture is drawn this many times finer than it will be.
+    Its lower left corner is so many px from the picture's upper left one.  The picture is drawn
+    `finer` times finer than it will be.
     """
 
     left_px: float
@@ -79,13 +73,7 @@ def _hatch(draw: ImageDraw.ImageDraw, corners: list[Point], colour: str, finer: 
 
 
 def palette_of(colours: ArrayLike) -> Image.Image:
-    """Return the palette that pictures are reduced to.
-
-    Parameters
-    ----------
-    colours : (n, 3) float array-like
-        Red, green and blue in [0, 1]; at most 256 of them.
-    """
+    """Return the palette that pictures are reduced to: at most 256 colours (n, 3) in [0, 1]."""
     palette = Image.new("P", (1, 1))
     palette.putpalette(np.rint(255 * np.asarray(colours, float)).astype(np.uint8).tobytes())
     return palette
@@ -94,17 +82,10 @@ def palette_of(colours: ArrayLike) -> Image.Image:
 def gif_bytes(
     pictures: Iterable[Image.Image], palette: Image.Image, duration_ms: int | Sequence[int]
 ) -> bytes:
-    """Return a GIF that loops.
+    """Return a GIF that loops, of RGB pictures of one size.
 
-    Parameters
-    ----------
-    pictures : iterable of Image
-        RGB, all of one size.
-    palette : Image
-        Of :func:`palette_of`.  One palette for all frames: colours chosen from a picture would
-        tint its black lines, and differ from frame to frame.
-    duration_ms : int or sequence of int
-        How long a frame is shown; of all frames, or of each.
+    All frames have one palette, of :func:`palette_of`: colours chosen from a picture would tint its
+    black lines, and differ from frame to frame.
 
     Examples
     --------

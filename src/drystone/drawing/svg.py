@@ -41,16 +41,7 @@ LARGEST_LETTER = 0.025
 def svg_bytes(drawing: Drawing, size: Point, unit: str, title: str, description: str) -> bytes:
     """Return a drawing as SVG.
 
-    Parameters
-    ----------
-    drawing : Drawing
-        In the unit of the file, which has its layers; hatched areas are left out.
-    size : (float, float)
-        Width and height of the wall.
-    unit : {"mm", "px"}
-        Of the file.
-    title, description : str
-        Of the file.
+    It is in the unit of the file, mm or px, and on the file's layers; hatched areas are left out.
     """
     return _Sheet(size, unit).of(drawing, title, description)
 

@@ -36,19 +36,7 @@ its width."""
 def wall_drawing(
     items: Iterable[Item], size: tuple[float, float], unit: str, title: str = ""
 ) -> Drawing:
-    """Return a wall on the ground, in the frame of what was ordered.
-
-    Parameters
-    ----------
-    items : iterable of Area or Words
-        Stones, wedges and their numbers.
-    size : (float, float)
-        Width and height as ordered.
-    unit : str
-        Of lengths.
-    title : str
-        Above it.
-    """
+    """Return stones, wedges and numbers on the ground, in the frame of what was ordered."""
     width, height = size
     margin, depth = MARGIN * width, GROUND * max(height, 0.2 * width)
     frame = Area(
@@ -151,19 +139,8 @@ def pale_wall(
 ) -> Drawing:
     """Describe a wall to draw contacts and forces on: pale blocks, fixed ones grey.
 
-    Parameters
-    ----------
-    regions : sequence of Region
-        From :func:`drystone.drawing.outlines.wall_regions`.
-    model : RigidBlockModel
-        Of this wall; y = 0 is its ground.
-    reach : sequence of (n, 2) float arrays
-        Points that must be in view as well.
-
-    Raises
-    ------
-    ValueError
-        When the model has a block that the wall does not have.
+    The model is of this wall, y = 0 its ground; ValueError when it has a block that the wall does
+    not have.  Points of `reach` are in view as well.
     """
     missing = sorted({block.id for block in model.blocks} - {region.id for region in regions})
     if missing:

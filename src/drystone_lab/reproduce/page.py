@@ -8,7 +8,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from drystone.drawing.report.embedding import HERE
+from drystone.drawing.report.html import HERE
 from drystone.whole_files import write_whole
 
 Cell = str | int | float | bool | None

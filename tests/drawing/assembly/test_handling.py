@@ -12,28 +12,6 @@ from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, asse
 
 
 @pytest.mark.parametrize("name", METRIC)
-def test_pick_to_place_moves_the_stone_of_the_photo_into_the_wall(name: str) -> None:
-    wall = assembly(name)
-    for part in wall.stones:
-        move = handling.pick_to_place(wall, part)
-        assert move is not None
-        assert np.linalg.det(move) == pytest.approx(1.0, abs=1e-12)
-        photo = wall.source_corners(part) / PX_PER_M
-        level = np.full(len(photo), THICKNESS_M)
-        found = move @ np.column_stack([photo, level, np.ones(len(photo))]).T
-        assert found[[0, 2]].T == pytest.approx(part.corners, abs=1e-9)
-        assert found[1] == pytest.approx(np.zeros(len(photo)), abs=1e-12)
-
-
-def test_wedges_have_no_way_from_the_photo() -> None:
-    wall = assembly("exact")
-    (wedge,) = wall.wedges
-    assert handling.pick_to_place(wall, wedge) is None
-    assert handling.pick_approach(wall, wedge) is None
-    assert handling.grasp(wall, wedge).direction_photo is None
-
-
-@pytest.mark.parametrize("name", METRIC)
 def test_the_jaws_close_on_the_part_in_every_frame(name: str) -> None:
     wall = assembly(name)
     for part in wall.parts:
@@ -128,13 +106,6 @@ def test_wedges_come_after_their_stone() -> None:
     assert after.pop(8) == [10]
     assert not any(after.values())
     assert wall.part(10).step == wall.part(8).step + 1
-
-
-def test_the_inverse_of_a_move_takes_it_back() -> None:
-    wall = assembly("exact")
-    for part in wall.parts:
-        matrix = wall.place_pose(part).matrix
-        assert handling.inverse(matrix) == pytest.approx(np.linalg.inv(matrix), abs=1e-14)
 
 
 @pytest.mark.parametrize("overlap_m", [0.0, 1e-12, -1e-12])

@@ -6,33 +6,11 @@ import numpy as np
 import pytest
 import shapely
 
+from drystone.drawing.assembly import handling
 from drystone.drawing.assembly.parts import Part
 from drystone.errors import UsageError
 from drystone.model.plan import StoneStep
 from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly, source_stones
-
-
-@pytest.mark.parametrize("name", METRIC)
-def test_a_point_of_the_photo_lands_where_the_formula_of_the_plan_says(name: str) -> None:
-    wall = assembly(name)
-    unit = PX_PER_M if wall.plan.length_unit == "px" else 1.0
-    rng = np.random.default_rng(0)
-    for part in wall.stones:
-        step = part.plan_step
-        pick, place = wall.pick_pose(part), wall.place_pose(part)
-        assert isinstance(step, StoneStep)
-        assert pick is not None
-        source = np.array(step.source_centroid) + rng.uniform(-9, 9, (20, 2))
-        height_m = rng.uniform(0, THICKNESS_M, 20)
-        in_photo = np.column_stack([source / PX_PER_M, height_m, np.ones(20)])
-        in_wall = place.matrix @ np.linalg.inv(pick.matrix) @ in_photo.T
-        angle = np.radians(step.angle_deg)
-        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-        expected = (source - step.source_centroid) @ turn.T / PX_PER_M
-        expected += np.array(step.centroid) / unit
-        assert in_wall[[0, 2]].T == pytest.approx(expected, abs=1e-9)
-        # What the camera sees is what is seen in the front, y = 0.
-        assert in_wall[1] == pytest.approx(THICKNESS_M - height_m, abs=1e-9)
 
 
 @pytest.mark.parametrize("name", METRIC)
@@ -117,6 +95,9 @@ def test_wedges_are_in_no_photo() -> None:
     wall = assembly("exact")
     (wedge,) = wall.wedges
     assert wall.pick_pose(wedge) is None
+    assert handling.pick_to_place(wall, wedge) is None
+    assert handling.pick_approach(wall, wedge) is None
+    assert handling.grasp(wall, wedge).direction_photo is None
     assert (wedge.kind, wedge.name, wedge.angle_deg) == ("wedge", "wedge_010", 0.0)
     assert wedge.under == 8
     with pytest.raises(TypeError, match="wedge_010 is in no image"):

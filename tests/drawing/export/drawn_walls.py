@@ -128,3 +128,9 @@ def photograph(wall: Assembly, path: Path, zoom: float = 3.0) -> Path:
 
 def photo_colour(step: int) -> tuple[int, int, int]:
     return 90 + (step * 37) % 120, 80 + (step * 59) % 110, 70 + (step * 83) % 100
+
+
+def runs(lit: np.ndarray) -> np.ndarray:
+    """Return the lengths of what is lit in a row."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], lit.astype(int), [0]])))
+    return edges[1::2] - edges[::2]

@@ -4,11 +4,14 @@ import tempfile
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pytest
+import shapely
 
 import drystone as ds
-from drystone.drawing.assembly.parts import Assembly
+from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.assembly.read import read_assembly
 from drystone.generate import RubbleSettings, rubble_stones
 from drystone.io.blocks_json import write_blocks
@@ -22,6 +25,16 @@ METRIC = ("exact", "raster", "exact-m", "raster-m")
 """All of them are in metres: two plans say so, two are told afterwards."""
 
 THICKNESS_M = 0.21
+
+
+def assert_in_place(mesh: Any, part: Part, abs_m: float = 1e-9) -> None:
+    """A mesh is closed, faces outward, and fills what a part takes up in the wall."""
+    assert mesh.is_watertight
+    area = shapely.Polygon(part.corners).area
+    assert mesh.volume == pytest.approx(area * THICKNESS_M, rel=max(1e-9, 1e2 * abs_m))
+    low, high = part.corners.min(axis=0), part.corners.max(axis=0)
+    expected = [[low[0], 0.0, low[1]], [high[0], THICKNESS_M, high[1]]]
+    assert mesh.bounds == pytest.approx(np.array(expected), abs=abs_m)
 
 
 @cache

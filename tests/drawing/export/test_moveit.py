@@ -6,14 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-import shapely
 import trimesh
 import yaml
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
-from drystone.errors import UsageError
-from tests.drawing.export.robot_plans import METRIC, THICKNESS_M, assembly
+from drystone.drawing.export.formats import FORMATS, ExportSettings
+from tests.drawing.export.robot_plans import METRIC, assembly, assert_in_place
 
 SETTINGS = ExportSettings()
 
@@ -55,10 +52,7 @@ def test_objects_come_in_the_order_of_building_at_their_places(name: str, tmp_pa
         vertices = [list(vertex.values()) for vertex in mesh["vertices"]]
         assert all(type(value) is float for vertex in vertices for value in vertex)
         solid = trimesh.Trimesh(vertices, faces, process=False)
-        assert solid.is_watertight
-        area = shapely.Polygon(part.corners).area
-        assert solid.volume == pytest.approx(area * THICKNESS_M, rel=1e-9)
-        assert solid.apply_transform(pose.matrix).bounds == pytest.approx(bounds(part.corners))
+        assert_in_place(solid.apply_transform(pose.matrix), part)
 
 
 def test_every_object_has_a_colour(tmp_path: Path) -> None:
@@ -79,15 +73,7 @@ def test_the_text_format_holds_the_same(name: str, tmp_path: Path) -> None:
     for (_, matrix, vertices, faces), part in zip(found, wall.parts, strict=True):
         assert matrix == pytest.approx(wall.place_pose(part).matrix, abs=1e-12)
         solid = trimesh.Trimesh(vertices, faces, process=False).apply_transform(matrix)
-        assert solid.is_watertight
-        area = shapely.Polygon(part.corners).area
-        assert solid.volume == pytest.approx(area * THICKNESS_M, rel=1e-9)
-        assert solid.bounds == pytest.approx(bounds(part.corners))
-
-
-def bounds(corners: Any) -> Any:
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    return np.array([[low[0], 0.0, low[1]], [high[0], THICKNESS_M, high[1]]])
+        assert_in_place(solid, part)
 
 
 def read_scene(text: str) -> Iterator[tuple[str, Any, Any, Any]]:
@@ -116,10 +102,3 @@ def read_scene(text: str) -> Iterator[tuple[str, Any, Any, Any]]:
         yield object_id, matrix, points, faces
     assert marker == "."
     assert next(words, None) is None
-
-
-def test_no_scene_without_a_scale() -> None:
-    files = FORMATS["moveit"].files(assembly("exact"), SETTINGS)
-    assert tuple(files) == ("scene.yaml", "wall.scene")
-    with pytest.raises(UsageError, match="E131"):
-        FORMATS["moveit"].files(assembly("exact", None), SETTINGS)

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from tests.drawing.export.robot_plans import assembly
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "for-robotics.md"

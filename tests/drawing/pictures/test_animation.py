@@ -44,11 +44,7 @@ def test_it_goes_from_rest_to_the_largest_displacement_and_back():
     # It starts and ends gently.
     assert steps[0] < 0.6 * steps[1]
     assert steps[3] < 0.6 * steps[2]
-
-
-def test_stones_keep_their_size():
-    frames = arrays(mechanism_frames(TALL, rocking(), "right", 0.5, frames=6))
-    areas = [red(frame)[0].size for frame in frames[:4]]
+    areas = [red(frame)[0].size for frame in frames[:5]]
     assert max(areas) < 1.02 * min(areas)
 
 

@@ -36,6 +36,9 @@ def test_interfaces_lie_where_the_blocks_touch(empty_rows):
     labels = np.pad(stacked((20, 10, 0), (20, 10, 5)), ((0, empty_rows), (0, 0)))
     ax = plot_contacts(labels, model_from_labels(labels).model)
     np.testing.assert_allclose(lines(ax, "interfaces"), [[[0, 0], [20, 0]], [[5, 10], [20, 10]]])
+    length = NORMAL_SHARE * 20  # the wall is 20 px high
+    expected = [[[10, 0], [10, length]], [[12.5, 10], [12.5, 10 + length]]]
+    np.testing.assert_allclose(lines(ax, "normals"), expected)
     drawn = patches(ax)
     for block, corner, opposite in ((1, (0, 0), (20, 10)), (2, (5, 10), (25, 20))):
         corners = drawn[f"block-{block}"].get_path().vertices
@@ -44,14 +47,6 @@ def test_interfaces_lie_where_the_blocks_touch(empty_rows):
     assert drawn["ground"].get_path().get_extents().y1 == 0
     ends = dots(ax, "end of an interface")
     np.testing.assert_allclose(ends, [[0, 0], [20, 0], [5, 10], [20, 10]])
-
-
-def test_normals_start_in_the_middle_and_point_into_the_block():
-    labels = stacked((20, 10, 0), (20, 10, 5))
-    ax = plot_contacts(labels, model_from_labels(labels).model)
-    length = NORMAL_SHARE * 20  # the wall is 20 px high
-    expected = [[[10, 0], [10, length]], [[12.5, 10], [12.5, 10 + length]]]
-    np.testing.assert_allclose(lines(ax, "normals"), expected)
 
 
 def test_normals_of_short_interfaces_are_shorter():

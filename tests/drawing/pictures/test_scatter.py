@@ -1,3 +1,5 @@
+"""Charts: the scatter of the load multiplier, and the load multiplier over friction."""
+
 from itertools import combinations
 
 import numpy as np
@@ -6,7 +8,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from drystone.contacts.blocks import model_from_labels
+from drystone.drawing.pictures.friction import plot_friction
 from drystone.drawing.pictures.scatter import plot_scatter
+from drystone.statics.friction_curve import AtFriction
 from drystone.statics.result import LimitStatus
 from drystone.statics.scatter.scatter import scatter
 from drystone.statics.scatter.shaking import ScatterSettings
@@ -142,3 +146,14 @@ def test_no_text_overlaps_another(name, shaken, falling):
     assert len(boxes) > 20
     for (one, box), (other, second) in combinations(boxes, 2):
         assert not box.overlaps(second), f"{one} / {other}"
+
+
+CURVE = (AtFriction(0.4, 0.3, 0.4), AtFriction(0.6, None, 0.5))
+
+
+@pytest.mark.parametrize("slides_at_mu", [True, False])
+def test_a_wall_slides_at_mu_on_a_tilting_table_only(slides_at_mu):
+    axes = plot_friction(CURVE, 0.58, slides_at_mu=slides_at_mu)
+    words = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert ("the whole wall slides" in words) == slides_at_mu
+    assert {"to the left", "to the right"} <= set(words)

@@ -14,22 +14,13 @@ from tests.verify.exact_examples import exact_example
 def test_every_stone_wedge_frame_and_ground_is_drawn_once():
     ax = plot_wall(examples.wall(), examples.CLUSTERS)
     stones = {f"stone-{i}" for i in examples.CLUSTERS}
-    assert set(patches(ax)) == stones | {f"wedge-{examples.WEDGE}", "frame", "ground"}
+    drawn, plain = patches(ax), patches(plot_wall(examples.wall()))
+    assert set(drawn) == set(plain) == stones | {f"wedge-{examples.WEDGE}", "frame", "ground"}
     assert len(ax.patches) == len(stones) + 3
-
-
-def test_colours_are_of_clusters_and_wedges_are_dark_red():
-    drawn = patches(plot_wall(examples.wall(), examples.CLUSTERS))
     for stone, cluster in examples.CLUSTERS.items():
         assert to_hex(drawn[f"stone-{stone}"].get_facecolor()) == cluster_colour(cluster)
+        assert to_hex(plain[f"stone-{stone}"].get_facecolor()) == PLAIN_COLOUR
     assert to_hex(drawn[f"wedge-{examples.WEDGE}"].get_facecolor()) == WEDGE_COLOUR
-
-
-def test_without_clusters_all_stones_have_one_colour():
-    drawn = patches(plot_wall(examples.wall()))
-    assert {to_hex(drawn[f"stone-{i}"].get_facecolor()) for i in examples.CLUSTERS} == {
-        PLAIN_COLOUR
-    }
 
 
 @pytest.mark.parametrize("px_per_m", [None, 50.0])

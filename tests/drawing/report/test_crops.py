@@ -6,8 +6,7 @@ import pytest
 from PIL import Image
 
 import drystone as ds
-from drystone.drawing.export.formats import FORMATS
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings
 from drystone.errors import InputError
 from tests.drawing.report.walls import result, written
 

@@ -11,12 +11,11 @@ import pytest
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.drawing import view_of_result, view_of_wall, write_pictures, write_report
-from drystone.drawing.report.embedding import viewer_frame, viewer_page, viewer_script, viewer_style
+from drystone.drawing.report.html import viewer_frame, viewer_page, viewer_script, viewer_style
 from drystone.drawing.report.notebook import Shown
 from drystone.drawing.words.content import (
     assumptions,
     cards,
-    flat_settings,
     number,
     weaker_direction,
 )
@@ -128,14 +127,10 @@ def test_results_inputs_and_notices_are_said(report):
         "upper bound",
         "placement.rule",
         "1 (6.0 px²)",
+        "Stones are their pixels at the working resolution",
+        "Stones touch where their pixels have edges or corners in common",
     ):
         assert said in text
-
-
-def test_what_stones_are_is_said(report):
-    text = Page(report).text
-    assert "Stones are their pixels at the working resolution" in text
-    assert "Stones touch where their pixels have edges or corners in common" in text
     assert "contact tolerance" not in text
 
 
@@ -188,13 +183,10 @@ def test_the_file_needs_nothing_else(report, pictures):
     assert "no picture of a mechanism to the right" in page.text
 
 
-def test_script_and_style_cannot_end_their_elements():
+def test_script_and_style_cannot_end_their_elements_and_no_markup_is_made_of_data():
+    assert not re.search(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write", viewer_script())
     assert "</script" not in viewer_script()
     assert "</style" not in viewer_style()
-
-
-def test_no_markup_is_made_of_data():
-    assert not re.search(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write", viewer_script())
 
 
 def test_missing_metrics_are_not_defined_and_never_zero(tmp_path):
@@ -293,13 +285,3 @@ def test_numbers(value, text):
 def test_weaker_direction(left, right, weaker):
     metrics = replace(examples.plan().metrics, alpha_left=left, alpha_right=right)
     assert weaker_direction(metrics) == weaker
-
-
-def test_settings_are_flat_and_complete():
-    settings = {"mu": 0.58, "a": {"b": {"c": [1, None]}, "d": True}}
-    flat = dict(flat_settings(settings))
-    assert {name: json.loads(value) for name, value in flat.items()} == {
-        "mu": 0.58,
-        "a.b.c": [1, None],
-        "a.d": True,
-    }

@@ -15,7 +15,7 @@ from PIL import Image, ImageDraw
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.drawing import view_of_result, view_of_wall, write_report
-from drystone.drawing.report.embedding import json_in_html, viewer_page, viewer_script, viewer_style
+from drystone.drawing.report.html import json_in_html, viewer_page, viewer_script, viewer_style
 from drystone.statics.limit import lateral_resistance
 from tests.drawing.report.walls import result
 

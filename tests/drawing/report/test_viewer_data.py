@@ -14,11 +14,10 @@ import drystone as ds
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.drawing import view_of_assembly, view_of_result, view_of_wall, write_report
-from drystone.drawing.assembly.read import read_assembly
+from drystone.drawing.assembly.read import read_assembly, scaled_resistance
 from drystone.drawing.palette import cluster_colour
 from drystone.drawing.photo import VIEWER_PX, Photo
-from drystone.drawing.report.view_parts import PATTERNS, turned
-from drystone.drawing.report.view_statics import scaled_resistance
+from drystone.drawing.report.viewer_data import PATTERNS
 from drystone.drawing.words.content import Card
 from drystone.drawing.words.masons import WALLS, masons_wall, masons_words
 from drystone.io.published_sets import SETS
@@ -356,19 +355,6 @@ def test_a_plan_with_a_photo_has_a_crop_for_every_stone(tmp_path):
     shown = view_of_result(result(), photo=tmp_path / "photo.jpg")
     assert all(part["crop"]["data"].startswith("data:image/jpeg") for part in shown["parts"])
     assert all(part["crop"] is None for part in view()["parts"])
-
-
-@pytest.mark.parametrize(
-    ("angle_deg", "said"),
-    [
-        (0.0, "not turned"),
-        (90.0, "turned 90.0° counter-clockwise"),
-        (-179.0, "turned 179.0° clockwise"),
-        (360.0, "not turned"),
-    ],
-)
-def test_turns_are_said_the_short_way(angle_deg, said):
-    assert turned(angle_deg) == said
 
 
 def test_a_result_shows_itself_in_a_notebook():

@@ -13,8 +13,7 @@ from drystone.cli.output import make_folder, prepare_files, print_json
 from drystone.cli.scale import add_scale, planned_picture_px, refuse_outside, scale_notice
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.assembly.read import read_assembly
-from drystone.drawing.export.formats import FORMATS, write_files
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import FORMATS, ExportSettings, write_files
 from drystone.errors import ExitCode, Notice, UsageError
 
 _PROJECTOR = re.compile(r"(\d+)x(\d+)@(\d+(?:\.\d*)?)")

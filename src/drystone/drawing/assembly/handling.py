@@ -23,16 +23,9 @@ INWARD: Vector = (0.0, 1.0, 0.0)
 
 @dataclass(frozen=True)
 class Approach:
-    """A straight move of a part to its place, without a turn.
+    """A straight move of a part to its place: `direction` is in the frame of the pose it leads to.
 
-    Parameters
-    ----------
-    direction : (float, float, float)
-        Unit vector, in the frame of the pose that it leads to.
-    stand_off_m : float
-        Length of the move.
-    start : (float, float, float)
-        Where the origin of the part is when the move begins, metres.
+    The origin of the part is at `start` (metres) when the move begins; the part does not turn.
     """
 
     direction: Vector
@@ -42,18 +35,9 @@ class Approach:
 
 @dataclass(frozen=True)
 class Grasp:
-    """Two parallel jaws across the least width of a part.
+    """Two parallel jaws across the least width of a part; unit vectors across them in S, W and P.
 
-    Parameters
-    ----------
-    width_m : float
-        Between the jaws, metres.
-    direction_part : (float, float, float)
-        Unit vector across the jaws, in S.
-    direction_wall : (float, float, float)
-        The same when the part stands at its place, in W.
-    direction_photo : (float, float, float) or None
-        The same when the stone lies in the photo, in P; None for a wedge.
+    Only a stone has one in the photo (P).
     """
 
     width_m: float
@@ -97,10 +81,7 @@ def pick_approach(assembly: Assembly, part: Part) -> Approach | None:
 
 
 def pick_to_place(assembly: Assembly, part: Part) -> Matrix | None:
-    """Return the (4, 4) transform that moves a stone from the photo (P) to its place (W).
-
-    None for a wedge, which is in no photo.
-    """
+    """Return the (4, 4) transform of a stone from photo (P) to wall (W); None for a wedge."""
     pick = assembly.pick_pose(part)
     if pick is None:
         return None
@@ -139,14 +120,10 @@ def wedges_after(assembly: Assembly, part: Part) -> tuple[Part, ...]:
 
 
 def blocked_m(assembly: Assembly, part: Part) -> float:
-    """Return how much of a stone's way down is taken by stones that stand already.
+    """Return the longest horizontal piece of a stone's way down that stands already, 0.0 if free.
 
-    Returns
-    -------
-    width_m : float
-        The longest horizontal piece of what is in the way; 0.0 when it is free.  With
-        ``reach = "above"`` stones were lowered along this way and then settled, which moves them
-        by a fraction of a px; with ``reach = "any"`` they may have come from the side.
+    With ``reach = "above"`` stones were lowered along this way and then settled, which moves them
+    by a fraction of a px; with ``reach = "any"`` they may have come from the side.
     """
     lift = place_approach(assembly, part).stand_off_m
     way = swept(part.corners + np.array([0.0, _APART_M]), lift)

@@ -14,6 +14,7 @@ from drystone.kernels.polygons import Points, area_and_centroid
 from drystone.kernels.raster import turn
 from drystone.model.frames3d import Pose3d, photo_pose, wall_pose
 from drystone.model.plan import Plan, Point, StoneStep, WedgeStep
+from drystone.model.steps import piece_id
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
 
@@ -52,8 +53,7 @@ class Part:
     @property
     def id(self) -> int:
         """Of the stone in the input image, or of the wedge in wall.png."""
-        step = self.plan_step
-        return step.stone if isinstance(step, StoneStep) else step.id
+        return piece_id(self.plan_step)
 
     @property
     def name(self) -> str:
@@ -207,13 +207,7 @@ class Assembly:
         return tuple(sorted(found))
 
     def source_corners(self, part: Part) -> Points:
-        """Return the outline of a stone where it lies in the source image, px, y up.
-
-        Raises
-        ------
-        ValueError
-            For a wedge, which is in no image.
-        """
+        """Return the outline of a stone where it lies in the source image, px, y up."""
         step = part.plan_step
         if not isinstance(step, StoneStep):
             raise TypeError(f"{part.name} is in no image")

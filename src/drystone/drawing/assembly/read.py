@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import shapely
@@ -11,15 +11,19 @@ import shapely
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.drawing.assembly.parts import DENSITY_KG_M3, Assembly, Part
-from drystone.drawing.outlines import label_regions
+from drystone.drawing.outlines import label_regions, wall_outlines
 from drystone.errors import InputError, PlanError, UsageError
 from drystone.io.photo_beside import photo_beside
 from drystone.io.walls import GivenWall, read_wall
 from drystone.kernels.polygons import Points, area_and_centroid
-from drystone.model.plan import Plan, StoneStep
-from drystone.model.steps import first_fault
+from drystone.model.plan import Plan, StoneStep, WedgeStep
+from drystone.model.steps import first_fault, piece_id
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
+from drystone.statics.result import LateralResistance, LimitResult
+
+if TYPE_CHECKING:
+    from drystone.search.plan_result import PlanResult
 
 
 def read_assembly(
@@ -58,11 +62,7 @@ def read_assembly(
     scale = _scale(plan, px_per_m, path)
     unit: Literal["px", "m"] = "px" if scale is None else "m"
     factor = 1.0 / scale if scale is not None and plan.length_unit == "px" else 1.0
-    model = scaled(model, factor)
-    parts = tuple(
-        _part(step, polygons[step.stone if isinstance(step, StoneStep) else step.id], factor)
-        for step in plan.steps
-    )
+    model, parts = scaled(model, factor), _parts(plan, polygons, factor)
     if thickness_m is not None and unit == "px":
         raise UsageError(
             "E131",
@@ -83,6 +83,25 @@ def read_assembly(
     )
 
 
+def assembly_of_result(result: "PlanResult", photo: Path | None = None) -> Assembly:
+    """Return the parts of a plan that was just made, in its unit, without reading its files."""
+    plan, wall = result.plan, result.wall
+    # Models of outlines are in source px, those of pixels in working px.
+    exact = wall.outlines is not None
+    factor = 1.0 / (wall.site.px_per_m or 1.0) if exact else wall.site.units_per_px
+    parts = _parts(plan, wall_outlines(wall), 1.0)
+    return Assembly(
+        plan,
+        parts,
+        scaled(result.model, factor),
+        scaled_resistance(result.resistance, factor),
+        plan.length_unit,
+        plan.px_per_m,
+        _usual_thickness(parts),
+        photo=photo,
+    )
+
+
 def scaled(model: RigidBlockModel, factor: float) -> RigidBlockModel:
     """Return a model in another unit of length; friction and what carries what stay."""
     return RigidBlockModel(
@@ -99,16 +118,29 @@ def scaled(model: RigidBlockModel, factor: float) -> RigidBlockModel:
     )
 
 
+def scaled_resistance(resistance: LateralResistance, factor: float) -> LateralResistance:
+    """Return a limit analysis in another unit of length, `factor` of them in an old one.
+
+    Weights are areas, so forces grow by its square; the largest displacement of a mechanism stays
+    1, so what turns does so slower in finer units.
+    """
+
+    def of(result: LimitResult) -> LimitResult:
+        mechanism, forces = result.mechanism, result.forces
+        if mechanism is not None:
+            velocity = mechanism.velocity * np.array([1.0, 1.0, 1.0 / factor])
+            mechanism = replace(mechanism, velocity=velocity)
+        forces = None if forces is None else forces * factor**2
+        return replace(result, mechanism=mechanism, forces=forces)
+
+    return replace(resistance, left=of(resistance.left), right=of(resistance.right))
+
+
 def outer_loop(loops: Sequence[Points]) -> Points:
     """Return the outline of the largest piece of a stone's pixels, without its holes.
 
     A pit that meets the outside at a corner of a pixel is a hole too: an outline with it would
     touch itself, and bound no solid.
-
-    Parameters
-    ----------
-    loops : sequence of (n, 2) float array
-        Outlines and holes, not closed; holes are clockwise.
     """
     largest = max(loops, key=lambda loop: area_and_centroid(loop)[0])
     polygon = shapely.Polygon(largest)
@@ -127,13 +159,8 @@ def _read(path: Path) -> tuple[Plan, Mapping[int, Points], RigidBlockModel]:
             "E132", "this is no plan.", where=str(path),
             cure="Give the plan.json of a plan, or its folder.",
         )  # fmt: skip
-    _refuse_disorder(wall.plan, path)
-    return wall.plan, *_shapes(wall, wall.plan)
-
-
-def _refuse_disorder(plan: Plan, path: Path) -> None:
-    """Refuse steps that nobody can build by: what is made of them goes by their numbers."""
-    fault = first_fault(plan)
+    # What is made of steps goes by their numbers.
+    fault = first_fault(wall.plan)
     if fault is not None:
         raise PlanError(
             fault.code,
@@ -141,6 +168,7 @@ def _refuse_disorder(plan: Plan, path: Path) -> None:
             where=f"{path}, step {fault.step}",
             cure="Give the plan as it was written; `drystone check` lists everything.",
         )
+    return wall.plan, *_shapes(wall, wall.plan)
 
 
 def _scale(plan: Plan, px_per_m: float | None, path: Path) -> float | None:
@@ -160,7 +188,8 @@ def _shapes(wall: GivenWall, plan: Plan) -> tuple[Mapping[int, Points], RigidBlo
     """Return outlines by id and the block model, in the plan's unit."""
     if wall.blocks is not None:
         closed = polygons_from_json(wall.blocks)
-        return {i: _open(corners) for i, corners in closed.items()}, model_from_json(wall.blocks)
+        opened = {i: c[:-1] if (c[0] == c[-1]).all() else c for i, c in closed.items()}
+        return opened, model_from_json(wall.blocks)
     assert wall.labels is not None  # noqa: S101 - a plan without blocks has an image
     per_px = 1.0 / (plan.working_scale * (plan.px_per_m or 1.0))
     loops = {region.id: region.loops for region in label_regions(wall.labels)}
@@ -168,17 +197,16 @@ def _shapes(wall: GivenWall, plan: Plan) -> tuple[Mapping[int, Points], RigidBlo
     return outer, scaled(model_from_labels(wall.labels, wall.mu).model, per_px)
 
 
-def _open(corners: Points) -> Points:
-    return corners[:-1] if (corners[0] == corners[-1]).all() else corners
+def _parts(plan: Plan, outlines: Mapping[int, Points], factor: float) -> tuple[Part, ...]:
+    def part(step: StoneStep | WedgeStep) -> Part:
+        outline = np.asarray(outlines[piece_id(step)] * factor)
+        outline.flags.writeable = False
+        if isinstance(step, StoneStep):
+            return Part(step, outline, (step.centroid[0] * factor, step.centroid[1] * factor))
+        _, x, y = area_and_centroid(outline)
+        return Part(step, outline, (x, y))
 
-
-def _part(step: StoneStep | object, corners: Points, factor: float) -> Part:
-    outline = np.asarray(corners * factor)
-    outline.flags.writeable = False
-    if isinstance(step, StoneStep):
-        return Part(step, outline, (step.centroid[0] * factor, step.centroid[1] * factor))
-    _, x, y = area_and_centroid(outline)
-    return Part(step, outline, (x, y))  # type: ignore[arg-type]
+    return tuple(map(part, plan.steps))
 
 
 def _usual_thickness(parts: tuple[Part, ...]) -> float:

@@ -7,8 +7,7 @@ from typing import Any
 
 from drystone.drawing.assembly import handling
 from drystone.drawing.assembly.parts import Assembly, Part
-from drystone.drawing.export.formats import Files
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.export.solids import Solid, require_solids, solid_of_part
 from drystone.drawing.export.text import json_text
 from drystone.model.frames3d import Pose3d

@@ -12,15 +12,14 @@ from drystone.drawing import svg as svg_end
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.canvas import draw
 from drystone.drawing.drawing import Area, Dots, Drawing, Item, Lines, placed
-from drystone.drawing.export.formats import Files, load_extra
-from drystone.drawing.export.settings import ExportSettings
-from drystone.drawing.files import figure_bytes
+from drystone.drawing.export.formats import ExportSettings, Files, load_extra
+from drystone.drawing.files import figure_bytes, pdf_bytes
 from drystone.drawing.lettering import one_line
 from drystone.drawing.photo import read_photo
 from drystone.drawing.pictures.contacts import JOINT
 from drystone.drawing.pictures.forces import LONGEST_SHARE, RESULTANT, resultants
 from drystone.drawing.pictures.mechanism import motion_of
-from drystone.drawing.sheet.pages import sheet, sheet_bytes
+from drystone.drawing.sheet.pages import sheet
 from drystone.drawing.wall import drawing_of_assembly
 from drystone.statics.result import LimitResult
 
@@ -82,7 +81,11 @@ def png(assembly: Assembly, settings: ExportSettings) -> Files:
 def pdf(assembly: Assembly, settings: ExportSettings) -> Files:
     """Return build-sheet.pdf; E189 when the photograph of the stones cannot be used."""
     photo = read_photo(assembly)
-    return {"build-sheet.pdf": lambda: sheet_bytes(sheet(assembly, settings, photo))}
+    return {
+        "build-sheet.pdf": lambda: pdf_bytes(
+            page.figure for page in sheet(assembly, settings, photo)
+        )
+    }
 
 
 def with_statics(assembly: Assembly) -> Drawing:
@@ -156,7 +159,6 @@ def failed(assembly: Assembly, result: LimitResult) -> list[Area]:
 
 
 def _says(result: LimitResult) -> str:
-    """Say at which load the forces of a direction act and the wall fails."""
     if result.alpha is None:
         return f"to the {result.direction}: {result.status.value}"
     return (

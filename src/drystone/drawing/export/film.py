@@ -11,8 +11,7 @@ from PIL import Image, ImageDraw
 
 from drystone.drawing.assembly.parts import Assembly
 from drystone.drawing.drawing import Area, Item
-from drystone.drawing.export.formats import Files, load_extra
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.lettering import font
 from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PLAIN_COLOUR, WEDGE_COLOUR, rgb
 from drystone.drawing.pixels import View, gif_bytes, paint, palette_of
@@ -80,15 +79,7 @@ def _mp4_bytes(av: Any, assembly: Assembly, settings: ExportSettings) -> bytes:
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """Pictures of a wall under construction.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        The wall.
-    width_px : int
-        Of a picture, at most.
-    """
+    """Pictures of a wall under construction, `width_px` wide at most."""
 
     assembly: Assembly
     width_px: int = 960
@@ -109,13 +100,7 @@ class Film:
         return width + width % 2, height + height % 2
 
     def frames(self) -> Iterator[Image.Image]:
-        """Yield a picture for every step, and one of the finished wall.
-
-        Yields
-        ------
-        Image
-            RGB, all of one size.
-        """
+        """Yield a picture for every step, and one of the finished wall."""
         drawing = drawing_of_assembly(self.assembly)
         width, height = self.size_px
         big = Image.new("RGB", (width * FINER, height * FINER), "white")

@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drystone.drawing.assembly.parts import Assembly
-    from drystone.drawing.export.settings import ExportSettings
 
 Files = Mapping[str, Callable[[], str | bytes]]
 """What will be written by name, relative to a folder, ``/`` between folders.
@@ -21,21 +20,44 @@ written when one of several formats cannot be.
 """
 
 
-@dataclass(frozen=True)
-class Format:
-    """A format.
+@dataclass(frozen=True, kw_only=True)
+class ExportSettings:
+    """How drawings and films are made.
 
     Parameters
     ----------
-    made_by : str
-        Module of :mod:`drystone.drawing.export` and, of the name of the format, its function, which
-        is given an assembly and settings and returns `Files`.
-    writes : tuple of str
-        The names of its files; a folder of its own ends in ``/``.
-    text : str
-        What they are, for people.
-    metric : bool
-        Whether it means nothing without a scale (E131).
+    paper_scale : float
+        The build sheet is drawn at 1 to this; the next usual scale where the wall does not fit.
+    title : str
+        In the title block; empty for the name of the stones.
+    projector_px : (int, int)
+        Width and height of a projector.
+    projector_px_per_m : float
+        Px of the projector in a metre on the wall.
+    projector_offset_px : (int, int) or None
+        Where the wall's lower left corner is in the projector's picture, from its lower left
+        corner; None for a wall in the middle, a strip for words above the lower edge.
+    seconds_per_step : float
+        Of films.
+    film_px : int
+        Width of films, about; that of walls higher than wide is less.
+    """
+
+    paper_scale: float = 10.0
+    title: str = ""
+    projector_px: tuple[int, int] = (1920, 1080)
+    projector_px_per_m: float = 1000.0
+    projector_offset_px: tuple[int, int] | None = None
+    seconds_per_step: float = 0.6
+    film_px: int = 960
+
+
+@dataclass(frozen=True)
+class Format:
+    """A format: its files, what they are in words, and whether it needs a scale (E131).
+
+    `made_by` names a module of this package and, as the format is called, its function from an
+    assembly and settings to `Files`.  In `writes` a folder ends in ``/``.
     """
 
     made_by: str
@@ -43,7 +65,7 @@ class Format:
     text: str
     metric: bool = False
 
-    def files(self, assembly: "Assembly", settings: "ExportSettings") -> Files:
+    def files(self, assembly: "Assembly", settings: ExportSettings) -> Files:
         """Return what will be written; raise what would keep it from being."""
         module, _, function = self.made_by.partition(":")
         if self.metric:
@@ -53,7 +75,7 @@ class Format:
         return files
 
     def write(
-        self, assembly: "Assembly", folder: "Path", settings: "ExportSettings"
+        self, assembly: "Assembly", folder: "Path", settings: ExportSettings
     ) -> "tuple[Path, ...]":
         """Write its files into a folder; return where they are."""
         return write_files(self.files(assembly, settings), folder)
@@ -71,13 +93,7 @@ def write_files(files: Files, folder: "Path") -> "tuple[Path, ...]":
 
 
 def load_extra(module: str, extra: str, code: str, where: str) -> Any:
-    """Return a module that not every installation has.
-
-    Raises
-    ------
-    UsageError
-        Of this code, with what to install.
-    """
+    """Return a module that not every installation has; UsageError says what to install."""
     try:
         return import_module(module)
     except ImportError as error:

@@ -10,8 +10,7 @@ from functools import partial
 import numpy as np
 
 from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.export.formats import Files, load_extra
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import ExportSettings, Files, load_extra
 from drystone.drawing.export.solids import (
     Solid,
     material,
@@ -100,14 +99,7 @@ def stl(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
 
 
 def stl_bytes(solid: Solid, title: str) -> bytes:
-    """Return a solid as binary STL; its 80 bytes of header hold a title.
-
-    Examples
-    --------
-    >>> box = Solid(np.zeros((3, 3)), np.zeros((0, 3), int))
-    >>> len(stl_bytes(box, "nothing"))
-    84
-    """
+    """Return a solid as binary STL; its 80 bytes of header hold a title."""
     facets = np.zeros(len(solid.triangles), _FACET)
     facets["normal"] = solid.normals
     facets["corners"] = solid.vertices[solid.triangles]

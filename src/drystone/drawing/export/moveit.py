@@ -4,17 +4,18 @@ scene.yaml is a ``moveit_msgs/PlanningScene`` message that adds them (is_diff), 
 format that MoveIt and its RViz plugin import.  Objects come in the order of building.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from drystone.drawing.assembly.parts import Assembly
-from drystone.drawing.export.formats import Files
-from drystone.drawing.export.settings import ExportSettings
-from drystone.drawing.export.solids import Solid, colour, require_solids, solid_of_part
+from drystone.drawing.export.formats import ExportSettings, Files
+from drystone.drawing.export.solids import colour, require_solids, solid_of_part
 from drystone.drawing.export.text import number
 from drystone.model.frames3d import Pose3d
 
 FRAME_ID = "wall"
 """Name of the frame W in ROS; a static transform says where it is."""
+
+AT_THE_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
 
 def moveit(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG001
@@ -38,66 +39,44 @@ def yaml_lines(assembly: Assembly) -> Iterator[str]:
     yield "world:"
     yield "  collision_objects:"
     for part in assembly.parts:
+        solid = solid_of_part(assembly, part)
         yield f"  # step {part.step}"
         yield "  - header: {frame_id: " + FRAME_ID + "}"
         yield f"    id: {part.name}"
-        yield f"    pose: {_pose(assembly.place_pose(part))}"
+        yield f"    pose: {_pose(*_seven(assembly.place_pose(part)))}"
         yield "    meshes:"
-        yield from _mesh(solid_of_part(assembly, part))
+        yield "    - triangles:"
+        for corners in solid.triangles.tolist():
+            yield f"      - {{vertex_indices: {corners}}}"
+        yield "      vertices:"
+        for vertex in solid.vertices.tolist():
+            yield f"      - {_fields('xyz', vertex)}"
         yield "    mesh_poses:"
-        yield f"    - {_pose(None)}"
+        yield f"    - {_pose(*AT_THE_ORIGIN)}"
     yield "object_colors:"
     for part in assembly.parts:
-        rgba = zip("rgba", (*colour(part), 1.0), strict=True)
-        fields = ", ".join(f"{name}: {number(value)}" for name, value in rgba)
-        yield "- {id: " + part.name + ", color: {" + fields + "}}"
+        yield f"- {{id: {part.name}, color: {_fields('rgba', (*colour(part), 1.0))}}}"
 
 
 def scene_lines(assembly: Assembly) -> Iterator[str]:
     """Return the wall in MoveIt's text format with object poses and subframes (none)."""
     yield "drystone_wall"
     for part in assembly.parts:
+        pose, solid = _seven(assembly.place_pose(part)), solid_of_part(assembly, part)
         yield f"* {part.name}"
-        yield from _pose_lines(assembly.place_pose(part))
+        yield _row(pose[:3])
+        yield _row(pose[3:])
         yield "1"
-        yield from _mesh_lines(solid_of_part(assembly, part))
-        yield "0.0 0.0 0.0"
-        yield "0.0 0.0 0.0 1.0"
+        yield "mesh"
+        yield f"{len(solid.vertices)} {len(solid.triangles)}"
+        yield from map(_row, solid.vertices.tolist())
+        for a, b, c in solid.triangles.tolist():
+            yield f"{a} {b} {c}"
+        yield _row(AT_THE_ORIGIN[:3])
+        yield _row(AT_THE_ORIGIN[3:])
         yield _row((*colour(part), 1.0))
         yield "0"
     yield "."
-
-
-def _pose(pose: Pose3d | None) -> str:
-    values = (0.0,) * 6 + (1.0,) if pose is None else _seven(pose)
-    x, y, z, qx, qy, qz, qw = map(number, values)
-    return (
-        f"{{position: {{x: {x}, y: {y}, z: {z}}}, "
-        f"orientation: {{x: {qx}, y: {qy}, z: {qz}, w: {qw}}}}}"
-    )
-
-
-def _mesh(solid: Solid) -> Iterator[str]:
-    yield "    - triangles:"
-    for corners in solid.triangles.tolist():
-        yield f"      - {{vertex_indices: {corners}}}"
-    yield "      vertices:"
-    for x, y, z in solid.vertices.tolist():
-        yield f"      - {{x: {number(x)}, y: {number(y)}, z: {number(z)}}}"
-
-
-def _mesh_lines(solid: Solid) -> Iterator[str]:
-    yield "mesh"
-    yield f"{len(solid.vertices)} {len(solid.triangles)}"
-    yield from map(_row, solid.vertices.tolist())
-    for a, b, c in solid.triangles.tolist():
-        yield f"{a} {b} {c}"
-
-
-def _pose_lines(pose: Pose3d) -> Iterator[str]:
-    values = _seven(pose)
-    yield _row(values[:3])
-    yield _row(values[3:])
 
 
 def _seven(pose: Pose3d) -> tuple[float, ...]:
@@ -105,5 +84,15 @@ def _seven(pose: Pose3d) -> tuple[float, ...]:
     return pose.x_m, pose.y_m, pose.z_m, turn.x, turn.y, turn.z, turn.w
 
 
-def _row(values: tuple[float, ...] | list[float]) -> str:
+def _pose(*seven: float) -> str:
+    at, turn = _fields("xyz", seven[:3]), _fields("xyzw", seven[3:])
+    return f"{{position: {at}, orientation: {turn}}}"
+
+
+def _fields(names: str, values: Iterable[float]) -> str:
+    pairs = zip(names, values, strict=True)
+    return "{" + ", ".join(f"{name}: {number(value)}" for name, value in pairs) + "}"
+
+
+def _row(values: Iterable[float]) -> str:
     return " ".join(map(number, values))

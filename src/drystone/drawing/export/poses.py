@@ -1,16 +1,14 @@
 """poses.json: where every part is picked and placed, how it is held, what it weighs."""
 
+from dataclasses import asdict
 from typing import Any
-
-import numpy as np
 
 from drystone.drawing.assembly import handling
 from drystone.drawing.assembly.handling import Approach, Grasp
 from drystone.drawing.assembly.parts import Assembly, Part
-from drystone.drawing.export.formats import Files
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.export.text import json_text
-from drystone.model.frames3d import Matrix, Pose3d, Vector
+from drystone.model.frames3d import Pose3d
 
 SCHEMA = "drystone-poses/1"
 
@@ -51,7 +49,7 @@ def poses(assembly: Assembly, settings: ExportSettings) -> Files:  # noqa: ARG00
 
 
 def to_json(assembly: Assembly) -> dict[str, Any]:
-    """Return what poses.json holds; E131 without a scale."""
+    """Return what poses.json holds, matrices as arrays; E131 without a scale."""
     plan = assembly.plan
     width_m, height_m = assembly.size
     return {
@@ -86,13 +84,13 @@ def _part(assembly: Assembly, part: Part) -> dict[str, Any]:
         "place": {
             **_pose(assembly.place_pose(part)),
             "approach": {
-                **_approach(handling.place_approach(assembly, part)),
+                **_named(handling.place_approach(assembly, part)),
                 "blocked_m": handling.blocked_m(assembly, part) if part.kind == "stone" else 0.0,
             },
         },
-        "pick": pick and down and {**_pose(pick), "approach": _approach(down)},
-        "pick_to_place": _matrix(handling.pick_to_place(assembly, part)),
-        "grasp": _grasp(handling.grasp(assembly, part), assembly.thickness),
+        "pick": pick and down and {**_pose(pick), "approach": _named(down)},
+        "pick_to_place": handling.pick_to_place(assembly, part),
+        "grasp": {**_named(handling.grasp(assembly, part)), "thickness_m": assembly.thickness},
         "mass_kg": assembly.mass_kg(part),
         "size_m": {"x": width_m, "y": assembly.thickness, "z": height_m},
         "neighbours": handling.touched_when_placed(assembly, part),
@@ -106,32 +104,13 @@ def _pose(pose: Pose3d) -> dict[str, Any]:
     return {
         "point": {"x": pose.x_m, "y": pose.y_m, "z": pose.z_m},
         "quaternion": {"x": turn.x, "y": turn.y, "z": turn.z, "w": turn.w},
-        "matrix": _matrix(pose.matrix),
+        "matrix": pose.matrix,
     }
 
 
-def _matrix(matrix: Matrix | None) -> list[list[float]] | None:
-    return None if matrix is None else np.asarray(matrix).tolist()
-
-
-def _approach(approach: Approach) -> dict[str, Any]:
+def _named(thing: Approach | Grasp) -> dict[str, Any]:
+    """Return its fields by name, and the parts of its vectors by x, y and z."""
     return {
-        "direction": _vector(approach.direction),
-        "stand_off_m": approach.stand_off_m,
-        "start": _vector(approach.start),
+        name: dict(zip("xyz", value, strict=True)) if isinstance(value, tuple) else value
+        for name, value in asdict(thing).items()
     }
-
-
-def _grasp(held: Grasp, thickness_m: float) -> dict[str, Any]:
-    photo = held.direction_photo
-    return {
-        "width_m": held.width_m,
-        "direction_part": _vector(held.direction_part),
-        "direction_wall": _vector(held.direction_wall),
-        "direction_photo": None if photo is None else _vector(photo),
-        "thickness_m": thickness_m,
-    }
-
-
-def _vector(vector: Vector) -> dict[str, float]:
-    return dict(zip("xyz", vector, strict=True))

@@ -11,11 +11,9 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from drystone.drawing.assembly.parts import Assembly, Part
-from drystone.drawing.drawing import Area, Lines
-from drystone.drawing.export.formats import Files
-from drystone.drawing.export.settings import ExportSettings
+from drystone.drawing.drawing import Area, Item, Lines
+from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.lettering import font
-from drystone.drawing.outlines import Loop
 from drystone.drawing.pixels import View, paint
 from drystone.errors import UsageError
 
@@ -32,10 +30,7 @@ BAR_M = 0.1
 def projector(assembly: Assembly, settings: ExportSettings) -> Files:
     """Return a picture of the empty wall, which the projector is aligned by, and one a step.
 
-    Raises
-    ------
-    UsageError
-        E187 when the wall is not in the picture of the projector, marks included.
+    E187 when the wall, marks included, is not in the picture of the projector.
     """
     view = _view(assembly, settings)
     parts: list[Part | None] = [None, *assembly.parts]
@@ -67,21 +62,19 @@ def _view(assembly: Assembly, settings: ExportSettings) -> View:
 
 def _picture(assembly: Assembly, settings: ExportSettings, view: View, part: Part | None) -> bytes:
     picture = Image.new("L", settings.projector_px, 0)
-    paint(picture, [_site(assembly, view, DIM if part else BRIGHT)], view)
-    for other in assembly.parts[: part.step - 1 if part else 0]:
-        paint(picture, [_outline(other, DIM, 2.0)], view)
+    there = assembly.parts[: part.step - 1 if part else 0]
+    items: list[Item] = [_site(assembly, view, DIM if part else BRIGHT)]
+    items += [Area(p.name, (p.corners,), line=_grey(DIM), width_pt=2.0) for p in there]
     if part is not None:
+        items.append(Area(part.name, (part.corners,), line=_grey(BRIGHT), width_pt=4.0))
         reach = min(CROSS_PX / view.per_unit, 0.3 * float(np.ptp(part.corners, axis=0).min()))
-        cross = Lines("", _cross(part.centroid, reach, reach), _grey(BRIGHT), 2.0)
-        paint(picture, [_outline(part, BRIGHT, 4.0), cross], view)
+        arms = np.array([[(-reach, 0.0), (reach, 0.0)], [(0.0, -reach), (0.0, reach)]])
+        items.append(Lines("", [*(part.centroid + arms)], _grey(BRIGHT), 2.0))
+    paint(picture, items, view)
     _words(picture, assembly, view, part)
     with BytesIO() as file:
         picture.save(file, format="PNG")
         return file.getvalue()
-
-
-def _outline(part: Part, level: int, width: float) -> Area:
-    return Area(part.name, (part.corners,), line=_grey(level), width_pt=width)
 
 
 def _site(assembly: Assembly, view: View, level: int) -> Lines:
@@ -94,11 +87,6 @@ def _site(assembly: Assembly, view: View, level: int) -> Lines:
             lines.append(np.array([(x + sign_x * long, y), (x - sign_x * short, y)]))
             lines.append(np.array([(x, y + sign_y * long), (x, y - sign_y * short)]))
     return Lines("site", lines, _grey(level), 1.0)
-
-
-def _cross(at: tuple[float, float], across: float, up: float) -> list[Loop]:
-    x, y = at
-    return [np.array([(x - across, y), (x + across, y)]), np.array([(x, y - up), (x, y + up)])]
 
 
 def _words(picture: Image.Image, assembly: Assembly, view: View, part: Part | None) -> None:

@@ -17,15 +17,7 @@ Triangles = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A closed surface.
-
-    Parameters
-    ----------
-    vertices : (n, 3) float array
-        Metres.
-    triangles : (m, 3) int array
-        Indices of vertices, counter-clockwise as seen from outside.
-    """
+    """A closed surface in metres; triangles are counter-clockwise as seen from outside."""
 
     vertices: Corners
     triangles: Triangles
@@ -40,17 +32,7 @@ class Solid:
 
 @dataclass(frozen=True)
 class Inertia:
-    """Mass of a part and how it is spread.
-
-    Parameters
-    ----------
-    mass_kg : float
-        Of a solid of one density.
-    centre : (float, float, float)
-        Of mass, in S, metres.
-    tensor : (3, 3) float array
-        About the centre along the axes of S, kg m2.
-    """
+    """Mass of a part of one density, its centre in S, and the tensor about it along S, kg m2."""
 
     mass_kg: float
     centre: tuple[float, float, float]
@@ -75,21 +57,10 @@ def require_solids(assembly: Assembly) -> None:
 
 
 def extruded(outline: Points, front: float, back: float, name: str = "outline") -> Solid:
-    """Return a prism along Y.
+    """Return a prism along Y from `front` to `back`.
 
-    Parameters
-    ----------
-    outline : (n, 2) float array
-        Counter-clockwise in x and z, not closed, without crossings.
-    front, back : float
-        Where it begins and ends, y.
-    name : str
-        For the message.
-
-    Raises
-    ------
-    InputError
-        E180 when the outline crosses or touches itself, or has no area.
+    The outline is counter-clockwise in x and z, not closed; E180 names it when it crosses or
+    touches itself, or has no area.
 
     Examples
     --------
@@ -111,15 +82,7 @@ def extruded(outline: Points, front: float, back: float, name: str = "outline") 
 
 
 def triangulated(outline: Points, name: str = "outline") -> Triangles:
-    """Return (n - 2, 3) indices of the corners of triangles that fill an outline.
-
-    They are counter-clockwise like the outline.
-
-    Raises
-    ------
-    InputError
-        E180 when it crosses or touches itself, or has no area.
-    """
+    """Return (n - 2, 3) corners of triangles that fill an outline, counter-clockwise like it."""
     polygon = shapely.Polygon(outline)
     place = {corner: index for index, corner in enumerate(map(tuple, outline.tolist()))}
     whole = polygon.is_valid and polygon.area > 0.0 and len(place) == len(outline)

@@ -14,12 +14,7 @@ def json_text(value: Any, depth: int = 0) -> str:
     """Return JSON on few lines: what holds nothing but numbers and words is not broken up.
 
     Floats have all digits; a list of rows, such as a matrix, counts as plain.  What is longer
-    than 320 characters is broken up all the same.
-
-    Raises
-    ------
-    ValueError
-        For NaN and infinities, which JSON does not have.
+    than 320 characters is broken up all the same.  NaN and infinities are refused (ValueError).
 
     Examples
     --------

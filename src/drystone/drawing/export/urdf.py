@@ -8,14 +8,10 @@ import math
 from functools import partial
 from xml.etree import ElementTree as ET
 
-import numpy as np
-
 from drystone.drawing.assembly.parts import Assembly, Part
-from drystone.drawing.export.formats import Files
+from drystone.drawing.export.formats import ExportSettings, Files
 from drystone.drawing.export.meshes import stl_bytes
-from drystone.drawing.export.settings import ExportSettings
 from drystone.drawing.export.solids import (
-    Inertia,
     colour,
     inertia,
     material,
@@ -56,23 +52,20 @@ def robot(assembly: Assembly) -> ET.Element:
 
 
 def _link(root: ET.Element, assembly: Assembly, part: Part) -> None:
-    link = ET.SubElement(root, "link", name=part.name)
-    _inertial(link, inertia(assembly, part))
+    link, found = ET.SubElement(root, "link", name=part.name), inertia(assembly, part)
+    inertial = ET.SubElement(link, "inertial")
+    ET.SubElement(inertial, "origin", xyz=_row(*found.centre), rpy=_row(0.0, 0.0, 0.0))
+    ET.SubElement(inertial, "mass", value=number(found.mass_kg))
+    tensor = {
+        f"i{'xyz'[i]}{'xyz'[j]}": number(found.tensor[i, j]) for i in range(3) for j in range(i, 3)
+    }
+    ET.SubElement(inertial, "inertia", tensor)
     for name in ("visual", "collision"):
         body = ET.SubElement(link, name)
         ET.SubElement(ET.SubElement(body, "geometry"), "mesh", filename=_mesh(part))
         if name == "visual":
             paint = ET.SubElement(body, "material", name=material(part))
             ET.SubElement(paint, "color", rgba=_row(*colour(part), 1.0))
-
-
-def _inertial(link: ET.Element, found: Inertia) -> None:
-    inertial = ET.SubElement(link, "inertial")
-    ET.SubElement(inertial, "origin", xyz=_row(*found.centre), rpy=_row(0.0, 0.0, 0.0))
-    ET.SubElement(inertial, "mass", value=number(found.mass_kg))
-    names = np.array([["ixx", "ixy", "ixz"], ["", "iyy", "iyz"], ["", "", "izz"]])
-    upper = [(str(names[i, j]), number(found.tensor[i, j])) for i in range(3) for j in range(i, 3)]
-    ET.SubElement(inertial, "inertia", dict(upper))
 
 
 def _joint(root: ET.Element, part: Part, pose: Pose3d) -> None:

@@ -7,9 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
-from matplotlib.transforms import Bbox
 from PIL import Image, PngImagePlugin
 
 from drystone.drawing.canvas import block_path
@@ -68,7 +66,10 @@ def mechanism_frames(
     drawn: list[Image.Image] = []
     for step in range(frames // 2 + 1):
         _move(ax, motion, (1.0 - np.cos(2.0 * np.pi * step / frames)) / 2.0)
-        drawn.append(_picture(figure, box, dpi))
+        with BytesIO() as file:
+            figure.savefig(file, format="png", dpi=dpi, bbox_inches=box, facecolor="white")
+            file.seek(0)
+            drawn.append(PngImagePlugin.PngImageFile(file).convert("RGB"))
     return tuple(drawn[min(step, frames - step)] for step in range(frames))
 
 
@@ -103,7 +104,10 @@ def save_mechanism_animation(
     if Path(path).suffix.lower() != ".gif":
         raise ValueError(f"{path}: animations end in .gif")
     pictures = mechanism_frames(wall, mechanism, direction, alpha, frames=frames, **options)
-    write_whole(Path(path), gif_bytes(pictures, _few_colours(), FRAME_MS))
+    # The same few for every GIF: greys, and the colours of the displacements.
+    greys = np.linspace(0.0, 1.0, GREY_COUNT)[:, None].repeat(3, axis=1)
+    few = palette_of(np.vstack((greys, COLOURS(np.linspace(0.0, 1.0, COLOUR_COUNT))[:, :3])))
+    write_whole(Path(path), gif_bytes(pictures, few, FRAME_MS))
 
 
 def _move(ax: Axes, motion: Motion, amplitude: float) -> None:
@@ -116,16 +120,3 @@ def _move(ax: Axes, motion: Motion, amplitude: float) -> None:
         number = numbers.get(f"number-{region.id}")
         if number is not None:
             number.set_position(centroid)
-
-
-def _picture(figure: Figure, box: Bbox, dpi: float) -> Image.Image:
-    with BytesIO() as file:
-        figure.savefig(file, format="png", dpi=dpi, bbox_inches=box, facecolor="white")
-        file.seek(0)
-        return PngImagePlugin.PngImageFile(file).convert("RGB")
-
-
-def _few_colours() -> Image.Image:
-    """Return greys and the colours of the displacements: the same few for every GIF."""
-    greys = np.linspace(0.0, 1.0, GREY_COUNT)[:, None].repeat(3, axis=1)
-    return palette_of(np.vstack((greys, COLOURS(np.linspace(0.0, 1.0, COLOUR_COUNT))[:, :3])))

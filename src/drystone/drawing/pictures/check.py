@@ -1,19 +1,25 @@
-"""The picture of what `drystone check` found to fail."""
+"""The picture of what `drystone check` found to fail: where blocks were planned, and ended."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from drystone.drawing.canvas import MARGIN_IN, WIDTH_IN, draw
+from drystone.drawing.drawing import Area, Drawing, Item, Lines, Words, ground
 from drystone.drawing.files import save
-from drystone.drawing.outlines import Loop
-from drystone.drawing.pictures.failures import FailureView, plot_failures
+from drystone.drawing.outlines import Box, Loop, polygon_regions, rectangle, regions_box
+from drystone.drawing.palette import GREY, OUTLINE_COLOUR, PALE
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.words.checked import PICTURE, Checked
 from drystone.errors import PlanError
+from drystone.model.steps import piece_id
 from drystone.statics.limit import lateral_resistance
 from drystone.verify.outlines import common_areas
-from drystone.verify.pieces import piece_id
-from drystone.verify.replay import Stage, replay_plan
+from drystone.verify.replay import replay_plan
 from drystone.verify.report import Problem
 from drystone.verify.stability import wall_model
 
@@ -25,18 +31,48 @@ OVERLAPS, FALLS, OTHER_PIXELS, NOT_STURDY = "E221", "E230", "E236", "E237"
 NOTABLE = 0.02
 """Blocks that move by this share of the largest movement belong to a mechanism."""
 
+CONCERNED = "#f0a030"
+PLANNED = "#0050a0"
+PLANNED_PALE = "#90b0d8"
+COMMON = "#c00020"
+DASHES, DOTS = (4.0, 2.0), (1.0, 1.65)
+
+NOTICEABLE = 4e-3
+"""Blocks that have moved by this share of the wall's height are shown where they were planned."""
+
+LEGEND_IN, TITLE_IN = 0.3, 0.3
+HEIGHT_IN = 5.0
+"""Largest height of one view."""
+
+
+@dataclass(frozen=True, eq=False)
+class FailureView:
+    """A wall and what fails in it; lengths in source px, wall frame.
+
+    `concerned` are the blocks that fail, `ended` where blocks ended that moved, `common` areas that
+    two blocks claim, `size` that of the wall that was to be built.
+    """
+
+    title: str
+    planned: Mapping[int, Loop]
+    concerned: Sequence[int] = ()
+    ended: Mapping[int, Loop] = field(default_factory=dict)
+    common: Sequence[Loop] = ()
+    size: tuple[float, float] | None = None
+
+    @property
+    def box(self) -> Box:
+        """What is to be seen."""
+        frame = [np.array([(0.0, 0.0), self.size])] if self.size else []
+        loops = [[loop] for loop in (*self.planned.values(), *self.ended.values(), *frame)]
+        x0, y0, x1, y1 = regions_box(loops)
+        pad = 0.03 * max(y1 - y0, 0.2 * (x1 - x0))
+        return x0 - pad, min(y0, 0.0) - 2 * pad, x1 + pad, y1 + pad
+
 
 @dataclass(frozen=True)
 class Drawn:
-    """A picture that was written, or not.
-
-    Parameters
-    ----------
-    path : str or None
-        Where it is; None when it could not be written.
-    words : str
-        The same, with what there is to know.
-    """
+    """A picture: its path, None when it could not be written, and the same in words."""
 
     path: str | None
     words: str
@@ -67,22 +103,25 @@ def draw_failures(checked: Checked, folder: Path) -> Drawn | None:
 
 def views_of(checked: Checked) -> list[FailureView]:
     """Return what is to be drawn: nothing when nothing that can be seen fails."""
-    planned = _planned(checked)
+    planned, problems = _planned(checked), checked.report.problems
     if not planned:
         return []
     views = []
-    problems = checked.report.problems
     misplaced = [problem for problem in problems if problem.code in MISPLACED]
     # What lies elsewhere has other pixels too; that alone means another image.
     pixels = [p for p in problems if p.code == OTHER_PIXELS and p.step is not None]
-    if misplaced or pixels:
-        views.append(_misplaced(checked, planned, misplaced or pixels))
+    lying = misplaced or pixels
+    if lying:
+        more = f" ... and {len(lying) - 1} more" if len(lying) > 1 else ""
+        ids = _ids(checked, {problem.step for problem in lying})
+        overlapping = _ids(checked, {p.step for p in lying if p.code == OVERLAPS})
+        common = common_areas(planned, overlapping)
+        title = f"{_short(lying[0])}{more}"
+        views.append(FailureView(title, planned, ids, common=common, size=_size(checked)))
     falling = next((p for p in problems if p.code in (FALLS, NOT_STURDY)), None)
     if falling is not None:
         views.append(_unstable(checked, planned, falling))
-    if checked.falls:
-        views += _whole_wall(checked)
-    return views
+    return [*views, *_whole_wall(checked)] if checked.falls else views
 
 
 def _whole_wall(checked: Checked) -> list[FailureView]:
@@ -98,34 +137,19 @@ def _whole_wall(checked: Checked) -> list[FailureView]:
     return [FailureView(title, planned, built.fallen, built.outlines, size=_size(checked))]
 
 
-def _misplaced(
-    checked: Checked, planned: Mapping[int, Loop], problems: Sequence[Problem]
-) -> FailureView:
-    """Return the whole wall with the stones that lie wrong."""
-    overlapping = {problem.step for problem in problems if problem.code == OVERLAPS}
-    title = _short(str(problems[0]))
-    if len(problems) > 1:
-        title += f" ... and {len(problems) - 1} more"
-    return FailureView(
-        title,
-        planned,
-        _ids(checked, {problem.step for problem in problems}, planned),
-        common=common_areas(planned, _ids(checked, overlapping, planned)),
-        size=_size(checked),
-    )
-
-
 def _unstable(checked: Checked, planned: Mapping[int, Loop], problem: Problem) -> FailureView:
     """Return the first wall on the way that does not stand, and how it begins to fall."""
     replay = replay_plan(checked.plan, checked.stones)
     stage = next(stage for stage in replay.stages if stage.last.step == problem.step)
-    standing = {block: loop for block, loop in planned.items() if block in _there(stage)}
-    title = _short(str(problem))
+    groups, title = stage.after.groups, _short(problem)
+    there = {group.placement.stone_id for group in groups}
+    there |= {wedge.id for group in groups for wedge in group.wedges}
+    standing = {block: loop for block, loop in planned.items() if block in there}
     # With all its friction a wall that is not sturdy does not begin to fall.
     model = wall_model(stage.after, replay.settings) if problem.code == FALLS else None
     mechanism = None if model is None else lateral_resistance(model, mechanism=True).left.mechanism
     if mechanism is None:
-        last = _ids(checked, {stage.stone.step}, planned)
+        last = _ids(checked, {stage.stone.step})
         return FailureView(title, standing, last, size=_size(checked))
     motion = motion_of(standing, mechanism)
     blocks = list(zip(motion.regions, motion.at(1.0), motion.share.tolist(), strict=True))
@@ -138,21 +162,15 @@ def _unstable(checked: Checked, planned: Mapping[int, Loop], problem: Problem) -
     )
 
 
-def _there(stage: Stage) -> set[int]:
-    """Return the ids of all stones and wedges of a wall on the way."""
-    groups = stage.after.groups
-    stones = {group.placement.stone_id for group in groups}
-    return stones | {wedge.id for group in groups for wedge in group.wedges}
-
-
 def _planned(checked: Checked) -> dict[int, Loop]:
     return {block: corners for group in checked.groups for block, corners in group}
 
 
-def _ids(checked: Checked, steps: set[int | None], planned: Mapping[int, Loop]) -> list[int]:
+def _ids(checked: Checked, steps: set[int | None]) -> list[int]:
     """Return the ids that some steps place, as far as they can be drawn."""
-    ids = [piece_id(step) for step in checked.plan.steps if step.step in steps]
-    return [block for block in dict.fromkeys(ids) if block in planned]
+    chosen = (step for step in checked.plan.steps if step.step in steps)
+    ids, planned = dict.fromkeys(map(piece_id, chosen)), _planned(checked)
+    return [block for block in ids if block in planned]
 
 
 def _size(checked: Checked) -> tuple[float, float]:
@@ -161,5 +179,76 @@ def _size(checked: Checked) -> tuple[float, float]:
     return checked.plan.width * source_px, checked.plan.height * source_px
 
 
-def _short(text: str, most: int = 100) -> str:
+def _short(problem: Problem, most: int = 100) -> str:
+    text = str(problem)
     return text if len(text) <= most else f"{text[:most].rstrip()} ..."
+
+
+def plot_failures(views: Sequence[FailureView]) -> Figure:
+    """Draw one or more views under each other."""
+    boxes = [view.box for view in views]
+    heights = [min(WIDTH_IN * (y1 - y0) / (x1 - x0), HEIGHT_IN) for x0, y0, x1, y1 in boxes]
+    gap = TITLE_IN + LEGEND_IN
+    width, height = WIDTH_IN + 2 * MARGIN_IN, sum(heights) + gap * len(views)
+    figure = Figure(figsize=(width, height))
+    bottom = height
+    for view, tall in zip(views, heights, strict=True):
+        bottom -= gap + tall
+        left = (MARGIN_IN / width, (bottom + LEGEND_IN) / height)
+        plot_failure(view, figure.add_axes((*left, WIDTH_IN / width, tall / height)))
+    return figure
+
+
+def plot_failure(view: FailureView, ax: Axes | None = None) -> Axes:
+    """Draw a wall and what fails in it, in source px.
+
+    Blocks are drawn where they ended; those that fail are coloured and numbered, dashed lines
+    show where they, and others that have moved, were planned.
+    """
+    items: list[Item] = [*ground(view.box)]
+    legend: dict[str, Area | Lines] = {}
+    if view.concerned:
+        legend["fails"] = Area("", (), CONCERNED)
+    ended = polygon_regions({**view.planned, **view.ended})
+    for region in ended:
+        # Blocks that fail lie over those that they have got into, and over their numbers.
+        fails = region.id in view.concerned
+        fill = CONCERNED if fails else PALE
+        area = Area(
+            f"block-{region.id}", region.loops, fill, OUTLINE_COLOUR if fails else GREY,
+            width_pt=0.8 if fails else 0.5, z=2.0 if fails else 1.0,
+        )  # fmt: skip
+        number = Words(
+            f"number-{region.id}", str(region.id), region.centroid, area.room, fill,
+            colour="" if fails else GREY, z=5.0 if fails else 1.5,
+        )  # fmt: skip
+        items += [area, number]
+    moved = _moved(view)
+    if moved:
+        legend["where it was planned"] = Lines("", [], PLANNED, 1.0, DASHES)
+    common = [
+        Area(f"common-{number}", (loop,), COMMON, COMMON, width_pt=0.8, z=4.0)
+        for number, loop in enumerate(view.common)
+    ]
+    if common:
+        legend["claimed by two"] = common[0]
+    items += [*moved, *common]
+    if view.size:
+        site = rectangle(0.0, 0.0, *view.size)
+        items.append(Area("site", (site,), line=GREY, width_pt=1.0, dashes=DOTS))
+        legend["wall that was to be built"] = Lines("", [], GREY, 1.5, DOTS)
+    return draw(Drawing(tuple(items), view.box, title=view.title, legend=legend), ax)
+
+
+def _moved(view: FailureView) -> list[Area]:
+    _, y0, _, y1 = regions_box([loop] for loop in view.planned.values())
+    drawn = []
+    for block, loop in view.planned.items():
+        way = np.hypot(*(view.ended[block] - loop).T).max() if block in view.ended else 0.0
+        if way > NOTICEABLE * (y1 - y0):
+            fails = block in view.concerned
+            drawn.append(
+                Area(f"planned-{block}", (loop,), line=PLANNED if fails else PLANNED_PALE,
+                     width_pt=1.0 if fails else 0.5, dashes=DASHES, z=3.0)
+            )  # fmt: skip
+    return drawn

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from drystone.drawing.canvas import draw
 from drystone.drawing.drawing import Area, Dots, Drawing, Lines
@@ -12,9 +11,7 @@ from drystone.drawing.outlines import Loop, wall_regions
 from drystone.drawing.wall import pale_wall, size_of
 from drystone.model.wall import Labels
 from drystone.statics.failing.kinematics import ContactKind
-from drystone.statics.model import Interface, RigidBlockModel
-
-Floats = NDArray[np.float64]
+from drystone.statics.model import RigidBlockModel
 
 JOINT, NORMAL, POINT = "#0072b2", "#d55e00", "#8b0000"
 
@@ -65,9 +62,12 @@ def plot_contacts(
     if kinds is not None and len(kinds) != model.contact_count:
         raise ValueError(f"{len(kinds)} kinds for {model.contact_count} contact points")
     regions = wall_regions(wall)
-    pale, size = pale_wall(regions, model), size_of(regions)
+    pale = pale_wall(regions, model)
     lines = [interface.points for interface in model.interfaces if len(interface.points) > 1]
-    normals = [_normal(interface, NORMAL_SHARE * size) for interface in model.interfaces]
+    longest, normals = NORMAL_SHARE * size_of(regions), []
+    for face in model.interfaces:
+        middle, length = face.points.mean(axis=0), max(0.5 * face.length, longest / 3.0)
+        normals.append(np.array([middle, middle + min(longest, length) * np.array(face.normal)]))
     points = np.concatenate([np.empty((0, 2)), *(i.points for i in model.interfaces)])
     counts = np.array([len(interface.points) for interface in model.interfaces], np.int64)
     alone = np.repeat(counts == 1, counts)
@@ -83,10 +83,3 @@ def plot_contacts(
     legend: dict[str, Area | Lines | Dots]
     legend = {"interface": faces, "normal": inward, **{one.name: one for one in dots}}
     return draw(Drawing((*pale.items, faces, inward, *dots), pale.box, legend=legend), ax)
-
-
-def _normal(interface: Interface, longest: float) -> Floats:
-    """Return the normal as a line from the middle of the interface into its block."""
-    middle = interface.points.mean(axis=0)
-    length = min(longest, max(0.5 * interface.length, longest / 3.0))
-    return np.array([middle, middle + length * np.array(interface.normal)])

@@ -33,21 +33,9 @@ NEAR = 0.01
 
 
 def plot_finding(report: CraftReport, name: str, ax: Axes | None = None) -> Axes:
-    """Draw what one rule finds.
+    """Draw what one rule finds, in the unit of the outlines; a figure of its own has a legend.
 
-    Parameters
-    ----------
-    report : CraftReport
-        From :func:`drystone.craft.look`.
-    name : str
-        Of the rule.
-    ax : Axes, optional
-        Where to draw; None makes a figure, with a legend.
-
-    Returns
-    -------
-    ax : Axes
-        In the unit of the outlines.  Numbers on stones are steps of a plan, else ids.
+    Numbers on stones are steps of a plan, else ids.
     """
     masonry, finding = report.masonry, report.findings[name]
     alone = ax is None
@@ -68,13 +56,7 @@ def plot_finding(report: CraftReport, name: str, ax: Axes | None = None) -> Axes
 
 
 def plot_craft(report: CraftReport) -> Figure:
-    """Draw all rules on one sheet, two panels in a row.
-
-    Parameters
-    ----------
-    report : CraftReport
-        From :func:`drystone.craft.look`.
-    """
+    """Draw all rules on one sheet, two panels in a row."""
     x0, y0, x1, y1 = _view(report.masonry)
     panel = min(PANEL_IN * (y1 - y0) / (x1 - x0), TALLEST_IN)
     rows = (len(report.findings) + 1) // 2

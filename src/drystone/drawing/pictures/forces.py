@@ -37,16 +37,9 @@ VISIBLE_SHARE = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Resultant:
-    """What an interface carries.
+    """What an interface carries: the force on the block that its normal points into.
 
-    Parameters
-    ----------
-    interface : Interface
-        Which one.
-    point : (2,) float array
-        Where the line of the force crosses that of the interface, wall frame.
-    force : (2,) float array
-        On the block that the normal points into, to the right and up, weights of the model.
+    The line of the force crosses that of the interface at `point`.
     """
 
     interface: Interface
@@ -60,25 +53,10 @@ class Resultant:
 
 
 def resultants(model: RigidBlockModel, forces: Floats) -> tuple[Resultant, ...]:
-    """Add up the forces at the contact points of every interface.
+    """Add up the forces at the contact points of every interface that carries anything.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Interfaces with one or two points.
-    forces : (m, 2) float array
-        Normal and tangential force at every contact point as
-        :attr:`drystone.statics.result.LimitResult.forces` has them.
-
-    Returns
-    -------
-    tuple of Resultant
-        Of the interfaces that carry anything.
-
-    Raises
-    ------
-    ValueError
-        When there are more or fewer forces than contact points.
+    `forces` are normal and tangential, (m, 2), as in
+    :attr:`drystone.statics.result.LimitResult.forces`.
 
     Examples
     --------
@@ -154,29 +132,24 @@ def plot_forces(
         np.array([r.point - half, r.point + half]) for r, half in zip(acting, halves, strict=True)
     ]
     pale = pale_wall(regions, model, lines)
-    paths, widths = _network(model, acting)
+    # From centroid to point of action to centroid.
+    middle = {block.id: np.array(block.centroid) for block in model.blocks}
+    paths = [
+        np.array([middle[one.interface.block], one.point,
+                  *([middle[one.interface.other]] if one.interface.other != GROUND else [])])
+        for one in acting
+    ]  # fmt: skip
+    widths = [WIDEST_PT * one.size / largest for one in acting]
     seen = np.array([one.point for one in acting if one.size >= VISIBLE_SHARE * largest])
     items = (
         *pale.items,
-        Lines("thrust", paths, NETWORK, (WIDEST_PT * widths / largest).tolist()),
+        Lines("thrust", paths, NETWORK, widths),
         Lines("resultants", lines, RESULTANT, RESULTANT_PT),
         Dots("points-of-action", seen, RESULTANT, 1.8),
     )
     ax = draw(Drawing(items, pale.box), ax)
     _draw_scale(ax, model, per_weight, largest)
     return ax
-
-
-def _network(model: RigidBlockModel, acting: tuple[Resultant, ...]) -> tuple[list[Floats], Floats]:
-    """Return lines from centroid to point of action to centroid, and their forces."""
-    centroid = {block.id: np.array(block.centroid) for block in model.blocks}
-    paths = []
-    for one in acting:
-        ends = [centroid[one.interface.block], one.point]
-        if one.interface.other != GROUND:
-            ends.append(centroid[one.interface.other])
-        paths.append(np.array(ends))
-    return paths, np.array([one.size for one in acting])
 
 
 def _draw_scale(ax: Axes, model: RigidBlockModel, per_weight: float, largest: float) -> None:
@@ -193,15 +166,9 @@ def _draw_scale(ax: Axes, model: RigidBlockModel, per_weight: float, largest: fl
         (RESULTANT, RESULTANT_PT, "scale-length"),
     ):
         ax.plot(
-            [left, right],
-            [0, 0],
-            color=colour,
-            linewidth=width,
-            transform=below,
-            clip_on=False,
-            solid_capstyle="butt",
-            gid=gid,
-        )
+            [left, right], [0, 0], color=colour, linewidth=width, transform=below, clip_on=False,
+            solid_capstyle="butt", gid=gid,
+        )  # fmt: skip
     share = 100.0 * force / sum(weights)
     text = f"{count:g} \u00d7 the mean weight of a block = {share:.2g} % of the wall's weight"
     ax.annotate(

@@ -18,19 +18,11 @@ def plot_friction(
     *,
     slides_at_mu: bool = True,
 ) -> Axes:
-    """Draw what a wall carries in both directions at several coefficients of friction.
+    """Draw what a wall carries in both directions at several coefficients of friction, ascending.
 
-    Parameters
-    ----------
-    curve : sequence of AtFriction
-        Ascending.  Where there is no load multiplier the line is broken.
-    mu : float, optional
-        The coefficient of the analysis, marked.
-    ax : Axes, optional
-        Where to draw; None makes a figure.
-    slides_at_mu : bool
-        Whether the whole wall slides at a load multiplier of mu, as on a level tilting table;
-        that is drawn too.
+    Where there is no load multiplier the line is broken.  `mu` is the coefficient of the analysis,
+    marked.  On a level tilting table the whole wall slides at a load multiplier of mu; that is
+    drawn too.
     """
     if ax is None:
         ax = Figure(figsize=(4.2, 2.9), layout="constrained").add_subplot()

@@ -2,12 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from numpy.typing import NDArray
@@ -15,6 +13,7 @@ from shapely import Polygon, box, union_all
 from shapely.geometry.polygon import orient
 
 from drystone.drawing.canvas import block_path
+from drystone.drawing.files import pdf_bytes
 from drystone.photo.dictionaries import FAMILIES, marker_modules
 from drystone.photo.layout import (
     CHECK_LINE_MM,
@@ -34,20 +33,10 @@ _GREY = "#444444"
 
 @dataclass(frozen=True)
 class MarkerSheets:
-    """What is to be printed.
+    """What is to be printed: markers in their order, four a sheet, or one a page.
 
-    Parameters
-    ----------
-    ids : tuple of int
-        Markers in their order; sheets take four each.
-    size_m : float
-        Side of the black square, metres.
-    dictionary : str
-        ``"aruco"`` or ``"apriltag"``.
-    page : str
-        ``"A4"``, ``"A3"`` or ``"letter"``.
-    single : bool
-        One marker a page instead of four.
+    `size_m` is the side of the black square, `dictionary` ``"aruco"`` or ``"apriltag"``, `page`
+    ``"A4"``, ``"A3"`` or ``"letter"``.
     """
 
     ids: tuple[int, ...]
@@ -66,30 +55,14 @@ class MarkerSheets:
 def write_marker_sheets(sheets: MarkerSheets, path: str | Path) -> None:
     """Write a PDF, 1:1, with the same bytes for the same sheets.
 
-    Raises
-    ------
-    UsageError
-        E174: they do not fit on the page, or the family has no such markers; E305 without OpenCV.
-    PlanError
-        E206 when the file cannot be written; an existing one is as it was.
+    E174 when they do not fit on the page, or the family has no such markers; E305 without OpenCV;
+    E206 when the file cannot be written.
     """
-    undated = {"CreationDate": None, "Producer": None, "Creator": None}
-    with BytesIO() as file:
-        with PdfPages(file, metadata=undated) as pdf:
-            for ids in sheets.pages:
-                pdf.savefig(marker_page(sheets, ids))
-        # All pages are made before the file is: an error leaves none behind.
-        write_whole(Path(path), file.getvalue())
+    write_whole(Path(path), pdf_bytes(marker_page(sheets, ids) for ids in sheets.pages))
 
 
 def marker_page(sheets: MarkerSheets, ids: Sequence[int]) -> Figure:
-    """Draw one page; the axes are millimetres from its upper left corner, y down.
-
-    Raises
-    ------
-    UsageError
-        As in :func:`write_marker_sheets`.
-    """
+    """Draw one page; the axes are millimetres from its upper left corner, y down."""
     width, height = page_mm(sheets.page)
     if sheets.single:
         places = single_position_m(sheets.page, sheets.size_m)[None] * 1000.0
@@ -103,7 +76,13 @@ def marker_page(sheets: MarkerSheets, ids: Sequence[int]) -> Figure:
     size = sheets.size_m * 1000.0
     for marker_id, place in zip(ids, places, strict=True):
         _draw_marker(ax, marker_modules(sheets.dictionary, marker_id), place, size)
-        _write_id(ax, marker_id, place, size, height)
+        # Its number is beyond its white border, toward the page's middle.
+        upper, away = place[1] + size / 2 < height / 2, margin_mm(size) * 0.92
+        ax.text(
+            place[0] + size / 2, place[1] + size + away if upper else place[1] - away,
+            f"marker {marker_id}", size=8, color=_GREY, ha="center",
+            va="top" if upper else "bottom",
+        )  # fmt: skip
     below = places[0, 1] + size + margin_mm(size)
     lower = height if sheets.single else places[-1, 1] - margin_mm(size)
     middle = below + MIDDLE_MM / 2 if sheets.single else (below + lower) / 2
@@ -131,51 +110,31 @@ def _draw_marker(
     ax.add_patch(PathPatch(block_path(loops), facecolor="black", edgecolor="none", linewidth=0))
 
 
-def _write_id(
-    ax: Axes, marker_id: int, place: NDArray[np.float64], size: float, height: float
-) -> None:
-    """Write the number of a marker beside it, beyond its white border, toward the page's middle."""
-    away = margin_mm(size) * 0.92
-    upper = place[1] + size / 2 < height / 2
-    y = place[1] + size + away if upper else place[1] - away
-    ax.text(
-        place[0] + size / 2, y, f"marker {marker_id}", size=8, color=_GREY,
-        ha="center", va="top" if upper else "bottom",
-    )  # fmt: skip
-
-
 def _lines(
     sheets: MarkerSheets, ids: Sequence[int], places: NDArray[np.float64], size: float
 ) -> list[str]:
-    named = ", ".join(map(str, ids))
     one = len(ids) == 1
-    what = f"marker {named}" if one else f"markers {named}"
-    family = FAMILIES[sheets.dictionary]
+    what = f"marker{'' if one else 's'} {', '.join(map(str, ids))}"
     lines = [
-        f"drystone: {what} of {family}, {size:g} mm, on {sheets.page}",
+        f"drystone: {what} of {FAMILIES[sheets.dictionary]}, {size:g} mm, on {sheets.page}",
         "1. Print at 100 % (not 'fit to page') and measure the line above.",
     ]
     if one:
-        lines.append(
-            "2. Lay this and at least one other marker flat on the ground beside the stones,"
-        )
-        lines.append(
-            "    all white around the black visible; photograph from above, without glare."
-        )
-        return lines
+        return [
+            *lines,
+            "2. Lay this and at least one other marker flat on the ground beside the stones,",
+            "    all white around the black visible; photograph from above, without glare.",
+        ]
     across, down = places[2] + size - places[0]
-    lines.append(
-        "2. Lay the whole sheet flat beside the stones; photograph from above, without glare."
-    )
-    lines.append(
+    return [
+        *lines,
+        "2. Lay the whole sheet flat beside the stones; photograph from above, without glare.",
         f"Outer corners of the black squares: {across:.1f} mm across, {down:.1f} mm down, "
-        f"{np.hypot(across, down):.1f} mm diagonally."
-    )
-    return lines
+        f"{np.hypot(across, down):.1f} mm diagonally.",
+    ]
 
 
 def _write_text(ax: Axes, lines: Sequence[str], middle: tuple[float, float]) -> None:
-    """Draw the check line and write below it."""
     x, y = middle
     top = y - MIDDLE_MM / 2 + 10.0
     left, right = x - CHECK_LINE_MM / 2, x + CHECK_LINE_MM / 2

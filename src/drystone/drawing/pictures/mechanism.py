@@ -14,6 +14,7 @@ from drystone.drawing.canvas import draw
 from drystone.drawing.drawing import Area, Drawing, Item, Lines, Words, ground
 from drystone.drawing.outlines import Loop, Region, regions_box, stands_on_ground, wall_regions
 from drystone.drawing.palette import GREY
+from drystone.drawing.wall import size_of
 from drystone.model.wall import Labels
 from drystone.statics.model import Direction
 from drystone.statics.result import Mechanism
@@ -37,13 +38,8 @@ light enough for outlines to show."""
 class Motion:
     """The blocks of a wall on their way from rest to the picture of a mechanism.
 
-    Parameters
-    ----------
-    regions : tuple of Region
-        The blocks at rest, wall frame.
-    displacement : (n, 3) float array
-        To the right, up, and the angle (rad, counter-clockwise) at the centroid of each block, as
-        large as the picture shows it.
+    `displacement` is to the right, up, and the angle (rad, counter-clockwise) at the centroid of
+    each block, as large as the picture shows it.
     """
 
     regions: tuple[Region, ...]
@@ -76,31 +72,24 @@ class Motion:
 
 
 def motion_of(wall: Labels | Mapping[int, Loop], mechanism: Mechanism) -> Motion:
-    """Scale a mechanism for pictures.
+    """Scale a mechanism of a wall, a label image or polygons, for pictures.
 
-    Parameters
-    ----------
-    wall : (h, w) integer array, or mapping of int to (n, 2) float array
-        Label image or polygons.
-    mechanism : Mechanism
-        Velocities of its blocks; those it does not name stay where they are.
-
-    Returns
-    -------
-    Motion
-        No point moves by more than `LARGEST_SHARE` of the wall's height (or of a fifth of its
-        length, if that is more), no block turns by more than `LARGEST_TURN`, and one of them does.
-
-    Raises
-    ------
-    ValueError
-        When the mechanism names a block that the wall does not have.
+    No point moves by more than `LARGEST_SHARE` of the wall's height (or of a fifth of its length,
+    if that is more), no block turns by more than `LARGEST_TURN`, and one of them does.  Blocks that
+    the mechanism does not name stay; one that the wall does not have is a ValueError.
     """
     regions = wall_regions(wall)
-    velocities = _velocities(regions, mechanism)
-    x0, y0, x1, y1 = regions_box(region.loops for region in regions)
-    largest = LARGEST_SHARE * max(y1 - y0, 0.2 * (x1 - x0))
-    fastest = max((_fastest(r, v) for r, v in zip(regions, velocities, strict=True)), default=0.0)
+    known = dict(zip(mechanism.block_ids, mechanism.velocity, strict=True))
+    missing = sorted(set(known) - {region.id for region in regions})
+    if missing:
+        raise ValueError(f"the mechanism moves blocks that the wall lacks: {missing}")
+    rows = [known.get(region.id, np.zeros(3)) for region in regions]
+    velocities = np.array(rows, float).reshape(-1, 3)
+    largest, fastest = LARGEST_SHARE * size_of(regions), 0.0
+    for region, (along_x, along_y, turning) in zip(regions, velocities, strict=True):
+        x, y = (np.concatenate(region.loops) - region.centroid).T
+        speed = np.hypot(along_x - turning * y, along_y + turning * x)
+        fastest = max(fastest, float(speed.max()))
     turning = float(np.abs(velocities[:, 2]).max(initial=0.0))
     if fastest == 0.0:
         return Motion(regions, velocities)
@@ -174,9 +163,13 @@ def plot_mechanism(
             Lines("live-load" if direction else "own-weight", [arrow], width_pt=2.2, head=True)
         )
     ax = draw(Drawing(tuple(items), box), ax)
+    words = "falls under its own weight"
+    if direction is not None:
+        words = load or rf"live load, $\alpha$ times the weight, to the {direction}"
+        words += "" if alpha is None else rf", $\alpha$ = {alpha:.3f}"
     # In points from the arrow, which is short over low walls.
     ax.annotate(
-        _caption(direction, alpha, load), (middle if load else middle + abs(reach[0]), y),
+        words, (middle if load else middle + abs(reach[0]), y),
         (0.0 if load else 10.0, 0.0), textcoords="offset points", size=8,
         ha="center" if load else "left", va="center",
     )  # fmt: skip
@@ -202,24 +195,6 @@ def _blocks(motion: Motion, moved: tuple[tuple[Loop, ...], ...], *, numbers: boo
     return items
 
 
-def _velocities(regions: tuple[Region, ...], mechanism: Mechanism) -> Floats:
-    """Return the velocities in the order of the regions; blocks not named stand still."""
-    known = dict(zip(mechanism.block_ids, mechanism.velocity, strict=True))
-    missing = sorted(set(known) - {region.id for region in regions})
-    if missing:
-        raise ValueError(f"the mechanism moves blocks that the wall lacks: {missing}")
-    still = np.zeros(3)
-    rows = [known.get(region.id, still) for region in regions]
-    return np.array(rows, float).reshape(-1, 3)
-
-
-def _fastest(region: Region, velocity: Floats) -> float:
-    """Return the largest velocity of a point of a block."""
-    along_x, along_y, turning = velocity
-    x, y = (np.concatenate(region.loops) - region.centroid).T
-    return float(np.hypot(along_x - turning * y, along_y + turning * x).max())
-
-
 def _moved(points: Loop, region: Region, twist: Floats) -> Loop:
     """Move points of a block by a finite twist: a turn about the twist's centre of rotation.
 
@@ -233,13 +208,6 @@ def _moved(points: Loop, region: Region, twist: Floats) -> Loop:
     cos, sin = np.cos(angle), np.sin(angle)
     arms = points - region.centroid
     return np.asarray(arms @ np.array([[cos, sin], [-sin, cos]]) + region.centroid + step)
-
-
-def _caption(direction: Direction | None, alpha: float | None, load: str) -> str:
-    if direction is None:
-        return "falls under its own weight"
-    value = "" if alpha is None else rf", $\alpha$ = {alpha:.3f}"
-    return (load or rf"live load, $\alpha$ times the weight, to the {direction}") + value
 
 
 def _draw_scale(ax: Axes) -> None:

@@ -25,21 +25,10 @@ def plot_photo(
     px_per_m: float | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw outlines and numbers over a photograph.
+    """Draw outlines and numbers of stones over a photograph in the frame of their labels.
 
-    Parameters
-    ----------
-    picture : (h, w, 3) uint8 array
-        RGB, in the frame of the labels.
-    labels : (h, w) integer array
-        Stones; 0 elsewhere.
-    doubtful : (stones, places)
-        Numbers of stones that are drawn in another colour and dashed; places (column, row) that
-        get a circle: necks.
-    px_per_m : float or None
-        For the scale bar.
-    ax : Axes, optional
-        Where to draw; a figure of its own otherwise.
+    `doubtful` are numbers of stones that are drawn dashed in another colour, and places (column,
+    row) that get a circle: necks.  `px_per_m` is for the scale bar.
     """
     height, width = labels.shape
     ax = fit_axes(ax, (0, 0, width, height))

@@ -28,7 +28,6 @@ LEAST_SPAN = 0.02
 
 BARS = CLUSTER_COLOURS[0]
 
-Panel = Callable[[Axes, Scatter], None]
 _Style = dict[str, Any]
 
 _QUANTILE: _Style = {"linestyle": (0, (4, 3)), "linewidth": 0.9}
@@ -55,41 +54,45 @@ def plot_scatter(scatter: Scatter, ax: Axes | None = None) -> Axes:
     ax : Axes
         With the words; the panels are its ``child_axes``.
     """
-    panels = _panels(scatter)
-    count = len(panels)
+    alpha, shaken = scatter.unshaken, len(scatter.alpha) > 0
+    unshaken = None
+    if alpha.left.alpha is not None and alpha.right.alpha is not None:
+        unshaken = min(alpha.left.alpha, alpha.right.alpha)
+    panels: list[Callable[[Axes], None]] = []
+    if shaken and scatter.alpha_quantiles is not None:
+        found = (scatter.alpha, scatter.alpha_quantiles, unshaken)
+        panels.append(lambda ax: _histogram(ax, "min alpha", *found))
+    if shaken and scatter.value is not None and scatter.value_quantiles is not None:
+        values = (scatter.value, scatter.value_quantiles, alpha.value)
+        panels.append(lambda ax: _histogram(ax, "F_LR = min alpha / mu", *values))
+    if shaken and np.ptp(scatter.mu) > 0:
+        panels.append(lambda ax: _against_friction(ax, scatter, unshaken))
+    count = max(1, len(panels))
     widths = count + GAP * (count - 1)
     if ax is None:
         ax = Figure(figsize=(PANEL_IN * widths, PANEL_IN)).add_axes((0, 0, 1, 1))
     ax.set_axis_off()
-    for number, panel in enumerate(panels):
+    for number, panel in enumerate(panels or [_nothing]):
         left = number * (1 + GAP) / widths
         inset = ax.inset_axes((left, 0, 1 / widths, 1), gid=f"panel-{number + 1}")
-        _tidy(inset)
-        panel(inset, scatter)
+        inset.tick_params(labelsize=7, length=2.5, width=0.5)
+        for axis in (inset.xaxis, inset.yaxis):
+            axis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 5, 10]))
+        inset.spines[["top", "right"]].set_visible(False)
+        inset.spines[["left", "bottom"]].set_linewidth(0.5)
+        panel(inset)
     ax.set_title("\n".join(_words(scatter)), fontsize=8, loc="left", pad=22)
-    if len(scatter.alpha):
+    if shaken:
         _legend(ax)
     return ax
 
 
-def _panels(scatter: Scatter) -> list[Panel]:
-    if not len(scatter.alpha):
-        return [_nothing]
-    panels: list[Panel] = [_alpha]
-    if scatter.value is not None:
-        panels.append(_value)
-    if np.ptp(scatter.mu) > 0:
-        panels.append(_against_friction)
-    return panels
-
-
-def _nothing(ax: Axes, scatter: Scatter) -> None:  # noqa: ARG001 - it has no figures to draw
+def _nothing(ax: Axes) -> None:
     ax.set_axis_off()
     ax.text(0.5, 0.5, "no wall stands", transform=ax.transAxes, ha="center", size=9)
 
 
 def _words(scatter: Scatter) -> list[str]:
-    """Tell what was shaken, and how many walls do not stand."""
     settings, counts = scatter.settings, scatter.counts
     shaken = []
     if settings.mu is not None:
@@ -113,61 +116,32 @@ def _words(scatter: Scatter) -> list[str]:
     return lines
 
 
-def _tidy(ax: Axes) -> None:
-    ax.tick_params(labelsize=7, length=2.5, width=0.5)
-    for axis in (ax.xaxis, ax.yaxis):
-        axis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 5, 10]))
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
-    for side in ("left", "bottom"):
-        ax.spines[side].set_linewidth(0.5)
-
-
-def _alpha(ax: Axes, scatter: Scatter) -> None:
-    _histogram(ax, scatter.alpha, scatter.alpha_quantiles, _unshaken_alpha(scatter))
-    ax.set_xlabel("min alpha", fontsize=7)
-
-
-def _value(ax: Axes, scatter: Scatter) -> None:
-    assert scatter.value is not None  # noqa: S101 - this panel is drawn only then
-    _histogram(ax, scatter.value, scatter.value_quantiles, scatter.unshaken.value)
-    ax.set_xlabel("F_LR = min alpha / mu", fontsize=7)
-
-
 def _histogram(
-    ax: Axes, values: Floats, quantiles: Quantiles | None, unshaken: float | None
+    ax: Axes, name: str, values: Floats, quantiles: Quantiles, unshaken: float | None
 ) -> None:
-    assert quantiles is not None  # noqa: S101 - there are values
     least, greatest = float(values.min()), float(values.max())
     pad = max(0.0, LEAST_SPAN - (greatest - least)) / 2
     bins = int(np.clip(np.sqrt(len(values)), 5, 40))
-    ax.hist(
-        values,
-        bins=bins,
-        range=(least - pad, greatest + pad),
-        color=BARS,
-        edgecolor="white",
-        linewidth=0.4,
-    )
-    for quantile, name in zip(quantiles, ("5", "50", "95"), strict=True):
-        ax.axvline(quantile, color=OUTLINE_COLOUR, gid=f"quantile-{name}", **_QUANTILE)
+    reach = (least - pad, greatest + pad)
+    ax.hist(values, bins=bins, range=reach, color=BARS, edgecolor="white", linewidth=0.4)
+    for quantile, share in zip(quantiles, ("5", "50", "95"), strict=True):
+        ax.axvline(quantile, color=OUTLINE_COLOUR, gid=f"quantile-{share}", **_QUANTILE)
     if unshaken is not None:
         ax.axvline(unshaken, color=WEDGE_COLOUR, linewidth=1.2, gid="unshaken")
     low, median, high = quantiles
     ax.set_title(f"5 %: {low:.3f}    50 %: {median:.3f}    95 %: {high:.3f}", fontsize=7, pad=4)
+    ax.set_xlabel(name, fontsize=7)
     ax.set_ylabel("walls", fontsize=7)
 
 
-def _against_friction(ax: Axes, scatter: Scatter) -> None:
+def _against_friction(ax: Axes, scatter: Scatter, unshaken: float | None) -> None:
     ax.plot(scatter.standing_mu, scatter.alpha, ".", color=BARS, markersize=3, gid="walls")
-    unshaken = _unshaken_alpha(scatter)
     if unshaken is not None:
         ax.plot(scatter.unshaken.mu, unshaken, gid="unshaken-point", **_UNSHAKEN)
     falling = scatter.mu[[status is LimitStatus.UNSTABLE for status in scatter.status]]
     if len(falling):
-        at_the_axis = ax.get_xaxis_transform()
         low = np.full(len(falling), 0.02)
-        ax.plot(falling, low, transform=at_the_axis, gid="falling", **_FALLING)
+        ax.plot(falling, low, transform=ax.get_xaxis_transform(), gid="falling", **_FALLING)
     ends = np.array([scatter.mu.min(), scatter.mu.max()])
     limits = ax.get_ylim()
     if ends[0] < limits[1]:
@@ -177,31 +151,20 @@ def _against_friction(ax: Axes, scatter: Scatter) -> None:
     ax.set_ylabel("min alpha", fontsize=7)
 
 
-def _unshaken_alpha(scatter: Scatter) -> float | None:
-    left, right = scatter.unshaken.left.alpha, scatter.unshaken.right.alpha
-    return None if left is None or right is None else min(left, right)
-
-
 def _legend(ax: Axes) -> None:
-    """Write what the panels show in one row under them."""
     drawn = {line.get_gid() for panel in ax.child_axes for line in panel.lines}
     entries: list[Patch | Line2D] = [
         Patch(color=BARS, label="walls that stand"),
         Line2D([], [], color=OUTLINE_COLOUR, label="quantiles", **_QUANTILE),
     ]
-    if "unshaken" in drawn:
-        entries.append(Line2D([], [], label="not shaken", **{**_UNSHAKEN, "linestyle": "solid"}))
-    if "falling" in drawn:
-        entries.append(Line2D([], [], label="does not stand", **_FALLING))
-    if "sliding" in drawn:
-        entries.append(Line2D([], [], label="alpha = mu: sliding", **_SLIDING))
+    for gid, label, style in (
+        ("unshaken", "not shaken", {**_UNSHAKEN, "linestyle": "solid"}),
+        ("falling", "does not stand", _FALLING),
+        ("sliding", "alpha = mu: sliding", _SLIDING),
+    ):
+        if gid in drawn:
+            entries.append(Line2D([], [], label=label, **style))
     ax.legend(
-        handles=entries,
-        loc="upper left",
-        bbox_to_anchor=(0.0, -0.14),
-        ncols=len(entries),
-        fontsize=7,
-        frameon=False,
-        borderaxespad=0.0,
-        columnspacing=1.4,
-    )
+        handles=entries, loc="upper left", bbox_to_anchor=(0.0, -0.14), ncols=len(entries),
+        fontsize=7, frameon=False, borderaxespad=0.0, columnspacing=1.4,
+    )  # fmt: skip

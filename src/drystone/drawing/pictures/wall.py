@@ -19,6 +19,8 @@ PANEL_IN = 3.2
 AXES = (("F_SF", "F_LR"), ("F_AV", "F_AH"))
 """What is drawn against what."""
 
+DIGITS = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 2}
+
 Figures = Mapping[str, float | None]
 
 
@@ -84,7 +86,11 @@ def plot_choice(walls: Sequence[Wall], figures: Sequence[Figures]) -> Figure:
         fit_axes(ax, (x0, -0.01 * y1, x1, y1)).set_axis_off()
         areas = [item for item in drawing.items if isinstance(item, Area) and not item.hatch]
         add(ax, areas)
-        ax.set_title(f"{number:02}  {_words(values)}", fontsize=7, loc="left", pad=3)
+        words = "  ".join(
+            f"{name} {'-' if values[name] is None else format(values[name], f'.{count}f')}"
+            for name, count in DIGITS.items()
+        )
+        ax.set_title(f"{number:02}  {words}", fontsize=7, loc="left", pad=3)
     for ax in panels[len(walls) :]:
         ax.remove()
     for ax, (across, up) in zip(below.subplots(1, len(AXES)), AXES, strict=True):
@@ -102,11 +108,3 @@ def _draw_figures(ax: Axes, figures: Sequence[Figures], across: str, up: str) ->
     ax.set_xlabel(across, fontsize=8)
     ax.set_ylabel(up, fontsize=8)
     ax.tick_params(labelsize=7)
-
-
-def _words(values: Figures) -> str:
-    digits = {"F_SF": 3, "F_AV": 1, "F_AH": 2, "F_LR": 2}
-    return "  ".join(
-        f"{name} {'-' if values[name] is None else format(values[name], f'.{count}f')}"
-        for name, count in digits.items()
-    )

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
-from drystone.drawing.assembly.read import scaled
+from drystone.drawing.assembly.read import scaled, scaled_resistance
 from drystone.drawing.files import save
 from drystone.drawing.outlines import Loop, wall_regions
 from drystone.drawing.pictures.animation import save_mechanism_animation
@@ -13,7 +13,6 @@ from drystone.drawing.pictures.forces import plot_forces
 from drystone.drawing.pictures.friction import plot_friction
 from drystone.drawing.pictures.mechanism import plot_mechanism
 from drystone.drawing.report.html import write_report
-from drystone.drawing.report.view_statics import scaled_resistance
 from drystone.drawing.report.viewer_data import view_of_wall
 from drystone.drawing.words import content
 from drystone.drawing.words.analysis import Card, ModelledWall, Shapes
@@ -41,35 +40,32 @@ def write_analysis(
 ) -> Path:
     """Write report.html of a wall that was analysed.
 
-    Parameters
-    ----------
-    path : Path
-        The file; pictures of mechanisms that lie beside it are put into it.
-    wall : ModelledWall
-        What was looked at.
-    card : Card
-        What was found out.
-    per_unit_m : float or None
-        Metres in a unit of the model.
-    curve : sequence of AtFriction
-        Load multipliers over friction.
+    Pictures of mechanisms that lie beside it are put into it.  `per_unit_m` is metres in a unit of
+    the model, where that is known.
     """
     shapes, model, resistance = wall.shapes, card.model, card.resistance
+    unit: Literal["px", "m", "units"] = "units" if wall.noun == "block" else "px"
     if per_unit_m is not None:
+        unit = "m"
         shapes, model = in_metres(shapes, model, per_unit_m)
         resistance = scaled_resistance(resistance, per_unit_m)
+    friction = [
+        (f"with mu = {at.mu:g}", f"load multipliers: left {content.number(at.alpha_left)}, "
+         f"right {content.number(at.alpha_right)}")
+        for at in curve
+    ]  # fmt: skip
     view = view_of_wall(
         shapes,
         model,
         resistance,
         title="Limit analysis of a wall",
-        unit=_unit(wall, per_unit_m),
+        unit=unit,
         noun=wall.noun,
         wedges=wall.wedge_ids,
         cards=_cards(card),
         inputs=[
             *_full_names(card.rows()),
-            *_friction_rows(curve),
+            *friction,
             ("cite", CITATION.format(version=card.version, sha256=card.sha256)),
         ],
         notices=wall.notices,
@@ -87,12 +83,6 @@ def in_metres(
         for region in wall_regions(shapes)
     }
     return outer, scaled(model, per_unit_m)
-
-
-def _unit(wall: ModelledWall, per_unit_m: float | None) -> Literal["px", "m", "units"]:
-    if per_unit_m is not None:
-        return "m"
-    return "units" if wall.noun == "block" else "px"
 
 
 def _full_names(rows: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
@@ -118,12 +108,6 @@ def _cards(card: Card) -> Iterator[content.Card]:
             "higher",
             f"Joints slide without opening (Coulomb). {result.message}",
         )
-
-
-def _friction_rows(curve: Sequence[AtFriction]) -> Iterator[tuple[str, str]]:
-    for at in curve:
-        left, right = content.number(at.alpha_left), content.number(at.alpha_right)
-        yield f"with mu = {at.mu:g}", f"load multipliers: left {left}, right {right}"
 
 
 def draw_analysis(

@@ -1,19 +1,25 @@
-"""Write the report of a wall as one HTML file."""
+"""A wall as HTML: the report, and the viewer alone; each is one file that needs nothing else."""
 
 import base64
+import html
+import json
+from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
 
 from drystone.drawing.files import MECHANISMS, PICTURE
-from drystone.drawing.report.embedding import (
-    POLICY,
-    environment,
-    json_in_html,
-    viewer_script,
-    viewer_style,
-)
 from drystone.drawing.report.viewer_data import View
 from drystone.drawing.words import content
 from drystone.whole_files import write_whole
+
+HERE = Path(__file__).parent
+
+POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+"""The browser itself keeps a page with this from asking any host for anything."""
 
 
 def write_report(path: str | Path, view: View, *, pictures: str | Path | None = None) -> Path:
@@ -45,24 +51,54 @@ def write_report(path: str | Path, view: View, *, pictures: str | Path | None = 
     """
     path = Path(path)
     folder = None if pictures is None else Path(pictures)
-    text = (
-        environment()
-        .get_template("template.html")
-        .render(
-            view=view,
-            policy=POLICY,
-            data=json_in_html(view),
-            script=viewer_script(),
-            style=viewer_style(),
-            picture=_embedded(folder, PICTURE),
-            mechanisms={side: _embedded(folder, name) for side, name in MECHANISMS.items()},
-            unused=content.unused_stones(view["unused"]),
-            number=content.number,
-            digits=1 if view["unit"] == "px" else 3,
-        )
+    text = _rendered(
+        "template.html",
+        view,
+        view=view,
+        picture=_embedded(folder, PICTURE),
+        mechanisms={side: _embedded(folder, name) for side, name in MECHANISMS.items()},
+        unused=", ".join(map(str, view["unused"])) or "none",
+        number=content.number,
+        digits=1 if view["unit"] == "px" else 3,
     )
     write_whole(path, text.encode("utf-8", "replace"))
     return path
+
+
+def viewer_page(view: View, options: Mapping[str, Any] | None = None) -> str:
+    """Return a page with the viewer and nothing else.
+
+    Options are those of the viewer's ``mount``: ``chart``, ``metrics``, ``about``, ``title``,
+    ``step``.
+    """
+    chosen = json_in_html(dict(options or {}))
+    return _rendered("viewer_page.html", view, title=view["title"], options=chosen)
+
+
+def viewer_frame(view: View, options: Mapping[str, Any] | None = None) -> str:
+    """Return an element, in one line, that shows the viewer in a page of others: a notebook.
+
+    The page in the frame has its own styles, and is as high as it needs to be.
+    """
+    page = html.escape(viewer_page(view, options)).replace("\n", "&#10;")
+    title = html.escape(str(view["title"]))
+    look = "width:100%;height:640px;border:0;color-scheme:normal"
+    return f'<iframe title="{title}" style="{look}" srcdoc="{page}"></iframe>'
+
+
+def _rendered(template: str, wall: View, **more: Any) -> str:
+    loader = FileSystemLoader(HERE)
+    templates = Environment(
+        loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True,
+    )  # fmt: skip
+    return templates.get_template(template).render(
+        policy=POLICY,
+        data=json_in_html(wall),
+        script=viewer_script(),
+        style=viewer_style(),
+        **more,
+    )
 
 
 def _embedded(folder: Path | None, name: str) -> str | None:
@@ -71,3 +107,27 @@ def _embedded(folder: Path | None, name: str) -> str | None:
         return None
     data = base64.b64encode((folder / name).read_bytes()).decode("ascii")
     return f"data:image/png;base64,{data}"
+
+
+@cache
+def viewer_script() -> Markup:
+    """Return the ES module of the viewer, to stand in a script element."""
+    return Markup((HERE / "viewer" / "viewer.js").read_text(encoding="utf-8"))  # noqa: S704
+
+
+@cache
+def viewer_style() -> Markup:
+    """Return the style sheet of the viewer, to stand in a style element."""
+    return Markup((HERE / "viewer" / "viewer.css").read_text(encoding="utf-8"))  # noqa: S704
+
+
+def json_in_html(data: Any) -> Markup:
+    r"""Write JSON for a script element: nothing in it can end the element.
+
+    Examples
+    --------
+    >>> print(json_in_html({"path": "</script><img>"}))
+    {"path":"\u003c/script>\u003cimg>"}
+    """
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return Markup(text.replace("<", "\\u003c"))  # noqa: S704

@@ -4,9 +4,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from drystone.drawing.assembly.read import read_assembly
-from drystone.drawing.report.embedding import viewer_frame, viewer_page
-from drystone.drawing.report.from_result import view_of_result
-from drystone.drawing.report.viewer_data import View, view_of_assembly
+from drystone.drawing.report.html import viewer_frame, viewer_page
+from drystone.drawing.report.viewer_data import View, view_of_assembly, view_of_result
 from drystone.search.plan_result import PlanResult
 from drystone.whole_files import write_whole
 

@@ -7,23 +7,33 @@ model) and y up from the ground.
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
-from typing import Any, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.drawing.assembly.parts import Assembly
+from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.assembly.read import assembly_of_result
 from drystone.drawing.outlines import regions_box, wall_regions
+from drystone.drawing.palette import PLAIN_COLOUR, WEDGE_COLOUR, cluster_colour, text_colour
 from drystone.drawing.photo import read_photo
-from drystone.drawing.report.view_parts import given_parts, part_digits, planned_parts
-from drystone.drawing.report.view_statics import Statics, contacts, mechanisms, rounded
+from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.words import content
+from drystone.drawing.words.analysis import ModelledWall
+from drystone.drawing.words.content import number
 from drystone.drawing.words.masons import masons_words
 from drystone.errors import Notice
+from drystone.kernels.polygons import Points
+from drystone.model.plan import StoneStep
 from drystone.model.wall import Labels
+from drystone.statics.failing.mechanism import Failure
 from drystone.statics.failing.wording import Noun
 from drystone.statics.model import RigidBlockModel
-from drystone.statics.result import LateralResistance
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
+
+if TYPE_CHECKING:
+    from drystone.search.plan_result import PlanResult
 
 SCHEMA = "drystone-view/1"
 
@@ -34,6 +44,36 @@ FORCES = (
     "Forces at the limit loads are those of the analysis; those under {} alone are one of "
     "many possible states, mixed of both so that the loads from the side cancel."
 )
+OUTCOMES = {
+    LimitStatus.UNSTABLE: "It does not stand under its own weight.",
+    LimitStatus.FAILED: "The analysis has no answer that could be certified.",
+    LimitStatus.UNBOUNDED: "No load in this direction brings it down.",
+}
+PATTERNS = ("none", "rising", "falling", "dots", "level", "upright", "crossed", "grid")
+"""Clusters that are apart in their colour only by a little are apart in their pattern."""
+
+Centroids = Mapping[int, tuple[float, float]]
+
+
+def view_of_result(
+    result: "PlanResult", *, photo: Path | None = None, notices: Sequence[Notice] | None = None
+) -> View:
+    """Show a plan that was just made.
+
+    Parameters
+    ----------
+    result : PlanResult
+        From :func:`drystone.plan_wall`.
+    photo : Path, optional
+        A picture of the stones in the frame of the source image.
+    notices : sequence of Notice, optional
+        Those of reading the stones and of planning; the result's alone when missing.
+    """
+    return view_of_assembly(
+        assembly_of_result(result, photo),
+        notices=result.notices if notices is None else notices,
+        timings={"planning": result.seconds},
+    )
 
 
 def view_of_assembly(
@@ -58,34 +98,36 @@ def view_of_assembly(
     view : dict
         Plain JSON; equal arguments give an equal one.
     """
-    plan = assembly.plan
+    plan, source = assembly.plan, assembly.plan.source
     digits = part_digits(assembly.size)
     shapes = {part.id: part.corners for part in assembly.parts}
     wedges = frozenset(part.id for part in assembly.wedges)
-    statics = Statics(shapes, assembly.model, assembly.resistance, "stone", wedges)
-    source = plan.source
-    photo = read_photo(assembly) if source.get("width_px") and source.get("height_px") else None
-    lying = {part.id: assembly.source_corners(part) for part in assembly.stones if photo}
-    crops = photo.viewer_crops(lying) if photo else {}
+    # The wall as ordered, and all that sticks out of it.
+    corners = np.concatenate([[(0.0, 0.0), assembly.size], *shapes.values()])
     return {
-        **_beginning(
-            f"Dry-stone wall from {source.get('path') or 'stones'}", "stone", assembly.unit
-        ),
+        "title": f"Dry-stone wall from {source.get('path') or 'stones'}",
+        "unit": assembly.unit,
         "summary": content.summary(plan),
         "size": rounded(assembly.size, digits),
-        "box": _box(shapes.values(), assembly.size, digits),
+        "box": rounded((*corners.min(axis=0), *corners.max(axis=0)), digits),
         "version": plan.version,
         "method": plan.method,
         "seed": plan.seed,
         "steps": len(plan.steps),
-        "parts": planned_parts(assembly, crops, digits),
+        "parts": _planned_parts(assembly, digits),
         "unused": list(plan.unused),
-        **_of_statics(statics, {part.id: part.centroid for part in assembly.parts}, digits),
+        **_of_statics(
+            ModelledWall(assembly.model, shapes, "stone", wedges, tuple(notices)),
+            assembly.resistance,
+            {part.id: part.centroid for part in assembly.parts},
+            digits,
+            timings,
+        ),
         "index_meanings": dict(content.INDICES),
-        "metrics": metrics(content.cards(plan), source.get("sha256")),
+        "metrics": _metrics(content.cards(plan), source.get("sha256")),
         "inputs": [list(pair) for pair in content.inputs(plan)],
         "settings": [list(pair) for pair in content.flat_settings(plan.settings)],
-        **_end(notices, timings, content.assumptions(plan)),
+        "assumptions": list(content.assumptions(plan)),
     }
 
 
@@ -147,10 +189,30 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
     x0, y0, x1, y1 = regions_box(region.loops for region in regions)
     size = (x1 - x0, y1 - min(y0, 0.0))
     digits = part_digits(size)
-    statics = Statics(wall, model, resistance, noun, wedges)
     many = f"{len(regions)} {noun}{'' if len(regions) == 1 else 's'}"
+    strength = content.strength_cards(content.Resisted.of(resistance), load_case)
+    if assumptions is None:
+        assumptions = (*content.wall_assumptions(load_case), *content.model_assumptions(model))
+    touching: dict[int, set[int]] = {region.id: set() for region in regions}
+    for face in model.interfaces:
+        touching.setdefault(face.block, set()).add(face.other)
+        touching.setdefault(face.other, set()).add(face.block)
+    parts = [
+        _part(
+            region.id,
+            "wedge" if region.id in wedges else "stone",
+            region.loops,
+            region.centroid,
+            digits,
+            number=region.id,
+            size=rounded(np.ptp(np.concatenate(region.loops), axis=0), digits),
+            neighbours=sorted(touching[region.id]),
+        )
+        for region in regions
+    ]
     return {
-        **_beginning(title, noun, unit),
+        "title": title,
+        "unit": unit,
         "summary": f"{many}, {model.contact_count} contact points.",
         "size": rounded(size, digits),
         "box": rounded((x0, min(y0, 0.0), x1, y1), digits),
@@ -158,71 +220,249 @@ def view_of_wall(  # noqa: PLR0913 - what is said of a wall, all by keyword
         "method": None,
         "seed": None,
         "steps": 0,
-        "parts": given_parts(regions, model, wedges, digits),
+        "parts": parts,
         "unused": [],
         **_of_statics(
-            statics, {region.id: region.centroid for region in regions}, digits, load_case
+            ModelledWall(model, wall, noun, frozenset(wedges), tuple(notices)),
+            resistance,
+            {region.id: region.centroid for region in regions},
+            digits,
+            timings,
+            load_case,
         ),
         "index_meanings": {},
-        "metrics": metrics(
-            (*content.strength_cards(content.Resisted.of(resistance), load_case), *cards), None
-        ),
+        "metrics": _metrics((*strength, *cards), None),
         "inputs": [list(pair) for pair in inputs],
         "settings": [list(pair) for pair in content.flat_settings(settings or {})],
-        **_end(
-            notices,
-            timings,
-            (*content.wall_assumptions(load_case), *content.model_assumptions(model))
-            if assumptions is None
-            else assumptions,
-        ),
-    }
-
-
-def metrics(cards: Iterable[content.Card], sha256: str | None) -> list[Any]:
-    """Return results with their meaning, and what walls of masons have."""
-    return [{**asdict(card), "masons": masons_words(card.symbol, sha256)} for card in cards]
-
-
-def _beginning(title: str, noun: Noun, unit: str) -> View:
-    return {"schema": SCHEMA, "title": title, "noun": noun, "unit": unit}
-
-
-def _of_statics(
-    statics: Statics,
-    centroids: Mapping[int, tuple[float, float]],
-    digits: int,
-    load_case: str = content.TILTING,
-) -> View:
-    failures = statics.failures()
-    dead = content.dead_load(load_case)
-    return {
-        "mu": statics.model.mu,
-        "contacts": contacts(statics, failures, digits + 1),
-        "mechanisms": {
-            side: {**found, "load": content.load_words(load_case, side)}
-            for side, found in mechanisms(statics, failures, centroids).items()
-        },
-        "dead_load": dead,
-        "forces_words": FORCES.format(dead),
-    }
-
-
-def _end(
-    notices: Sequence[Notice], timings: Mapping[str, float] | None, assumptions: Sequence[str]
-) -> View:
-    return {
-        "notices": [asdict(notice) for notice in notices],
-        "timings": [[name, round(seconds, 3)] for name, seconds in (timings or {}).items()],
         "assumptions": list(assumptions),
     }
 
 
-def _box(
-    outlines: Iterable[NDArray[np.float64]], size: tuple[float, float], digits: int
-) -> list[float]:
-    """Return the box of the wall as ordered and of all that sticks out of it."""
-    frame = np.array([[0.0, 0.0], size])
-    corners = np.concatenate([frame, *outlines])
-    box: list[float] = rounded((*corners.min(axis=0), *corners.max(axis=0)), digits)
-    return box
+def _metrics(cards: Iterable[content.Card], sha256: str | None) -> list[Any]:
+    """Return results with their meaning, and what walls of masons have."""
+    return [{**asdict(card), "masons": masons_words(card.symbol, sha256)} for card in cards]
+
+
+def part_digits(size: tuple[float, float]) -> int:
+    """Return the digits of lengths at which a hundred-thousandth of a wall is left out.
+
+    Examples
+    --------
+    >>> part_digits((280.0, 80.0)), part_digits((1.4, 0.4))
+    (2, 4)
+    """
+    longest = max(*size, 1e-9)
+    return max(0, 4 - int(np.floor(np.log10(longest))))
+
+
+def _planned_parts(assembly: Assembly, digits: int) -> list[View]:
+    """Return the parts of a plan in the order of its steps."""
+    source = assembly.plan.source
+    photo = read_photo(assembly) if source.get("width_px") and source.get("height_px") else None
+    lying = {part.id: assembly.source_corners(part) for part in assembly.stones}
+    crops = photo.viewer_crops(lying) if photo else {}
+    under: dict[int, list[int]] = {}
+    for wedge in assembly.wedges:
+        under.setdefault(wedge.under or 0, []).append(wedge.id)
+    made = []
+    for part in assembly.parts:
+        step = part.plan_step
+        shown = _part(
+            part.id,
+            part.kind,
+            [part.corners],
+            part.centroid,
+            digits,
+            cluster=part.cluster,
+            step=part.step,
+            number=part.step if part.kind == "stone" else None,
+            angle_deg=round(part.angle_deg, 3) + 0.0,
+            size=rounded(part.size, digits),
+            neighbours=list(assembly.neighbours(part.id)),
+            under=part.under,
+            wedges=under.get(part.id, []),
+            words=_words(assembly, part),
+            crop=crops.get(part.id),
+            alpha_left=_short(step.alpha_left),
+            alpha_right=_short(step.alpha_right),
+        )
+        if isinstance(step, StoneStep):
+            shown["side"] = step.side
+            shown["indices"] = {name: _short(value) for name, value in step.indices.items()}
+            shown["source"] = rounded(lying[part.id], 2)
+        made.append(shown)
+    return made
+
+
+def _part(
+    part_id: int,
+    kind: str,
+    loops: Iterable[Points],
+    centroid: tuple[float, float],
+    digits: int,
+    cluster: int | None = None,
+    **known: Any,
+) -> View:
+    """Return a stone or wedge; of what was not planned there is no step and no source."""
+    colour, pattern = WEDGE_COLOUR if kind == "wedge" else PLAIN_COLOUR, PATTERNS[0]
+    if cluster is not None:
+        colour, pattern = cluster_colour(cluster), PATTERNS[(cluster - 1) % len(PATTERNS)]
+    unknown = ("step", "angle_deg", "under", "crop", "side", "source", "alpha_left", "alpha_right")
+    return {
+        "id": part_id,
+        "kind": kind,
+        "name": f"{kind}_{part_id:03d}",
+        "points": [rounded(loop, digits) for loop in loops],
+        "centroid": rounded(centroid, digits + 1),
+        "cluster": cluster,
+        "colour": colour,
+        "text_colour": text_colour(colour),
+        "pattern": pattern,
+        **dict.fromkeys(unknown),
+        "wedges": [],
+        "words": "",
+        "indices": {},
+        **known,
+    }
+
+
+def _words(assembly: Assembly, part: Part) -> str:
+    """Say what the step of a part asks for."""
+    digits = 3 if assembly.unit == "m" else 1
+    x, y = (number(value, digits) for value in part.centroid)
+    step = part.plan_step
+    if not isinstance(step, StoneStep):
+        wide, high = (number(value, digits) for value in part.size)
+        return (
+            f"Push wedge {part.id} in under stone {step.under}: {wide} wide, {high} high, "
+            f"around ({x}, {y}) {assembly.unit}."
+        )
+    return (
+        f"Place stone {part.id}, {turned(part.angle_deg)}, with its centroid at ({x}, {y}) "
+        f"{assembly.unit}, from the {step.side}."
+    )
+
+
+def turned(angle_deg: float) -> str:
+    """Say how far something is turned, the shorter way round.
+
+    Examples
+    --------
+    >>> turned(-90.04), turned(270.0), turned(0.01)
+    ('turned 90.0° clockwise', 'turned 90.0° clockwise', 'not turned')
+    """
+    angle = (angle_deg + 180.0) % 360.0 - 180.0
+    if abs(angle) < 0.05:
+        return "not turned"
+    return f"turned {abs(angle):.1f}° {'counter-clockwise' if angle > 0 else 'clockwise'}"
+
+
+def _of_statics(
+    wall: ModelledWall,
+    resistance: LateralResistance,
+    centroids: Centroids,
+    digits: int,
+    timings: Mapping[str, float] | None,
+    load_case: str = content.TILTING,
+) -> View:
+    ends = (resistance.left, resistance.right)
+    failures, dead = wall.failures(ends), content.dead_load(load_case)
+    return {
+        "schema": SCHEMA,
+        "noun": wall.noun,
+        "mu": wall.model.mu,
+        "contacts": _contacts(wall.model, _forces_by_case(*ends), failures, digits + 1),
+        "mechanisms": {
+            end.direction: {
+                **_mechanism(wall, end, failures.get(end.direction), centroids),
+                "load": content.load_words(load_case, end.direction),
+            }
+            for end in ends
+        },
+        "dead_load": dead,
+        "forces_words": FORCES.format(dead),
+        "notices": [asdict(notice) for notice in wall.notices],
+        "timings": [[name, round(seconds, 3)] for name, seconds in (timings or {}).items()],
+    }
+
+
+def _forces_by_case(left: LimitResult, right: LimitResult) -> dict[str, NDArray[np.float64]]:
+    """Return normal and tangential forces of the load cases that have them.
+
+    Under its own weight alone a wall has many states of forces.  One is given: the mixture of
+    those at the two limit loads in which the live loads cancel, which is in equilibrium and
+    within friction as both are.
+    """
+    ends = (left, right)
+    found = {str(end.direction): end.forces for end in ends if end.forces is not None}
+    if len(found) == 2 and left.alpha is not None and right.alpha is not None:
+        total = left.alpha + right.alpha
+        share = right.alpha / total if total > 0 else 0.5
+        return {"self": share * found["left"] + (1 - share) * found["right"], **found}
+    return found
+
+
+def _contacts(
+    model: RigidBlockModel,
+    cases: Mapping[str, NDArray[np.float64]],
+    failures: Mapping[str, Failure],
+    digits: int,
+) -> list[View]:
+    """Return where blocks touch, what the joints carry, and what they do in the mechanisms.
+
+    The normal points into the first block of ``between``.  Forces are [normal, tangential] at
+    every point, shares of the weight of all free blocks; the tangent of a normal (x, y) is (y, -x).
+    """
+    weight = sum(block.weight for block in model.blocks if not block.fixed) or 1.0
+    made, start = [], 0
+    for interface in model.interfaces:
+        at = slice(start, start + len(interface.points))
+        start = at.stop
+        made.append(
+            {
+                "between": [interface.block, interface.other],
+                "points": rounded(interface.points, digits),
+                "normal": rounded(interface.normal, 5),
+                "forces": {case: rounded(f[at] / weight, 6) for case, f in cases.items()},
+                "kinds": {side: list(f.contact_kinds[at]) for side, f in failures.items()},
+            }
+        )
+    return made
+
+
+def _mechanism(
+    wall: ModelledWall, end: LimitResult, failure: Failure | None, centroids: Centroids
+) -> View:
+    """Return how the wall fails to one side.
+
+    ``velocity`` by id is that of the centroids: to the right, up, turning counter-clockwise, rad.
+    By ``scale`` it becomes displacements of a size that is seen.
+    """
+    said = (OUTCOMES.get(end.status), failure.words if failure else "")
+    words = " ".join(filter(None, said))
+    alpha = None if end.alpha is None else round(end.alpha, 6) + 0.0
+    found: View = {"status": str(end.status), "alpha": alpha, "words": words}
+    mechanism = end.mechanism
+    if mechanism is None:
+        return {**found, "velocity": None, "scale": 0.0}
+    shown = motion_of(wall.shapes, mechanism).displacement
+    largest = float(np.abs(mechanism.velocity).max(initial=0.0))
+    scale = float(np.abs(shown).max(initial=0.0)) / largest if largest else 0.0
+    known = {block.id: np.array(block.centroid) for block in wall.model.blocks}
+    velocity = {}
+    for block, (vx, vy, turning) in zip(mechanism.block_ids, mechanism.velocity, strict=True):
+        # A mechanism has the velocity of the block's own centroid.
+        arm_x, arm_y = np.array(centroids[block]) - known[block]
+        twist = (vx - turning * arm_y, vy + turning * arm_x, turning)
+        if any(abs(value) > 1e-9 for value in twist):
+            velocity[str(block)] = [float(f"{value:.7g}") for value in twist]
+    return {**found, "velocity": velocity, "scale": float(f"{scale:.7g}")}
+
+
+def rounded(values: Any, digits: int) -> Any:
+    """Return numbers as nested lists of few digits; never -0."""
+    return (np.round(np.asarray(values, float), digits) + 0.0).tolist()
+
+
+def _short(value: float | None) -> float | None:
+    return None if value is None or not np.isfinite(value) else round(float(value), 4) + 0.0

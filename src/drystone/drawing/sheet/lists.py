@@ -6,11 +6,17 @@ from textwrap import wrap
 import numpy as np
 
 from drystone.drawing.assembly.parts import Assembly, Part
+from drystone.drawing.drawing import letters_pt
 from drystone.drawing.palette import GREY, PLAIN_COLOUR, WEDGE_COLOUR
-from drystone.drawing.sheet.page import EDGE_MM, PLAIN_PT, PT_PER_MM, SMALL_PT, Page
-from drystone.drawing.sheet.wall import NOT_TO_SCALE
+from drystone.drawing.sheet.page import (
+    EDGE_MM,
+    NOT_TO_SCALE,
+    PLAIN_PT,
+    PT_PER_MM,
+    SMALL_PT,
+    Page,
+)
 from drystone.drawing.sheet.words import length_words, size_words, wedge_place
-from drystone.kernels.polygons import Points
 from drystone.model.plan import StoneStep
 
 MAP_MM = (186.0, 96.0)
@@ -96,7 +102,6 @@ def _fetch_pages(assembly: Assembly) -> tuple[list[Page], float]:
 
 
 def _wedge_room(top: float) -> int:
-    """Return how many wedges have room below a place on a page."""
     return CARDS_ACROSS * max(0, int((top - WEDGE_HEAD_MM - EDGE_MM) // CARD_MM[1]))
 
 
@@ -140,7 +145,10 @@ def _map(page: Page, assembly: Assembly, top: float) -> float:
     scale = min(MAP_MM[0] / width, MAP_MM[1] / height)
     left, foot = (page.width - width * scale) / 2, top - height * scale
     page.box(left, foot, width * scale, height * scale, edgecolor=GREY, gid="map")
-    room = {step: _letter_pt(outline * scale, step) for step, outline in outlines.items()}
+    room = {}
+    for step, outline in outlines.items():
+        wide, high = (np.ptp(outline, axis=0) * scale * PT_PER_MM).tolist()
+        room[step] = float(np.clip(letters_pt(str(step), wide, high), 3.5, 12.0))
     usual = float(np.median([*room.values()])) if room else 0.0
     for step, outline in outlines.items():
         drawn = outline * scale + (left, foot)
@@ -149,12 +157,6 @@ def _map(page: Page, assembly: Assembly, top: float) -> float:
         page.write(x, y, str(step), min(usual, room[step]), ha="center",
                    va="center", zorder=5)  # fmt: skip
     return foot
-
-
-def _letter_pt(outline: Points, step: int) -> float:
-    """Return how large a number may be in an outline, mm."""
-    wide, high = np.ptp(outline, axis=0) * PT_PER_MM
-    return float(np.clip(0.6 * min(high, wide / (0.62 * len(str(step)))), 3.5, 12.0))
 
 
 def _list(

@@ -22,25 +22,11 @@ PAGE_NUMBER_MM = 30.0
 """Room for it at the right end of the foot."""
 
 SMALL_PT, PLAIN_PT, LARGE_PT = 7.0, 8.5, 12.0
+NOT_TO_SCALE = "NOT TO SCALE"
 
 
 class Page:
-    """One sheet of A4.
-
-    Parameters
-    ----------
-    landscape : bool
-        Lying.
-
-    Attributes
-    ----------
-    width, height : float
-        In mm.
-    figure : Figure
-        What is saved.
-    ax : Axes
-        The whole sheet, in mm from its lower left corner.
-    """
+    """One sheet of A4, lying or standing; lengths are mm from its lower left corner."""
 
     def __init__(self, *, landscape: bool = False) -> None:
         self.width, self.height = A4_MM[::-1] if landscape else A4_MM

@@ -6,6 +6,7 @@ from textwrap import wrap
 
 import numpy as np
 
+from drystone.drawing.assembly.handling import wedges_after
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.palette import GREY, PLAIN_COLOUR, WEDGE_COLOUR
 from drystone.drawing.photo import Photo
@@ -42,15 +43,7 @@ CROP_SPARE = 0.14
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """What all lines of a build sheet have in common.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        The wall.
-    photo : Photo or None
-        Of the stones.
-    """
+    """What all lines of a build sheet have in common."""
 
     assembly: Assembly
     photo: Photo | None
@@ -60,16 +53,11 @@ class Rows:
         """Lines that a page has room for."""
         return int((A4_MM[1] - 2 * EDGE_MM - HEAD_MM) // ROW_MM)
 
-    @property
-    def mm_per_unit(self) -> float:
-        """Scale of the drawings that show how to turn a stone: the same for all of them."""
-        spans = [float(np.hypot(*np.ptp(part.corners, axis=0))) for part in self.assembly.stones]
-        return STONE_MM / max(spans, default=1.0)
-
     def pages(self) -> list[Page]:
-        """Return the pages."""
+        """Return the pages; the drawings that show how to turn a stone are all to one scale."""
         stones, count = list(self.assembly.stones), self.per_page
-        scale = self.mm_per_unit
+        spans = [float(np.hypot(*np.ptp(part.corners, axis=0))) for part in stones]
+        scale = STONE_MM / max(spans, default=1.0)
         return [
             self._page(stones[first : first + count], scale)
             for first in range(0, len(stones), count)
@@ -77,8 +65,10 @@ class Rows:
 
     def _page(self, stones: Sequence[Part], scale: float) -> Page:
         page = Page()
-        page.write(EDGE_MM, page.top - 4.5, f"Steps {stones[0].step} to "
-                   f"{max(self._last(part) for part in stones)}", 13.0, weight="bold")  # fmt: skip
+        last = max(step for part in stones for step in
+                   (part.step, *(wedge.step for wedge in self._wedges(part))))  # fmt: skip
+        head = f"Steps {stones[0].step} to {last}"
+        page.write(EDGE_MM, page.top - 4.5, head, 13.0, weight="bold")
         page.write(
             page.right, page.top - 4.5,
             "seen from the front; a mark on top of the stone as it lies shows how it turns",
@@ -96,23 +86,17 @@ class Rows:
         for row, part in enumerate(stones):
             y = page.top - HEAD_MM - (row + 1) * ROW_MM
             page.line([(EDGE_MM, y + ROW_MM), (page.right, y + ROW_MM)], color=GREY)
-            self._row(page, part, y, scale)
+            page.write(NUMBER, y + ROW_MM - 9.5, str(part.step), 19.0, weight="bold")
+            page.write(NUMBER, y + ROW_MM - 14.0, f"stone {part.id}", SMALL_PT, color="#555555")
+            page.tick_box(NUMBER, y + 4.0)
+            self._picture(page, part, y)
+            self._turn(page, part, y, scale)
+            self._words(page, part, y)
         page.line([(EDGE_MM, y), (page.right, y)], color=GREY)
         return page
 
-    def _wedges(self, stone: Part) -> list[Part]:
-        return [wedge for wedge in self.assembly.wedges if wedge.under == stone.id]
-
-    def _last(self, stone: Part) -> int:
-        return max([stone.step, *(wedge.step for wedge in self._wedges(stone))])
-
-    def _row(self, page: Page, part: Part, y: float, scale: float) -> None:
-        page.write(NUMBER, y + ROW_MM - 9.5, str(part.step), 19.0, weight="bold")
-        page.write(NUMBER, y + ROW_MM - 14.0, f"stone {part.id}", SMALL_PT, color="#555555")
-        page.tick_box(NUMBER, y + 4.0)
-        self._picture(page, part, y)
-        self._turn(page, part, y, scale)
-        self._words(page, part, y)
+    def _wedges(self, stone: Part) -> tuple[Part, ...]:
+        return wedges_after(self.assembly, stone)
 
     def _picture(self, page: Page, part: Part, y: float) -> None:
         """Draw a stone as it lies, with what is around it in the photograph."""

@@ -20,12 +20,7 @@ CORNER = 0.03
 
 
 def turn_words(angle_deg: float) -> str:
-    """Say how to turn a stone.
-
-    Parameters
-    ----------
-    angle_deg : float
-        Counter-clockwise, as the stone is seen; any multiple of a turn more or less.
+    """Say how to turn a stone, the angle counter-clockwise as it is seen.
 
     Examples
     --------
@@ -82,15 +77,9 @@ def lowest_corner(part: Part) -> Point:
 
 @dataclass(frozen=True)
 class Beside:
-    """The parts that a part touches, among those that stand already; by their steps.
+    """The parts that a part touches, among those that stand already; by their steps, ascending.
 
-    Parameters
-    ----------
-    on, left_of, right_of, under : tuple of int
-        Steps, ascending.  Wedges are among those that it is on, its own are not: they come after
-        it.
-    ground : bool
-        Whether it stands on the ground.
+    Wedges are among those that it is on; its own are not, they come after it.
     """
 
     on: tuple[int, ...]
@@ -101,15 +90,7 @@ class Beside:
 
 
 def beside(assembly: Assembly, part: Part) -> Beside:
-    """Return what a part touches when it is placed.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        The wall.
-    part : Part
-        A stone or a wedge of it.
-    """
+    """Return what a stone or wedge touches when it is placed."""
     sums: dict[int, Points] = {}
     for interface in assembly.model.interfaces:
         if part.id not in (interface.block, interface.other):
@@ -134,20 +115,7 @@ def beside(assembly: Assembly, part: Part) -> Beside:
 
 
 def beside_words(assembly: Assembly, part: Part) -> str:
-    """Say what a stone rests on and stands beside, by the numbers of the steps.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        The wall.
-    part : Part
-        A stone or wedge.
-
-    Returns
-    -------
-    str
-        For example ``"on 3 and 5, right of 7"``.
-    """
+    """Say by steps what a stone rests on and stands beside, such as "on 3 and 5, right of 7"."""
     around = beside(assembly, part)
     words = []
     wedges = {wedge.step for wedge in assembly.wedges}

@@ -41,20 +41,8 @@ Shapes = Labels | Mapping[int, NDArray[np.float64]]
 class ModelledWall:
     """A wall as blocks and contacts, and what it looks like.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and contacts.
-    shapes : label image or polygons by id
-        To draw.
-    noun : {"stone", "block"}
-        What a block is called.
-    wedge_ids : frozenset of int
-        Blocks that are wedges.
-    notices : tuple of Notice
-        What the user should know.
-    remarks : mapping
-        Lines for the card, such as what closing gaps changes.
+    `noun` is what a block is called; `remarks` are lines for the card, such as what closing gaps
+    changes.
     """
 
     model: RigidBlockModel
@@ -83,33 +71,10 @@ class ModelledWall:
 class Card:
     """Everything that was found out about a wall.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and contacts.
-    load_case : str
-        In words.
-    resistance : LateralResistance
-        With associated flow.
-    nonassociative : NonassociativeResistance or None
-        Without dilatancy; None when it was not asked for.
-    failures : mapping of {"left", "right"} to Failure
-        How it fails, where that is known.
-    loose : mapping of {"left", "right"} to Failure
-        What moves without dilatancy, where that is at a clearly smaller load.
-    upright : tuple of int or None
-        Blocks that only friction on upright faces holds under the dead load; None where the wall
-        does not stand, or nothing is known.
-    names : Names
-        What blocks are called.
-    sensitivity : mapping of {"left", "right"} to float
-        d alpha / d mu, where that is known.
-    sha256 : str
-        Of the input file.
-    version : str
-        Of this package.
-    remarks : mapping
-        Further lines, such as what closing gaps changes.
+    `failures` are how it fails by direction, `loose` what moves without dilatancy where that is at
+    a clearly smaller load, `sensitivity` d alpha / d mu.  `upright` are blocks that friction on
+    upright faces alone holds under the dead load; None where the wall does not stand, or nothing
+    is known.  `sha256` is that of the input file.
     """
 
     model: RigidBlockModel
@@ -131,21 +96,15 @@ class Card:
         rows = [
             ("load case", self.load_case),
             ("own weight", self._standing()),
-            ("load to the left", _alpha(both.left)),
-            *self._further("left"),
-            ("load to the right", _alpha(both.right)),
-            *self._further("right"),
+            *self._of_side(both.left),
+            *self._of_side(both.right),
             ("F_LR", self._ratio()),
         ]
-        least = _least(both) if self.stands else None
-        if least is not None and self.load_case == "tilting table":
-            angle = degrees(atan(least))
+        alphas = [end.alpha for end in (both.left, both.right) if end.alpha is not None]
+        if self.stands and alphas and self.load_case == "tilting table":
+            angle = degrees(atan(min(alphas)))
             rows.append(("falls on a table", f"tilted by {angle:.1f} degrees, by associated flow"))
-        rows += list(self.remarks.items())
-        rows.append(("certificate", _certified(both.left, both.right)))
-        rows.append(("assumptions", ASSUMPTIONS))
-        rows.append(("input", f"sha256 {self.sha256[:16]}, drystone {self.version}"))
-        return rows
+        return [*rows, *self.remarks.items(), *_last_rows(self, both.left, both.right)]
 
     def report(self) -> dict[str, Any]:
         """Return the same as what `--json` prints (DESIGN 2)."""
@@ -190,10 +149,8 @@ class Card:
     def _can_fall(self) -> bool:
         """Whether a fall without dilatancy was found."""
         without = self.nonassociative
-        return without is not None and LimitStatus.UNSTABLE in (
-            without.left.status,
-            without.right.status,
-        )
+        ends = () if without is None else (without.left, without.right)
+        return LimitStatus.UNSTABLE in [end.status for end in ends]
 
     def _standing(self) -> str:
         """Say whether the dead load alone is carried, and by what."""
@@ -212,18 +169,20 @@ class Card:
             return f"{said}; let go, nothing was found to fall"
         return said
 
-    def _further(self, direction: str) -> list[tuple[str, str]]:
-        """Tell what belongs to one direction, under it."""
-        rows = []
+    def _of_side(self, result: LimitResult) -> list[tuple[str, str]]:
+        """Tell the load to one side, and under it what belongs to this side."""
+        side = result.direction
+        rows = [(f"load to the {side}", _alpha(result))]
         if self.nonassociative is not None:
-            result = getattr(self.nonassociative, direction)
-            rows.append(("  without dilatancy", _without(result)))
-        if direction in self.loose:
-            rows.append(("    moving then", self.loose[direction].words))
-        if direction in self.failures:
-            rows.append(("  mechanism", self.failures[direction].words))
-        if direction in self.sensitivity:
-            rows.append(("  sensitivity", f"d alpha / d mu = {self.sensitivity[direction]:.3f}"))
+            without: NonassociativeResult = getattr(self.nonassociative, side)
+            words = without.message[:1].lower() + without.message[1:].rstrip(".")
+            rows.append(("  without dilatancy", _alpha(without, words)))
+        if side in self.loose:
+            rows.append(("    moving then", self.loose[side].words))
+        if side in self.failures:
+            rows.append(("  mechanism", self.failures[side].words))
+        if side in self.sensitivity:
+            rows.append(("  sensitivity", f"d alpha / d mu = {self.sensitivity[side]:.3f}"))
         return rows
 
     def _ratio(self) -> str:
@@ -256,20 +215,8 @@ def analysis_of(
 ) -> Card:
     """Find out what there is to say of a wall beside its load multipliers.
 
-    Parameters
-    ----------
-    wall : ModelledWall
-        The wall.
-    loads : Loads
-        Dead and live loads.
-    resistance : LateralResistance
-        Under these loads, with mechanisms.
-    sha256 : str
-        Of the input file.
-    associative_only : bool
-        Leave out the analysis without dilatancy.
-    solver : str, optional
-        See :func:`drystone.statics.limit.lateral_resistance`.
+    `resistance` is under the loads, with mechanisms; `solver` as in
+    :func:`drystone.statics.limit.lateral_resistance`.
     """
     model, both = wall.model, (resistance.left, resistance.right)
     without = None if associative_only else nonassociative_resistance(model, loads=loads)
@@ -317,11 +264,8 @@ class RangeCard:
             rows.append((f"{name} alpha", _alpha(end)))
             if end.direction in self.failures:
                 rows.append(("  mechanism", self.failures[end.direction].words))
-        rows += list(self.remarks.items())
-        rows.append(("certificate", _certified(self.found.least, self.found.greatest)))
-        rows.append(("assumptions", ASSUMPTIONS))
-        rows.append(("input", f"sha256 {self.sha256[:16]}, drystone {self.version}"))
-        return rows
+        last = _last_rows(self, self.found.least, self.found.greatest)
+        return [*rows, *self.remarks.items(), *last]
 
     def report(self) -> dict[str, Any]:
         """Return the same as what `--json` prints."""
@@ -369,30 +313,23 @@ def _alphas(
     }
 
 
-def _alpha(result: LimitResult) -> str:
+def _alpha(
+    result: LimitResult | NonassociativeResult, words: str = "load multiplier, adequacy factor"
+) -> str:
     if result.alpha is None:
         return f"{result.status}: {result.message}"
-    return f"alpha = {_rounded(result.alpha)}  load multiplier, adequacy factor"
+    # One that rounds to nothing has no sign.
+    return f"alpha = {round(result.alpha, 4) + 0.0:.4f}  {words}"
 
 
-def _without(result: NonassociativeResult) -> str:
-    if result.alpha is None:
-        return f"{result.status}: {result.message}"
-    return f"alpha = {_rounded(result.alpha)}  {_lower_first(result.message)}"
-
-
-def _rounded(alpha: float) -> str:
-    """Write a load multiplier; one that rounds to nothing has no sign."""
-    return f"{round(alpha, 4) + 0.0:.4f}"
-
-
-def _lower_first(text: str) -> str:
-    return text[:1].lower() + text[1:].rstrip(".")
-
-
-def _least(both: LateralResistance) -> float | None:
-    alphas = [result.alpha for result in (both.left, both.right) if result.alpha is not None]
-    return min(alphas) if alphas else None
+def _last_rows(
+    card: "Card | RangeCard", one: LimitResult, other: LimitResult
+) -> list[tuple[str, str]]:
+    return [
+        ("certificate", _certified(one, other)),
+        ("assumptions", ASSUMPTIONS),
+        ("input", f"sha256 {card.sha256[:16]}, drystone {card.version}"),
+    ]
 
 
 def _certificate(

@@ -24,20 +24,10 @@ NOTEWORTHY_PX = 0.01
 
 @dataclass(frozen=True, eq=False)
 class PhysicsCard:
-    """What the engine says of a plan.
+    """What the engine says of a plan, beside the metrics of its limit analysis.
 
-    Parameters
-    ----------
-    plan : Plan
-        The plan.
-    built : BuildUp
-        Its wall in the engine.
-    overlap_px : float
-        How deep outlines overlap by the plan itself.
-    tilts : (TiltResult, TiltResult) or None
-        To the left and to the right; None for a wall that fell or did not come to rest.
-    metrics : PlanMetrics or None
-        What the limit analysis says of the wall, to stand beside.
+    `tilts` are to the left and to the right; None for a wall that fell or did not come to rest.
+    `overlap_px` is how deep outlines overlap by the plan itself.
     """
 
     plan: Plan
@@ -76,16 +66,16 @@ class PhysicsCard:
 
     def report(self) -> dict[str, Any]:
         """Return the same as JSON."""
-        furthest, fullest = self._furthest(), max((m.turn_deg for m in self.built.moves), default=0)
+        furthest, moves = self._furthest(), self.built.moves
         return {
             "fallen": list(self.built.fallen),
             "first_fall": self.first_fall,
             "largest_move": furthest.move_px if furthest else 0.0,
             "largest_move_at": furthest.id if furthest else None,
-            "largest_share": max((move.share for move in self.built.moves), default=0.0),
-            "largest_turn_deg": fullest,
+            "largest_share": max((move.share for move in moves), default=0.0),
+            "largest_turn_deg": max((move.turn_deg for move in moves), default=0),
             "largest_drift": max(self.built.found_moved_px, default=0.0),
-            "overlap_depth": max((move.overlap_px for move in self.built.moves), default=0.0),
+            "overlap_depth": max((move.overlap_px for move in moves), default=0.0),
             "restless": [self._step(group) for group in self.built.restless],
             "tilt_left": self._alpha("left"),
             "tilt_right": self._alpha("right"),
@@ -94,7 +84,7 @@ class PhysicsCard:
             "moves": [
                 {"id": m.id, "move": m.move_px, "share": m.share, "turn_deg": m.turn_deg,
                  "overlap": m.overlap_px, "fell": m.fell}
-                for m in self.built.moves
+                for m in moves
             ],
         }  # fmt: skip
 
@@ -122,14 +112,11 @@ class PhysicsCard:
         return f"{fell}; {said}"
 
     def _alpha(self, name: str) -> float | None:
-        if self.tilts is None:
-            return None
-        return self.tilts[name == "right"].alpha
+        return None if self.tilts is None else self.tilts[name == "right"].alpha
 
     def _words(self, move: BlockMove) -> str:
-        moved = f"moved {move.move_px:.1f} source px, {move.share:.0%} of its size"
-        if move.id in self._wedges():
-            moved = f"moved {move.move_px:.1f} source px, {move.share:.0%} of its stone's size"
+        size = "its stone's size" if move.id in self._wedges() else "its size"
+        moved = f"moved {move.move_px:.1f} source px, {move.share:.0%} of {size}"
         return f"{self._name(move.id)}: {moved}, turned {move.turn_deg:.1f} degrees"
 
     def _name(self, block: int) -> str:
@@ -147,22 +134,9 @@ class PhysicsCard:
 
 @dataclass(frozen=True, eq=False)
 class Checked:
-    """A plan and what was found.
+    """A plan and what was found, with the polygons of its stones and wedges.
 
-    Parameters
-    ----------
-    plan : Plan
-        What was checked.
-    stones : StoneSet
-        Its stones.
-    report : CheckReport
-        What does not hold.
-    groups : sequence of Group
-        The polygons of its stones and wedges.
-    asked_physics : bool
-        The engine was asked for.
-    physics : PhysicsCard or None
-        What the engine says; None when it was not asked, or the wall cannot be built there.
+    `physics` is None when the engine was not asked, or the wall cannot be built there.
     """
 
     plan: Plan

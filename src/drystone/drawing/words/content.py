@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -99,14 +99,10 @@ def number(value: float | None, digits: int = 3) -> str:
     return f"{round(value, digits) + 0.0:.{digits}f}"
 
 
-def length_digits(plan: Plan) -> int:
-    """Return the digits after the point of lengths: millimetres, or tenths of px."""
-    return 3 if plan.length_unit == "m" else 1
-
-
 def inputs(plan: Plan) -> tuple[tuple[str, str], ...]:
     """Return what the plan was made from, as pairs of name and value."""
-    source, unit, digits = plan.source, plan.length_unit, length_digits(plan)
+    source, unit = plan.source, plan.length_unit
+    digits = 3 if unit == "m" else 1
     scale = f"{plan.px_per_m:g} px a metre" if plan.px_per_m else "unknown (lengths in source px)"
     return (
         ("Stones from", str(source.get("path") or "an array in memory")),
@@ -135,12 +131,7 @@ def assumptions(plan: Plan) -> tuple[str, ...]:
 
 
 def wall_assumptions(load_case: str = TILTING) -> tuple[str, ...]:
-    """Return what the analysis of a wall that was not planned rests on.
-
-    Parameters
-    ----------
-    load_case : str
-        Name of the loads, as in :class:`drystone.statics.loads.Loads`.
+    """Return what the analysis of a wall that was not planned rests on, by the name of its loads.
 
     Examples
     --------
@@ -220,43 +211,21 @@ def cards(plan: Plan) -> tuple[Card, ...]:
 
 def strength_cards(metrics: Strength, load_case: str = TILTING) -> tuple[Card, ...]:
     """Return what is said of a wall's strength under the loads of a case."""
-    multiplier = "Load multiplier (adequacy factor) to the "
+    sides = (("left", metrics.alpha_left), ("right", metrics.alpha_right))
     of_one = "At 1 the whole wall would slide on the ground before it comes apart."
     if load_case != TILTING:
         of_one = f"The load case is: {load_case}."
+    weaker = "Right is the live load as given, left is the live load reversed."
+    if is_horizontal(load_case):
+        weaker = "Where the wall fails first when it is pushed from the side."
     return (
-        Card(
-            "F_LR",
-            "Lateral resistance",
-            number(metrics.F_LR),
-            "higher",
-            "The smaller load multiplier over the coefficient of friction. "
-            f"{of_one}{_by_other_rules(metrics)}",
-        ),
-        Card(
-            f"{ALPHA} left",
-            multiplier + "left",
-            number(metrics.alpha_left),
-            "higher",
-            _multiplier_means(load_case, "left"),
-        ),
-        Card(
-            f"{ALPHA} right",
-            multiplier + "right",
-            number(metrics.alpha_right),
-            "higher",
-            _multiplier_means(load_case, "right"),
-        ),
-        Card(
-            "",
-            "Weaker direction",
-            weaker_direction(metrics),
-            "",
-            "Where the wall fails first when it is pushed from the side."
-            if is_horizontal(load_case)
-            else "Right is the live load as given, left is the live load reversed.",
-        ),
-    )
+        Card("F_LR", "Lateral resistance", number(metrics.F_LR), "higher",
+             "The smaller load multiplier over the coefficient of friction. "
+             f"{of_one}{_by_other_rules(metrics)}"),
+        *(Card(f"{ALPHA} {side}", f"Load multiplier (adequacy factor) to the {side}", number(alpha),
+               "higher", _multiplier_means(load_case, side)) for side, alpha in sides),
+        Card("", "Weaker direction", weaker_direction(metrics), "", weaker),
+    )  # fmt: skip
 
 
 def _multiplier_means(load_case: str, side: str) -> str:
@@ -298,66 +267,32 @@ def _layout(plan: Plan) -> tuple[Card, ...]:
     metrics, unit = plan.metrics, plan.length_unit
     placed, of = len(plan.stone_steps), len(plan.stone_steps) + len(plan.unused)
     area = number(metrics.wedge_area, 4 if unit == "m" else 1)
-    return (
-        Card(
-            "F_SF",
-            "Filling",
-            number(metrics.F_SF),
-            "higher",
-            "Area of the placed stones, without wedges, over the area of the wall. "
-            "1 leaves no gaps.",
-        ),
-        Card(
-            "F_AV",
-            "Interlocking",
-            _percent(metrics.F_AV),
-            "higher",
-            "How much longer than a straight line the shortest ways along joints from top to "
-            "ground are. The more, the less joints run through.",
-        ),
-        Card(
-            "F_AH",
-            "Waviness of courses",
-            _percent(metrics.F_AH),
-            "lower",
-            "How much longer than a straight line the shortest ways along joints from end to end "
-            "are. 0 means straight courses.",
-        ),
-        Card(
-            "",
-            "Stones placed",
-            f"{placed} of {of}",
-            "higher",
-            "Stones of the input that found a place. Some may be left over when the wall is full.",
-        ),
-        Card(
-            "T_LEVEL",
-            "Unevenness of the top",
-            number(metrics.T_LEVEL),
-            "lower",
-            "Mean deviation of the top from its mean height, in mean heights of a stone. "
-            "0 is a level top.",
-        ),
-        Card(
-            "E_FLUSH",
-            "Gaps at the ends",
-            number(metrics.E_FLUSH),
-            "lower",
-            "Mean gap between the wall and its two end lines, in mean widths of a stone. "
-            "0 means upright ends on the lines.",
-        ),
-        Card(
-            "",
-            "Wedges",
-            f"{len(plan.wedge_steps)} ({area} {unit}²)",
-            "lower",
-            "Small stones pushed in under others, and their area. Each has to be found or cut.",
-        ),
+    longer, wavy = (
+        UNDEFINED if share is None else f"{number(share, 2)} %"
+        for share in (metrics.F_AV, metrics.F_AH)
     )
-
-
-def _percent(value: float | None) -> str:
-    return UNDEFINED if value is None else f"{number(value, 2)} %"
+    return (
+        Card("F_SF", "Filling", number(metrics.F_SF), "higher",
+             "Area of the placed stones, without wedges, over the area of the wall. "
+             "1 leaves no gaps."),
+        Card("F_AV", "Interlocking", longer, "higher",
+             "How much longer than a straight line the shortest ways along joints from top to "
+             "ground are. The more, the less joints run through."),
+        Card("F_AH", "Waviness of courses", wavy, "lower",
+             "How much longer than a straight line the shortest ways along joints from end to end "
+             "are. 0 means straight courses."),
+        Card("", "Stones placed", f"{placed} of {of}", "higher",
+             "Stones of the input that found a place. Some may be left over when the wall is "
+             "full."),
+        Card("T_LEVEL", "Unevenness of the top", number(metrics.T_LEVEL), "lower",
+             "Mean deviation of the top from its mean height, in mean heights of a stone. "
+             "0 is a level top."),
+        Card("E_FLUSH", "Gaps at the ends", number(metrics.E_FLUSH), "lower",
+             "Mean gap between the wall and its two end lines, in mean widths of a stone. "
+             "0 means upright ends on the lines."),
+        Card("", "Wedges", f"{len(plan.wedge_steps)} ({area} {unit}²)", "lower",
+             "Small stones pushed in under others, and their area. Each has to be found or cut."),
+    )  # fmt: skip
 
 
 def flat_settings(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
@@ -373,8 +308,3 @@ def flat_settings(settings: Mapping[str, Any], prefix: str = "") -> Iterator[tup
             yield from flat_settings(value, f"{prefix}{name}.")
         else:
             yield f"{prefix}{name}", json.dumps(value, ensure_ascii=False)
-
-
-def unused_stones(unused: Sequence[int]) -> str:
-    """Return the ids of the stones left over, as text."""
-    return ", ".join(str(stone) for stone in unused) if unused else "none"

@@ -7,16 +7,9 @@ from drystone.io.published_sets import SETS
 
 @dataclass(frozen=True)
 class MasonsWall:
-    """A wall of Almeida et al. (2021) as it was traced; stones do not touch there, so no F_LR.
+    """A wall of Almeida et al. (2021) as it was traced: F_SF, and F_AV and F_AH in per cent.
 
-    Parameters
-    ----------
-    name : {"R", "PR", "IR"}
-        Of the stones: regular, partly regular, irregular.
-    F_SF : float
-        Filling.
-    F_AV, F_AH : float
-        Interlocking and waviness of courses, per cent.
+    Stones are regular, partly regular or irregular; they do not touch there, so no F_LR.
     """
 
     name: str
@@ -41,14 +34,7 @@ def masons_wall(sha256: str | None) -> MasonsWall | None:
 
 
 def masons_words(symbol: str, sha256: str | None) -> str | None:
-    """Say what a figure of merit is in walls of masons; None for one that is not known.
-
-    Parameters
-    ----------
-    symbol : str
-        ``"F_SF"``, ``"F_AV"`` or ``"F_AH"``; of others nothing is known.
-    sha256 : str or None
-        Of the file that the stones are from.
+    """Say what F_SF, F_AV or F_AH is in walls of masons; None for a figure that is not known.
 
     Examples
     --------

@@ -18,18 +18,9 @@ Cell = str | int | float
 def write_tables(
     folder: Path, model: RigidBlockModel, ends: Sequence[LimitResult], per_unit_m: float | None
 ) -> None:
-    """Write both tables.
+    """Write both tables into a folder that exists, of both directions.
 
-    Parameters
-    ----------
-    folder : Path
-        Exists.
-    model : RigidBlockModel
-        The wall.
-    ends : sequence of LimitResult
-        Both directions, with mechanisms and forces where there are any.
-    per_unit_m : float or None
-        Metres in a unit of the model; None leaves lengths in its own unit.
+    `per_unit_m` is metres in a unit of the model; None leaves lengths in its own unit.
     """
     unit, factor = ("", 1.0) if per_unit_m is None else ("_m", per_unit_m)
     _write(folder / CONTACTS, contact_rows(model, ends, unit, factor))
@@ -71,19 +62,18 @@ def block_rows(
         head += [f"{name}_{end.direction}" for name in ("velocity_x", "velocity_y", "turning")]
     yield head
     weight = sum(block.weight for block in model.blocks if not block.fixed) or 1.0
-    velocities = []
-    for end in moving:
-        assert end.mechanism is not None  # noqa: S101 - only those have come here
-        pairs = zip(end.mechanism.block_ids, end.mechanism.velocity.tolist(), strict=True)
-        velocities.append((dict(pairs), factor))
+    velocities = [
+        dict(zip(one.block_ids, one.velocity.tolist(), strict=True))
+        for one in (end.mechanism for end in ends) if one is not None
+    ]  # fmt: skip
     for block in model.blocks:
         x, y = block.centroid
         share = 0.0 if block.fixed else block.weight / weight
         row: list[Cell] = [block.id, x * factor, y * factor, block.area * factor**2, share]
-        for found, per_unit in velocities:
+        for found in velocities:
             across, up, turning = found.get(block.id, (0.0, 0.0, 0.0))
             # Centroids move in units of the largest displacement; turns are per such a unit.
-            row += [across, up, turning / per_unit]
+            row += [across, up, turning / factor]
         yield row
 
 

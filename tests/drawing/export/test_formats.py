@@ -1,0 +1,49 @@
+"""What all formats have in common: names, bytes that repeat, scales and extras that are missing."""
+
+import sys
+
+import pytest
+
+from drystone.drawing.export.formats import FORMATS, ExportSettings
+from drystone.errors import UsageError
+from tests.drawing.export.drawn_walls import assembly
+
+SETTINGS = ExportSettings()
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_equal_walls_give_equal_bytes_under_the_names_that_are_told(name, tmp_path) -> None:
+    if name == "mp4":
+        pytest.importorskip("av")
+    one, other = (assembly(columns=2, rows=1) for _ in range(2))
+    paths, files = (
+        FORMATS[name].write(one, tmp_path, SETTINGS),
+        FORMATS[name].files(other, SETTINGS),
+    )
+    names = [path.relative_to(tmp_path).as_posix() for path in paths]
+    assert names == list(files)
+    folders = [one if "/" not in one else f"{one.partition('/')[0]}/" for one in names]
+    assert tuple(dict.fromkeys(folders)) == FORMATS[name].writes
+    for path, made in zip(paths, files.values(), strict=True):
+        again, written = made(), path.read_bytes()
+        assert written == (again.encode() if isinstance(again, str) else again)
+        assert b"CreationDate" not in written
+
+
+@pytest.mark.parametrize("name", [name for name, one in FORMATS.items() if one.metric])
+def test_there_is_none_in_metres_without_a_scale(name, tmp_path) -> None:
+    with pytest.raises(UsageError, match="E131"):
+        FORMATS[name].write(assembly(px_per_m=None), tmp_path, SETTINGS)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("name", "module", "code", "extra"), [
+    ("glb", "trimesh", "E182", "mesh"), ("parquet", "pyarrow", "E181", "io"),
+    ("dxf", "ezdxf", "E185", "cad"), ("mp4", "av", "E186", "film"),
+])  # fmt: skip
+def test_an_extra_that_is_missing_is_named(name, module, code, extra, monkeypatch) -> None:
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(UsageError, match="not installed") as caught:
+        FORMATS[name].files(assembly(), SETTINGS)
+    assert caught.value.code == code
+    assert f"drystone[{extra}]" in caught.value.cure

@@ -1,0 +1,153 @@
+"""steps.csv, steps.parquet and wall.geojson, read back with csv, pyarrow and shapely."""
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pytest
+import shapely
+from pyarrow import parquet
+
+from drystone.drawing.export.formats import FORMATS, ExportSettings
+from drystone.model.plan import StoneStep
+from tests.drawing.export.robot_plans import METRIC, PX_PER_M, THICKNESS_M, assembly
+
+SETTINGS = ExportSettings()
+
+
+def rows(name: str, folder: Path, px_per_m: float | None = PX_PER_M) -> list[dict[str, str]]:
+    wall = assembly(name, px_per_m)
+    (path,) = FORMATS["csv"].write(wall, folder, SETTINGS)
+    assert b"\r" not in path.read_bytes()
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.mark.parametrize("name", METRIC)
+def test_a_row_a_step_in_metres(name: str, tmp_path: Path) -> None:
+    wall = assembly(name)
+    found = rows(name, tmp_path)
+    assert [row["name"] for row in found] == [part.name for part in wall.parts]
+    for row, part in zip(found, wall.parts, strict=True):
+        step = part.plan_step
+        polygon = shapely.Polygon(part.corners)
+        assert (int(row["step"]), row["kind"], int(row["id"])) == (part.step, part.kind, part.id)
+        assert (float(row["x_m"]), float(row["y_m"])) == part.centroid
+        assert float(row["area_m2"]) == pytest.approx(polygon.area, rel=1e-9)
+        mass = polygon.area * THICKNESS_M * 2450.0
+        assert float(row["mass_kg"]) == pytest.approx(mass, rel=1e-9)
+        assert set(map(int, row["neighbours"].split())) <= set(wall.neighbours(part.id))
+        if isinstance(step, StoneStep):
+            assert (float(row["source_x_px"]), float(row["source_y_px"])) == step.source_centroid
+            assert float(row["angle_deg"]) == step.angle_deg
+            assert (row["side"], int(row["cluster"])) == (step.side, step.cluster)
+            assert row["under"] == ""
+        else:
+            assert int(row["under"]) == step.under
+            assert row["source_x_px"] == row["source_y_px"] == row["side"] == row["cluster"] == ""
+        alpha = step.alpha_left
+        assert row["alpha_left"] == ("" if alpha is None else repr(alpha))
+
+
+def test_without_a_scale_lengths_are_px_and_masses_are_missing(tmp_path: Path) -> None:
+    found = rows("exact", tmp_path, None)
+    metric = rows("exact", tmp_path)
+    assert {"x_px", "y_px", "width_px", "height_px", "area_px2"} <= set(found[0])
+    assert not any(name.endswith(("_m", "_m2")) for name in found[0])
+    for row, other in zip(found, metric, strict=True):
+        assert row["mass_kg"] == ""
+        for name in ("x", "y", "width", "height"):
+            px, metres = float(row[f"{name}_px"]), float(other[f"{name}_m"])
+            assert px == pytest.approx(metres * PX_PER_M, rel=1e-9)
+
+
+def test_instructions_say_what_to_do(tmp_path: Path) -> None:
+    found = {row["name"]: row["instruction"] for row in rows("exact", tmp_path, None)}
+    assert found["stone_004"].startswith("Stone 4, turned 180 degrees clockwise, middle ")
+    assert found["stone_001"].startswith("Stone 1, turned 166 degrees counter-clockwise, middle ")
+    assert found["stone_005"].startswith("Stone 5, not turned, middle ")
+    assert found["wedge_010"].startswith("Push wedge 10 in under stone 8, ")
+
+
+@pytest.mark.parametrize("px_per_m", [PX_PER_M, None])
+def test_it_holds_what_the_csv_holds(px_per_m: float | None, tmp_path: Path) -> None:
+    wall = assembly("exact", px_per_m)
+    (path,) = FORMATS["parquet"].write(wall, tmp_path, SETTINGS)
+    found = parquet.read_table(path).to_pylist()
+    (other,) = FORMATS["csv"].write(wall, tmp_path, SETTINGS)
+    with other.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(found) == len(rows) == len(wall.parts)
+    for one, row in zip(found, rows, strict=True):
+        assert list(one) == list(row)
+        for name, value in one.items():
+            if isinstance(value, list):
+                assert " ".join(map(str, value)) == row[name]
+            else:
+                assert ("" if value is None else str(value)) == row[name]
+
+
+def test_types_and_metadata(tmp_path: Path) -> None:
+    (path,) = FORMATS["parquet"].write(assembly("exact"), tmp_path, SETTINGS)
+    schema = parquet.read_schema(path)
+    types = {name: schema.field(name).type for name in schema.names}
+    assert types["step"] == types["under"] == types["cluster"] == pa.int64()
+    assert types["x_m"] == types["mass_kg"] == types["alpha_left"] == pa.float64()
+    assert types["kind"] == types["side"] == types["instruction"] == pa.string()
+    assert types["neighbours"] == pa.list_(pa.int64())
+    said = {name.decode(): value.decode() for name, value in schema.metadata.items()}
+    assert (said["unit"], said["px_per_m"], said["density_kg_m3"]) == ("m", "137.0", "2450.0")
+
+
+def test_without_a_scale_the_empty_column_of_masses_keeps_its_type(tmp_path: Path) -> None:
+    (path,) = FORMATS["parquet"].write(assembly("raster", None), tmp_path, SETTINGS)
+    table = parquet.read_table(path)
+    assert table.schema.field("mass_kg").type == pa.float64()
+    assert table["mass_kg"].null_count == len(table)
+
+
+def written(name: str, folder: Path, px_per_m: float | None = PX_PER_M) -> dict[str, Any]:
+    wall = assembly(name, px_per_m)
+    (path,) = FORMATS["geojson"].write(wall, folder, SETTINGS)
+    read: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return read
+
+
+@pytest.mark.parametrize("name", METRIC)
+@pytest.mark.parametrize("px_per_m", [PX_PER_M, None])
+def test_polygons_are_closed_counter_clockwise_and_of_the_right_area(
+    name: str, px_per_m: float | None, tmp_path: Path
+) -> None:
+    wall, read = assembly(name, px_per_m), written(name, tmp_path, px_per_m)
+    shapes = shapely.get_parts(shapely.from_geojson(json.dumps(read)))
+    areas = {block.id: block.area for block in wall.model.blocks}
+    assert len(shapes) == len(read["features"]) == len(wall.parts)
+    for shape, feature, part in zip(shapes, read["features"], wall.parts, strict=True):
+        (ring,) = feature["geometry"]["coordinates"]
+        assert ring[0] == ring[-1]
+        assert shape.is_valid
+        assert shape.exterior.is_ccw
+        assert shape.area == pytest.approx(areas[part.id], rel=1e-9)
+        assert shape.area == pytest.approx(feature["properties"][f"area_{wall.unit}2"], rel=1e-9)
+        assert feature["id"] == feature["properties"]["name"] == part.name
+
+
+def test_unit_and_frame_are_said(tmp_path: Path) -> None:
+    read = written("exact", tmp_path)
+    assert (read["type"], read["unit"], read["px_per_m"]) == ("FeatureCollection", "m", PX_PER_M)
+    assert "not longitude" in read["frame"]
+    assert read["wall"]["width"] == pytest.approx(110 / PX_PER_M)
+    read = written("exact", tmp_path, None)
+    assert (read["unit"], read["px_per_m"]) == ("px", None)
+    assert read["wall"] == {"width": 110.0, "height": 40.0}
+
+
+def test_properties_are_the_row_of_the_build_list(tmp_path: Path) -> None:
+    read, wall = written("exact", tmp_path), assembly("exact")
+    for feature, part in zip(read["features"], wall.parts, strict=True):
+        row = feature["properties"]
+        assert (row["step"], row["kind"], row["under"]) == (part.step, part.kind, part.under)
+        assert row["mass_kg"] == pytest.approx(wall.mass_kg(part))
+        assert set(row["neighbours"]) <= set(wall.neighbours(part.id))
