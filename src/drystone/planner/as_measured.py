@@ -394,7 +394,6 @@ def _built(
     settings: PlannerSettings,
     order: Iterable[int],
 ) -> Build:
-    """Put stone after stone where it was measured."""
     keep = settings.search.budget > 1
     groups = {group.placement.stone_id: group for group in before.wall.groups}
     heights = before.course_heights_px()

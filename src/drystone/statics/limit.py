@@ -165,7 +165,6 @@ def _no_blocks(direction: Direction) -> LimitResult:
 
 
 def _fall(program: EquilibriumProgram, least: Extreme, greatest: Extreme) -> Extreme | None:
-    """Return the answer whose mechanism brings the blocks down by themselves, if there is one."""
     for answer, sign in ((greatest, 1.0), (least, -1.0)):
         if answer.status is LimitStatus.UNSTABLE:
             return answer

@@ -113,7 +113,6 @@ def in_words(groups: Sequence[MovingGroup], names: Names, *, falls: bool = False
 
 
 def _clauses(groups: Iterable[MovingGroup], names: Names, falls: bool) -> list[_Clause]:
-    """Put bodies that move alike into one clause."""
     clauses: dict[tuple[str, str], _Clause] = {}
     for group in groups:
         verb, how = _motion(group, names, falls)

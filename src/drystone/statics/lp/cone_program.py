@@ -134,7 +134,6 @@ class ConeProgram:
         return Cones(*cone_edges(bodies, normals, frictions, points, self.units.length))
 
     def _appended_interfaces(self, addition: Addition, closed: Ints) -> Ints:
-        """Return the interface of each column in the model with the addition."""
         left = np.delete(self.interfaces, closed)
         left -= np.searchsorted(addition.closed, left).astype(np.int32)
         first = len(addition.base.interfaces) - len(addition.closed)
