@@ -139,7 +139,7 @@ def load_range(
     program = assemble(model, loads)
     least, greatest = extremes(model, program, solver, mechanism=mechanism)
     ends = zip(("left", "right"), (least, greatest), strict=True)
-    return LoadRange(*(_end(d, answer, program, mechanism) for d, answer in ends))  # type: ignore[arg-type]
+    return LoadRange(*(_range_end(d, answer, program, mechanism) for d, answer in ends))  # type: ignore[arg-type]
 
 
 def resistance_between(
@@ -206,7 +206,7 @@ def _direction(
     return _result(direction, answer, alpha, wanted)
 
 
-def _end(
+def _range_end(
     direction: Direction, answer: Extreme, program: EquilibriumProgram, mechanism: bool
 ) -> LimitResult:
     """Tell one end of the range of alpha."""

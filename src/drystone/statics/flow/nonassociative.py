@@ -280,7 +280,7 @@ def _nonassociative(
         if found.state is not None:
             state = replace(found.state, alpha=_without_noise(found.state.alpha, associative.alpha))
             answers.append(_answer(model, loads, direction, program, state, found.method))
-    return _told(direction, associative.alpha, rounds, answers)
+    return _least_verified(direction, associative.alpha, rounds, answers)
 
 
 def _without_noise(alpha: float, associative: float | None) -> float:
@@ -323,7 +323,7 @@ def _answer(
     return _Answer(state.alpha, mechanism, forces, check, method)
 
 
-def _told(
+def _least_verified(
     direction: Direction, associative: float | None, rounds: int, answers: list[_Answer]
 ) -> NonassociativeResult:
     """Choose the least of the verified answers."""
