@@ -10,7 +10,7 @@ from drystone.kernels.profiles import bare, raised
 from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.planner import views
-from drystone.planner.views import View, Views
+from drystone.planner.views import OutlineView, Views
 from tests.polygons import random_polygon
 from tests.strategies import repeatable
 
@@ -23,17 +23,17 @@ def heap(seed: int, count: int) -> list[Points]:
     return [random_polygon(rng, 7, 10.0) + at[k] for k in range(count)]
 
 
-def bits(view: View) -> list[bytes]:
+def bits(view: OutlineView) -> list[bytes]:
     return [part.tobytes() for part in (*view.built, *view.seen, *view.profile)]
 
 
-def at_once(built: Polygons, side: Side) -> View:
+def at_once(built: Polygons, side: Side) -> OutlineView:
     width = SITE.extent_px[0]
     seen = built if side == "left" else built.mirrored(width)
     profile = bare(SITE.width_px)
     for index in range(len(seen)):
         profile = raised(profile, seen.polygon(index), index, 1.0 / SITE.scale)
-    return View(built, seen, profile)
+    return OutlineView(built, seen, profile)
 
 
 @repeatable(40)

@@ -11,8 +11,7 @@ from drystone.kernels.simplex import Added, Cones
 from drystone.statics import local_update as module
 from drystone.statics.incremental import LocalAnalysis, certified_bound
 from drystone.statics.limit import lateral_resistance
-from drystone.statics.local_update import REACH, local_update
-from drystone.statics.lp.standard_form import least
+from drystone.statics.local_update import REACH, least, local_update
 from drystone.statics.model import Addition, Block, Interface, RigidBlockModel
 from tests.kernels.simplex_walls import needs_kernel
 from tests.statics.growth import PX, wall_at_once, with_block

@@ -181,20 +181,17 @@ class Attempt:
         self, landscapes: Sequence[Landscape], stones: Sequence[int]
     ) -> Iterator[list[Proposal]]:
         """Place and stabilise the candidates of some sides (lines 7-15), batch by batch."""
-        groups = self._groups(stones)
+        poses = self._workshop.poses
+        if self._settings.orientation_choice == "placement":
+            groups = [poses(stone_id) for stone_id in stones]
+        else:
+            groups = [(posed,) for stone_id in stones for posed in poses(stone_id)]
         trials = [Trial(poses, view, self._rest) for view in landscapes for poses in groups]
         heights = _course_heights(groups)
         for batch in self._proposer.proposals(trials, self._map):
             yield [
                 replace(proposal, course_height_px=heights[proposal.stone_id]) for proposal in batch
             ]
-
-    def _groups(self, stones: Sequence[int]) -> list[tuple[PosedStone, ...]]:
-        """Return the poses of each candidate: one each, or all of a stone for the rule to pick."""
-        poses = self._workshop.poses
-        if self._settings.orientation_choice == "placement":
-            return [poses(stone_id) for stone_id in stones]
-        return [(posed,) for stone_id in stones for posed in poses(stone_id)]
 
     def _judge(self, proposals: Sequence[Proposal]) -> list[Candidate]:
         keys = [(p.stone_id, p.trial_angle_deg, p.side, p.spot) for p in proposals]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from drystone.errors import Notice, UsageError
 from drystone.model.placement import Placement
 from drystone.model.site import Site
+from drystone.planner.as_measured import far_from, rebuilt
 from drystone.planner.build import Build
 from drystone.planner.measured import (
     MeasuredPose,
@@ -18,7 +19,6 @@ from drystone.planner.measured import (
     places_of,
     require_known,
 )
-from drystone.planner.rebuilt import far_from, rebuilt
 from drystone.planner.replay import stands
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
@@ -156,8 +156,12 @@ def observed(
     if added or len(order) < len(groups) or not all(places[i].as_planned for i in order):
         now = rebuilt(start, build, order, added, places, workshop, settings)
     unsteady = tuple(action.stone_id for action in now.actions if not stands(action))
+    px = workshop.site.px_per_m or 1.0
     observation = Observation(
-        poses={i: _pose(places[i], workshop.site) for i in (*order, *added)},
+        poses={
+            i: MeasuredPose(places[i].x_px / px, places[i].y_px / px, places[i].angle_deg)
+            for i in (*order, *added)
+        },
         deviations=_deviations(build, now, places),
         free=tuple(i for i in groups if i not in places and i not in missing),
         lost=missing,
@@ -234,11 +238,6 @@ def _less(place: Place, placement: Placement, site: Site) -> tuple[float, float,
     x, y = placement.centroid(site.height_px)
     angle = wrap_deg(place.angle_deg - placement.posed.angle_deg)
     return place.x_px - x / site.scale, place.y_px - y / site.scale, angle
-
-
-def _pose(place: Place, site: Site) -> MeasuredPose:
-    px = site.px_per_m or 1.0
-    return MeasuredPose(place.x_px / px, place.y_px / px, place.angle_deg)
 
 
 def _unsteady(unsteady: tuple[int, ...]) -> tuple[Notice, ...]:

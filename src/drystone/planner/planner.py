@@ -268,6 +268,5 @@ class Planner:
 
 
 def _all_placed(left: int, banned: int) -> str:
-    """Say which stones were placed when none is left."""
     which = [text for text, there in (("are not banned", banned), ("fit", left)) if there]
     return " that ".join(["all stones", *([" and ".join(which)] if which else [])]) + " placed"

@@ -223,7 +223,9 @@ class RasterProposer:
                 )
             if stabilised is None or not self._reached(landscape, stabilised):
                 continue
-            proposal = self._proposal(trial, posed.angle_deg, stabilised)
+            with self._profile.part("indices"):
+                cost = action_cost(trial, stabilised, self._workshop, self._settings)
+            proposal = Proposal(stabilised, posed.angle_deg, cost=cost)
             if not self._settings.placement.compare:
                 return proposal
             if best is None or proposal.cost < best.cost - 1e-12:
@@ -239,8 +241,3 @@ class RasterProposer:
         posed, col = placement.posed, landscape.view_col(placement.posed, placement.col)
         view = landscape.view(posed)
         return can_be_lowered(landscape, view, placement.row, col, settings.clearance_px)
-
-    def _proposal(self, trial: Trial, trial_angle_deg: float, stabilised: Stabilised) -> Proposal:
-        with self._profile.part("indices"):
-            cost = action_cost(trial, stabilised, self._workshop, self._settings)
-        return Proposal(stabilised, trial_angle_deg, cost=cost)

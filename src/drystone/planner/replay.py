@@ -152,7 +152,6 @@ def _again(
 
 
 def _has_room(wall: Wall, group: Group) -> bool:
-    """Say whether a stone and its wedges overlap nothing that is there."""
     if wall.outlines is not None:
         blocks = outlined(group.placement, group.wedges)
         return not any(crosses_any(corners, wall.outlines.polygons) for _, corners in blocks)

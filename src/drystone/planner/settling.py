@@ -136,7 +136,6 @@ class ExactProposer:
             known.update((one.trial.key, one) for one in found)
 
     def _dropped_together(self, cheapest: int, trials: Sequence[Trial]) -> list[Dropped]:
-        """Drop the stones of trials of one side."""
         side, settings = trials[0].landscape.side, self._settings.settle
         poses = [posed for trial in trials for posed in trial.poses]
         with self._profile.part("placement"):

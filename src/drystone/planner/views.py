@@ -8,7 +8,7 @@ from drystone.model.placement import Side
 from drystone.model.site import Site
 
 
-class View(NamedTuple):
+class OutlineView(NamedTuple):
     """What is built, seen so that the building side is on the left.
 
     Parameters
@@ -39,18 +39,18 @@ class Views:
 
     def __init__(self, site: Site) -> None:
         self._site = site
-        self._last: dict[Side, View] = {}
+        self._last: dict[Side, OutlineView] = {}
 
-    def of(self, built: Polygons, side: Side) -> View:
+    def of(self, built: Polygons, side: Side) -> OutlineView:
         """Return the view of outlines from a side."""
         last = self._last.get(side)
         if last is None or not _begins_with(built, last.built):
-            last = View(no_polygons(), no_polygons(), bare(self._site.width_px))
+            last = OutlineView(no_polygons(), no_polygons(), bare(self._site.width_px))
         view = self._grown(last, built, side)
         self._last[side] = view
         return view
 
-    def _grown(self, last: View, built: Polygons, side: Side) -> View:
+    def _grown(self, last: OutlineView, built: Polygons, side: Side) -> OutlineView:
         count, width, cell = len(last.built), self._site.extent_px[0], 1.0 / self._site.scale
         new = [built.polygon(index) for index in range(count, len(built))]
         if side == "right":
@@ -58,7 +58,7 @@ class Views:
         profile = last.profile
         for index, corners in enumerate(new, count):
             profile = raised(profile, corners, index, cell)
-        return View(built, built if side == "left" else last.seen.added(new), profile)
+        return OutlineView(built, built if side == "left" else last.seen.added(new), profile)
 
 
 def _begins_with(polygons: Polygons, others: Polygons) -> bool:

@@ -6,7 +6,7 @@ from drystone.clusters import cluster_stones
 from drystone.errors import UsageError
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
-from drystone.model.stone import Stone, StoneSet
+from drystone.model.stone import StoneSet
 from drystone.planner.build import Build
 from drystone.planner.pose_costs import PoseCosts
 from drystone.planner.settings import PlannerSettings
@@ -151,7 +151,12 @@ def fitting_stones(
     book = book or PoseBook(site.scale)
     banned = _known(stones, settings)
     usable = [s for s in stones if s.id not in banned]
-    fitting = tuple(s.id for s in usable if _fits(s, site, book, settings.orientations))
+    # Most stones fit in the first pose; the other poses are then not made.
+    fitting = tuple(
+        s.id
+        for s in usable
+        if any(_has_room(site, book.pose(s, a)) for a in book.angles(s, settings.orientations))
+    )
     too_large = sorted({s.id for s in usable}.difference(fitting))
     if too_large and not settings.skip_too_large:
         raise _too_large(too_large, site)
@@ -161,12 +166,6 @@ def fitting_stones(
 
 def _has_room(site: Site, posed: PosedStone) -> bool:
     return posed.width_px <= site.width_px and posed.height_px <= site.height_px
-
-
-def _fits(stone: Stone, site: Site, book: PoseBook, orientations: str) -> bool:
-    """Say whether a stone fits into the wall; most do in the first pose, the others can wait."""
-    angles = book.angles(stone, orientations)
-    return any(_has_room(site, book.pose(stone, angle)) for angle in angles)
 
 
 def _known(stones: StoneSet, settings: PlannerSettings) -> frozenset[int]:

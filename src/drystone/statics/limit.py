@@ -139,7 +139,7 @@ def load_range(
     program = assemble(model, loads)
     least, greatest = extremes(model, program, solver, mechanism=mechanism)
     ends = zip(("left", "right"), (least, greatest), strict=True)
-    return LoadRange(*(_end(d, answer, program, mechanism) for d, answer in ends))  # type: ignore[arg-type]
+    return LoadRange(*(_range_end(d, answer, program, mechanism) for d, answer in ends))  # type: ignore[arg-type]
 
 
 def resistance_between(
@@ -165,7 +165,6 @@ def _no_blocks(direction: Direction) -> LimitResult:
 
 
 def _fall(program: EquilibriumProgram, least: Extreme, greatest: Extreme) -> Extreme | None:
-    """Return the answer whose mechanism brings the blocks down by themselves, if there is one."""
     for answer, sign in ((greatest, 1.0), (least, -1.0)):
         if answer.status is LimitStatus.UNSTABLE:
             return answer
@@ -207,7 +206,7 @@ def _direction(
     return _result(direction, answer, alpha, wanted)
 
 
-def _end(
+def _range_end(
     direction: Direction, answer: Extreme, program: EquilibriumProgram, mechanism: bool
 ) -> LimitResult:
     """Tell one end of the range of alpha."""

@@ -220,7 +220,6 @@ def _block(model: RigidBlockModel, block: int) -> tuple[int, Block]:
 
 
 def _listed(blocks: Iterable[Block]) -> str:
-    """Name some blocks, or say that there is none."""
     ids = [str(block.id) for block in blocks]
     more = f" and {len(ids) - LISTED} more" if len(ids) > LISTED else ""
     return ", ".join(ids[:LISTED]) + more if ids else "there is none"

@@ -9,23 +9,44 @@ Nothing here is sure to hold.  Forces and mechanism of the whole wall are put to
 for the caller to certify them; what was not found, or not proved, is for another solver.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import highspy
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from drystone.kernels.simplex import OPTIMAL, UNSTABLE, Added, Cones, Optimum
 from drystone.statics.lp.cone_program import NONE_CLOSED, ConeProgram
+from drystone.statics.lp.highs import TOLERANCE, corrected, silent_highs
 from drystone.statics.lp.program import Floats
-from drystone.statics.lp.standard_form import least
 
 REACH = 2.0
 """Half width of the strip beyond the centroids of what the stone touches, in units of length."""
 
 NO_WORK = 1e-11
 """Work of a stone on the mechanism of the wall that counts as none."""
+
+# Dual simplex without perturbed costs takes half the time of the primal method where only feasible
+# unknowns are sought, from a basis with gaps.
+_DUAL, _DEVEX = 1, 1
+_HIGHS_OPTIONS: Mapping[str, Any] = {
+    "threads": 1,
+    "solver": "simplex",
+    "presolve": "off",
+    "simplex_scale_strategy": 0,
+    "simplex_strategy": _DUAL,
+    "simplex_dual_edge_weight_strategy": _DEVEX,
+    "dual_simplex_cost_perturbation_multiplier": 0.0,
+    "simplex_initial_condition_check": False,
+    "primal_feasibility_tolerance": TOLERANCE,
+    "dual_feasibility_tolerance": TOLERANCE,
+    "simplex_iteration_limit": 10_000,  # it may cycle; what it gives up on is asked of the whole
+}
+_BASIC = highspy.HighsBasisStatus.kBasic
+_AT_ZERO = highspy.HighsBasisStatus.kLower
 
 
 class PrimalDual(NamedTuple):
@@ -195,7 +216,8 @@ class _Strip:
             ),
             np.concatenate((wall.entries[:, inside], added.cones.entries), axis=1),
         )
-        rhs = self._loads(alpha)
+        weights = np.concatenate((self.program.weights, added.weights))[place >= 0]
+        rhs = np.column_stack((-alpha * weights, weights, np.zeros(len(weights))))
         for bodies, entries in ((first, wall.entries[:3]), (second, wall.entries[3:])):
             at = across & (bodies >= 0)
             np.subtract.at(rhs, bodies[at], (carried[at] * entries[:, at]).T)
@@ -209,11 +231,6 @@ class _Strip:
         forces[inside] = found.unknowns[:count]
         return np.concatenate((np.delete(forces, added.closed), found.unknowns[count:]))
 
-    def _loads(self, alpha: float) -> Floats:
-        """Return what the contacts of each body of the strip must carry."""
-        weights = np.concatenate((self.program.weights, self.added.weights))[self.place >= 0]
-        return np.column_stack((-alpha * weights, weights, np.zeros(len(weights))))
-
 
 def _matrix(cones: Cones, bodies: int) -> csc_array:
     """Return the same as a sparse matrix, without what acts on the ground."""
@@ -223,3 +240,58 @@ def _matrix(cones: Cones, bodies: int) -> csc_array:
     start = np.concatenate(([0], np.cumsum(moves.sum(axis=1)))).astype(np.int32)
     parts = cones.entries.T[moves], rows[moves].astype(np.int32), start
     return csc_array(parts, shape=(3 * bodies, len(cones.first)))
+
+
+class Vertex(NamedTuple):
+    """An optimum.
+
+    Parameters
+    ----------
+    unknowns : (columns,) float array
+        x.
+    duals : (rows,) float array
+        y with c - y . A >= 0.
+    """
+
+    unknowns: Floats
+    duals: Floats
+
+
+def least(
+    costs: Floats, matrix: csc_array, rhs: Floats, basic: NDArray[np.bool_] | None = None
+) -> Vertex | None:
+    """Minimise c . x with A x = b, x >= 0; None when there is no optimum, whatever the reason.
+
+    Parameters
+    ----------
+    costs : (columns,) float array
+        c.
+    matrix : csc_array
+        A.
+    rhs : (rows,) float array
+        b.
+    basic : (columns,) bool array, optional
+        Unknowns that are basic at the start, at most as many as there are rows; they need not
+        be independent.  HiGHS fills the gaps.
+    """
+    count, rows = len(costs), len(rhs)
+    by_column, minimise, offset = 1, 1, 0.0
+    highs = silent_highs(_HIGHS_OPTIONS)
+    highs.passModel(
+        count, rows, len(matrix.data), by_column, minimise, offset, costs, np.zeros(count),
+        np.full(count, highspy.kHighsInf), rhs, rhs, matrix.indptr, matrix.indices, matrix.data,
+        np.zeros(count, np.int32),
+    )  # fmt: skip
+    if basic is not None:
+        basis = highspy.HighsBasis()
+        basis.col_status = [_BASIC if is_basic else _AT_ZERO for is_basic in basic.tolist()]
+        basis.row_status = [_AT_ZERO] * rows
+        basis.valid = True
+        basis.alien = True
+        highs.setBasis(basis)
+    highs.run()
+    if highs.getModelStatus() != highspy.HighsModelStatus.kOptimal:
+        return None
+    solution = highs.getSolution()
+    unknowns, duals = np.array(solution.col_value), np.array(solution.row_dual)
+    return Vertex(*corrected(highs, (costs, matrix, rhs), unknowns, duals))

@@ -211,13 +211,13 @@ def fabricated(alpha, error=0.0, method=""):
 
 def test_the_least_verified_answer_is_told():
     answers = [fabricated(0.5), fabricated(0.3, method="second"), fabricated(0.1, error=1e-3)]
-    told = nonassociative._told("right", 0.6, 9, answers)
+    told = nonassociative._least_verified("right", 0.6, 9, answers)
     assert (told.alpha, told.method, told.answers) == (0.3, "second", (0.3, 0.5))
     assert told.status is LimitStatus.OPTIMAL
 
 
 def test_a_motion_against_the_load_is_no_number():
-    told = nonassociative._told("right", 0.6, 9, [fabricated(0.5), fabricated(-0.1)])
+    told = nonassociative._least_verified("right", 0.6, 9, [fabricated(0.5), fabricated(-0.1)])
     assert (told.status, told.alpha) == (LimitStatus.UNSTABLE, None)
     assert told.answers == (-0.1, 0.5)
     assert "even against a load of 0.1000" in told.message

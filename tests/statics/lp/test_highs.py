@@ -12,6 +12,7 @@ from scipy.sparse import csc_array
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.statics.incremental import HighsAnalysis
+from drystone.statics.local_update import least
 from drystone.statics.lp.highs import (
     PIVOTS_FOR_A_RAY,
     HighsSession,
@@ -21,7 +22,6 @@ from drystone.statics.lp.highs import (
     read_basis,
 )
 from drystone.statics.lp.program import assemble
-from drystone.statics.lp.standard_form import least
 from drystone.statics.result import LimitStatus
 from tests.statics.growth import PX, Pivots, empty, upwards, with_block
 from tests.statics.walls import coursed, irregular, stacked

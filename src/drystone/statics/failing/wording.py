@@ -104,7 +104,8 @@ def in_words(groups: Sequence[MovingGroup], names: Names, *, falls: bool = False
         return "Nothing moves."
     told = [_verb_form(clause, names) for clause in clauses[:MOST_CLAUSES]]
     if not falls:
-        told[0] = _noun_form(clauses[0], names)
+        first = clauses[0]
+        told[0] = f"{_VERBS[first.verb][0]} of {names.listed(first.blocks)}{_how(first)}"
     left = sum(len(clause.blocks) for clause in clauses[MOST_CLAUSES:])
     if left:
         told.append(f"{left} others move with them" if left > 1 else "1 other moves with them")
@@ -112,7 +113,6 @@ def in_words(groups: Sequence[MovingGroup], names: Names, *, falls: bool = False
 
 
 def _clauses(groups: Iterable[MovingGroup], names: Names, falls: bool) -> list[_Clause]:
-    """Put bodies that move alike into one clause."""
     clauses: dict[tuple[str, str], _Clause] = {}
     for group in groups:
         verb, how = _motion(group, names, falls)
@@ -148,10 +148,6 @@ def _about(group: MovingGroup, names: Names) -> str:
     if alone:
         return f" about its {toe.side} toe{on}"
     return f" about the {toe.side} toe of {names.place([toe.block])}{on}"
-
-
-def _noun_form(clause: _Clause, names: Names) -> str:
-    return f"{_VERBS[clause.verb][0]} of {names.listed(clause.blocks)}{_how(clause)}"
 
 
 def _verb_form(clause: _Clause, names: Names) -> str:

@@ -163,7 +163,6 @@ class Search:
             yield Found(start.name, rounds, state and self._descended(state))
 
     def _rates(self, start: Start, mechanism: Floats, rng: np.random.Generator) -> Floats:
-        """Return the slip rates of a start."""
         largest = float(mechanism.max(initial=0.0)) or 1.0
         shares = {
             "even": np.ones_like(mechanism),

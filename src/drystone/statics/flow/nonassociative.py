@@ -268,7 +268,11 @@ def _nonassociative(
     program = assemble(model, loads)
     rounds, answers = 0, []
     sign = -1.0 if direction == "left" else 1.0
-    search = Search(program, sign, _upright(model), settings, look)
+    upright = np.repeat(  # the vertical part of the normal at every contact point
+        [abs(interface.normal[1]) for interface in model.interfaces],
+        [len(interface.points) for interface in model.interfaces],
+    )
+    search = Search(program, sign, upright, settings, look)
     if associative.alpha is None and not search.moves:
         return NonassociativeResult(LimitStatus.UNBOUNDED, direction, message=IMMOVABLE)
     for found in search.attempts():
@@ -276,7 +280,7 @@ def _nonassociative(
         if found.state is not None:
             state = replace(found.state, alpha=_without_noise(found.state.alpha, associative.alpha))
             answers.append(_answer(model, loads, direction, program, state, found.method))
-    return _told(direction, associative.alpha, rounds, answers)
+    return _least_verified(direction, associative.alpha, rounds, answers)
 
 
 def _without_noise(alpha: float, associative: float | None) -> float:
@@ -286,12 +290,6 @@ def _without_noise(alpha: float, associative: float | None) -> float:
     """
     alpha = 0.0 if -STANDING <= alpha < 0.0 else alpha
     return alpha if associative is None else min(alpha, associative)
-
-
-def _upright(model: RigidBlockModel) -> Floats:
-    """Return the vertical part of the normal at every contact point."""
-    parts = [abs(interface.normal[1]) for interface in model.interfaces]
-    return np.repeat(parts, [len(interface.points) for interface in model.interfaces])
 
 
 @dataclass(frozen=True, eq=False)
@@ -325,7 +323,7 @@ def _answer(
     return _Answer(state.alpha, mechanism, forces, check, method)
 
 
-def _told(
+def _least_verified(
     direction: Direction, associative: float | None, rounds: int, answers: list[_Answer]
 ) -> NonassociativeResult:
     """Choose the least of the verified answers."""

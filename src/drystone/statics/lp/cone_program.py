@@ -80,7 +80,10 @@ class ConeProgram:
             return None
         weight = self.units.weight
         weights = np.array([block.weight / weight for block in addition.blocks], np.float64)
-        return Added(weights, cones, self._columns(addition.closed))
+        gone = NONE_CLOSED
+        if addition.closed:
+            gone = np.flatnonzero(np.isin(self.interfaces, addition.closed)).astype(np.int32)
+        return Added(weights, cones, gone)
 
     def appended(self, addition: Addition, added: Added) -> "ConeProgram":
         """Return the program with a stone and its wedges.
@@ -130,14 +133,7 @@ class ConeProgram:
             points.append(interface.points)
         return Cones(*cone_edges(bodies, normals, frictions, points, self.units.length))
 
-    def _columns(self, closed: tuple[int, ...]) -> Ints:
-        """Return the columns of interfaces that are there no more."""
-        if not closed:
-            return NONE_CLOSED
-        return np.flatnonzero(np.isin(self.interfaces, closed)).astype(np.int32)
-
     def _appended_interfaces(self, addition: Addition, closed: Ints) -> Ints:
-        """Return the interface of each column in the model with the addition."""
         left = np.delete(self.interfaces, closed)
         left -= np.searchsorted(addition.closed, left).astype(np.int32)
         first = len(addition.base.interfaces) - len(addition.closed)

@@ -191,7 +191,6 @@ def _rows(free: list[Block]) -> Ints:
 
 
 def _friction(model: RigidBlockModel) -> Floats:
-    """Return the coefficient of friction at every contact point."""
     each = [model.friction(interface) for interface in model.interfaces]
     counts = [len(interface.points) for interface in model.interfaces]
     return np.repeat(np.array(each, float), np.array(counts, np.int64))

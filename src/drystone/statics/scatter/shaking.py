@@ -203,7 +203,6 @@ def _of_both_stones(
 
 
 def _turned(vectors: Floats, angle: Floats) -> Floats:
-    """Turn each vector counter-clockwise."""
     cos, sin = np.cos(angle), np.sin(angle)
     x, y = vectors.T
     return np.column_stack((cos * x - sin * y, sin * x + cos * y))
