@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from drystone.craft import Masonry
 from drystone.kernels.raster import turn
-from drystone.metrics.flush import flush_deviation
 from drystone.metrics.frame import frame_wall
-from drystone.metrics.level import level_deviation
+from drystone.metrics.shape import flush_deviation, level_deviation
 from tests.craft.walls import PX, both, box, courses, find, mirrored, painted, running_bond
 
 SHAPES = ("on_end", "big_low", "level_beds", "inward_edges", "level_top", "flush_ends")

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.indices.values import Indices
+from drystone.indices import Indices
 from drystone.selection.algorithm2 import Action, SelectionSettings, select_action, weighted_sum
 from tests.naive.selection import algorithm2
 from tests.strategies import repeatable

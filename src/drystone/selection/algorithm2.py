@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from drystone.indices.values import Indices
+from drystone.indices import Indices
 
 MEAN_SLACK = 1e-12
 """A mean may round above every one of equal values; without slack the filter would drop all."""

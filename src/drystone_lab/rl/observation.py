@@ -7,7 +7,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from drystone.metrics.level import top_profile
+from drystone.metrics.shape import top_profile
 from drystone.model.wall import Wall
 from drystone.selection.policies.learned import FEATURES, features
 from drystone.selection.policy import Offer
