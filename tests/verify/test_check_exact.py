@@ -15,8 +15,8 @@ from drystone.model.plan import Plan, PlanMetrics
 from drystone.planner.settings import method_settings
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
+from drystone.verify.canvas import PENETRATION_PX
 from drystone.verify.check import check_plan
-from drystone.verify.exact_replay import PENETRATION_PX
 from drystone.verify.report import PrefixAlpha
 from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example

@@ -19,8 +19,8 @@ from drystone.planner.settings import method_settings
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.settle.settings import SettleSettings
+from drystone.verify.canvas import ExactCanvas, leaves
 from drystone.verify.check import check_plan
-from drystone.verify.exact_replay import ExactCanvas, leaves
 from drystone.verify.replay import rebuild_wall, replay_plan
 from tests.strategies import repeatable
 from tests.verify.exact_examples import exact_example

@@ -126,9 +126,8 @@ def _at_least_mean(actions: Sequence[Action], pool: Sequence[int], term: int) ->
     """Keep the actions whose term reaches the mean of the pool (Eq. 14, 16, 18)."""
     groups = [pool]
     if term == 2:  # IS of boundary stones, IWR of inner ones
-        groups = [
-            [k for k in pool if actions[k].indices.boundary is kind] for kind in (True, False)
-        ]
+        boundary = [k for k in pool if actions[k].indices.boundary]
+        groups = [boundary, [k for k in pool if not actions[k].indices.boundary]]
     kept = []
     for group in filter(None, groups):
         mean = math.fsum(actions[k].terms[term] for k in group) / len(group)

@@ -10,9 +10,9 @@ from drystone.drawing.pictures.failures import FailureView, plot_failures
 from drystone.drawing.pictures.mechanism import motion_of
 from drystone.drawing.words.checked import PICTURE, Checked
 from drystone.errors import PlanError
+from drystone.model.steps import piece_id
 from drystone.statics.limit import lateral_resistance
 from drystone.verify.outlines import common_areas
-from drystone.verify.pieces import piece_id
 from drystone.verify.replay import Stage, replay_plan
 from drystone.verify.report import Problem
 from drystone.verify.stability import wall_model
