@@ -16,7 +16,7 @@ SOURCE = Path("src")
 KERNELS = SOURCE / "drystone" / "kernels"
 
 # Results must not depend on the machine: no fused multiply-add, no reordering of sums.
-# Debug information and symbols would be nine tenths of the files; warnings are of what Cython writes.
+# Debug information and symbols would be nine tenths of the files. Warnings are of C by Cython.
 FLAGS, LINKED = ["-O2", "-g0", "-w", "-ffp-contract=off"], []
 if sys.platform == "win32":
     FLAGS = ["/O2", "/fp:precise"]

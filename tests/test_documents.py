@@ -280,7 +280,7 @@ def test_the_theory_has_every_equation_and_files_that_exist() -> None:
     files = re.findall(r"`([\w/]+\.py)`", text)
     assert len(files) > 20
     for file in files:
-        assert (source / file).exists() or (source / "indices" / file).exists(), file
+        assert (source / file).exists(), file
 
 
 def test_the_gallery_has_titles_and_is_short() -> None:

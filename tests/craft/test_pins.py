@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import OptimizeResult
 
 from drystone.contacts.given import model_from_json
-from drystone.craft import Masonry, pins, wedge_loads
+from drystone.craft import Masonry, pins
 from drystone.statics.limit import lateral_resistance
-from tests.craft.walls import box
+from tests.craft.walls import box, find
 
 
 def modelled(loops, wedges):
@@ -29,17 +29,17 @@ def slab_on(*, wedge_x, piers, slab=(0.0, 4.0)):
 def test_a_wedge_that_holds_the_slab_up_is_broken():
     # Slab of weight 4 on a pier under [0, 1] and the wedge under [3.5, 4]: moments about x = 1
     # with the wedge's far edge give the least: 4 * (2 - 1) / (4 - 1).
-    found = pins.find(slab_on(wedge_x=3.5, piers=[0.0]))
+    found = find("pins", slab_on(wedge_x=3.5, piers=[0.0]))
     assert found.number == pytest.approx(1.0 / 3.0, abs=1e-6)
     assert found.verdict == "fair"
     assert found.cases[0].stones == (9, 8)
-    far = pins.find(slab_on(wedge_x=1.5, piers=[0.0]))
+    far = find("pins", slab_on(wedge_x=1.5, piers=[0.0]))
     assert far.number == pytest.approx(1.0, abs=1e-6)
     assert far.verdict == "broken"
 
 
 def test_a_wedge_between_two_piers_only_fills():
-    found = pins.find(slab_on(wedge_x=1.5, piers=[0.0, 3.0]))
+    found = find("pins", slab_on(wedge_x=1.5, piers=[0.0, 3.0]))
     assert (found.number, found.verdict, found.cases) == (0.0, "good", ())
     assert found.figures["wedges"] == 1.0
 
@@ -48,7 +48,7 @@ def test_what_lies_higher_up_presses_on_the_wedge_too():
     alone = slab_on(wedge_x=1.5, piers=[0.0])
     loops = {**alone.loops, 7: box(0, 2, 4, 1)}
     # Twice the weight on it, over the weight of the slab alone.
-    assert pins.find(modelled(loops, {9})).number == pytest.approx(2.0, abs=1e-6)
+    assert find("pins", modelled(loops, {9})).number == pytest.approx(2.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("at", ["left", "right"])
@@ -57,7 +57,7 @@ def test_a_wedge_that_sticks_out_is_named(at):
              8: box(2.0, 1, 0.8, 0.2)}  # fmt: skip
     if at == "right":
         loops = {i: loop * [-1, 1] for i, loop in loops.items()}
-    found = pins.find(modelled(loops, {8, 9}))
+    found = find("pins", modelled(loops, {8, 9}))
     assert found.verdict == "broken"
     out = [case for case in found.cases if "sticks out" in case.words]
     assert [case.stones for case in out] == [(9, 2)]
@@ -72,7 +72,7 @@ def slab_with(wedge, *more):
 
 
 def named(masonry):
-    found = pins.find(masonry)
+    found = find("pins", masonry)
     told = [case.words for case in found.cases if "no mason would cut" in case.words]
     assert found.figures["wedges that no mason would cut"] == len(told)
     assert found.verdict == ("broken" if told else "not judged")
@@ -126,10 +126,10 @@ def test_a_wedge_with_nothing_beside_it_is_named():
 def test_a_wedge_beyond_its_stone_but_between_others_does_not_stick_out():
     loops = {1: box(0, 0, 6, 1), 2: box(1, 1.2, 2, 1), 4: box(3.6, 1, 2, 1),
              9: box(2.5, 1, 1.0, 0.2), 8: box(1.2, 1, 0.5, 0.2)}  # fmt: skip
-    found = pins.find(modelled(loops, {8, 9}))
+    found = find("pins", modelled(loops, {8, 9}))
     assert found.figures["wedges that stick out"] == 0.0
     del loops[4]
-    assert pins.find(modelled(loops, {8, 9})).figures["wedges that stick out"] == 1.0
+    assert find("pins", modelled(loops, {8, 9})).figures["wedges that stick out"] == 1.0
 
 
 @pytest.mark.parametrize("angle", [-20.0, 0.0, 20.0])
@@ -137,7 +137,7 @@ def test_a_slope_passes_on_the_whole_weight(angle):
     rise = 2.0 * np.tan(np.radians(angle))
     loops = {9: np.array([[0, 0], [2, 0], [2, 1 + rise], [0, 1]]),
              8: np.array([[0, 1], [2, 1 + rise], [2, 3], [0, 3]])}  # fmt: skip
-    assert pins.find(modelled(loops, {9})).number == pytest.approx(1.0, abs=1e-6)
+    assert find("pins", modelled(loops, {9})).number == pytest.approx(1.0, abs=1e-6)
 
 
 def test_pressure_in_upright_joints_does_not_hold_a_stone_up():
@@ -145,15 +145,15 @@ def test_pressure_in_upright_joints_does_not_hold_a_stone_up():
     loops = {1: box(0, 0, 1, 1), 8: box(0, 1, 4, 1), 9: box(3.5, 0, 0.5, 1),
              2: box(4, 0, 2, 3), 3: box(-2, 0, 2, 3)}  # fmt: skip
     wall = modelled(loops, {9})
-    assert wedge_loads.least_wedge_loads(wall.model, frozenset({9}))[9] == pytest.approx(0.0)
-    assert pins.find(wall).number == pytest.approx(1.0 / 3.0, abs=1e-6)
-    assert pins.find(wall).note == ""
+    assert pins.least_wedge_loads(wall.model, frozenset({9}))[9] == pytest.approx(0.0)
+    assert find("pins", wall).number == pytest.approx(1.0 / 3.0, abs=1e-6)
+    assert find("pins", wall).note == ""
 
 
 def test_a_slab_that_only_its_neighbours_hold_is_said():
     loops = {1: box(0.5, 0, 1, 1), 8: box(0.5, 1, 4, 1), 9: box(2.0, 0, 0.3, 1),
              2: box(4.5, 0, 4, 4), 3: box(-3.5, 0, 4, 4)}  # fmt: skip
-    found = pins.find(modelled(loops, {9}))
+    found = find("pins", modelled(loops, {9}))
     assert found.note == "The wall stands only by pressure in upright joints, which was counted on."
     assert found.number is not None
 
@@ -168,34 +168,34 @@ def test_a_wedge_that_friction_may_pull_down_carries_nothing():
     ]
     model = model_from_json({"blocks": blocks})
     assert lateral_resistance(model).stable
-    assert wedge_loads.least_wedge_loads(model, frozenset({9})) == {9: 0.0}
+    assert pins.least_wedge_loads(model, frozenset({9})) == {9: 0.0}
 
 
 def test_a_solver_that_gives_up_is_no_wall_that_falls(monkeypatch):
     loops = {1: box(0, 0, 1, 1), 8: box(0, 1, 4, 1), 9: box(3.5, 0, 0.5, 1)}
     gave_up = OptimizeResult(success=False, status=4)
-    monkeypatch.setattr(wedge_loads, "linprog", lambda *_, **__: gave_up)
-    found = pins.find(modelled(loops, {9}))
+    monkeypatch.setattr(pins, "linprog", lambda *_, **__: gave_up)
+    found = find("pins", modelled(loops, {9}))
     assert found.number is None
     assert found.note == "What the wedges carry is not known: the solver gave up."
 
 
 def test_without_wedges_or_contacts_nothing_is_judged():
-    assert pins.find(Masonry({1: box(0, 0, 1, 1)})).verdict == "not judged"
+    assert find("pins", Masonry({1: box(0, 0, 1, 1)})).verdict == "not judged"
     loops = {1: box(0, 0, 2, 1), 2: box(0, 1.4, 2, 1), 9: box(1, 1, 0.5, 0.2),
              3: box(-2, 0, 1, 3), 4: box(3, 0, 1, 3)}  # fmt: skip
     floating = modelled(loops, {9})
-    found = pins.find(floating)
+    found = find("pins", floating)
     assert (found.number, found.verdict) == (None, "not judged")
     assert "does not stand" in found.note
 
 
 def test_a_wall_that_falls_has_no_least_load():
     loops = {1: box(0, 0, 1, 1), 2: box(0.2, 1, 4, 1), 9: box(1, 0, 0.2, 1)}
-    assert pins.find(modelled(loops, {9})).number is None
+    assert find("pins", modelled(loops, {9})).number is None
 
 
 def test_wedges_carry_nothing_where_every_block_is_fixed():
     blocks = [{"id": i, "polygon": box(i, 0, 1, 1).tolist(), "fixed": True} for i in (1, 2)]
     model = model_from_json({"blocks": blocks})
-    assert wedge_loads.least_wedge_loads(model, frozenset({2})) == {2: 0.0}
+    assert pins.least_wedge_loads(model, frozenset({2})) == {2: 0.0}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from drystone.craft.scans import scan
+from drystone.craft.joints import scan
 
 
 @pytest.mark.parametrize("axis", [0, 1])

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.craft import Masonry
+from drystone.craft import RULES, Finding, Masonry
 
 Loops = dict[int, NDArray[np.float64]]
 PX = 24
@@ -14,6 +14,10 @@ PX = 24
 
 def box(x: float, y: float, width: float, height: float) -> NDArray[np.float64]:
     return np.array([[x, y], [x + width, y], [x + width, y + height], [x, y + height]], float)
+
+
+def find(rule: str, wall: Masonry) -> Finding:
+    return RULES[rule].find(wall)
 
 
 def courses(widths: Sequence[Sequence[float]], height: float = 1.0) -> Loops:

@@ -1,8 +1,17 @@
+"""What is measured of an image: the wall in it, its joints, at the working resolution."""
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from drystone.errors import LabelImageError
 from drystone.metrics.frame import frame_wall
+from drystone.metrics.joints import joint_mask
+from drystone.metrics.reduce import reduce_labels
+from tests.metrics.walls import bricks, walls
+from tests.naive import metrics as naive
+from tests.strategies import repeatable
 
 
 def wall_in(height, width, top, left, stone=(4, 6)):
@@ -11,29 +20,23 @@ def wall_in(height, width, top, left, stone=(4, 6)):
     return labels
 
 
-def test_without_a_width_the_wall_ends_where_its_stones_end():
-    frame = frame_wall(wall_in(20, 30, top=5, left=7))
-    assert frame.labels.shape == (4, 6)
-    assert (frame.left_px, frame.right_px) == (0.0, 6.0)
-
-
-def test_an_image_as_wide_as_the_wall_keeps_its_columns():
-    frame = frame_wall(wall_in(20, 30, top=5, left=7), width_px=30.4)
-    assert frame.labels.shape == (4, 30)
-    assert np.flatnonzero(frame.labels[0]).tolist() == list(range(7, 13))
-    assert (frame.left_px, frame.right_px) == (0.0, 30.0)
-
-
-def test_in_another_image_the_stones_stand_in_the_middle():
-    frame = frame_wall(wall_in(20, 30, top=5, left=20), width_px=11)
-    assert np.flatnonzero(frame.labels[0]).tolist() == list(range(2, 8))
-    assert (frame.left_px, frame.right_px) == (0.0, 11.0)
-
-
-def test_stones_wider_than_the_wall_stick_out_on_both_sides():
-    frame = frame_wall(wall_in(20, 30, top=5, left=20, stone=(4, 9)), width_px=6)
-    assert frame.labels.shape == (4, 9)
-    assert (frame.left_px, frame.right_px) == (1.5, 7.5)
+@pytest.mark.parametrize(
+    ("left", "width", "width_px", "ends", "stone"),
+    [
+        (7, 6, None, (0.0, 6.0), range(6)),
+        # An image as wide as the wall keeps its columns; in another the stones are in the middle.
+        (7, 6, 30.4, (0.0, 30.0), range(7, 13)),
+        (20, 6, 11, (0.0, 11.0), range(2, 8)),
+        # Stones wider than the wall stick out on both sides.
+        (20, 9, 6, (1.5, 7.5), range(9)),
+    ],
+)
+def test_end_lines(left, width, width_px, ends, stone):
+    frame = frame_wall(wall_in(20, 30, top=5, left=left, stone=(4, width)), width_px)
+    assert (frame.left_px, frame.right_px) == ends
+    assert len(frame.labels) == 4
+    assert frame.labels.shape[1] == max(len(stone), ends[1] - ends[0])
+    assert np.flatnonzero(frame.labels[0]).tolist() == list(stone)
 
 
 def test_an_image_without_stones_says_so():
@@ -44,3 +47,52 @@ def test_an_image_without_stones_says_so():
 def test_a_picture_with_colours_is_no_label_image():
     with pytest.raises(ValueError, match="two dimensions, not 3"):
         frame_wall(np.ones((4, 4, 3), np.uint32))
+
+
+@repeatable()
+@given(walls(max_px=16))
+def test_joints_are_their_slow_twin(labels):
+    assert np.array_equal(joint_mask(labels), naive.joint_mask(labels))
+
+
+def test_touching_stones_have_a_joint_of_two_pixels():
+    labels = np.repeat([[1, 2]], 5, axis=1).repeat(4, axis=0).astype(np.uint32)
+    assert np.flatnonzero(joint_mask(labels)[2, 1:-2]).tolist() == [4, 5]
+
+
+def test_the_edge_erodes_nothing_and_padding_is_one_above_two_below_one_left_two_right():
+    stone = ~joint_mask(np.ones((4, 5), np.uint8))
+    assert stone[1:-2, 1:-2].all()
+    assert (stone.shape, stone.sum()) == ((7, 8), 20)
+
+
+def test_one_stone_in_two_shades_of_id_is_two_stones():
+    labels = bricks(1, 1, 6, 6)
+    labels[:, 3:] = 70_000
+    assert joint_mask(labels)[3, 3:5].all()
+
+
+@repeatable()
+@given(walls(), st.floats(0.05, 2.5))
+def test_reduced_is_its_slow_twin(labels, scale):
+    reduced = reduce_labels(labels, scale)
+    assert np.array_equal(reduced, naive.reduce_labels(labels, scale))
+    assert reduced.dtype == labels.dtype
+    assert set(np.unique(reduced)) <= set(np.unique(labels))
+
+
+@repeatable()
+@given(walls())
+def test_scale_one_copies(labels):
+    reduced = reduce_labels(labels, 1.0)
+    assert np.array_equal(reduced, labels)
+    assert not np.shares_memory(reduced, labels)
+
+
+def test_working_size_rounds_half_up():
+    assert reduce_labels(np.ones((5, 7), np.uint8), 0.5).shape == (3, 4)
+
+
+def test_a_scale_must_be_positive():
+    with pytest.raises(ValueError, match="scale must be positive"):
+        reduce_labels(np.ones((5, 7), np.uint8), 0.0)

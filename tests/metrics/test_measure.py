@@ -34,6 +34,8 @@ def test_a_full_wall():
     assert (metrics.F_SF, metrics.F_LR, metrics.stones) == (1.0, 0.7, 22)
     assert (metrics.width, metrics.height) == (150.0, 48.0)
     assert (metrics.T_LEVEL, metrics.E_FLUSH) == (0.0, 0.0)
+    better_known = measure_labels(bricks(4, 5, 12, 30), stone_area_px=7000.0)
+    assert abs(better_known.F_SF - 7000 / 7200) < 1e-12
 
 
 def test_a_wall_size_changes_what_filling_refers_to():
@@ -41,11 +43,6 @@ def test_a_wall_size_changes_what_filling_refers_to():
     assert abs(metrics.F_SF - 150 * 48 / (200 * 60)) < 1e-12
     assert (metrics.width, metrics.height) == (200.0, 60.0)
     assert abs(metrics.E_FLUSH - 25 / np.mean([30] * 18 + [15] * 4)) < 1e-12
-
-
-def test_a_better_known_area_is_used():
-    metrics = measure_labels(bricks(4, 5, 12, 30), stone_area_px=7000.0)
-    assert abs(metrics.F_SF - 7000 / 7200) < 1e-12
 
 
 def test_wedges_are_no_stones_but_joints_run_around_them():
@@ -74,12 +71,6 @@ def test_numbers_of_stones_change_nothing(labels):
     assert measure_labels(renumbered) == measure_labels(labels)
 
 
-def test_a_pebble_is_too_small_for_paths_and_says_none():
-    metrics = measure_labels(np.ones((6, 6), np.uint32))
-    assert metrics.F_AV is None
-    assert metrics.F_AH is None
-
-
 @pytest.mark.parametrize(
     "size", [(0.0, 80.0), (280.0, -1.0), (np.nan, 80.0), (280.0, np.inf), (1e9, 80.0)]
 )
@@ -88,7 +79,9 @@ def test_a_wall_without_room(size):
         measure_labels(bricks(2, 2, 5, 8), wall_px=size)
 
 
-def test_no_stones():
+def test_no_stones_and_too_few_for_paths():
+    metrics = measure_labels(np.ones((6, 6), np.uint32))
+    assert (metrics.F_AV, metrics.F_AH) == (None, None)
     with pytest.raises(LabelImageError, match="E104"):
         measure_labels(np.zeros((10, 10), np.uint32))
 

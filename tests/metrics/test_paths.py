@@ -8,8 +8,11 @@ from skimage.graph import MCP_Geometric
 
 from drystone.metrics.joints import joint_mask
 from drystone.metrics.paths import (
+    horizontal_arrangement,
     horizontal_lengths,
     horizontal_paths,
+    mean_excess,
+    vertical_arrangement,
     vertical_lengths,
     vertical_paths,
 )
@@ -33,22 +36,11 @@ JOINTS = st.builds(
 @repeatable()
 @given(JOINTS)
 def test_lengths_are_those_of_the_slow_twin(joint):
-    lengths = [path.length_px for path in vertical_paths(joint)]
-    assert lengths == pytest.approx(naive.vertical_lengths(joint), abs=1e-9)
-
-
-@repeatable()
-@given(JOINTS)
-def test_horizontal_paths_are_vertical_paths_of_the_turned_image(joint):
-    lengths = [path.length_px for path in horizontal_paths(joint.T)]
-    assert lengths == pytest.approx(naive.vertical_lengths(joint), abs=1e-9)
-
-
-@repeatable()
-@given(JOINTS)
-def test_lengths_without_paths_are_those_of_the_paths(joint):
-    assert vertical_lengths(joint) == tuple(path.length_px for path in vertical_paths(joint))
+    expected = pytest.approx(naive.vertical_lengths(joint), abs=1e-9)
+    assert [path.length_px for path in vertical_paths(joint)] == expected
     turned = joint.T
+    assert [path.length_px for path in horizontal_paths(turned)] == expected
+    assert vertical_lengths(joint) == tuple(path.length_px for path in vertical_paths(joint))
     assert horizontal_lengths(turned) == tuple(path.length_px for path in horizontal_paths(turned))
 
 
@@ -95,15 +87,10 @@ def test_a_detour_takes_the_diagonals():
     assert path.length_px == 2 + 2 * math.sqrt(2)
 
 
-def test_a_wall_across_the_image_leaves_no_path():
-    joint = np.ones((5, 40), bool)
-    joint[2] = False
-    assert vertical_paths(joint) == ()
-
-
-def test_a_start_inside_a_stone_has_no_path():
+@pytest.mark.parametrize("stone", [(2, slice(None)), (0, 10)], ids=["across", "at the start"])
+def test_where_a_stone_is_in_the_way_there_is_no_path(stone):
     joint = np.ones((5, 21), bool)
-    joint[0, 10] = False
+    joint[stone] = False
     assert vertical_paths(joint) == ()
 
 
@@ -111,3 +98,35 @@ def test_an_image_of_twenty_columns_has_no_start():
     assert vertical_paths(np.ones((5, 20), bool)) == ()
     assert vertical_lengths(np.ones((5, 20), bool)) == ()
     assert horizontal_paths(np.ones((20, 5), bool)) == ()
+
+
+@repeatable()
+@given(walls(max_px=40))
+def test_arrangements_are_their_slow_twins(labels):
+    joint = joint_mask(labels)
+    vertical = vertical_arrangement(joint)
+    assert vertical == pytest.approx(naive.vertical_arrangement(joint), abs=1e-9)
+    horizontal = horizontal_arrangement(joint)
+    assert horizontal == pytest.approx(naive.vertical_arrangement(joint.T), abs=1e-9)
+
+
+def test_only_the_five_shortest_count():
+    straight, bent = 2.0, 2 * np.sqrt(2)
+    assert mean_excess([straight] * 5 + [bent] * 4, 2) == 0.0
+    assert mean_excess([straight] * 4 + [bent] * 4, 2) == pytest.approx(100 * (np.sqrt(2) - 1) / 5)
+    assert mean_excess([straight, bent], 2) == pytest.approx(50 * (np.sqrt(2) - 1))
+
+
+def test_no_path_is_none_not_zero():
+    joint = np.ones((8, 40), bool)
+    joint[3] = False
+    assert mean_excess([], 7) is None
+    assert vertical_arrangement(joint) is None
+    assert horizontal_arrangement(joint.T) is None
+
+
+def test_a_stack_bond_is_worse_than_a_running_bond():
+    running = joint_mask(bricks(6, 6, 12, 30))
+    stack = np.kron(np.arange(1, 37, dtype=np.uint32).reshape(6, 6), np.ones((12, 30), np.uint32))
+    assert vertical_arrangement(joint_mask(stack)) < vertical_arrangement(running)
+    assert horizontal_arrangement(running) < 2.0

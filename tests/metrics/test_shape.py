@@ -6,10 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.errors import LabelImageError
-from drystone.metrics.flush import flush_deviation
 from drystone.metrics.frame import WallFrame, frame_wall
-from drystone.metrics.level import level_deviation, top_profile
-from drystone.metrics.sizes import stone_sizes
+from drystone.metrics.shape import flush_deviation, level_deviation, stone_sizes, top_profile
 from tests.metrics.walls import bricks, walls
 from tests.naive import metrics as naive
 from tests.strategies import repeatable
@@ -28,11 +26,8 @@ def test_sizes_are_those_of_the_slow_twin(labels, data):
     assert sizes.mean_width_px == pytest.approx(mean_width)
 
 
-def test_an_image_without_background_has_its_sizes():
+def test_an_image_without_background_has_its_sizes_and_wedges_alone_are_no_wall():
     assert stone_sizes(bricks(2, 2, 5, 8)).area_px == 160
-
-
-def test_wedges_alone_are_no_wall():
     with pytest.raises(LabelImageError, match=r"E104 .*background or wedges"):
         stone_sizes(np.full((4, 4), 9, np.uint32), {9})
 
@@ -52,32 +47,17 @@ def test_flush_is_its_slow_twin(labels, wall_width, stone_width):
     assert flush_deviation(frame, stone_width) == pytest.approx(expected, abs=1e-12)
 
 
-def test_a_full_wall_is_level_and_flush():
-    labels = bricks(4, 4, 10, 20)
-    assert level_deviation(labels, 10) == 0.0
-    assert flush_deviation(frame_wall(labels), 20) == 0.0
-
-
-def test_half_a_wall_one_course_higher():
-    labels = bricks(4, 4, 10, 20)
-    labels[:10, 40:] = 0
-    assert top_profile(labels)[[0, 79]].tolist() == [40, 30]
-    assert level_deviation(labels, 10) == pytest.approx(0.5)
-
-
-def test_a_wall_that_misses_half_a_stone_at_one_end_of_every_other_course():
-    labels = bricks(4, 4, 10, 20)
-    for course in (0, 2):
-        labels[course * 10 : course * 10 + 10, 70:] = 0
-    assert flush_deviation(frame_wall(labels), 20) == pytest.approx(0.125)
-
-
-def test_a_wall_short_of_its_end_lines():
-    frame = frame_wall(bricks(2, 4, 10, 20), width_px=100)
-    assert flush_deviation(frame, 20) == pytest.approx(0.5)
-    assert level_deviation(frame.labels, 10) == pytest.approx((80 * 4 + 20 * 16) / 100 / 10)
-
-
-def test_stones_that_stick_out_are_not_flush():
-    frame = WallFrame(bricks(2, 4, 10, 20), 5.0, 75.0)
-    assert flush_deviation(frame, 20) == pytest.approx(0.25)
+def test_level_and_flush_of_walls_of_bricks():
+    full = bricks(4, 4, 10, 20)
+    assert level_deviation(full, 10) == flush_deviation(frame_wall(full), 20) == 0.0
+    higher = full.copy()  # half of it by a course
+    higher[:10, 40:] = 0
+    assert top_profile(higher)[[0, 79]].tolist() == [40, 30]
+    assert level_deviation(higher, 10) == pytest.approx(0.5)
+    toothed = full.copy()  # half a stone short at one end of every other course
+    toothed[:10, 70:] = toothed[20:30, 70:] = 0
+    assert flush_deviation(frame_wall(toothed), 20) == pytest.approx(0.125)
+    short = frame_wall(bricks(2, 4, 10, 20), width_px=100)
+    assert flush_deviation(short, 20) == pytest.approx(0.5)
+    assert level_deviation(short.labels, 10) == pytest.approx((80 * 4 + 20 * 16) / 100 / 10)
+    assert flush_deviation(WallFrame(bricks(2, 4, 10, 20), 5.0, 75.0), 20) == pytest.approx(0.25)

@@ -8,8 +8,7 @@ import numpy as np
 
 from drystone.clusters import cluster_stones
 from drystone.contacts.blocks import model_from_labels
-from drystone.indices.shape_factor import shape_factor
-from drystone.indices.values import Indices
+from drystone.indices import Indices, shape_factor
 from drystone.model.placement import Placement, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from drystone.indices.values import Indices
+from drystone.indices import Indices
 from drystone.model.placement import Placement, Side
 from drystone.model.site import Site
 from drystone.model.stone import Stone

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from drystone.indices.values import Indices
+from drystone.indices import Indices
 from drystone.selection.policy import Offer
 
 INDICES = Indices(SF=0.8, LFR=0.8, GDS=0.5, NHR=0.1, IWR=0.4, IS=0.1, LLC=0.5, boundary=False)

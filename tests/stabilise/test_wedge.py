@@ -9,7 +9,7 @@ from drystone.model.placement import Wedge
 from drystone.model.stone import Stone
 from drystone.poses import PoseBook
 from drystone.stabilise.settings import StabiliseSettings
-from drystone.stabilise.wedge import wedge_under
+from drystone.stabilise.stabilise import wedge_under
 from tests.naive import support as naive
 from tests.stabilise.scenes import Pose, bar_on_the_ledge, ledge, mirrored
 

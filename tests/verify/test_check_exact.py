@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +11,12 @@ import pytest
 
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.io.read_stones import read_stones
-from drystone.model.plan import Plan, PlanMetrics
+from drystone.model.plan import Plan
 from drystone.planner.settings import method_settings
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
+from drystone.verify.canvas import PENETRATION_PX
 from drystone.verify.check import check_plan
-from drystone.verify.exact_replay import PENETRATION_PX
 from drystone.verify.report import PrefixAlpha
 from tests.verify.exact_examples import GAP_PX, block_model, exact_example, hanging_example
 from tests.verify.examples import L_STONE, SLAB, WEDGE, Example
@@ -26,10 +26,7 @@ from tests.verify.tampering import (
     moved,
     reshaped,
     step_of,
-    swapped,
-    with_index,
     with_setting,
-    without,
 )
 
 
@@ -69,8 +66,6 @@ def test_true_plan_passes_in_any_unit_and_at_any_scale(
 
 # What is changed in the plan, and the codes that name it: exactly these.
 EXACT: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
-    "unused stone missing": (lambda p: replace(p, unused=()), {"E216"}),
-    "settings": (lambda p: replace(p, settings={**p.settings, "wings": 2}), {"E217"}),
     "stone left of the wall": (lambda p: moved(p, 3, -0.31, 0), {"E220"}),
     "stone in the ground": (lambda p: moved(p, 5, 0, -0.07), {"E220"}),
     "stone right of the wall": (lambda p: moved(p, 300, 0.31, 0), {"E220"}),
@@ -88,10 +83,6 @@ EXACT: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
     "wedge far outside": (lambda p: reshaped(p, lambda w: w * 1e9), {"E220"}),
     "wedge too small": (lambda p: with_setting(p, "wedge", thickness=0.5), {"E224"}),
     "wedge too high": (lambda p: with_setting(p, "wedge", height=0.1), {"E224"}),
-    "source centroid": (lambda p: changed(p, 3, source_centroid=(12.0, 13.5)), {"E225"}),
-    "alpha of a stone": (lambda p: changed(p, 3, alpha_left=0.580001), {"E231"}),
-    "alpha of a wedge": (lambda p: changed(p, WEDGE, alpha_right=None), {"E231"}),
-    "cluster": (lambda p: changed(p, 3, cluster=77), {"E233"}),
     "two rotation moves": (lambda p: changed(p, 3, rotation_moves=2), {"E235"}),
     "a turn that is none": (
         lambda p: changed(with_setting(p, "stabilise", method="wedge"), 3, rotation_moves=1),
@@ -109,32 +100,20 @@ def test_tampering_is_caught_by_its_code(true: Example, name: str) -> None:
 
 # Changes with more than one consequence: these codes are among those found.
 AMONG: dict[str, tuple[Callable[[Plan], Plan], set[str]]] = {
-    "stone lifted by 1 px": (lambda p: moved(p, L_STONE, 0, 1), {"E230", "E236"}),
     "stone lifted beyond the tolerance": (lambda p: moved(p, 300, 0, 0.11), {"E230"}),
-    "first stone lifted": (lambda p: moved(without(p, SLAB), 3, 0, 1), {"E230"}),
     "stone lifted within the tolerance": (lambda p: moved(p, 300, 0, 0.06), {"E234"}),
     "stone turned by 1 degree": (lambda p: changed(p, 3, angle_deg=1.0), {"E235"}),
     "stone turned further than it may": (
         lambda p: changed(p, 3, angle_deg=12.1, rotation_moves=1), {"E235"}),
-    "stone turned by 180 degrees": (lambda p: changed(p, L_STONE, angle_deg=-90.0), {"E236"}),
-    "ids swapped": (lambda p: swapped(p, L_STONE, 300), {"E225", "E236"}),
-    "stone that is not there": (lambda p: changed(p, 3, stone=4), {"E212", "E216"}),
-    "stone used twice": (lambda p: changed(p, 300, stone=3), {"E213", "E216"}),
-    "side": (lambda p: changed(p, 300, side="left"), {"E232"}),
-    "wedge left out": (lambda p: without(p, WEDGE), {"E230", "E234", "E236"}),
-    "wedge with a stone's id": (lambda p: changed(p, WEDGE, id=9), {"E213", "E236"}),
     "wedge too low": (lambda p: reshaped(p, lambda w: lowered_top(w, 0.2)), {"E223", "E230"}),
     "wedge hanging": (lambda p: reshaped(p, lambda w: raised_floor(w, 0.2)), {"E223"}),
     "wedge narrower": (lambda p: reshaped(p, lambda w: w - (w == w.max(axis=0)) * (0.5, 0)),
                        {"E234"}),
     "wedge elsewhere": (lambda p: reshaped(p, lambda w: w - (12, 0)), {"E223", "E230", "E236"}),
-    "friction": (lambda p: replace(p, settings={**p.settings, "mu": 0.3}), {"E231", "E234"}),
     "contact tolerance": (
         lambda p: with_setting(p, "settle", contact_px=GAP_PX / 2, clearance_px=GAP_PX / 8),
         {"E223", "E230"}),
-    "one-sided": (lambda p: replace(p, settings={**p.settings, "two_sided": False}), {"E235"}),
     "raster": (lambda p: replace(p, settings={**p.settings, "geometry": "raster"}), {"E234"}),
-    "wall wider": (lambda p: replace(p, width=90.0), {"E234", "E236"}),
     "unit of length": (lambda p: replace(p, px_per_m=2.0, length_unit="m"), {"E230"}),
 }  # fmt: skip
 
@@ -185,15 +164,6 @@ def test_edges_of_the_wall_are_named_in_source_px() -> None:
     assert "0.24 px below the ground, 0.75 px right of the right" in problem.message
 
 
-def test_wall_in_the_air_does_not_stand(true: Example) -> None:
-    alone = moved(replace(true.plan, steps=true.plan.steps[:1]), 3, 0, 1)
-    report = check_plan(alone, true.stones)
-    assert report.prefixes == (PrefixAlpha(1, None, None),)
-    (problem,) = (p for p in report.problems if p.code == "E230")
-    assert problem.message == "nothing of the wall stands on the ground."
-    assert report.metrics is None
-
-
 def test_stone_that_hangs_between_others_does_not_stand(true: Example) -> None:
     # As near to its neighbours as contacts are, with nothing below it.
     hanging = moved(true.plan, L_STONE, 2.0 - GAP_PX, 3.0)
@@ -201,43 +171,6 @@ def test_stone_that_hangs_between_others_does_not_stand(true: Example) -> None:
     step = step_of(true.plan, L_STONE).step
     assert {p.code for p in report.problems if p.step == step} >= {"E230"}
     assert PrefixAlpha(step, None, None) in report.prefixes
-
-
-@pytest.mark.parametrize("name", ["SF", "LFR", "GDS", "NHR", "IWR", "IS"])
-def test_every_index_is_verified(true: Example, name: str) -> None:
-    report = check_plan(with_index(true.plan, name, 1e-8), true.stones)
-    assert codes(report) == {"E232"}
-    assert name in report.problems[0].message
-
-
-@pytest.mark.parametrize("name", [field.name for field in fields(PlanMetrics)])
-def test_every_metric_is_verified(true: Example, name: str) -> None:
-    value = getattr(true.plan.metrics, name)
-    metrics = replace(true.plan.metrics, **{name: value + 1e-6 * max(1.0, value)})
-    report = check_plan(replace(true.plan, metrics=metrics), true.stones)
-    assert codes(report) == {"E234"}
-    assert name in report.problems[0].message
-
-
-def test_mirrored_stone_in_the_wall_image_is_caught(true: Example) -> None:
-    labels = true.wall.labels.copy()
-    window = next(p.window for p in true.wall.placements if p.stone_id == L_STONE)
-    labels[window] = labels[window][:, ::-1]
-    report = check_plan(true.plan, true.stones, wall_labels=labels)
-    assert [(p.code, p.step) for p in report.problems] == [
-        ("E236", step_of(true.plan, L_STONE).step)
-    ]
-
-
-def test_stone_that_cannot_be_lowered_in_is_listed(true: Example) -> None:
-    below_the_slab = moved(true.plan, 300, 22 - 74, 0)
-    assert check_plan(below_the_slab, true.stones).buried == (300,)
-
-
-def test_empty_plan_is_checked(true: Example) -> None:
-    empty = PlanMetrics(0.0, None, None, None, 0.0, 0.0, None, None, 0.0)
-    ids = tuple(stone.id for stone in true.stones)
-    assert check_plan(replace(true.plan, steps=(), unused=ids, metrics=empty), true.stones).ok
 
 
 # The planner's own plans of a published set.

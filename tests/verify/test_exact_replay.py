@@ -18,9 +18,8 @@ from drystone.model.wall import Wall
 from drystone.planner.settings import method_settings
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
-from drystone.settle.settings import SettleSettings
+from drystone.verify.canvas import leaves
 from drystone.verify.check import check_plan
-from drystone.verify.exact_replay import ExactCanvas, leaves
 from drystone.verify.replay import rebuild_wall, replay_plan
 from tests.strategies import repeatable
 from tests.verify.exact_examples import exact_example
@@ -77,8 +76,12 @@ def raster_part(placement: Placement) -> tuple[object, ...]:
     return *said, *pixels
 
 
-def test_wall_of_the_planner_is_rebuilt(made: tuple[PlanResult, StoneSet]) -> None:
+def test_wall_of_the_planner_is_rebuilt_and_its_plan_passes(
+    made: tuple[PlanResult, StoneSet],
+) -> None:
     result, stones = made
+    report = check_plan(read_again(result.plan), stones, wall_labels=result.wall.labels)
+    assert (report.problems, report.overlap_depth) == ((), 0.0)
     found = rebuild_wall(read_again(result.plan), stones)
     np.testing.assert_array_equal(found.labels, result.wall.labels)
     assert len(found.placements) == len(result.wall.placements) >= 5
@@ -90,13 +93,6 @@ def test_wall_of_the_planner_is_rebuilt(made: tuple[PlanResult, StoneSet]) -> No
         np.testing.assert_allclose(mine.settled.corners, its.settled.corners, rtol=0, atol=rounding)
         assert mine.settled.x_px == pytest.approx(its.settled.x_px, rel=0, abs=rounding)
         np.testing.assert_allclose(mine.posed.anchor, its.posed.anchor, rtol=0, atol=rounding)
-
-
-def test_plan_of_the_planner_passes(made: tuple[PlanResult, StoneSet]) -> None:
-    result, stones = made
-    report = check_plan(read_again(result.plan), stones, wall_labels=result.wall.labels)
-    assert report.problems == ()
-    assert report.overlap_depth == 0.0
 
 
 @pytest.mark.parametrize("stones_built", [1, 4])
@@ -149,10 +145,7 @@ def test_pieces_that_overlap_stay_in_the_replay_and_the_wall_ends_before() -> No
     assert [p.stone_id for p in replay.wall.placements] == [3]
     assert len(replay.pieces) == 6
     assert 5 in replay.labels
-
-
-def test_stone_hidden_in_another_has_no_pixel_and_overlaps() -> None:
-    example = exact_example()
+    # A stone hidden in another has no pixel.
     replay = replay_plan(moved(example.plan, 300, 4 - 74, 4), example.stones)
     assert [p.code for p in replay.problems] == ["E221"]
     assert replay.pieces[-1].item is None
@@ -168,15 +161,6 @@ def test_the_outline_decides_whether_a_stone_is_in_the_wall(
     example = exact_example()
     plan = moved(replace(example.plan, width=84.49), 300, right - 84, 0)
     assert [p.code for p in replay_plan(plan, example.stones).problems] == expected
-
-
-def test_order_of_pieces_decides_who_has_a_pixel() -> None:
-    example = exact_example()
-    canvas = ExactCanvas(example.wall.site, example.stones, SettleSettings(beyond_px=0.0))
-    for step in example.plan.steps:
-        _, problems = canvas.put(step)
-        assert problems == []
-    np.testing.assert_array_equal(canvas.labels, example.wall.labels)
 
 
 def test_wedge_may_fill_no_pixel_and_is_a_block_nevertheless() -> None:

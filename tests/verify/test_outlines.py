@@ -77,6 +77,8 @@ def test_what_places_nothing_is_left_out() -> None:
     groups = plan_polygons(replace(made.plan, steps=tuple(steps)), made.stones)
     # Stone 77 is none, 300 comes twice, and the wedge has no area.
     assert [[block for block, _ in group] for group in groups] == [[300], [SLAB], [L_STONE]]
+    with pytest.raises(PlanError, match="E215"):
+        plan_polygons(replace(made.plan, width=1e9), made.stones)
 
 
 @pytest.mark.parametrize(
@@ -99,13 +101,6 @@ def test_polygons_come_counter_clockwise_and_simple(polygon: tuple[tuple[float, 
     assert shape.area == pytest.approx(32.0, abs=0.1)
 
 
-def test_a_wall_that_is_no_image_is_refused() -> None:
-    made = example()
-    with pytest.raises(PlanError) as caught:
-        plan_polygons(replace(made.plan, width=1e9), made.stones)
-    assert caught.value.code == "E215"
-
-
 SQUARE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
 
 
@@ -120,14 +115,8 @@ def test_common_areas() -> None:
     assert sorted(shapely.Polygon(area).area for area in areas) == pytest.approx([0.75, 1.0])
     assert common_areas(blocks, [4]) == ()
     assert common_areas(blocks, []) == ()
-
-
-def test_two_that_are_both_asked_for_come_once() -> None:
-    blocks = {1: SQUARE, 2: at(1, 1)}
-    assert len(common_areas(blocks, [2, 1])) == 1
-
-
-def test_blocks_that_touch_have_nothing_in_common() -> None:
+    # Two that are both asked for come once; those that touch have nothing in common.
+    assert len(common_areas({1: SQUARE, 2: at(1, 1)}, [2, 1])) == 1
     assert common_areas({1: SQUARE, 2: at(2, 0)}, [1, 2]) == ()
 
 

@@ -35,11 +35,8 @@ def found(wedge: Points, *more: tuple[int, Points], **limits: float) -> list[str
     return [f"{problem.code} {problem.message}" for problem in problems]
 
 
-def test_wedge_between_a_stone_and_what_is_below_is_none_of_a_problem() -> None:
-    assert found(box(11, 5.01, 14, 8.0)) == []
-
-
 def test_wedge_must_touch_its_stone_from_below() -> None:
+    assert found(box(11, 5.01, 14, 8.0)) == []
     assert found(box(11, 5.01, 14, 7.85)) == ["E223 wedge 9 does not touch stone 7 from below."]
     # It stands on the stone that it should hold, and at its side.
     (holds, stands) = found(box(5, 10.01, 8, 12.5))
@@ -52,9 +49,7 @@ def test_wedge_must_stand_on_something() -> None:
     assert found(box(11, 5.2, 14, 8.0)) == ["E223 wedge 9 stands on nothing."]
     on_ground = found(box(5.5, 0.01, 9.5, 8.0), greatest_height=9, greatest_area=99)
     assert [line[:4] for line in on_ground] == ["E224"]
-
-
-def test_wedge_may_stand_on_another_that_comes_after_it() -> None:
+    # It may stand on another that comes after it.
     upper, lower = box(11, 6.52, 14, 8.0), (10, box(11, 5.01, 14, 6.51))
     assert found(upper, lower) == []
     assert found(upper) == ["E223 wedge 9 stands on nothing."]

@@ -1,20 +1,21 @@
 """What a rule is, and what it finds in a wall."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import UsageError
 
+if TYPE_CHECKING:
+    from drystone.craft.masonry import Masonry
+
 Line = NDArray[np.float64]
 """(n, 2) points of the wall frame."""
 
 Verdict = Literal["good", "fair", "broken", "not judged"]
-VERDICTS: tuple[Verdict, ...] = ("good", "fair", "broken")
-"""From the best to the worst."""
 
 ROUNDING = 1e-9
 """Numbers this near to a limit are at the limit: a mirrored wall gets the same verdict."""
@@ -32,77 +33,6 @@ class Limit:
 
     good: float
     fair: float
-
-
-@dataclass(frozen=True)
-class Rule:
-    """A mason's rule as a check.
-
-    Parameters
-    ----------
-    name : str
-        For options and JSON.
-    title : str
-        For tables and pictures.
-    sentence : str
-        The rule as a mason says it.
-    source : str
-        Who says it; "Own definition" for what is ours.
-    meaning : str
-        What the number is.
-    higher_is_better : bool
-        Direction of the number.
-    limit : Limit
-        Usual limits; ours, unless the source says otherwise.
-    unit : str
-        Of the number, empty for shares and counts.
-    """
-
-    name: str
-    title: str
-    sentence: str
-    source: str
-    meaning: str
-    higher_is_better: bool
-    limit: Limit
-    unit: str = ""
-
-    def verdict(self, number: float | None, limit: Limit) -> Verdict:
-        """Say what a number is worth.
-
-        Examples
-        --------
-        >>> rule = Rule("joints", "", "", "", "", False, Limit(1, 2))
-        >>> [rule.verdict(number, rule.limit) for number in (1, 2, 3, None)]
-        ['good', 'fair', 'broken', 'not judged']
-        """
-        if number is None:
-            return "not judged"
-        sign = 1.0 if self.higher_is_better else -1.0
-        if sign * (number - limit.good) >= -ROUNDING:
-            return "good"
-        return "fair" if sign * (number - limit.fair) >= -ROUNDING else "broken"
-
-    def checked(self, limit: Limit) -> Limit:
-        """Return limits that make sense; UsageError (E190) for those that are the wrong way round.
-
-        Raises
-        ------
-        UsageError
-            E190.
-        """
-        sign = 1.0 if self.higher_is_better else -1.0
-        if np.isfinite([limit.good, limit.fair]).all() and sign * (limit.good - limit.fair) >= 0:
-            return limit
-        better = "higher" if self.higher_is_better else "lower"
-        raise UsageError(
-            "E190",
-            f"{limit.good:g}:{limit.fair:g} are no limits of {self.name!r}, "
-            f"whose number is better the {better} it is.",
-            where="limits of craft",
-            cure=f"Give the last good and the last fair value, such as {self.limit.good:g}:"
-            f"{self.limit.fair:g}.",
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,8 +62,104 @@ class Case:
 
 
 @dataclass(frozen=True, eq=False)
-class Finding:
-    """What a rule finds.
+class Found:
+    """What there is in a wall, before a limit judges it.
+
+    Parameters
+    ----------
+    number : float or None
+        See :attr:`Rule.meaning`; None when there is nothing to judge.
+    cases : sequence of Case
+        Worst first.  A good wall may have some.
+    figures : mapping of str to float or None
+        Other numbers that go with it.
+    note : str
+        Why nothing was judged, or what the number does not say.
+    broken : bool
+        The rule is broken whatever the number is.
+    """
+
+    number: float | None
+    cases: tuple[Case, ...] = ()
+    figures: Mapping[str, float | None] = field(default_factory=dict)
+    note: str = ""
+    broken: bool = False
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A mason's rule as a check.
+
+    Parameters
+    ----------
+    name : str
+        For options and JSON.
+    title : str
+        For tables and pictures.
+    sentence : str
+        The rule as a mason says it.
+    source : str
+        Who says it; "Own definition" for what is ours.
+    meaning : str
+        What the number is.
+    higher_is_better : bool
+        Direction of the number.
+    limit : Limit
+        Usual limits; ours, unless the source says otherwise.
+    measure : callable
+        Gives the number of a wall and its cases.
+    unit : str
+        Of the number, empty for shares and counts.
+    """
+
+    name: str
+    title: str
+    sentence: str
+    source: str
+    meaning: str
+    higher_is_better: bool
+    limit: Limit
+    measure: Callable[["Masonry", Limit], Found]
+    unit: str = ""
+
+    def find(self, masonry: "Masonry", limit: Limit | None = None) -> "Finding":
+        """Judge a wall, by limits of its own unless others are given.
+
+        Raises
+        ------
+        UsageError
+            E190 for limits that are the wrong way round.
+        """
+        limit = limit or self.limit
+        sign = 1.0 if self.higher_is_better else -1.0
+        if not (
+            np.isfinite([limit.good, limit.fair]).all() and sign * (limit.good - limit.fair) >= 0
+        ):
+            better = "higher" if self.higher_is_better else "lower"
+            raise UsageError(
+                "E190",
+                f"{limit.good:g}:{limit.fair:g} are no limits of {self.name!r}, "
+                f"whose number is better the {better} it is.",
+                where="limits of craft",
+                cure=f"Give the last good and the last fair value, such as {self.limit.good:g}:"
+                f"{self.limit.fair:g}.",
+            )
+        found = self.measure(masonry, limit)
+        verdict: Verdict
+        if found.broken:
+            verdict = "broken"
+        elif found.number is None:
+            verdict = "not judged"
+        elif sign * (found.number - limit.good) >= -ROUNDING:
+            verdict = "good"
+        else:
+            verdict = "fair" if sign * (found.number - limit.fair) >= -ROUNDING else "broken"
+        return Finding(**vars(found), rule=self, limit=limit, verdict=verdict)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Finding(Found):
+    """What a rule finds: what there is, judged.
 
     Parameters
     ----------
@@ -141,25 +167,13 @@ class Finding:
         Which one.
     limit : Limit
         Limits that were used.
-    number : float or None
-        See ``rule.meaning``; None when there is nothing to judge.
     verdict : {"good", "fair", "broken", "not judged"}
         By the limits.
-    cases : tuple of Case
-        Worst first.  A good wall may have some.
-    figures : mapping of str to float or None
-        Other numbers that go with it.
-    note : str
-        Why nothing was judged, or what the number does not say.
     """
 
     rule: Rule
     limit: Limit
-    number: float | None
     verdict: Verdict
-    cases: tuple[Case, ...] = ()
-    figures: Mapping[str, float | None] = field(default_factory=dict)
-    note: str = ""
 
     @property
     def amount(self) -> str:
@@ -191,17 +205,14 @@ class Finding:
             "verdict": self.verdict,
             "figures": dict(self.figures),
             "note": self.note,
-            "cases": [_case_report(case, steps) for case in self.cases],
+            "cases": [
+                {
+                    "stones": list(case.stones),
+                    **({"steps": [steps[stone] for stone in case.stones]} if steps else {}),
+                    "value": case.value,
+                    "words": case.words,
+                    "lines": [np.round(line, 9).tolist() for line in case.lines],
+                }
+                for case in self.cases
+            ],
         }
-
-
-def _case_report(case: Case, steps: Mapping[int, int]) -> dict[str, Any]:
-    told: dict[str, Any] = {"stones": list(case.stones)}
-    if steps:
-        told["steps"] = [steps[stone] for stone in case.stones]
-    return {
-        **told,
-        "value": case.value,
-        "words": case.words,
-        "lines": [np.round(line, 9).tolist() for line in case.lines],
-    }

@@ -1,18 +1,112 @@
-"""Head joints and bed joints between the stones of a wall, found along rows and columns."""
+"""Joints between the stones of a wall, found along rows and columns, and those that go on."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
-from drystone.craft.scans import Run, Scan
+if TYPE_CHECKING:
+    from drystone.craft.masonry import Masonry
 
 Points = NDArray[np.float64]
 
 STEEPEST = 1.0
 """A joint that rises more than it runs is a head joint, else a bed joint: 45 degrees."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """A piece of a line inside a stone or wedge.
+
+    Parameters
+    ----------
+    id : int
+        Of the stone or wedge.
+    begin, end : float
+        Along the line, ascending.
+    """
+
+    id: int
+    begin: float
+    end: float
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """Parallel lines through a wall.
+
+    Parameters
+    ----------
+    spacing : float
+        Distance of the lines.
+    places : (n,) float array
+        Where they are: heights of rows, or x of columns; as far from one end of the wall's box
+        as from the other, so that a mirrored wall is cut in the same places.
+    runs : tuple of tuple of Run
+        For each line, in order along it.
+    """
+
+    spacing: float
+    places: NDArray[np.float64]
+    runs: tuple[tuple[Run, ...], ...]
+
+
+def scan(outlines: Mapping[int, Points], axis: int, spacing: float) -> Scan:
+    """Cut outlines by parallel lines.
+
+    Parameters
+    ----------
+    outlines : mapping of int to (n, 2) float array
+        Corners in order, not closed.
+    axis : {0, 1}
+        0 for rows, which run along x; 1 for columns, which run up.
+    spacing : float
+        About how far apart, above 0.
+
+    Examples
+    --------
+    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
+    >>> rows = scan({7: square, 8: square + [3, 0]}, 0, 1.0)
+    >>> rows.runs
+    ((Run(id=7, begin=0.0, end=2.0), Run(id=8, begin=3.0, end=5.0)),)
+    """
+    if not outlines:
+        return Scan(spacing, np.empty(0), ())
+    across = 1 - axis
+    corners = np.concatenate(list(outlines.values()))
+    low, high = float(corners[:, across].min()), float(corners[:, across].max())
+    count = max(1, int(np.ceil((high - low) / spacing - 1e-9)))
+    places = low + (np.arange(count) + 0.5) * (high - low) / count
+    found: list[list[Run]] = [[] for _ in places]
+    for block, loop in outlines.items():
+        lines, along = _crossings(loop, axis, places)
+        for line, begin, end in zip(lines[::2], along[::2], along[1::2], strict=True):
+            found[line].append(Run(block, begin, end))
+    rows = tuple(tuple(sorted(line, key=lambda run: run.begin + run.end)) for line in found)
+    return Scan((high - low) / count, places, rows)
+
+
+def _crossings(
+    loop: Points, axis: int, places: NDArray[np.float64]
+) -> tuple[list[int], list[float]]:
+    """Return which lines cross an outline and where, in order; an even number of times each.
+
+    A corner on a line belongs to the side above it.
+    """
+    ahead = np.roll(loop, -1, axis=0)
+    a, b = loop[:, 1 - axis], ahead[:, 1 - axis]
+    first, end = np.searchsorted(places, [np.minimum(a, b), np.maximum(a, b)])
+    counts = end - first
+    edges = np.repeat(np.arange(len(loop)), counts)
+    lines = np.arange(len(edges)) + np.repeat(end - np.cumsum(counts), counts)
+    share = (places[lines] - a[edges]) / (b[edges] - a[edges])
+    along = loop[edges, axis] + share * (ahead[edges, axis] - loop[edges, axis])
+    order = np.lexsort((along, lines))
+    return lines[order].tolist(), along[order].tolist()
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,8 +119,6 @@ class Joint:
         Stones to the left and right of a head joint, below and above a bed joint.
     points : (n, 2) float array
         Middle of the gap, bottom to top or left to right.
-    gap : (n,) float array
-        Open width at the points, wedges taken off.
     spacing : float
         Length that a point stands for.
     """
@@ -34,7 +126,6 @@ class Joint:
     first: int
     second: int
     points: Points
-    gap: NDArray[np.float64]
     spacing: float
 
     @property
@@ -85,16 +176,19 @@ def joints(scanned: Scan, axis: int, widest: float, wedges: frozenset[int]) -> t
         Sorted by their first points.  Two stones have several where their joint changes between
         rising and running, or is interrupted.
     """
-    sampled: dict[tuple[int, int], list[tuple[int, float, float]]] = {}
+    sampled: dict[tuple[int, int], list[tuple[int, float]]] = {}
     for line, runs in enumerate(scanned.runs):
         for pair, middle, gap in _neighbours(runs, wedges):
             if gap <= widest:
-                sampled.setdefault(pair, []).append((line, middle, gap))
-    found = [
-        _joint(pair, piece, scanned, axis)
-        for pair, samples in sampled.items()
-        for piece in _pieces(samples, scanned.spacing)
-    ]
+                sampled.setdefault(pair, []).append((line, middle))
+    found = []
+    for pair, samples in sampled.items():
+        for piece in _pieces(samples, scanned.spacing):
+            if len(piece) > 1:  # else it has no direction
+                lines, middles = (np.array(column) for column in zip(*piece, strict=True))
+                places = scanned.places[lines]
+                points = np.column_stack((middles, places) if axis == 0 else (places, middles))
+                found.append(Joint(*pair, points, scanned.spacing))
     return tuple(sorted(found, key=lambda one: (*one.points[0].tolist(), one.first, one.second)))
 
 
@@ -102,9 +196,8 @@ def _neighbours(
     runs: tuple[Run, ...], wedges: frozenset[int]
 ) -> Iterator[tuple[tuple[int, int], float, float]]:
     """Yield pairs of stones that follow each other on a line, the middle and width of their gap."""
-    stones = [run for run in runs if run.id not in wedges]
     filled = [run for run in runs if run.id in wedges]
-    for one, other in pairwise(stones):
+    for one, other in pairwise(run for run in runs if run.id not in wedges):
         if one.id == other.id:
             continue
         between = sum(
@@ -114,31 +207,133 @@ def _neighbours(
         yield (one.id, other.id), 0.5 * (one.end + other.begin), gap
 
 
-def _pieces(
-    samples: list[tuple[int, float, float]], spacing: float
-) -> Iterator[list[tuple[int, float, float]]]:
-    """Cut samples of a pair where lines are left out, and leave out what runs along the lines."""
-    piece: list[tuple[int, float, float]] = []
-    for sample in samples:
-        if piece:
-            step = sample[0] - piece[-1][0]
-            if step > 1 or abs(sample[1] - piece[-1][1]) > STEEPEST * spacing:
-                yield from _long(piece)
-                piece = []
+def _pieces(samples: list[tuple[int, float]], spacing: float) -> Iterator[list[tuple[int, float]]]:
+    """Cut samples of a pair where lines are left out, and where the joint runs along the lines."""
+    piece = samples[:1]
+    for sample in samples[1:]:
+        line, middle = piece[-1]
+        if sample[0] - line > 1 or abs(sample[1] - middle) > STEEPEST * spacing:
+            yield piece
+            piece = []
         piece.append(sample)
-    yield from _long(piece)
+    yield piece
 
 
-def _long(piece: list[tuple[int, float, float]]) -> Iterator[list[tuple[int, float, float]]]:
-    """Keep what has a direction."""
-    if len(piece) > 1:
-        yield piece
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """Head joints that form one joint, from the lowest to the highest.
+
+    Parameters
+    ----------
+    joints : tuple of Joint
+        At least one.
+    """
+
+    joints: tuple[Joint, ...]
+
+    @property
+    def left(self) -> tuple[int, ...]:
+        """Stones on its left side, upwards."""
+        return tuple(dict.fromkeys(joint.first for joint in self.joints))
+
+    @property
+    def right(self) -> tuple[int, ...]:
+        """Stones on its right side, upwards."""
+        return tuple(dict.fromkeys(joint.second for joint in self.joints))
+
+    @property
+    def courses(self) -> int:
+        """Through how many courses it goes: the lesser number of stones on a side."""
+        return min(len(self.left), len(self.right))
+
+    @property
+    def height(self) -> float:
+        """From its lower to its upper end."""
+        return float(self.joints[-1].top[1] - self.joints[0].bottom[1])
+
+    @property
+    def line(self) -> Points:
+        """Its middle, upwards."""
+        return np.concatenate(
+            [np.vstack([joint.bottom, joint.points, joint.top]) for joint in self.joints]
+        )
 
 
-def _joint(
-    pair: tuple[int, int], piece: list[tuple[int, float, float]], scanned: Scan, axis: int
-) -> Joint:
-    lines, middles, gaps = (np.array(column) for column in zip(*piece, strict=True))
-    places = scanned.places[lines]
-    columns = (middles, places) if axis == 0 else (places, middles)
-    return Joint(*pair, np.column_stack(columns), gaps.astype(float), scanned.spacing)
+def chains(masonry: "Masonry") -> tuple[Chain, ...]:
+    """Join the head joints that go on above each other.
+
+    A joint goes on when the next one begins no farther to the side than the offset of the
+    settings and no farther above than a hole, and no stone lies between them.  Where several
+    could go on, the one straight above does.
+
+    Parameters
+    ----------
+    masonry : Masonry
+        Any wall.
+
+    Returns
+    -------
+    tuple of Chain
+        Every head joint is in one; from left to right by their lower ends.
+    """
+    heads = masonry.heads
+    above: dict[int, int] = {}
+    below: dict[int, int] = {}
+    for _, lower, upper in sorted(_links(masonry)):
+        if lower not in above and upper not in below:
+            above[lower], below[upper] = upper, lower
+    found = []
+    for index in range(len(heads)):
+        if index not in below:
+            place, chain = index, [index]
+            while place in above:
+                place = above[place]
+                chain.append(place)
+            found.append(Chain(tuple(heads[i] for i in chain)))
+    return tuple(found)
+
+
+def _links(masonry: "Masonry") -> list[tuple[tuple[float, float], int, int]]:
+    """Return how far apart two joints are that may be one, and their indices, lower first."""
+    heads = masonry.heads
+    if not heads:
+        return []
+    settings, height = masonry.settings, masonry.mean_height
+    bottoms = np.array([joint.bottom for joint in heads])
+    tops = np.array([joint.top for joint in heads])
+    aside, up = (1e-9 + settings.offset) * height, (1e-9 + settings.hole) * height
+    # The ends of two joints that meet overlap by the rounding of stones to lines of the scan.
+    low, high = tops - (aside, 2.5 * masonry.rows.spacing), np.add(tops, (aside, up))
+    near = shapely.STRtree(shapely.points(bottoms)).query(shapely.box(*low.T, *high.T))
+    stones = shapely.STRtree(list(masonry.shapes.values()))
+    ids = list(masonry.shapes)
+    found = []
+    for lower, upper in near.T.tolist():
+        one, other = heads[lower], heads[upper]
+        # Else the joints are beside each other with the sides changed over.
+        climbs = one.first != other.second and one.second != other.first
+        if lower == upper or not climbs:
+            continue
+        way = shapely.LineString([tops[lower], bottoms[upper]])
+        four = {one.first, one.second, other.first, other.second}
+        if not _crossed(masonry, way, four, {ids[i] for i in stones.query(way)}):
+            across, along = np.abs(bottoms[upper] - tops[lower]).tolist()
+            cost = round(across / height, 6), round(along / height, 6)
+            found.append((cost, lower, upper))
+    return found
+
+
+def _crossed(masonry: "Masonry", way: shapely.LineString, four: set[int], near: set[int]) -> bool:
+    """Whether one of the stones near the way from one joint to another lies on it.
+
+    The way may cut corners of the stones of the joints, as far to the side as they may be apart.
+    Any other stone on it lies between them, as far as the scan tells it from a touch: each end of
+    the way may lie half a line too high or low.
+    """
+    spacing = masonry.rows.spacing
+    of_joints = masonry.settings.offset * masonry.mean_height + 2.5 * spacing
+    own = shapely.union_all([masonry.shapes[i] for i in four])
+    if shapely.intersection(own, way).length > of_joints:
+        return True
+    others = [masonry.shapes[i] for i in near - four]
+    return bool((shapely.length(shapely.intersection(others, way)) > 0.75 * spacing).any())

@@ -6,20 +6,15 @@ from functools import cached_property
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.outlines import outlines_of_labels
-from drystone.craft.chains import Chain, chains
-from drystone.craft.joints import Joint, joints
-from drystone.craft.scans import Scan, scan
+from drystone.craft.joints import Chain, Joint, Points, Scan, chains, joints, scan
 from drystone.craft.settings import CraftSettings
 from drystone.errors import InputError, UsageError
 from drystone.kernels.polygons import Polygons, area_and_centroid, no_polygons
 from drystone.model.wall import Labels
 from drystone.statics.model import RigidBlockModel
-
-Points = NDArray[np.float64]
 
 LONGEST = 4000, 12
 """Mean heights of stones over which a wall and its stones may reach, and more for each stone: the

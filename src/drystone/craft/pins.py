@@ -5,13 +5,15 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+from scipy.optimize import linprog
+from scipy.sparse import csr_array, hstack
 
-from drystone.craft.finding import VERDICTS, Case, Finding, Limit, Line, Rule
+from drystone.craft.finding import Case, Found, Limit, Line
 from drystone.craft.masonry import Masonry
-from drystone.craft.wedge_loads import least_wedge_loads
 from drystone.model.wedge_shape import WedgeRule, WedgeSettings, WedgeShape, open_sides
 from drystone.statics.joints import is_head_joint, loose_blocks
-from drystone.statics.model import RigidBlockModel
+from drystone.statics.lp.program import assemble
+from drystone.statics.model import GROUND, RigidBlockModel
 from drystone.statics.result import LimitStatus
 
 EASE = 0.2
@@ -19,63 +21,53 @@ EASE = 0.2
 
 UNKNOWN = "What the wedges carry is not known"
 
-RULE = Rule(
-    "pins",
-    "pins and wedges",
-    "Wedges fill gaps and stop rocking; the load goes beside them, none sticks out, and each is a "
-    "flat piece that one can cut and that stays in its place.",
-    "The paper, section 2 (shards fill openings or prevent rocking); rockinwalls.com, Pinning & "
-    "Chinks, 2011 (pins that lift a large stone fall out or are crushed); Delaware Quarries, "
-    "rule 10 (fill cracks after the wall is complete). The number: own definition",
-    "greatest load that a wedge cannot help carrying under the wall's own weight, "
-    "with open upright joints, over the weight of the stones that lie on it",
-    higher_is_better=False,
-    limit=Limit(0.1, 0.5),
-)
+INFEASIBLE = 2
+"""Status of scipy's linprog when there are no forces in equilibrium."""
 
 
-def find(masonry: Masonry, limit: Limit = RULE.limit) -> Finding:
+def pins(masonry: Masonry, limit: Limit) -> Found:
     """Find wedges that carry, that stick out, and that no mason would cut.
 
-    Wedges are known in plans; in a label image or block model they have to be named.  The verdict
-    is that of the number, or "broken" when a wedge sticks out, or is none that a mason would cut
-    where wedges shall be cut to their outlines.
+    Wedges are known in plans; in a label image or block model they have to be named.  The rule is
+    broken when a wedge sticks out, or is none that a mason would cut where wedges shall be cut to
+    their outlines.
 
     Parameters
     ----------
     masonry : Masonry
         Any wall.
     limit : Limit
-        Of the number.
+        Wedges that carry more than its good number are named.
     """
-    wedges = frozenset(masonry.wedge_ids)
+    wedges = sorted(set(masonry.wedge_ids))
     if not wedges:
-        return Finding(RULE, limit, None, "not judged", note="No wedges are known.")
+        return Found(None, note="No wedges are known.")
     resting = {wedge: _resting(masonry, wedge) for wedge in wedges}
-    outside = [case for wedge in sorted(wedges) for case in _outside(masonry, wedge, resting)]
-    unfit = [case for wedge in sorted(wedges) for case in _unfit(masonry, wedge, resting)]
-    loads, note = _loads(masonry, wedges)
+    outside = [case for wedge in wedges for case in _outside(masonry, wedge, resting[wedge])]
+    unfit = [case for wedge in wedges for case in _unfit(masonry, wedge, resting[wedge])]
     figures: dict[str, float | None] = {
         "wedges": float(len(wedges)),
         "wedges that stick out": float(len(outside)),
         "wedges that no mason would cut": float(len(unfit)),
     }
     bad = (*outside, *unfit)
-    if loads is None:
-        verdict = VERDICTS[2] if bad else "not judged"
-        return Finding(RULE, limit, None, verdict, bad, figures, note)
-    shares = {wedge: _share(masonry, loads[wedge], resting[wedge]) for wedge in sorted(wedges)}
-    number = round(max(shares.values()), 9)
-    carrying = [
-        Case((wedge, *resting[wedge]), round(share, 6), _words(share), _frame(masonry, wedge))
-        for wedge, share in shares.items()
-        if share > limit.good + 1e-9
-    ]
+    loads, note = _loads(masonry, frozenset(wedges))
+    if masonry.model is None or loads is None:
+        return Found(None, bad, figures, note, broken=bool(bad))
+    weights = {block.id: block.weight for block in masonry.model.blocks}
+    shares, carrying = [], []
+    for wedge in wedges:
+        on_it = sum(weights[stone] for stone in resting[wedge])
+        share = loads[wedge] / on_it if on_it else 0.0
+        shares.append(share)
+        if share > limit.good + 1e-9:
+            words = f"the wedge carries at least {share:.2f} of the weight of the stone on it"
+            stones = (wedge, *resting[wedge])
+            carrying.append(Case(stones, round(share, 6), words, _frame(masonry, wedge)))
     carrying.sort(key=lambda case: -case.value)
-    verdict = VERDICTS[2] if bad else RULE.verdict(number, limit)
     figures["wedges that carry"] = float(len(carrying))
-    figures["mean load"] = float(np.mean(list(shares.values())))
-    return Finding(RULE, limit, number, verdict, (*bad, *carrying), figures, note)
+    figures["mean load"] = float(np.mean(shares))
+    return Found(round(max(shares), 9), (*bad, *carrying), figures, note, broken=bool(bad))
 
 
 def _loads(masonry: Masonry, wedges: frozenset[int]) -> tuple[Mapping[int, float] | None, str]:
@@ -87,7 +79,8 @@ def _loads(masonry: Masonry, wedges: frozenset[int]) -> tuple[Mapping[int, float
     model, fallen = masonry.model, "the wall does not stand as it is drawn."
     if model is None or loose_blocks(model):
         return None, f"{UNKNOWN}: {fallen}"
-    loads = least_wedge_loads(_open_heads(model), wedges)
+    open_heads = tuple(face for face in model.interfaces if not is_head_joint(face))
+    loads = least_wedge_loads(replace(model, interfaces=open_heads), wedges)
     if not isinstance(loads, LimitStatus):
         return loads, ""
     if loads is LimitStatus.UNSTABLE:
@@ -98,27 +91,12 @@ def _loads(masonry: Masonry, wedges: frozenset[int]) -> tuple[Mapping[int, float
     return None, f"{UNKNOWN}: {'the solver gave up.' if gave_up else fallen}"
 
 
-def _open_heads(model: RigidBlockModel) -> RigidBlockModel:
-    return replace(model, interfaces=tuple(i for i in model.interfaces if not is_head_joint(i)))
-
-
-def _words(share: float) -> str:
-    return f"the wedge carries at least {share:.2f} of the weight of the stone on it"
-
-
 def _frame(masonry: Masonry, wedge: int) -> tuple[Line, ...]:
     """Return a frame around a wedge, which may be too small to be seen."""
     room = 0.12 * masonry.mean_height
     x0, y0, x1, y1 = masonry.boxes[wedge]
     low, high = (x0 - room, y0 - room), (x1 + room, y1 + room)
     return (np.array([low, (high[0], low[1]), high, (low[0], high[1]), low]),)
-
-
-def _share(masonry: Masonry, load: float, resting: tuple[int, ...]) -> float:
-    assert masonry.model is not None  # noqa: S101 - loads are those of a model
-    weights = {block.id: block.weight for block in masonry.model.blocks}
-    on_it = sum(weights[stone] for stone in resting)
-    return load / on_it if on_it else 0.0
 
 
 def _resting(masonry: Masonry, wedge: int) -> tuple[int, ...]:
@@ -133,13 +111,13 @@ def _resting(masonry: Masonry, wedge: int) -> tuple[int, ...]:
     return tuple(sorted(found))
 
 
-def _outside(masonry: Masonry, wedge: int, resting: dict[int, tuple[int, ...]]) -> list[Case]:
+def _outside(masonry: Masonry, wedge: int, resting: tuple[int, ...]) -> list[Case]:
     """Say whether a wedge reaches out sideways beyond what lies on it, into the open."""
-    if not resting[wedge]:
+    if not resting:
         return []
     x0, y0, x1, y1 = masonry.boxes[wedge]
-    left = min(masonry.boxes[i][0] for i in resting[wedge]) - x0
-    right = x1 - max(masonry.boxes[i][2] for i in resting[wedge])
+    left = min(masonry.boxes[i][0] for i in resting) - x0
+    right = x1 - max(masonry.boxes[i][2] for i in resting)
     out = max(left, right) / masonry.mean_height
     opened = open_sides(masonry.loops[wedge], masonry.polygons)[0 if left > right else 1]
     if out <= masonry.settings.stick_out + 1e-9 or not opened:
@@ -147,10 +125,10 @@ def _outside(masonry: Masonry, wedge: int, resting: dict[int, tuple[int, ...]]) 
     y = 0.5 * (y0 + y1)
     line = np.array([[x0, y], [x0 + left, y]] if left > right else [[x1 - right, y], [x1, y]])
     words = f"the wedge sticks out by {out:.2f} mean stone heights"
-    return [Case((wedge, *resting[wedge]), round(out, 6), words, (line,))]
+    return [Case((wedge, *resting), round(out, 6), words, (line,))]
 
 
-def _unfit(masonry: Masonry, wedge: int, resting: dict[int, tuple[int, ...]]) -> list[Case]:
+def _unfit(masonry: Masonry, wedge: int, resting: tuple[int, ...]) -> list[Case]:
     """Say what is wrong with a wedge that no mason would cut; lengths in sizes of the stones."""
     if not (masonry.cut and masonry.stones):
         return []
@@ -165,11 +143,83 @@ def _unfit(masonry: Masonry, wedge: int, resting: dict[int, tuple[int, ...]]) ->
         greatest_area=(1.0 + EASE) ** 2 * rule.greatest_area,
     )
     faults = list(rule.faults(WedgeShape.of(masonry.loops[wedge] / size)))
-    if resting[wedge]:
+    if resting:
         left, right = open_sides(masonry.loops[wedge], masonry.polygons)
         faults += ["nothing beside it to the left"] * left
         faults += ["nothing beside it to the right"] * right
     if not faults:
         return []
     words = f"no mason would cut the wedge (in stone sizes): {'; '.join(faults)}"
-    return [Case((wedge, *resting[wedge]), float(len(faults)), words, _frame(masonry, wedge))]
+    return [Case((wedge, *resting), float(len(faults)), words, _frame(masonry, wedge))]
+
+
+def least_wedge_loads(
+    model: RigidBlockModel, wedge_ids: frozenset[int]
+) -> Mapping[int, float] | LimitStatus:
+    """Return the least load that each wedge passes on while the wall stands by its own weight.
+
+    The forces between dry stones are not known from their weights alone.  For each wedge the
+    state of equilibrium within friction is found in which that wedge carries least; so 0 means
+    that the wall would stand without leaning on it.
+
+    Parameters
+    ----------
+    model : RigidBlockModel
+        Of the whole wall.
+    wedge_ids : frozenset of int
+        Blocks that are wedges.
+
+    Returns
+    -------
+    mapping of int to float, or LimitStatus
+        By id, the vertical force from what lies on the wedge, in weights of the model; UNSTABLE
+        when the wall does not stand by its own weight, FAILED when the solver gave up.
+
+    Examples
+    --------
+    >>> from drystone.contacts.given import model_from_json
+    >>> pier, slab = [0, 0, 1, 1], [0, 1, 4, 1]
+    >>> found = least_wedge_loads(model_from_json({"blocks_xywh": [pier, slab, [3, 0, 1, 1]]}),
+    ...                           frozenset({3}))
+    >>> round(found[3], 6)
+    1.333333
+    """
+    if all(block.fixed for block in model.blocks):
+        return dict.fromkeys(sorted(wedge_ids), 0.0)
+    program = assemble(model)
+    loads = {}
+    forces = program.matrix[:, 1:]
+    nothing = csr_array((forces.shape[0], 1))
+    for wedge in sorted(wedge_ids):
+        costs = _vertical(model, wedge)
+        # Least is the greater of 0 and costs . forces: a wedge between steep faces may be pulled
+        # down by friction as hard as one likes, so the costs alone need not have a least value.
+        found = linprog(
+            np.append(np.zeros(len(costs)), 1.0),
+            A_ub=csr_array(np.append(costs, -1.0)[None]),
+            b_ub=[0.0],
+            A_eq=hstack((forces, nothing)),
+            b_eq=program.rhs,
+            bounds=(0, None),
+            method="highs",
+        )
+        if not found.success:
+            return LimitStatus.UNSTABLE if found.status == INFEASIBLE else LimitStatus.FAILED
+        loads[wedge] = float(found.fun) * program.weight
+    return loads
+
+
+def _vertical(model: RigidBlockModel, wedge: int) -> list[float]:
+    """Return what each edge of a friction cone presses onto a wedge from above."""
+    values: list[float] = []
+    for face in model.interfaces:
+        normal, tangent = face.normal[1], -face.normal[0] * model.friction(face)
+        on_it = 0.0
+        if GROUND not in (face.block, face.other):
+            if face.other == wedge and normal > 0:
+                on_it = 1.0  # the force on what lies above is `block`'s
+            elif face.block == wedge and normal < 0:
+                on_it = -1.0
+        for _ in face.points:
+            values += [on_it * (normal + tangent), on_it * (normal - tangent)]
+    return values

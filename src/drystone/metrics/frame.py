@@ -66,22 +66,14 @@ def frame_wall(labels: Labels, width_px: float | None = None) -> WallFrame:
             cure="Give an image of labels in which stones have positive ids.",
         )
     wall = labels[rows[0] : rows[-1] + 1]
+    ends = np.flatnonzero((wall > 0).any(axis=0))
+    stones = wall[:, ends[0] : ends[-1] + 1]
     if width_px is None:
-        stones = _crop_ends(wall)
         return WallFrame(stones, 0.0, float(stones.shape[1]))
     columns = math.floor(width_px + 0.5)
     if columns == labels.shape[1]:
         return WallFrame(wall, 0.0, float(columns))
-    return _centred(_crop_ends(wall), columns)
-
-
-def _crop_ends(wall: Labels) -> Labels:
-    cols = np.flatnonzero((wall > 0).any(axis=0))
-    return wall[:, cols[0] : cols[-1] + 1]
-
-
-def _centred(stones: Labels, columns: int) -> WallFrame:
-    """Put stones in the middle of the end lines; those that stick out stay."""
+    # Those that stick out stay.
     room = columns - stones.shape[1]
     before = max(0, room) // 2
     padded = np.pad(stones, ((0, 0), (before, max(0, room) - before)))

@@ -7,13 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from drystone.errors import LabelImageError, UsageError
-from drystone.metrics.arrangement import horizontal_arrangement, vertical_arrangement
-from drystone.metrics.filling import filling
-from drystone.metrics.flush import flush_deviation
 from drystone.metrics.frame import frame_wall
 from drystone.metrics.joints import joint_mask
-from drystone.metrics.level import level_deviation
-from drystone.metrics.sizes import stone_sizes
+from drystone.metrics.paths import horizontal_arrangement, vertical_arrangement
+from drystone.metrics.shape import flush_deviation, level_deviation, stone_sizes
 from drystone.model.wall import Labels
 
 MOST_PX = 200_000_000
@@ -27,7 +24,8 @@ class WallMetrics:
     Parameters
     ----------
     F_SF : float
-        Filling, 0 to 1, higher is better (Eq. 25).
+        Filling, the area of the stones over that of the wall, higher is better (Eq. 25): 0 to 1,
+        more only when stones overlap or leave the wall.
     F_AV : float or None
         Vertical arrangement in percent, higher is better (Eq. 27); None in an image too narrow
         for the path starts (20 px with its padding).
@@ -76,7 +74,8 @@ def measure_labels(
         Labels that are wedges: left out of `F_SF`, of the mean sizes and of the count, a stone
         like any other for joints, top and ends.
     stone_area_px : float, optional
-        Area of the stones when it is known better than from the pixels, as in plans.
+        Area of the stones when it is known better than from the pixels, as in plans: nearest
+        sampling changes a mask by up to 3.5 %, and a search would pick the larger ones.
     lateral_resistance : float, optional
         F_LR of the wall (:attr:`drystone.statics.model.LateralResistance.value`); statics of a
         plan comes from outlines, which are not in the image.
@@ -116,9 +115,10 @@ def measure_labels(
     if wall_px is None:
         wall_px = (float(frame.labels.shape[1]), float(frame.labels.shape[0]))
     sizes = stone_sizes(frame.labels, wedge_ids)
+    area_px = sizes.area_px if stone_area_px is None else stone_area_px
     joint = joint_mask(frame.labels)
     return WallMetrics(
-        F_SF=filling(sizes.area_px if stone_area_px is None else stone_area_px, wall_px),
+        F_SF=area_px / (wall_px[0] * wall_px[1]),
         F_AV=vertical_arrangement(joint),
         F_AH=horizontal_arrangement(joint),
         F_LR=lateral_resistance,

@@ -118,7 +118,10 @@ def _mean_excess(joint: Mask) -> float | None:
     All pixels of a side are joint, so there is a path from each of them, or from none.
     """
     straight = joint.shape[1] - 1
-    starts = _starts(joint.shape[0])
+    # In the middle of equal parts of the side, from both ends alike.
+    side = joint.shape[0]
+    first = (2 * np.arange(STARTS // 2) + 1) * side // (2 * STARTS)
+    starts = np.concatenate([first, side - 1 - first[::-1]])
     lengths = [*_lengths_across(joint, starts), *_lengths_across(joint[:, ::-1], starts)]
     if not lengths:
         return None
@@ -134,9 +137,3 @@ def _lengths_across(joint: Mask, rows: NDArray[np.intp]) -> list[float]:
     both = np.hstack([joint, joint[:, -2::-1]])
     lengths = row_lengths(both, rows).tolist()
     return [length_px(*step_counts(length // 2)) for length in lengths if length >= 0]
-
-
-def _starts(side_px: int) -> NDArray[np.intp]:
-    """Return where paths start along a side: in the middle of equal parts, from both ends alike."""
-    first = (2 * np.arange(STARTS // 2) + 1) * side_px // (2 * STARTS)
-    return np.concatenate([first, side_px - 1 - first[::-1]])

@@ -1,24 +1,16 @@
 """The best positions of a stone, best first (§3.6)."""
 
 import operator
-import types
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from drystone.kernels.lowering import Positions
-from drystone.kernels.spots import Place
+from drystone.kernels.merits import SnugWeights
+from drystone.kernels.spots import Place, best_by_eq12, best_by_height, best_by_snugness
 from drystone.model.landscape import Landscape
 from drystone.model.pose import PosedStone
 from drystone.placement.feasible import feasible_positions
-from drystone.placement.objective import best_by_objective, lowest
-from drystone.placement.settings import PlacementSettings, Rule
-from drystone.placement.snug import snuggest
-
-Choice = Callable[[Landscape, PosedStone, Positions, PlacementSettings], list[Place]]
-
-_RULES: Mapping[Rule, Choice] = types.MappingProxyType(
-    {"eq12": best_by_objective, "lowest": lowest, "snug": snuggest}
-)
+from drystone.placement.settings import PlacementSettings
 
 
 @dataclass(frozen=True)
@@ -68,9 +60,29 @@ def best_spots(
         positions = feasible_positions(landscape, posed, settings.reach, settings.clearance_px)
         if not len(positions):
             continue
-        for merit, row, col in _RULES[settings.rule](landscape, posed, positions, settings):
+        for merit, row, col in _best(landscape, posed, positions, settings):
             floor = row + posed.height_px
             order = (-floor, -merit) if settings.rule == "lowest" else (-merit, -floor)
             spots.append(((*order, col, index), Spot(index, row, col)))
     spots.sort(key=operator.itemgetter(0))
     return [spot for _, spot in spots[: settings.tries]]
+
+
+def _best(
+    landscape: Landscape, posed: PosedStone, positions: Positions, settings: PlacementSettings
+) -> list[Place]:
+    """Return the best of some positions of a pose, by the rule of the settings."""
+    stone, rays, tries = posed.silhouette, landscape.rays, settings.tries
+    if settings.rule == "eq12":
+        # The paper's own: the largest LFR + H(GDS, beta) - x_c / w (Eq. 12a, Eq. 13).
+        built = landscape.built_height_px
+        return best_by_eq12(positions, stone, rays, built, posed.anchor[0], settings.beta, tries)
+    if settings.rule == "lowest":
+        # That of the paper's released code; of equal heights the largest LFR.
+        return best_by_height(positions, stone, rays, tries)
+    # Our own.  Eq. 12 lets a stone that stands half above the course open the next one while there
+    # is room beside it; here height costs more than any distance along the wall can win back.
+    weights = SnugWeights(
+        settings.height_weight, settings.void_weight, settings.gap_weight, settings.end_weight
+    )
+    return best_by_snugness(positions, stone, landscape.skyline, rays, weights, tries)

@@ -64,17 +64,11 @@ def can_be_lowered(
         As for :func:`feasible_positions`.
     """
     tops = landscape.skyline[col : col + posed.width_px]
-    if not np.all(tops > row + posed.bottom):
-        return False
-    return clearance_px == 0 or _has_clearance(landscape, posed, (row, col), clearance_px)
-
-
-def _has_clearance(
-    landscape: Landscape, posed: PosedStone, at: tuple[int, int], clearance_px: int
-) -> bool:
-    """Say whether a stone comes down to one own height above a place with room on both sides."""
-    row, col = at
-    # Beyond its ends the landscape is free down to the ground.
+    free = bool(np.all(tops > row + posed.bottom))
+    if clearance_px == 0 or not free:
+        return free
+    # It comes down to one own height above its place with room on both sides.  Beyond its ends the
+    # landscape is free down to the ground.
     tops = np.pad(landscape.skyline, clearance_px, constant_values=landscape.height_px)
     tops = tops[col : col + posed.width_px + 2 * clearance_px]
     near = sliding_window_view(tops, 2 * clearance_px + 1).min(axis=1)

@@ -16,8 +16,8 @@ class PlacementSettings:
     ----------
     rule : {"eq12", "lowest", "snug"}
         ``"eq12"``: the paper's objective; ``"lowest"``: the lowest row, then the largest LFR, then
-        the building side; ``"snug"``: low, close to what is there, on the building side (see
-        :mod:`drystone.placement.snug`).
+        the building side; ``"snug"``: the least weighted sum of height, void below, void beside and
+        distance from the building side (:func:`drystone.kernels.merits.snug_merits`).
     reach : {"any", "above"}
         Every position of the image, or only those that can be reached from above.
     clearance_px : int

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from drystone.contacts.interfaces import PointContacts
-from drystone.indices.values import Indices
+from drystone.indices import Indices
 from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.model.wall import Wall

@@ -2,9 +2,7 @@
 
 import math
 
-from drystone.indices.interlocking import interlocking_width_ratio
-from drystone.indices.inward_slope import inward_slope, is_boundary
-from drystone.indices.neighbour_height import left_neighbour
+from drystone.indices import interlocking_width_ratio, inward_slope, is_boundary, left_neighbour
 from drystone.kernels.columns import free_below, free_beside
 from drystone.model.landscape import Landscape, view_box
 from drystone.model.pose import PosedStone

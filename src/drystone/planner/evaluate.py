@@ -4,14 +4,17 @@ from dataclasses import dataclass, field, replace
 
 from drystone.contacts.blocks import model_with
 from drystone.contacts.settled import model_with_outlines
-from drystone.indices.dice_score import geometrical_dice_score_at
-from drystone.indices.interlocking import interlocking_width_ratio
-from drystone.indices.inward_slope import inward_slope, is_boundary
-from drystone.indices.load_coefficient import limit_load_coefficient
-from drystone.indices.local_filling import local_filling_ratio_at
-from drystone.indices.neighbour_height import left_neighbour, neighbour_height_ratio
-from drystone.indices.shape_factor import shape_factor
-from drystone.indices.values import Indices
+from drystone.indices import (
+    Indices,
+    geometrical_dice_score_at,
+    interlocking_width_ratio,
+    inward_slope,
+    is_boundary,
+    left_neighbour,
+    local_filling_ratio_at,
+    neighbour_height_ratio,
+    shape_factor,
+)
 from drystone.model.landscape import Landscape, view_box
 from drystone.model.outlines import Outlined
 from drystone.model.placement import Placement
@@ -210,7 +213,7 @@ def action_indices(
         NHR=nhr,
         IWR=interlocking_width_ratio(landscape, box, narrowest_px),
         IS=inward_slope(landscape, posed, col),
-        LLC=limit_load_coefficient(resistance),
+        LLC=resistance.value,
         boundary=is_boundary(landscape, box, narrowest_px),
     )
     return indices, course_height

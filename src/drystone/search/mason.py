@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Literal
 
-from drystone.indices.load_coefficient import limit_load_coefficient
 from drystone.model.landscape import Landscape
 from drystone.model.outlines import Outlined
 from drystone.model.placement import Side
@@ -298,7 +297,7 @@ class Mason:
             wedges = [] if place.wedge is None else [(number, place.wedge)]
             blocks = [(stone.id, place.repose.settled.corners), *wedges]
             loaded = self.evaluator.loaded(build, blocks)
-            llc = limit_load_coefficient(loaded.grown.resistance) or 0.0
+            llc = loaded.grown.resistance.value or 0.0
             cost = round(place.cost - laying.llc * llc, 9) if llc > 0.0 else math.inf
             rated.append(_Rated(place, spot, blocks, loaded, cost))
             best, standing = min(best, cost), standing + (llc > 0.0)

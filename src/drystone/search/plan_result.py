@@ -10,7 +10,7 @@ import numpy as np
 
 from drystone.contacts.settled import model_of_outlines
 from drystone.errors import Notice
-from drystone.metrics.level import top_profile
+from drystone.metrics.shape import top_profile
 from drystone.model.plan import Plan, PlanMetrics
 from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame, assemble_plan, plan_metrics

@@ -1,10 +1,10 @@
 """Selecting the best action: hierarchical filters, then a weighted sum (§3.8, Algorithm 2)."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from drystone.indices.values import Indices
+from drystone.indices import Indices
 
 MEAN_SLACK = 1e-12
 """A mean may round above every one of equal values; without slack the filter would drop all."""
@@ -124,18 +124,12 @@ def weighted_sum(action: Action, settings: SelectionSettings, terms: int = 5) ->
 
 def _at_least_mean(actions: Sequence[Action], pool: Sequence[int], term: int) -> list[int]:
     """Keep the actions whose term reaches the mean of the pool (Eq. 14, 16, 18)."""
-
-    def keep(group: list[int], value: Callable[[int], float]) -> list[int]:
-        if not group:
-            return []
-        mean = math.fsum(value(k) for k in group) / len(group)
-        return [k for k in group if value(k) >= mean - MEAN_SLACK]
-
-    def value(k: int) -> float:
-        return actions[k].terms[term]
-
-    if term != 2:
-        return keep(list(pool), value)
-    inner = [k for k in pool if not actions[k].indices.boundary]
-    boundary = [k for k in pool if actions[k].indices.boundary]
-    return sorted(keep(inner, value) + keep(boundary, value))
+    groups = [pool]
+    if term == 2:  # IS of boundary stones, IWR of inner ones
+        boundary = [k for k in pool if actions[k].indices.boundary]
+        groups = [boundary, [k for k in pool if not actions[k].indices.boundary]]
+    kept = []
+    for group in filter(None, groups):
+        mean = math.fsum(actions[k].terms[term] for k in group) / len(group)
+        kept += [k for k in group if actions[k].terms[term] >= mean - MEAN_SLACK]
+    return sorted(kept)

@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from drystone.errors import UsageError
-from drystone.indices.values import Indices
+from drystone.indices import Indices
 from drystone.model.placement import Side
 
 Point = tuple[float, float]

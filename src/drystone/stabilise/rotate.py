@@ -58,21 +58,13 @@ def rotate_to_rest(
         side = falling_side(support, pose, settings)
         if side == 0:
             return Rotation(pose, pivots, depth)
-        turned = _turn_about(occupied, pose, support, side, trial[0].angle_deg, book, settings)
-        depth = max(depth, turned.depth)
-        if turned.end is None:
+        end, seen = _turn_about(occupied, pose, support, side, trial[0].angle_deg, book, settings)
+        depth = max(depth, seen)
+        if end is None:
             return Rotation(None, pivots, depth)
-        pose, support = turned.end
+        pose, support = end
     rests = falling_side(support, pose, settings) == 0
     return Rotation(pose if rests else None, settings.max_pivots, depth)
-
-
-@dataclass(frozen=True, eq=False)
-class _Turned:
-    """Where a stone stands after turning about one point, if it does; and the rows looked at."""
-
-    end: tuple[Pose, Support] | None
-    depth: int
 
 
 def _turn_about(
@@ -83,8 +75,11 @@ def _turn_about(
     first_angle_deg: float,
     book: PoseBook,
     settings: StabiliseSettings,
-) -> _Turned:
-    """Turn about one end of the support until the stone rests or stands on something new."""
+) -> tuple[tuple[Pose, Support] | None, int]:
+    """Turn about one end of the support until the stone rests or stands on something new.
+
+    Where it stands then, if it does; and the rows looked at.
+    """
     posed, row, col = start
     x_a, row_a = (
         (support.left_x, support.left_row) if side < 0 else (support.right_x, support.right_row)
@@ -115,5 +110,5 @@ def _turn_about(
         pivot_x = new.left_x if side < 0 else new.right_x
         moved = abs(pivot_x - x_a) > settings.new_pivot_px
         if moved or falling_side(new, pose, settings) != side:
-            return _Turned((pose, new), depth)
-    return _Turned(None, depth)
+            return (pose, new), depth
+    return None, depth

@@ -10,8 +10,8 @@ from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.errors import DrystoneError
 from drystone.kernels.polygons import Points
 from drystone.model.plan import Plan
-from drystone.statics.model import Block, Interface, RigidBlockModel
-from drystone.verify.pieces import piece_name
+from drystone.model.steps import piece_name
+from drystone.statics.model import Interface, RigidBlockModel
 from drystone.verify.replay import Replay
 from drystone.verify.report import Problem
 
@@ -54,12 +54,22 @@ def check_blocks(
         return [_problem(f"{FILE} is no block model: {error.where}: {error.what}")]
     px = plan.px_per_m or 1.0
     outlines = {block: corners * px for block, corners in polygons.items()}
-    problems = _check_outlines(outlines, replay) + _check_bodies(claimed.blocks)
+    problems = _check_outlines(outlines, replay)
+    # Of another density, or not free to move: no plan has them.
+    odd = [b.id for b in claimed.blocks if b.density != 1.0 or b.fixed or b.held]
+    if odd:
+        said = f"of another density, fixed or held in {FILE}: {', '.join(map(str, odd))}."
+        problems.append(_problem(said))
     if any(abs(claimed.friction(face) - replay.settings.mu) > SAME_FRICTION
            for face in claimed.interfaces):  # fmt: skip
         problems.append(_problem(f"friction in {FILE} is not mu = {replay.settings.mu:g}."))
     if model is not None:
-        problems += _check_contacts(_by_pair(claimed, px), _by_pair(model, 1.0))
+        theirs, ours = _by_pair(claimed, px), _by_pair(model, 1.0)
+        for pair in sorted({*theirs, *ours}):
+            if not _same(theirs.get(pair, []), ours.get(pair, [])):
+                name = f"{pair[0] or 'the ground'} and {pair[1]}"
+                said = f"the contacts between {name} in {FILE} are not those of their outlines."
+                problems.append(_problem(said))
     return problems
 
 
@@ -75,34 +85,12 @@ def _check_outlines(outlines: Mapping[int, Points], replay: Replay) -> list[Prob
         if block not in outlines:
             problems.append(_problem(f"{name} is not in {FILE}.", step))
         elif piece.corners is not None:
-            off = _apart(outlines[block], piece.corners)
+            lines = [shapely.LinearRing(corners) for corners in (outlines[block], piece.corners)]
+            off = float(shapely.hausdorff_distance(*lines))
             if not off <= NEAR_PX:
                 said = f"the outline of {name} in {FILE} is {off:.3g} source px from its pose."
                 problems.append(_problem(said, step))
     return problems
-
-
-def _check_bodies(blocks: tuple[Block, ...]) -> list[Problem]:
-    """Name blocks of another density, or that do not move freely: no plan has them."""
-    odd = [block.id for block in blocks if block.density != 1.0 or block.fixed or block.held]
-    said = f"of another density, fixed or held in {FILE}: {', '.join(map(str, odd))}."
-    return [_problem(said)] if odd else []
-
-
-def _check_contacts(
-    claimed: Mapping[Pair, list[Interface]], found: Mapping[Pair, list[Interface]]
-) -> list[Problem]:
-    """Compare where blocks touch, pair by pair; in source px both."""
-    wrong = [
-        pair
-        for pair in sorted({*claimed, *found})
-        if not _same(claimed.get(pair, []), found.get(pair, []))
-    ]
-    names = [f"{one or 'the ground'} and {other}" for one, other in wrong]
-    return [
-        _problem(f"the contacts between {name} in {FILE} are not those of their outlines.")
-        for name in names
-    ]
 
 
 def _by_pair(model: RigidBlockModel, px: float) -> dict[Pair, list[Interface]]:
@@ -134,12 +122,6 @@ def _meets(one: Interface, other: Interface) -> bool:
         return False
     ways = (other.points, other.points[::-1])
     return any(float(np.hypot(*(one.points - way).T).max()) <= NEAR_PX for way in ways)
-
-
-def _apart(claimed: Points, found: Points) -> float:
-    """Return how far two outlines are from each other, in any direction."""
-    lines = [shapely.LinearRing(corners) for corners in (claimed, found)]
-    return float(shapely.hausdorff_distance(*lines))
 
 
 def _problem(message: str, step: int | None = None) -> Problem:

@@ -8,7 +8,7 @@ from drystone.model.landscape import Landscape
 from drystone.model.outlines import Outlines
 from drystone.model.overlap import common_parts, shape_of
 from drystone.placement.feasible import can_be_lowered
-from drystone.verify.exact_replay import PENETRATION_PX
+from drystone.verify.canvas import PENETRATION_PX
 from drystone.verify.replay import Stage
 
 SLIVER_CELLS = 1.0

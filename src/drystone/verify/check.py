@@ -5,10 +5,9 @@ from typing import Any
 import numpy as np
 import shapely
 
-from drystone.kernels.polygons import Points
 from drystone.model.overlap import deepest_overlap, shape_of
 from drystone.model.placement import Placement, Wedge
-from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
+from drystone.model.plan import Plan, PlanMetrics, WedgeStep
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Labels, Wall
 from drystone.planner.dropping import wedge_limits
@@ -114,19 +113,13 @@ def _check_pieces(replay: Replay, reference: Reference) -> list[Problem]:
         if piece.step.kind == "stone":
             problems += check_stone_claims(piece.step, reference)
             if piece.corners is not None:
-                problems += _check_outline(piece.step, piece.corners, replay, reference)
+                stone = reference.stones.by_id(piece.step.stone)
+                centroid_px = source_points([piece.step.centroid], replay.site)[0]
+                within_px = replay.settings.settle.outline_px
+                problems += check_outline(piece.step, stone, centroid_px, piece.corners, within_px)
         elif isinstance(piece.item, Wedge) and not replay.exact:
             problems += check_polygon(piece.step, piece.item, replay.site)
     return problems
-
-
-def _check_outline(
-    step: StoneStep, corners: Points, replay: Replay, reference: Reference
-) -> list[Problem]:
-    """Verify that a stone lies where its pixels do."""
-    stone = reference.stones.by_id(step.stone)
-    centroid_px = source_points([step.centroid], replay.site)[0]
-    return check_outline(step, stone, centroid_px, corners, replay.settings.settle.outline_px)
 
 
 def _check_stages(replay: Replay, standing: Standing, reference: Reference) -> list[Problem]:

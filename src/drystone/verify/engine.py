@@ -1,10 +1,10 @@
 """What a rigid-body engine makes of a planned wall, against what the plan claims."""
 
 from drystone.model.plan import Plan
+from drystone.model.steps import piece_id, piece_name
 from drystone.physics.building import BuildUp
 from drystone.physics.scatter import TiltResult
 from drystone.statics.model import Direction
-from drystone.verify.pieces import piece_id, piece_name
 from drystone.verify.report import Problem
 
 CONFIRMED = 0.85

@@ -12,10 +12,10 @@ from drystone.model.overlap import common_parts, shape_of
 from drystone.model.placement import Placement
 from drystone.model.plan import Plan, WedgeStep
 from drystone.model.site import Site
+from drystone.model.steps import Step, grouped, piece_id
 from drystone.model.stone import OUTLINE_TOLERANCE_PX, StoneSet
-from drystone.verify.exact_replay import settled_stone
+from drystone.verify.canvas import settled_stone
 from drystone.verify.lengths import plan_settings, plan_site, source_points
-from drystone.verify.pieces import Step, grouped, piece_id
 
 NO_AREA_PX = 1e-9
 """A polygon with an area below this, in square px, has none but for rounding."""

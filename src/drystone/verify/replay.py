@@ -7,14 +7,12 @@ from drystone.errors import PlanError
 from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, StoneStep, WedgeStep
 from drystone.model.site import Site
-from drystone.model.steps import id_fault
+from drystone.model.steps import Fault, Step, grouped, id_fault
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Group, Labels, Wall
 from drystone.planner.settings import PlannerSettings
-from drystone.verify.exact_replay import ExactCanvas
+from drystone.verify.canvas import ExactCanvas, Piece, RasterCanvas
 from drystone.verify.lengths import plan_settings, plan_site
-from drystone.verify.pieces import Canvas, Piece, Step, grouped, problem_of
-from drystone.verify.raster_replay import RasterCanvas
 from drystone.verify.report import Problem
 
 
@@ -129,11 +127,9 @@ def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
     settings, problems = plan_settings(plan)
     site = plan_site(plan)
     groups, disorder = grouped(plan.steps)
-    problems += disorder
+    problems += map(_problem_of, disorder)
     exact = settings.geometry == "exact"
-    canvas: Canvas = (
-        ExactCanvas(site, stones, settings.settle) if exact else RasterCanvas(site, stones)
-    )
+    canvas = ExactCanvas(site, stones, settings.settle) if exact else RasterCanvas(site, stones)
     wall, broken_at = Wall.empty(site, exact=exact), None
     pieces: list[Piece] = []
     stages: list[Stage] = []
@@ -157,7 +153,7 @@ def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
 
 
 def _derive(
-    steps: Sequence[Step], canvas: Canvas, stones: StoneSet, used: set[int]
+    steps: Sequence[Step], canvas: ExactCanvas | RasterCanvas, stones: StoneSet, used: set[int]
 ) -> tuple[list[Piece], list[Problem]]:
     """Turn the steps of a group into what they place; note their ids as used."""
     pieces: list[Piece] = []
@@ -172,5 +168,9 @@ def _derive(
         else:
             pieces.append(piece)
             repeated = id_fault(step, used, largest)
-            problems += found if repeated is None else [problem_of(repeated), *found]
+            problems += found if repeated is None else [_problem_of(repeated), *found]
     return pieces, problems
+
+
+def _problem_of(fault: Fault) -> Problem:
+    return Problem(fault.code, fault.step, fault.message)

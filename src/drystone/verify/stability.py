@@ -5,13 +5,12 @@ from dataclasses import dataclass
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.settled import model_of_outlines
-from drystone.model.plan import StoneStep, WedgeStep
-from drystone.model.wall import Labels, Wall
+from drystone.model.wall import Wall
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.sturdy import sturdy_model_of
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, RigidBlockModel
-from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
+from drystone.statics.result import LateralResistance, LimitStatus
 from drystone.verify.replay import Stage
 from drystone.verify.report import PrefixAlpha, Problem, contradicted
 
@@ -63,7 +62,7 @@ def check_stability(stages: Sequence[Stage], settings: PlannerSettings) -> Stand
 def wall_model(wall: Wall, settings: PlannerSettings) -> RigidBlockModel | None:
     """Return the model of a wall on its geometry; None when nothing stands on the ground."""
     if wall.outlines is None:
-        if not stands_on_ground(wall.labels):
+        if not (wall.labels[-1] > 0).any():
             return None
         return model_from_labels(wall.labels, settings.mu).model
     settle = settings.settle
@@ -89,11 +88,6 @@ def alphas(resistance: LateralResistance | None) -> tuple[float | None, float | 
     return resistance.left.alpha, resistance.right.alpha
 
 
-def stands_on_ground(labels: Labels) -> bool:
-    """Say whether something stands on the ground: the lower edge of the image."""
-    return bool((labels[-1] > 0).any())
-
-
 def differs(claimed: float | None, found: float | None, tolerance: float) -> bool:
     """Say whether two values are not the same, None being a value of its own."""
     if claimed is None or found is None:
@@ -117,20 +111,17 @@ def _not_sturdy(stage: Stage, settings: PlannerSettings) -> list[Problem]:
     return [Problem("E237", stage.last.step, message)]
 
 
-def _not_told(result: LimitResult) -> str:
-    if result.status is LimitStatus.FAILED:
-        return f"{UNKNOWN}: {result.direction} {result.status.value}."
-    return f"the wall does not stand: {result.direction} {result.status.value}."
-
-
 def _judge(stage: Stage, resistance: LateralResistance | None) -> list[Problem]:
-    last: StoneStep | WedgeStep = stage.last
+    last = stage.last
     if resistance is None:
         return [Problem("E230", last.step, "nothing of the wall stands on the ground.")]
+    said = {LimitStatus.UNSTABLE: "the wall does not stand", LimitStatus.FAILED: UNKNOWN}
     problems = [
-        Problem("E230", last.step, _not_told(result))
+        Problem(
+            "E230", last.step, f"{said[result.status]}: {result.direction} {result.status.value}."
+        )
         for result in (resistance.left, resistance.right)
-        if result.status in (LimitStatus.UNSTABLE, LimitStatus.FAILED)
+        if result.status in said
     ]
     if problems:
         return problems

@@ -57,7 +57,7 @@ class Action:
     row, col : int
         Top-left corner of its mask.
     swept : (h, w) bool array
-        What its rays sweep (:func:`drystone.indices.local_filling.swept_pixels`).
+        What its rays sweep (:func:`drystone.indices.swept_pixels`).
     built_height : int
         Height of the box B of the landscape.
     neighbour : Beside or None

@@ -4,12 +4,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from drystone.indices.dice_score import geometrical_dice_score_at
-from drystone.indices.interlocking import interlocking_width_ratio, joints_below
-from drystone.indices.inward_slope import inward_slope, is_boundary, peak_columns
-from drystone.indices.local_filling import local_filling_ratio_at, swept_pixels
-from drystone.indices.neighbour_height import left_neighbour, neighbour_height_ratio
-from drystone.indices.shape_factor import shape_factor
+from drystone.indices import (
+    geometrical_dice_score_at,
+    interlocking_width_ratio,
+    inward_slope,
+    is_boundary,
+    joints_below,
+    left_neighbour,
+    local_filling_ratio_at,
+    neighbour_height_ratio,
+    peak_columns,
+    shape_factor,
+    swept_pixels,
+)
 from drystone.kernels.lowering import Positions
 from drystone.model.landscape import Box, Landscape, view_box
 from drystone.model.pose import PosedStone

@@ -9,10 +9,15 @@ from matplotlib.figure import Figure
 from drystone.drawing.pictures.stones import plot_joint_paths
 from drystone.io.published import published_file
 from drystone.io.wall_image import read_wall_image
-from drystone.metrics.arrangement import SHORTEST, mean_excess
 from drystone.metrics.frame import frame_wall
 from drystone.metrics.joints import PAD_LEFT, PAD_TOP, joint_mask
-from drystone.metrics.paths import JointPath, horizontal_paths, vertical_paths
+from drystone.metrics.paths import (
+    SHORTEST,
+    JointPath,
+    horizontal_paths,
+    mean_excess,
+    vertical_paths,
+)
 from drystone.metrics.reduce import reduce_labels
 from drystone.model.wall import Labels
 from drystone_lab.reproduce.item import Context, Item, Picture

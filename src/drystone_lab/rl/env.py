@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from drystone.drawing.pictures.wall import plot_wall
 from drystone.errors import UsageError
-from drystone.metrics.level import top_profile
+from drystone.metrics.shape import top_profile
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall

@@ -19,8 +19,8 @@ from numpy.random import Generator
 
 from drystone.errors import DrystoneError, ExitCode, UsageError
 from drystone.planner.workshop import Workshop
+from drystone.selection.policies.choices import Lowest
 from drystone.selection.policies.learned import FEATURES, ValueModel
-from drystone.selection.policies.simple import Lowest
 from drystone.selection.policy import Offer
 from drystone.whole_files import refuse_existing
 from drystone_lab.rl.draw import DrawSettings, draw_wall
@@ -147,7 +147,7 @@ def mean_merit(choose: Choose, workshops: Sequence[Workshop]) -> float:
 
 
 def lowest(offers: Sequence[Offer], rng: Generator) -> int:
-    """Choose the lowest of some offers (:class:`drystone.selection.policies.simple.Lowest`)."""
+    """Choose the lowest of some offers (:class:`drystone.selection.policies.choices.Lowest`)."""
     position = Lowest().choose(offers, rng)
     assert position is not None  # noqa: S101 - there are offers
     return position

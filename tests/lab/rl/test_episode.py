@@ -7,7 +7,7 @@ import pytest
 
 from drystone.planner.planner import Planner
 from drystone.search.goal import figures_of, merit_of, possible_filling
-from drystone.selection.policies.simple import Lowest
+from drystone.selection.policies.choices import Lowest
 from drystone_lab.rl.draw import draw_wall
 from drystone_lab.rl.episode import ARRIVING, Episode, prepared
 from tests.lab.rl.walls import SMALL, bricks

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.selection.algorithm2 import SelectionSettings
+from drystone.selection.policies.choices import lacking_support, slope_rad
 from drystone.selection.policies.registry import BUILT_IN, policy_named
 from drystone.selection.policies.settings import PolicySettings
-from drystone.selection.policies.towers import lacking_support, slope_rad
 from drystone.selection.policy import Offer
 from tests.selection.offers import offered
 from tests.strategies import repeatable
@@ -58,12 +58,8 @@ def test_of_equal_heights_the_tightest_then_the_building_side() -> None:
 
 
 @pytest.mark.parametrize("name", [name for name in BUILT_IN if name != "random"])
-def test_ties_go_to_the_lower_id(name: str) -> None:
+def test_ties_go_to_the_lower_id_then_to_the_smaller_angle(name: str) -> None:
     assert chosen(name, offered(4), offered(3), offered(7)) == 3
-
-
-@pytest.mark.parametrize("name", [name for name in BUILT_IN if name != "random"])
-def test_then_to_the_smaller_angle(name: str) -> None:
     policy = policy_named(name, PolicySettings(), SelectionSettings())
     turned = [offered(angle_deg=angle) for angle in (90.0, -90.0, 0.0)]
     assert policy.choose(turned, np.random.default_rng(0)) == 1
@@ -176,12 +172,9 @@ def test_towers_weigh_as_their_source() -> None:
         offered(3, support_px=((10.0, 0.0), (20.0, 9.0))),
         offered(4, centroid_px=(18.0, 2.0)),
     ]
-    order = []
-    while offers:
-        order.append(chosen("towers", *offers))
-        offers = [offer for offer in offers if offer.stone_id != order[-1]]
-        if len(offers) == 1:
-            break
+    order: list[int] = []
+    while len(left := [offer for offer in offers if offer.stone_id not in order]) > 1:
+        order.append(chosen("towers", *left))
     assert order == [4, 2, 3]  # .094, .179, .254; .472 is left
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from drystone.errors import UsageError
 from drystone.selection.algorithm2 import TIE_DIGITS
-from drystone.selection.policies.towers import centre_distance_px, slope_rad
+from drystone.selection.policies.choices import centre_distance_px, slope_rad
 from drystone.selection.policy import Offer
 
 Floats = NDArray[np.float64]

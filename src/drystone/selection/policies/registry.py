@@ -5,12 +5,9 @@ from importlib.metadata import entry_points
 
 from drystone.errors import UsageError
 from drystone.selection.algorithm2 import SelectionSettings
-from drystone.selection.policies.filters import Filters
+from drystone.selection.policies.choices import Filters, Lowest, Random, Scalarised, Towers
 from drystone.selection.policies.learned import Learned
-from drystone.selection.policies.scalarised import Scalarised
 from drystone.selection.policies.settings import PolicySettings
-from drystone.selection.policies.simple import Lowest, Random
-from drystone.selection.policies.towers import Towers
 from drystone.selection.policy import Policy, broken
 
 GROUP = "drystone.policies"

@@ -1,0 +1,278 @@
+"""How stones lie: on their beds, big ones low, level, and in line at the ends and the top."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import shapely
+from scipy import ndimage
+
+from drystone.craft.finding import Case, Found, Line
+from drystone.craft.masonry import Masonry
+from drystone.model.overlap import common_parts
+
+MIDDLE = 0.8
+"""Share of the width of a stone whose edges are looked at: its corners are rounded."""
+
+OFF_LEVEL = 0.5
+"""From which deviation of a stone's top it is named, mean stone heights."""
+
+SHORT = 0.25
+"""From which gap beside a stone at an end it is named, mean stone widths."""
+
+
+def on_end(masonry: Masonry, _: object = None) -> Found:
+    """Find stones that stand on end: the longer side of the face upright.
+
+    Length and breadth are those of the smallest rectangle around the face.  A stone that is laid
+    with its length along the face instead of into the wall (a traced stone), or with the bedding
+    of its rock upright (face-bedded), cannot be told from the face.
+    """
+    if not masonry.stones:
+        return Found(None, note="There are no stones.")
+    cases = []
+    longer = 0
+    for stone, loop in masonry.stones.items():
+        around = shapely.oriented_envelope(shapely.MultiPoint(loop))
+        corners = shapely.get_coordinates(around)[:4]
+        one, other = corners[1] - corners[0], corners[2] - corners[1]
+        sides = float(np.hypot(*one)), float(np.hypot(*other))
+        elongation = max(sides) / min(sides)
+        if elongation < masonry.settings.elongation - 1e-9:
+            continue
+        longer += 1
+        along, middle = one if sides[0] >= sides[1] else other, corners.mean(axis=0)
+        axis = np.array([middle - 0.4 * along, middle + 0.4 * along])
+        dx, dy = np.abs(axis[1] - axis[0]).tolist()
+        if dy > dx * (1.0 + 1e-9):
+            words = f"{elongation:.1f} times as high as long"
+            cases.append(Case((stone,), round(elongation, 6), words, (axis,)))
+    cases.sort(key=lambda case: -case.value)
+    number = len(cases) / len(masonry.stones)
+    return Found(number, tuple(cases), {"stones with a longer side": float(longer)})
+
+
+def big_low(masonry: Masonry, _: object = None) -> Found:
+    """Compare the sizes of stones below and above mid-height and name big ones above."""
+    if len(masonry.stones) < 2:
+        return Found(None, note="There are no two stones to compare.")
+    x0, y0, x1, y1 = masonry.box
+    lower = shapely.box(x0, y0, x1, 0.5 * (y0 + y1))
+    areas = np.array([masonry.areas[i] for i in masonry.stones])
+    lying = [
+        sum(part.area for part in common_parts(shape, lower)) for shape in masonry.shapes.values()
+    ]
+    below = np.clip(np.array(lying) / areas, 0.0, 1.0)
+    above = 1.0 - below
+    if min(below.sum(), above.sum()) < 1e-9:
+        return Found(None, note="One half of the wall has no stone.")
+    low, high = float(areas @ below / below.sum()), float(areas @ above / above.sum())
+    mean = float(areas.mean())
+    big = [
+        (area / mean, stone)
+        for stone, area, share in zip(masonry.stones, areas.tolist(), above.tolist(), strict=True)
+        if share > 0.5 + 1e-9 and area >= (masonry.settings.big - 1e-9) * mean
+    ]
+    cases = tuple(
+        Case((stone,), round(times, 6), f"{times:.1f} times the mean area, above mid-height")
+        for times, stone in sorted(big, key=lambda one: (-one[0], one[1]))
+    )
+    figures = {"mean area below over mean": low / mean, "mean area above over mean": high / mean}
+    return Found(high / low, cases, figures)
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """The upper or lower edge of a stone, as a straight line fitted to it.
+
+    Parameters
+    ----------
+    stone : int
+        Id.
+    side : {"lower", "upper"}
+        Which.
+    slope : float
+        Rise to the right over run.
+    width : float
+        Of the part that was fitted.
+    line : (2, 2) float array
+        Its ends.
+    """
+
+    stone: int
+    side: Literal["lower", "upper"]
+    slope: float
+    width: float
+    line: Line
+
+    @property
+    def angle_deg(self) -> float:
+        """Of the slope, in (-90, 90)."""
+        return float(np.degrees(np.arctan(self.slope)))
+
+
+def edges(masonry: Masonry) -> list[Edge]:
+    """Fit a straight line to the lower and the upper edge of every stone.
+
+    They come by id, the lower one first; stones that are too narrow to have edges are left out.
+    """
+    profiles: dict[int, list[tuple[float, float, float]]] = {i: [] for i in masonry.stones}
+    for x, runs in zip(masonry.columns.places.tolist(), masonry.columns.runs, strict=True):
+        spans: dict[int, tuple[float, float]] = {}
+        for run in runs:
+            if run.id in profiles:
+                begin, _ = spans.get(run.id, (run.begin, run.end))
+                spans[run.id] = begin, run.end
+        for stone, (low, high) in spans.items():
+            profiles[stone].append((x, low, high))
+    found = []
+    for stone, profile in profiles.items():
+        x0, _, x1, _ = masonry.boxes[stone]
+        values = np.array(profile).reshape(-1, 3)
+        inner = values[np.abs(values[:, 0] - 0.5 * (x0 + x1)) <= 0.5 * MIDDLE * (x1 - x0)]
+        if len(inner) > 2:
+            found.append(_fitted(stone, "lower", inner[:, :2]))
+            found.append(_fitted(stone, "upper", inner[:, ::2]))
+    return found
+
+
+def _fitted(stone: int, side: Literal["lower", "upper"], points: Line) -> Edge:
+    x, y = points.T
+    about = x - x.mean()
+    slope = float(about @ (y - y.mean()) / (about @ about))
+    ends = x[[0, -1]]
+    line = np.column_stack([ends, y.mean() + slope * (ends - x.mean())])
+    return Edge(stone, side, slope, float(np.ptp(x)), line)
+
+
+def level_beds(masonry: Masonry, _: object = None) -> Found:
+    """Find beds that slope."""
+    found = edges(masonry)
+    if not found:
+        return Found(None, note="No stone is wide enough.")
+    slopes = np.array([abs(edge.angle_deg) for edge in found])
+    widths = np.array([edge.width for edge in found])
+    steep = [edge for edge in found if abs(edge.angle_deg) > masonry.settings.steep_deg + 1e-9]
+    cases = []
+    for edge in steep:
+        angle, falls = abs(edge.angle_deg), "right" if edge.slope < 0 else "left"
+        words = f"{edge.side} edge falls to the {falls} by {angle:.0f}°"
+        cases.append(Case((edge.stone,), round(angle, 6), words, (edge.line,)))
+    cases.sort(key=lambda case: -case.value)
+    figures = {
+        "steepest": float(slopes.max()),
+        "share of the edges that are too steep": len(steep) / len(found),
+    }
+    return Found(round(float(slopes @ widths / widths.sum()), 9), tuple(cases), figures)
+
+
+def inward_edges(masonry: Masonry, _: object = None) -> Found:
+    """Find end stones whose upper edge falls outwards."""
+    left, right = masonry.ends
+    # A stone from end to end has no inward side.
+    sides = dict.fromkeys(right - left, 1.0) | dict.fromkeys(left - right, -1.0)
+    ends = [edge for edge in edges(masonry) if edge.side == "upper" and edge.stone in sides]
+    if not ends:
+        return Found(None, note="The wall has no two ends.")
+    inward = {edge.stone: sides[edge.stone] * edge.slope for edge in ends}
+    cases = [
+        Case(
+            (edge.stone,),
+            round(-inward[edge.stone], 6),
+            f"upper edge at the {'right' if sides[edge.stone] > 0 else 'left'} end falls outwards "
+            f"by {abs(edge.angle_deg):.0f}°",
+            (edge.line,),
+        )
+        for edge in ends
+        if inward[edge.stone] < -masonry.settings.outward - 1e-9
+    ]
+    cases.sort(key=lambda case: -case.value)
+    figures = {
+        "mean inward slope": sum(inward.values()) / len(inward),
+        "end stones": float(len(inward)),
+    }
+    least = round(min(inward.values()), 9) + 0.0  # never -0
+    return Found(least, tuple(cases), figures)
+
+
+def level_top(masonry: Masonry, _: object = None) -> Found:
+    """Measure how level the top is, and name stones that stand out or lie low."""
+    if not masonry.stones:
+        return Found(None, note="There are no stones.")
+    columns, height = masonry.columns, masonry.mean_height
+    tops = np.full(len(columns.places), masonry.box[1])
+    owner = np.zeros(len(tops), np.int64)
+    for place, runs in enumerate(columns.runs):
+        for run in runs:
+            if run.id in masonry.stones and run.end > tops[place]:
+                tops[place], owner[place] = run.end, run.id
+    tops = without_slots(tops, masonry.settings.joint * height / columns.spacing)
+    cases = []
+    for stone in np.unique(owner[owner > 0]).tolist():
+        mine = np.flatnonzero(owner == stone)
+        x0, _, x1, _ = masonry.boxes[stone]
+        if 2 * len(mine) * columns.spacing < x1 - x0:
+            continue  # most of it is covered
+        off = float(tops[mine].mean() - tops.mean()) / height
+        if abs(off) >= OFF_LEVEL - 1e-9:
+            words = f"its top is {abs(off):.1f} mean stone heights {'high' if off > 0 else 'low'}"
+            line = np.column_stack([columns.places[mine], tops[mine]])[[0, -1]]
+            cases.append(Case((stone,), round(abs(off), 6), words, (line,)))
+    cases.sort(key=lambda case: -case.value)
+    return Found(round(float(np.abs(tops - tops.mean()).mean()) / height, 9), tuple(cases))
+
+
+def without_slots(profile: Line, widest: float) -> Line:
+    """Fill the slots of a profile that are no wider than a joint to their lower brink.
+
+    Parameters
+    ----------
+    profile : (n,) float array
+        Heights.
+    widest : float
+        Width of a slot, in steps of the profile.
+
+    Examples
+    --------
+    >>> without_slots(np.array([3.0, 3.0, 0.0, 2.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0]), 1.2).tolist()
+    [3.0, 3.0, 2.0, 2.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0]
+    """
+    size = int(widest) + 1
+    if size < 2 or profile.size < 2:
+        return profile
+    # Beyond both ends nothing is: what is low there is no slot.
+    around = np.pad(profile, size, constant_values=float(profile.min()))
+    raised = ndimage.maximum_filter1d(around, size, origin=0)
+    # The same window turned about, so that what has no slots stays.
+    closed = ndimage.minimum_filter1d(raised, size, origin=-((size + 1) % 2))
+    return np.asarray(closed[size:-size])
+
+
+def flush_ends(masonry: Masonry, _: object = None) -> Found:
+    """Measure how far the ends keep from upright lines through the outermost stones."""
+    if not masonry.stones:
+        return Found(None, note="There are no stones.")
+    x0, _, x1, _ = masonry.box
+    beside: dict[tuple[int, int], list[tuple[float, float]]] = {}
+    for y, runs in zip(masonry.rows.places.tolist(), masonry.rows.runs, strict=True):
+        stones = [run for run in runs if run.id in masonry.stones]
+        if stones:
+            pair = (stones[0].begin - x0, x1 - stones[-1].end)
+            for side, (gap, run) in enumerate(zip(pair, (stones[0], stones[-1]), strict=True)):
+                # Else the row runs through an open bed, or above the stones of the end.
+                if run.id in masonry.ends[side]:
+                    beside.setdefault((run.id, side), []).append((y, gap))
+    if not beside:
+        return Found(None, note="The wall has no ends.")
+    width = masonry.mean_width
+    cases = []
+    for (stone, side), rows in beside.items():
+        mean = float(np.mean([gap for _, gap in rows])) / width
+        if mean >= SHORT - 1e-9:
+            end = "left" if side == 0 else "right"
+            words = f"{mean:.2f} mean stone widths short of the {end} end"
+            line = np.array([[(x0, x1)[side], rows[0][0]], [(x0, x1)[side], rows[-1][0]]])
+            cases.append(Case((stone,), round(mean, 6), words, (line,)))
+    cases.sort(key=lambda case: (-case.value, case.stones))
+    gaps = [gap for rows in beside.values() for _, gap in rows]
+    return Found(round(float(np.mean(gaps)) / width, 9), tuple(cases))

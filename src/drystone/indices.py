@@ -1,0 +1,243 @@
+"""The indices of one action (§3.5; DESIGN 4.5)."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from drystone.kernels.boxes import left_neighbour as nearest_left
+from drystone.kernels.boxes import nearest_joints
+from drystone.kernels.raster import Mask
+from drystone.model.landscape import Box, Landscape
+from drystone.model.pose import PosedStone
+from drystone.poses import bounding_box_shape_factor
+
+NO_JOINT = 0.5
+"""IWR of a stone on the ground, or with nothing below."""
+
+
+@dataclass(frozen=True)
+class Indices:
+    """Indices of an action: of the stabilised pose on the landscape before it (LLC: after it).
+
+    Parameters
+    ----------
+    SF, LFR, GDS, NHR, IWR, IS : float
+        Eq. 3 to Eq. 10; NHR is best at 0, the others at 1.
+    LLC : float or None
+        Eq. 11; None when the wall would not stand.
+    boundary : bool
+        True for a stone at an end of the wall, where IS stands in for IWR.
+    """
+
+    SF: float
+    LFR: float
+    GDS: float
+    NHR: float
+    IWR: float
+    IS: float
+    LLC: float | None
+    boundary: bool
+
+    @property
+    def third(self) -> float:
+        """IS for a boundary stone, IWR for an inner one (§3.8)."""
+        return self.IS if self.boundary else self.IWR
+
+    def as_dict(self) -> dict[str, float | None]:
+        """Return the seven indices under their names in the paper."""
+        return {
+            "SF": self.SF, "LFR": self.LFR, "GDS": self.GDS, "NHR": self.NHR,
+            "IWR": self.IWR, "IS": self.IS, "LLC": self.LLC,
+        }  # fmt: skip
+
+
+def shape_factor(posed: PosedStone) -> float:
+    """Return SF of a posed stone, in (0, 1]; 1 for an upright rectangle (Eq. 3)."""
+    return bounding_box_shape_factor(posed.stone, posed.angle_deg)
+
+
+def local_filling_ratio_at(landscape: Landscape, posed: PosedStone, row: int, col: int) -> float:
+    """Return LFR of a stone at a position, in [0, 1]; 1 where the rays sweep nothing (Eq. 4).
+
+    Counted are the pixels of the site outside the stone that lie left of it in one of its rows or
+    below it in one of its columns; rays pass through stones; wedges count as filled.
+
+    Parameters
+    ----------
+    landscape : Landscape
+        Before the stone is placed.
+    posed : PosedStone
+        In the landscape's view.
+    row, col : int
+        Top-left corner of the mask.
+    """
+    return landscape.rays.filled_share_at(posed.silhouette, row, col)
+
+
+def swept_pixels(landscape: Landscape, posed: PosedStone, row: int, col: int) -> Mask:
+    """Return the pixels that the rays of :func:`local_filling_ratio_at` sweep (Fig. 7).
+
+    Parameters
+    ----------
+    landscape, posed, row, col
+        As there.
+
+    Returns
+    -------
+    swept : (h, w) bool array
+        As large as the landscape.
+    """
+    stone = np.zeros(landscape.occupied.shape, bool)
+    stone[row : row + posed.height_px, col : col + posed.width_px] = posed.mask
+    left_of_it = np.logical_or.accumulate(stone[:, ::-1], axis=1)[:, ::-1]
+    below_it = np.logical_or.accumulate(stone, axis=0)
+    return np.asarray((left_of_it | below_it) & ~stone)
+
+
+def geometrical_dice_score_at(landscape: Landscape, posed: PosedStone, row: int) -> float:
+    """Return GDS of a stone at a row, in [0, 1] (Eq. 5).
+
+    GDS = (|S n B| / A_S) (A_B / |S u B|), B the box over the full width of the wall up to the top
+    of what is placed.  1: inside B; 0: outside, and before the first stone.
+
+    For all rows at once it is :func:`drystone.kernels.merits.dice_score`, to the last bit.
+
+    Parameters
+    ----------
+    landscape : Landscape
+        Before the stone is placed.
+    posed : PosedStone
+        The stone.
+    row : int
+        Row of the mask's top edge.
+    """
+    mask, box_area = posed.silhouette, float(landscape.width_px * landscape.built_height_px)
+    # Pixels of the stone from its row k downwards lie in B when B's top row is k rows below its.
+    box_top = landscape.height_px - landscape.built_height_px
+    inside = int(mask.area_from[min(max(box_top - row, 0), mask.height)])
+    return (inside / posed.area_px) * (box_area / (box_area + posed.area_px - inside))
+
+
+def left_neighbour(landscape: Landscape, box: Box) -> Box | None:
+    """Return the nearest stone on the building side in the same course; None when there is none.
+
+    Its rows overlap the stone's by at least half the smaller of the two heights, and it ends left
+    of the stone's middle: outlines may interlock.
+    """
+    place = nearest_left(landscape.box_table, box)
+    return landscape.boxes[place] if place >= 0 else None
+
+
+def neighbour_height_ratio(
+    box: Box, neighbour: Box | None, course_height_px: float | None
+) -> float:
+    """Return NHR, 0 or larger; 0 is best (Eq. 6-8).
+
+    Parameters
+    ----------
+    box : Box
+        Of the stone where it is placed.
+    neighbour : Box or None
+        From :func:`left_neighbour`.
+    course_height_px : float or None
+        Mean height of the other candidates, which the first stone of a course is compared with;
+        None when there are none.
+    """
+    if neighbour is not None:
+        return abs(box.top - neighbour.top) / box.height
+    if course_height_px is None:
+        return 0.0
+    return abs(box.height - course_height_px) / box.height
+
+
+def joints_below(landscape: Landscape, box: Box, end_px: float) -> tuple[Box | None, Box | None]:
+    """Return the stones below1 and below2 of Eq. 9 (Fig. 7); None where there is none.
+
+    below1 is the stone whose top right corner is closest to the box's bottom left corner, below2
+    the one whose top left corner is closest to its bottom right corner, both among the stones
+    whose top is not above the stone's vertical centre.
+
+    Parameters
+    ----------
+    landscape, box, end_px
+        As for :func:`interlocking_width_ratio`.
+    """
+    boxes, last = landscape.boxes, landscape.width_px - end_px
+    below1, below2 = nearest_joints(landscape.box_table, box, end_px, last)
+    return boxes[below1] if below1 >= 0 else None, boxes[below2] if below2 >= 0 else None
+
+
+def interlocking_width_ratio(landscape: Landscape, box: Box, end_px: float) -> float:
+    """Return IWR in [0, 1]; high where head joints are far from those of the course below (Eq. 9).
+
+    Each term is the horizontal distance from the stone's end to the joint below
+    (:func:`joints_below`), over the width of the stone that ends there; IWR is the mean of the
+    terms that exist, each clipped to [0, 1].
+
+    Parameters
+    ----------
+    landscape : Landscape
+        Before the stone is placed.
+    box : Box
+        Of the stone where it is placed.
+    end_px : float
+        A corner nearer to an end of the wall than this is the wall's end, no joint.
+    """
+    if box.bottom == 0:
+        return NO_JOINT
+    below1, below2 = joints_below(landscape, box, end_px)
+    terms = []
+    if below1 is not None:
+        terms.append(min(1.0, abs(box.left - below1.right) / below1.width))
+    if below2 is not None:
+        terms.append(min(1.0, abs(box.right - below2.left) / below2.width))
+    return sum(terms) / len(terms) if terms else NO_JOINT
+
+
+def peak_columns(posed: PosedStone) -> tuple[int, int] | None:
+    """Return the columns of the highest points of the left and the right half of a stone.
+
+    The halves are split at the centroid; of equal heights the outermost is taken.  None when one
+    half has no column.
+    """
+    top: list[int] = posed.top.tolist()
+    x_c = posed.anchor[0]
+    # Column k is centred at k + 1/2; one exactly at the centroid belongs to both halves, as x_c
+    # does in Eq. 10.
+    left_half = top[: max(0, math.floor(x_c + 0.5))]
+    right_half = top[max(0, math.ceil(x_c - 0.5)) :]
+    if not (left_half and right_half):
+        return None
+    left = left_half.index(min(left_half))
+    return left, len(top) - 1 - right_half[::-1].index(min(right_half))
+
+
+def inward_slope(landscape: Landscape, posed: PosedStone, col: int) -> float:
+    """Return IS in [-1, 1], positive when the top falls towards the middle of the wall (Eq. 10).
+
+    The slope is that between the highest points of the halves (:func:`peak_columns`).
+
+    Parameters
+    ----------
+    landscape : Landscape
+        Gives the width of the wall.
+    posed : PosedStone
+        In the landscape's view.
+    col : int
+        Column of the mask's left edge.
+    """
+    peaks = peak_columns(posed)
+    if peaks is None or peaks[0] == peaks[1]:
+        return 0.0
+    left, right = peaks
+    # Rows count downwards: a smaller row is higher.
+    slope = int(posed.top[right] - posed.top[left]) / (left - right)
+    centre = col + posed.anchor[0] - landscape.width_px / 2
+    side = (centre > 0) - (centre < 0)
+    return min(1.0, max(-1.0, slope * side))
+
+
+def is_boundary(landscape: Landscape, box: Box, narrowest_px: float) -> bool:
+    """Say whether a stone is nearer to an end of the wall than the narrowest stone is wide."""
+    return min(box.left, landscape.width_px - box.right) < narrowest_px

@@ -1,0 +1,230 @@
+"""The indices, each against its slow twin and on walls small enough to count (Eq. 3 to 11)."""
+
+import dataclasses
+import itertools
+from statistics import fmean
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from drystone.indices import (
+    Indices,
+    geometrical_dice_score_at,
+    interlocking_width_ratio,
+    inward_slope,
+    is_boundary,
+    left_neighbour,
+    local_filling_ratio_at,
+    neighbour_height_ratio,
+    shape_factor,
+)
+from drystone.kernels.merits import dice_score
+from drystone.model.landscape import Box, Landscape, view_box
+from drystone.model.placement import Placement
+from drystone.model.pose import PosedStone
+from drystone.model.site import Site
+from drystone.model.stone import Stone
+from drystone.model.wall import Wall
+from drystone.poses import PoseBook
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
+from tests.naive import indices as naive
+from tests.naive import rays as naive_rays
+from tests.strategies import posed_on_walls, repeatable
+
+
+def test_an_upright_rectangle_has_one_and_a_turned_square_one_half() -> None:
+    square = Stone(1, np.ones((10, 10), bool))
+    assert shape_factor(PoseBook(0.3).pose(square, 90.0)) == pytest.approx(1.0)
+    assert shape_factor(PoseBook(0.3).pose(square, 45.0)) == pytest.approx(0.5)
+
+
+@repeatable()
+@given(scene=posed_on_walls())
+def test_lfr_is_that_of_rays(scene: tuple[Wall, PosedStone, int, int]) -> None:
+    wall, posed, row, col = scene
+    got = local_filling_ratio_at(Landscape.of(wall), posed, row, col)
+    assert got == pytest.approx(naive_rays.local_filling_ratio(wall.occupied, posed.mask, row, col))
+
+
+def test_nothing_swept_is_full() -> None:
+    block = PoseBook().pose(Stone(1, np.ones((2, 3), bool)), 0.0)
+    landscape = Landscape.of(Wall.empty(Site(8, 4)))
+    found = [local_filling_ratio_at(landscape, block, *at) for at in ((2, 0), (2, 4), (0, 0))]
+    assert found == [1.0, 0.0, 0.0]
+
+
+@repeatable()
+@given(scene=posed_on_walls())
+def test_gds_is_that_of_the_painted_box(scene: tuple[Wall, PosedStone, int, int]) -> None:
+    wall, posed, row, col = scene
+    stone = naive.painted(wall.occupied.shape, posed.mask, row, col)
+    landscape = Landscape.of(wall)
+    got = geometrical_dice_score_at(landscape, posed, row)
+    assert got == pytest.approx(naive.dice_score(wall.occupied, stone))
+    # The rule of placement counts with the same number, to the last bit.
+    top = wall.site.height_px - wall.height_px
+    inside = posed.mask[max(0, top - row) :].sum(dtype=np.int32)
+    box_area = float(wall.site.width_px * wall.height_px)
+    assert dice_score(np.array([inside], np.int32), posed.area_px, box_area).tolist() == [got]
+
+
+def test_inside_outside_and_between() -> None:
+    book = PoseBook()
+    block = book.pose(Stone(1, np.ones((4, 4), bool)), 0.0)
+    small = book.pose(Stone(2, np.ones((2, 2), bool)), 0.0)
+    wall = Wall.empty(Site(20, 10))
+    assert geometrical_dice_score_at(Landscape.of(wall), small, 8) == 0.0
+    landscape = Landscape.of(wall.add(Placement(block, 6, 0)))
+    got = [geometrical_dice_score_at(landscape, small, row) for row in (8, 4, 5)]
+    assert got == pytest.approx([1.0, 0.0, 0.5 * 80 / 82])
+
+
+@repeatable(80)
+@given(scene=posed_on_walls(), others=st.lists(st.integers(1, 20).map(float), max_size=3))
+def test_nhr_is_that_of_the_label_image(
+    scene: tuple[Wall, PosedStone, int, int], others: list[float]
+) -> None:
+    wall, posed, row, col = scene
+    landscape = Landscape.of(wall)
+    box = view_box(posed, row, col, landscape.height_px)
+    neighbour = left_neighbour(landscape, box)
+    stone = naive.painted(wall.occupied.shape, posed.mask, row, col)
+    expected = naive.left_neighbour(wall.labels, stone)
+    if expected is None:
+        assert neighbour is None
+    else:
+        extent = naive.extent_of(wall.labels == expected)
+        assert neighbour == Box(extent.x0, extent.x1, extent.y0, extent.y1)
+    assert neighbour_height_ratio(
+        box, neighbour, fmean(others) if others else None
+    ) == pytest.approx(naive.neighbour_height_ratio(wall.labels, stone, others))
+
+
+def landscape_of(*boxes: Box) -> Landscape:
+    return Landscape(Wall.empty(Site(60, 30)).occupied, boxes)
+
+
+def test_the_neighbour_is_the_nearest_to_the_left_at_least_half_level() -> None:
+    far, near, high = Box(0, 10, 0, 10), Box(10, 20, 0, 10), Box(12, 22, 6, 20)
+    landscape = landscape_of(far, near, high, Box(40, 50, 0, 10))
+    assert left_neighbour(landscape, Box(22, 30, 0, 10)) == near
+    assert left_neighbour(landscape, Box(22, 30, 5, 15)) == high
+    assert left_neighbour(landscape, Box(22, 30, 20, 30)) is None
+
+
+def test_level_tops_are_best_and_the_first_of_a_course_is_compared_with_the_mean() -> None:
+    box = Box(20, 30, 0, 10)
+    assert neighbour_height_ratio(box, Box(0, 10, 0, 10), 99.0) == 0.0
+    assert neighbour_height_ratio(box, Box(0, 10, 0, 14), None) == 0.4
+    assert neighbour_height_ratio(box, None, 13.0) == pytest.approx(0.3)
+    assert neighbour_height_ratio(box, None, None) == 0.0
+
+
+@repeatable(80)
+@given(scene=posed_on_walls(), end=st.integers(0, 6))
+def test_iwr_is_that_of_the_label_image(scene: tuple[Wall, PosedStone, int, int], end: int) -> None:
+    wall, posed, row, col = scene
+    landscape = Landscape.of(wall)
+    box = view_box(posed, row, col, landscape.height_px)
+    stone = naive.painted(wall.occupied.shape, posed.mask, row, col)
+    assert interlocking_width_ratio(landscape, box, end) == pytest.approx(
+        naive.interlocking(wall.labels, stone, end)
+    )
+
+
+def course(*edges: int) -> Landscape:
+    boxes = tuple(Box(a, b, 0, 10) for a, b in itertools.pairwise(edges))
+    return Landscape(Wall.empty(Site(60, 30)).occupied, boxes)
+
+
+def test_running_bond_has_one_half_and_a_stack_bond_nothing() -> None:
+    landscape = course(0, 20, 40, 60)
+    assert interlocking_width_ratio(landscape, Box(10, 30, 10, 20), 5) == 0.5
+    assert interlocking_width_ratio(landscape, Box(20, 40, 10, 20), 5) == 0.0
+
+
+def test_the_ends_of_the_wall_are_no_joints() -> None:
+    # Below is one stone up to the wall's right end; its left end at 40 is the only joint.
+    assert interlocking_width_ratio(course(40, 60), Box(36, 56, 10, 20), 5) == pytest.approx(0.8)
+    # Below is one stone from the wall's left end on.
+    assert interlocking_width_ratio(course(0, 20), Box(4, 24, 10, 20), 5) == pytest.approx(0.8)
+
+
+def test_only_one_joint_stands_alone() -> None:
+    assert interlocking_width_ratio(course(0, 30), Box(24, 44, 10, 20), 5) == 0.2
+
+
+def test_on_the_ground_and_over_nothing_lower_there_is_no_joint() -> None:
+    assert interlocking_width_ratio(course(0, 20, 40), Box(40, 50, 0, 10), 5) == 0.5
+    assert interlocking_width_ratio(course(0, 20), Box(30, 40, 1, 6), 5) == 0.5
+
+
+EMPTY = Landscape.of(Wall.empty(Site(40, 20)))
+FALLS_TO_THE_RIGHT = PoseBook().pose(
+    Stone(1, np.array([[1, 1, 0, 0], [1, 1, 1, 0], [1, 1, 1, 1]], bool)), 0.0
+)
+
+
+@repeatable(80)
+@given(scene=posed_on_walls())
+def test_is_is_that_of_the_wall_image(scene: tuple[Wall, PosedStone, int, int]) -> None:
+    wall, posed, row, col = scene
+    stone = naive.painted(wall.occupied.shape, posed.mask, row, col)
+    assert inward_slope(Landscape.of(wall), posed, col) == pytest.approx(
+        naive.inward_slope(stone, col + posed.anchor[0])
+    )
+
+
+def test_falling_inwards_is_positive_at_both_ends() -> None:
+    # Highest points: column 0 (outermost of two), and column 2, one px lower.
+    assert inward_slope(EMPTY, FALLS_TO_THE_RIGHT, 0) == pytest.approx(0.5)
+    assert inward_slope(EMPTY, FALLS_TO_THE_RIGHT, 36) == pytest.approx(-0.5)
+    assert inward_slope(EMPTY, FALLS_TO_THE_RIGHT.mirrored, 36) == pytest.approx(0.5)
+
+
+def test_a_steep_slope_is_clipped_and_a_level_top_has_none() -> None:
+    steep = np.ones((9, 2), bool)
+    steep[:8, 1] = False
+    steep_posed = PosedStone(Stone(1, steep), 0.0, 1.0, steep, (0.75, 4.0))
+    assert inward_slope(EMPTY, steep_posed, 0) == 1.0
+    flat = PoseBook().pose(Stone(1, np.ones((3, 6), bool)), 0.0)
+    assert inward_slope(EMPTY, flat, 0) == 0.0
+    assert inward_slope(EMPTY, PoseBook().pose(Stone(1, np.ones((3, 1), bool)), 0.0), 0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "expected"), [(0, 5, True), (4, 9, True), (5, 9, False), (31, 36, True)]
+)
+def test_boundary_stones_are_nearer_to_an_end_than_the_narrowest_is_wide(
+    left: int, right: int, expected: bool
+) -> None:
+    assert is_boundary(EMPTY, Box(left, right, 0, 3), narrowest_px=5) is expected
+
+
+def test_a_peak_exactly_at_the_centroid_slopes_to_neither_side() -> None:
+    pyramid = np.array([[0, 0, 1, 0, 0], [0, 1, 1, 1, 0], [1, 1, 1, 1, 1]], bool)
+    posed = PosedStone(Stone(1, pyramid), 0.0, 1.0, pyramid, (2.5, 1.0))
+    assert inward_slope(EMPTY, posed, 0) == 0.0
+
+
+INDICES = Indices(SF=0.9, LFR=0.8, GDS=0.7, NHR=0.1, IWR=0.5, IS=-0.2, LLC=0.4, boundary=False)
+
+
+def test_boundary_stones_are_judged_by_is_inner_ones_by_iwr() -> None:
+    assert INDICES.third == 0.5
+    assert dataclasses.replace(INDICES, boundary=True).third == -0.2
+
+
+def test_names_are_those_of_the_paper() -> None:
+    assert list(INDICES.as_dict()) == ["SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC"]
+    assert list(INDICES.as_dict().values()) == [0.9, 0.8, 0.7, 0.1, 0.5, -0.2, 0.4]
+
+
+def test_llc_is_the_smaller_factor_over_mu_and_none_without_one() -> None:
+    left = LimitResult(LimitStatus.OPTIMAL, "left", 0.29)
+    right = LimitResult(LimitStatus.OPTIMAL, "right", 0.58)
+    fallen = LimitResult(LimitStatus.UNSTABLE, "right")
+    assert LateralResistance(left, right, 0.58).value == 0.29 / 0.58
+    assert LateralResistance(left, fallen, 0.58).value is None
