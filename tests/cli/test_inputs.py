@@ -93,7 +93,7 @@ def test_plan_keeps_the_stones_that_it_reads(
 
 
 def test_plan_keeps_the_choice_that_it_begins_with(rubble: Path, tmp_path: Path, run: Run) -> None:
-    asked = ("plan", rubble, *WALL, "--seed", 1, "-o", tmp_path)
+    asked = ("plan", rubble, "--wall", "100x36", "--scale", 1, "--seed", 1, "-o", tmp_path)
     assert run(*asked, "--budget", 4, "--pareto").code in (0, 4)
     first = tmp_path / "pareto" / "01"
     before = (first / "plan.json").read_bytes()

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from drystone.craft import Masonry, running_joints
-from drystone.craft.look import look
+from drystone.craft import Masonry, look
 from drystone.errors import InputError
 from tests.craft.walls import box, courses
 
@@ -32,4 +31,4 @@ def test_a_wall_that_reaches_too_far_is_refused(last):
 
 
 def test_a_long_wall_of_many_stones_is_looked_at():
-    assert running_joints.find(Masonry(courses([[10.0] * 500]))).number == 1.0
+    assert look(Masonry(courses([[10.0] * 500]))).findings["running_joints"].number == 1.0

@@ -172,7 +172,7 @@ def boundary_edges(labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.floa
     --------
     >>> starts, ends = boundary_edges(np.array([[5], [3]]))
     >>> starts.tolist(), ends.tolist()
-    ([[0.0, 1.0], [0.0, 0.0]], [[1.0, 1.0], [1.0, 0.0]])
+    ([[0.0, 0.0], [0.0, 1.0]], [[1.0, 0.0], [1.0, 1.0]])
     """
     height, width = labels.shape
     cells = np.full((height + 1, width), GROUND, np.int64)
