@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-LIMITS = {"src/drystone": 71_000, "src/drystone_lab": 16_700, "tests": 61_500}
+LIMITS = {"src/drystone": 67_600, "src/drystone_lab": 16_200, "tests": 60_800}
 """Most lines of each; lower them when the code shrinks, never raise them without a reason."""
 
 
