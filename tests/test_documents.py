@@ -45,6 +45,7 @@ NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
 
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
+CODE_FILE = re.compile(r"`([\w/]+/\w+\.(?:py|pyx|pxd))`")
 TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 TABLE = re.compile(r"<!-- table (\w+) -->\n(.*?)<!-- end -->", re.DOTALL)
 
@@ -197,6 +198,19 @@ def test_every_command_line_is_understood(name: str) -> None:
     for words in command_lines(ROOT / name):
         if words not in (["--help"], ["--version"]):
             assert parser.parse_args(words).command == words[0]
+
+
+def test_files_of_code_that_documents_name_are_there() -> None:
+    named = {
+        (page.name, path)
+        for page in PAGES
+        for path in CODE_FILE.findall(page.read_text(encoding="utf-8"))
+        if "NAME" not in path
+    }
+    homes = [ROOT / name for name in ("", "src", "src/drystone", "src/drystone_lab")]
+    lost = {one for one in named if not any((home / one[1]).is_file() for home in homes)}
+    assert len(named) > 20
+    assert lost == set()
 
 
 def test_the_readme_shows_every_command() -> None:
