@@ -56,7 +56,7 @@ class Planner:
     3
     """
 
-    def __init__(  # noqa: PLR0913 - options by keyword
+    def __init__(
         self,
         stones: StoneSet,
         site: Site,

@@ -41,7 +41,7 @@ class Replayed(NamedTuple):
     solves: Solves
 
 
-def replayed(  # noqa: PLR0913 - steps, what they need, and how
+def replayed(
     start: Build,
     groups: Sequence[Group],
     course_heights_px: Mapping[int, float],
