@@ -230,6 +230,31 @@ def test_truncated_files(tmp_path, kind, kept):
     assert caught.value.where == "a.png"
 
 
+@pytest.mark.parametrize(
+    ("depth", "colour_type"), [(1, 0), (2, 3), (8, 0), (16, 0), (8, 2), (8, 6)]
+)
+def test_a_png_that_ends_before_its_last_row_is_damaged(tmp_path, depth, colour_type):
+    channels = {0: 1, 2: 3, 3: 1, 6: 4}[colour_type] * (2 if depth == 16 else 1)
+    data = bytearray(png(np.ones((5, 8 * channels), np.uint8), min(depth, 8), colour_type))
+    header = data[data.index(b"IHDR") :][:17]
+    header[4:8], header[12] = struct.pack(">I", 8), depth
+    header[8:12] = struct.pack(">I", 6)
+    data[12:33] = header + struct.pack(">I", zlib.crc32(header))
+    (tmp_path / "a.png").write_bytes(data)
+    with pytest.raises(InputError, match=r"E106 .*all of its rows"):
+        read_stones(tmp_path / "a.png")
+
+
+def test_a_tiff_that_lacks_a_strip_is_damaged(tmp_path):
+    data = tiff(np.ones((5, 7), np.uint8), compression="deflate")
+    height = data.index(struct.pack("<H", 257))
+    (tmp_path / "a.tif").write_bytes(
+        data[: height + 8] + struct.pack("<H", 50) + data[height + 10 :]
+    )
+    with pytest.raises(InputError, match=r"E106 .*all of its strips"):
+        read_stones(tmp_path / "a.tif")
+
+
 def test_empty_and_missing_files(tmp_path):
     (tmp_path / "a.png").write_bytes(b"")
     with pytest.raises(InputError, match=r"E106.*0 bytes"):

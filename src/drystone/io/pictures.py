@@ -6,6 +6,8 @@ which one format starts another program, and its guard against huge pictures is 
 
 import io
 import re
+import struct
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 
@@ -33,6 +35,9 @@ _FORMATS: tuple[tuple[str, tuple[bytes, ...], type[ImageFile.ImageFile]], ...] =
 _JPEG_MARKER = re.compile(rb"\xff++([^\x00\xd0-\xd7])")
 _MOST_SCANS = 100
 """Progressive pictures have about ten."""
+
+_PIECE = 2**22
+"""Bytes that are unpacked at once where they are only counted."""
 
 _MOST_SIDE_PX = 1_000_000
 """Decoders fill whole rows at once, also such as are not there."""
@@ -82,9 +87,37 @@ def opened(data: bytes, where: str, check: Callable[[int, int], None]) -> Iterat
         try:
             image = plugin(io.BytesIO(data))
             check(*image.size)
+            if kind == "PNG" and not _holds_its_rows(data):
+                raise damaged("it does not hold all of its rows", where)
             yield image
         except Image.DecompressionBombError as error:  # a frame larger than the picture
             raise InputError("E110", f"{error}.", where=where, cure=_CURE) from error
+
+
+def _holds_its_rows(data: bytes) -> bool:
+    """Tell whether a PNG has as many bytes as its header says: Pillow fills the rest with 0.
+
+    What cannot be told from a damaged file is left to Pillow.
+    """
+    channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}
+    if len(data) < 33 or data[25] not in channels:
+        return True
+    width, height, bits = struct.unpack_from(">IIB", data, 16)
+    row = width * bits * channels[data[25]]
+    # Each row begins with its filter; interlaced ones are packed otherwise.
+    missing = height * row // 8 if data[28] else height * (1 + -(-row // 8))
+    place, decoder = 8, zlib.decompressobj()
+    while missing > 0 and place + 8 <= len(data):
+        length, name = struct.unpack_from(">I4s", data, place)
+        piece = data[place + 8 : place + 8 + length] if name == b"IDAT" else b""
+        place += 12 + length
+        try:
+            while piece and missing > 0:
+                missing -= len(decoder.decompress(piece, _PIECE))
+                piece = decoder.unconsumed_tail
+        except zlib.error:
+            return True
+    return bool(missing <= 0)
 
 
 def _scans(data: bytes) -> int:

@@ -138,6 +138,9 @@ def values(data: bytes, where: str, check: Callable[[int, int], None]) -> NDArra
         compression, bits, kind = (
             int(n) for n in (page.compression, page.bitspersample, page.sampleformat)
         )
+        if len(page.dataoffsets) < math.prod(page.chunked):
+            # tifffile fills the rest with 0.
+            raise damaged("it does not hold all of its strips", where)
         negative = int(page.photometric) == 0
         size = math.prod(page.shaped) * max(1, bits // 8)
         packed = [
