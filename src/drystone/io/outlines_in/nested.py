@@ -1,7 +1,7 @@
 """Which of many masks that lie in each other are stones."""
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Container, Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ INSIDE = 0.8
 """Share of a mask that lies in another one for it to count as its part."""
 
 _MOST_PAIRS = 200_000
-_MOST_SHARED_PX = 1_000_000_000
+_MOST_SHARED_PX = 300_000_000
 
 
 def pixels_of(stone: OutlinedStone) -> PlacedMask | None:
@@ -106,12 +106,11 @@ def without_nested(
     meeting = [(keys[i], keys[j]) for i, j in meeting_boxes(list(masks.values()), where)]
     ground = _with_stones_in_holes(masks, meeting)
     masks = {i: mask for i, mask in masks.items() if i not in ground}
-    again = _Shares(masks, meeting).same()
-    shares = _Shares({i: mask for i, mask in masks.items() if i not in again}, meeting)
+    shares = _shares(masks, meeting)
+    again = shares.same()
+    shares = shares.without(again)
     groups = shares.groups()
-    rest = {i: m for i, m in masks.items() if i not in again and i not in groups}
-    shares = _Shares(rest, meeting)
-    parts_of = shares.wholes()
+    parts_of = shares.without(groups).wholes()
     left = {*ground, *again, *groups, *parts_of}
     name = [stone.id for stone in stones]
     said = [f"{name[i]} (the ground: others lie in its holes)" for i in sorted(ground)]
@@ -148,49 +147,63 @@ def _with_stones_in_holes(
     }
 
 
-class _Shares:
-    """How much of which mask lies in which."""
+def _shares(masks: dict[int, PlacedMask], meeting: Iterable[tuple[int, int]]) -> "_Shares":
+    common: dict[int, dict[int, int]] = {i: {} for i in masks}
+    for i, j in meeting:
+        shared = common_px(masks[i], masks[j]) if i in masks and j in masks else 0
+        if shared:
+            common[i][j] = common[j][i] = shared
+    return _Shares(masks, {i: int(mask.mask.sum()) for i, mask in masks.items()}, common)
 
-    def __init__(self, masks: dict[int, PlacedMask], meeting: Iterable[tuple[int, int]]) -> None:
-        self._masks = masks
-        self._areas = {i: int(mask.mask.sum()) for i, mask in masks.items()}
-        self._common: dict[int, dict[int, int]] = {i: {} for i in masks}
-        for i, j in meeting:
-            common = common_px(masks[i], masks[j]) if i in masks and j in masks else 0
-            if common:
-                self._common[i][j] = self._common[j][i] = common
+
+@dataclass(frozen=True)
+class _Shares:
+    """How many pixels of which mask lie in which: ``common[i][j]``."""
+
+    masks: dict[int, PlacedMask]
+    areas: dict[int, int]
+    common: dict[int, dict[int, int]]
+
+    def without(self, left: Container[int]) -> "_Shares":
+        """Return the same of the masks that stay."""
+        common = {
+            i: {j: px for j, px in shared.items() if j not in left}
+            for i, shared in self.common.items()
+            if i not in left
+        }
+        return _Shares({i: self.masks[i] for i in common}, self.areas, common)
 
     def _order(self, i: int) -> tuple[int, int]:
         """Larger first; of equal ones the earlier."""
-        return -self._areas[i], i
+        return -self.areas[i], i
 
     def same(self) -> dict[int, int]:
         """Return for each mask that repeats a larger one which that is."""
-        return self._within(lambda i, j, common: self._areas[i] + self._areas[j] - common)
+        return self._within(lambda i, j, common: self.areas[i] + self.areas[j] - common)
 
     def wholes(self) -> dict[int, int]:
         """Return for each mask that lies in a larger one which that is."""
-        return self._within(lambda i, _j, _common: self._areas[i])
+        return self._within(lambda i, _j, _common: self.areas[i])
 
     def groups(self) -> dict[int, list[int]]:
         """Return for each mask that smaller ones cover which those are."""
         found = {}
-        for i, mask in self._masks.items():
+        for i, mask in self.masks.items():
             parts = self._parts(i)
-            union = united([self._masks[j] for j in parts])
-            if union is not None and common_px(mask, union) >= INSIDE * self._areas[i]:
+            union = united([self.masks[j] for j in parts])
+            if union is not None and common_px(mask, union) >= INSIDE * self.areas[i]:
                 found[i] = parts
         return found
 
     def _parts(self, i: int) -> list[int]:
         """Return the smaller masks that lie in one, and in no other that lies in it."""
         inside = [
-            j for j, common in self._common[i].items()
-            if self._order(i) < self._order(j) and common >= INSIDE * self._areas[j]
+            j for j, common in self.common[i].items()
+            if self._order(i) < self._order(j) and common >= INSIDE * self.areas[j]
         ]  # fmt: skip
         parts: list[int] = []
         for j in sorted(inside, key=self._order):
-            if all(self._common[j].get(k, 0) < INSIDE * self._areas[j] for k in parts):
+            if all(self.common[j].get(k, 0) < INSIDE * self.areas[j] for k in parts):
                 parts.append(j)
         return sorted(parts) if len(parts) > 1 else []
 
@@ -198,8 +211,8 @@ class _Shares:
         """Return which masks share `INSIDE` of something with a larger one that is kept."""
         kept: list[int] = []
         found: dict[int, int] = {}
-        for i in sorted(self._masks, key=self._order):
-            common = self._common[i]
+        for i in sorted(self.masks, key=self._order):
+            common = self.common[i]
             around = [j for j in kept if j in common and common[j] >= INSIDE * of(i, j, common[j])]
             if around:
                 found[i] = around[0]
