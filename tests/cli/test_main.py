@@ -154,3 +154,33 @@ def test_libraries_that_print_by_themselves_are_silent(tmp_path: Path) -> None:
         check=True,
     )
     assert json.loads(done.stdout)["F_LR"] is not None
+
+
+@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_that_a_module_turns_into_an_error_is_still_a_signal(
+    sent: signal.Signals, code: int, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def imported(_: object) -> int:
+        try:
+            signal.raise_signal(sent)
+        except KeyboardInterrupt as interrupt:
+            raise ImportError("initialization failed") from interrupt
+        return ExitCode.DONE
+
+    monkeypatch.setattr(command, "run", imported)
+    ran = run("stones", "x.png")
+    assert (ran.code, ran.err) == (
+        code,
+        f"drystone: {'terminated' if code == 143 else 'interrupted'}\n",
+    )
+
+
+def test_a_signal_that_comes_while_a_command_is_loaded(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def loaded(*_: object) -> object:
+        signal.raise_signal(signal.SIGTERM)
+
+    monkeypatch.setattr(sys.modules["drystone.cli.main"], "build_parser", loaded)
+    ran = run("stones", "x.png")
+    assert (ran.code, ran.err) == (143, "drystone: terminated\n")

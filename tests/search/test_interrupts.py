@@ -16,16 +16,27 @@ def handlers() -> list[object]:
 
 def test_termination_is_an_interrupt_and_leaves_no_handler_behind() -> None:
     before = handlers()
-    with terminable() as terminated:
-        assert not terminated()
+    with terminable() as came:
+        assert came() is None
         with pytest.raises(KeyboardInterrupt) as caught:
             signal.raise_signal(signal.SIGTERM)
         assert isinstance(caught.value, Terminated)
-        assert terminated()
+        assert came() == signal.SIGTERM
         with pytest.raises(KeyboardInterrupt) as caught:
             signal.raise_signal(signal.SIGINT)
         assert not isinstance(caught.value, Terminated)
+        assert came() == signal.SIGINT
     assert handlers() == before
+
+
+def test_an_interrupt_that_is_ignored_stays_ignored() -> None:
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with terminable() as came:
+            signal.raise_signal(signal.SIGINT)
+            assert came() is None
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @pytest.mark.parametrize("first", SIGNALS)
@@ -37,13 +48,13 @@ def test_what_comes_while_they_are_held_comes_after_it_once(first: signal.Signal
             signal.raise_signal(one)
             done.append(one)
 
-    with terminable() as terminated:
+    with terminable() as came:
         before = handlers()
         with pytest.raises(KeyboardInterrupt) as caught, held():
             raise_all()
         assert len(done) == 3
         assert isinstance(caught.value, Terminated) == (first == signal.SIGTERM)
-        assert terminated() == (first == signal.SIGTERM)
+        assert came() == first
         assert handlers() == before
 
 
@@ -60,10 +71,10 @@ def test_other_threads_set_no_handlers() -> None:
     seen: list[list[object]] = []
 
     def look() -> None:
-        with terminable() as terminated, held():
-            seen.append([*handlers(), terminated()])
+        with terminable() as came, held():
+            seen.append([*handlers(), came()])
 
     thread = Thread(target=look)
     thread.start()
     thread.join()
-    assert seen == [[*handlers(), False]]
+    assert seen == [[*handlers(), None]]

@@ -1,6 +1,7 @@
 """Entry point: parse, dispatch, and turn errors into exit codes."""
 
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
@@ -34,41 +35,41 @@ def main(argv: Sequence[str] | None = None) -> int:
     0 done, 2 usage, 3 bad input, 4 wall incomplete, 5 a check failed, 70 a fault of drystone
     itself, 130 interrupted, 143 terminated.  With ``--debug`` errors are raised.
     """
-    with terminable() as terminated:
-        code = _called(argv)
-    return int(ExitCode.TERMINATED) if code == ExitCode.INTERRUPTED and terminated() else code
+    words = sys.argv[1:] if argv is None else argv
+    with terminable() as came:
+        try:
+            code = _called(words)
+            stopped = code == ExitCode.INTERRUPTED and came() == signal.SIGTERM
+            return int(ExitCode.TERMINATED) if stopped else code
+        except BrokenPipeError:
+            return _leave_pipe()
+        except (Exception, KeyboardInterrupt) as error:
+            # A module that is being imported may turn an interrupt into an error of its own.
+            if isinstance(error, KeyboardInterrupt) or came():
+                terminated = isinstance(error, Terminated) or came() == signal.SIGTERM
+                print(f"drystone: {'terminated' if terminated else 'interrupted'}", file=sys.stderr)
+                return int(ExitCode.TERMINATED if terminated else ExitCode.INTERRUPTED)
+            if "--debug" in words:
+                raise
+            coded = _coded(error, next((word for word in words if word[:1] != "-"), ""))
+            print(f"drystone: {coded}", file=sys.stderr)
+            return int(coded.exit_code)
 
 
-def _called(argv: Sequence[str] | None) -> int:
-    """Do what the command line says, and turn what went wrong into an exit code."""
+def _called(words: Sequence[str]) -> int:
+    """Do what the command line says."""
     _prepare_output()
     if os.environ.get(VARIABLE) and (wrong := fault()) is not None:
-        error = UsageError(
+        raise UsageError(
             "E143",
             f"the kernels asked for are not there: {wrong}.",
             where=VARIABLE,
             cure=f"Set it to one of {', '.join(CHOICES)}, or install with a compiler.",
         )
-        print(f"drystone: {error}", file=sys.stderr)
-        return int(error.exit_code)
-    words = sys.argv[1:] if argv is None else argv
     arguments = build_parser(words).parse_args(words)
-    try:
-        code = int(arguments.run(arguments))
-        # A reader that went away is noticed here and not when the interpreter ends.
-        sys.stdout.flush()
-    except BrokenPipeError:
-        return _leave_pipe()
-    except KeyboardInterrupt as error:
-        how = "terminated" if isinstance(error, Terminated) else "interrupted"
-        print(f"drystone: {how}", file=sys.stderr)
-        return int(ExitCode.INTERRUPTED)
-    except Exception as error:
-        if arguments.debug:
-            raise
-        coded = _coded(error, arguments.command)
-        print(f"drystone: {coded}", file=sys.stderr)
-        return int(coded.exit_code)
+    code = int(arguments.run(arguments))
+    # A reader that went away is noticed here and not when the interpreter ends.
+    sys.stdout.flush()
     return code
 
 

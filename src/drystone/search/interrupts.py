@@ -14,30 +14,35 @@ class Terminated(KeyboardInterrupt):
 
 
 @contextmanager
-def terminable() -> Iterator[Callable[[], bool]]:
-    """Let SIGTERM raise :class:`Terminated`, as Ctrl-C raises an interrupt.
+def terminable() -> Iterator[Callable[[], int | None]]:
+    """Let SIGTERM raise :class:`Terminated`, as Ctrl-C raises an interrupt, and note both.
 
     Only the main thread may set handlers; in others nothing changes.
 
     Yields
     ------
     callable
-        Says whether the signal has come.
+        Returns the signal that came last, or None.
     """
     came: list[int] = []
 
-    def terminate(number: int, _: FrameType | None) -> None:
+    def end(number: int, _: FrameType | None) -> None:
         came.append(number)
-        raise Terminated
+        raise Terminated if number == signal.SIGTERM else KeyboardInterrupt
 
     if not _may_set():
-        yield lambda: False
+        yield lambda: None
         return
-    before = signal.signal(signal.SIGTERM, terminate)
+    before = {one: signal.getsignal(one) for one in SIGNALS}
+    for one, handler in before.items():
+        # What runs in the background of a shell does not hear Ctrl-C.
+        if one != signal.SIGINT or handler != signal.SIG_IGN:
+            signal.signal(one, end)
     try:
-        yield lambda: bool(came)
+        yield lambda: came[-1] if came else None
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for one, handler in before.items():
+            signal.signal(one, handler)
 
 
 @contextmanager
