@@ -13,17 +13,7 @@ BLOCKS = "blocks.json"
 
 
 def write_blocks(wall: Wall, model: RigidBlockModel, folder: Path) -> Path | None:
-    """Write the block model of a wall of outlines; None for a wall of pixels, whose image it is.
-
-    Parameters
-    ----------
-    wall : Wall
-        The finished wall.
-    model : RigidBlockModel
-        Of the wall, in source px.
-    folder : Path
-        Where the plan is.
-    """
+    """Write the block model of a wall of outlines; None for a wall of pixels, whose image it is."""
     path = folder / BLOCKS
     if wall.outlines is None:
         return None
@@ -32,20 +22,7 @@ def write_blocks(wall: Wall, model: RigidBlockModel, folder: Path) -> Path | Non
 
 
 def blocks_to_json(wall: Wall, model: RigidBlockModel) -> dict[str, Any]:
-    """Return the block model of a wall of outlines, in the plan's units.
-
-    Parameters
-    ----------
-    wall : Wall
-        With outlines.
-    model : RigidBlockModel
-        Of the wall, in source px.
-
-    Raises
-    ------
-    ValueError
-        When the stones of the wall are their pixels.
-    """
+    """Return the block model of a wall of outlines, in the plan's units."""
     if wall.outlines is None:
         raise ValueError("the stones of this wall are their pixels")
     outlines = wall.outlines

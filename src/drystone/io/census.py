@@ -12,18 +12,10 @@ from drystone.kernels.ids import counted, looked_up, numbered
 
 @dataclass(frozen=True, eq=False)
 class Census:
-    """The different values of an image.
+    """The different values of an image."""
 
-    Parameters
-    ----------
-    index : (h, w) int32 array
-        Pixel by pixel 1 + the position of its value in `values`.
-    values : (n,) int64 array
-        Different values, ascending.
-    """
-
-    index: NDArray[np.int32]
-    values: NDArray[np.int64]
+    index: NDArray[np.int32]  # (h, w), pixel by pixel 1 + the position of its value in `values`
+    values: NDArray[np.int64]  # (n,), different values, ascending
 
     @cached_property
     def counts(self) -> NDArray[np.int64]:
@@ -56,12 +48,5 @@ class Census:
 
 
 def take_census(ids: NDArray[Any]) -> Census:
-    """Count the values of an image of integers, none of them negative.
-
-    Examples
-    --------
-    >>> take_census(np.array([[0, 7], [70000, 7]])).index
-    array([[1, 2],
-           [3, 2]], dtype=int32)
-    """
+    """Count the values of an image of integers, none of them negative."""
     return Census(*numbered(ids))

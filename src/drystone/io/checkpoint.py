@@ -29,28 +29,16 @@ LARGEST_BYTES = 200_000_000
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """A plan that is being made.
+    """A plan that is being made."""
 
-    Parameters
-    ----------
-    made_of : mapping
-        All that shapes the plan: stones, wall, seed, settings, of JSON's own types.
-    standing : Standing or None
-        Where its search stands; None while there is but a first wall.
-    """
-
+    # all that shapes the plan: stones, wall, seed, settings, of JSON's own types
     made_of: Mapping[str, Any]
+    # where its search stands; None while there is but a first wall
     standing: Standing | None = None
 
 
 def write_checkpoint(checkpoint: Checkpoint, folder: Path) -> None:
-    """Write a checkpoint into the folder of its plan.
-
-    Raises
-    ------
-    PlanError
-        E206: it cannot be written.
-    """
+    """Write a checkpoint into the folder of its plan."""
     data = as_json(
         {
             "schema": SCHEMA,
@@ -66,27 +54,7 @@ def write_checkpoint(checkpoint: Checkpoint, folder: Path) -> None:
 def read_checkpoint(
     folder: Path, stone_ids: Collection[int], search: SearchSettings
 ) -> Checkpoint | None:
-    """Read the checkpoint in the folder of a plan.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the plan.
-    stone_ids : collection of int
-        Stones that there are.
-    search : SearchSettings
-        By which the search goes on.
-
-    Returns
-    -------
-    checkpoint : Checkpoint or None
-        None when there is none.
-
-    Raises
-    ------
-    PlanError
-        E207: it is damaged, of another program, or of another version of this one.
-    """
+    """Read the checkpoint in the folder of a plan."""
     path = folder / CHECKPOINT
     if not path.is_file():
         return None

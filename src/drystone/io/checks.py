@@ -66,21 +66,7 @@ def check_background(
     where: str,
     cure: str = "Use --background {0} (background={0} in Python)",
 ) -> None:
-    """Refuse a picture whose background is plainly another value (E105).
-
-    Parameters
-    ----------
-    index : (h, w) integer array
-        Positions (from 1) of the pixels' values in the census.
-    census : Census
-        The values of the picture; of a mask its two ends.
-    background : int
-        What the settings say.
-    where : str
-        Name for messages.
-    cure : str
-        What to do when {0} is the background.
-    """
+    """Refuse a picture whose background is plainly another value (E105)."""
     common = int(counted(index, len(census.values)).argmax())
     value = int(census.values[common - 1])
     if value == background:
@@ -141,8 +127,6 @@ def _plain_areas(brightness: NDArray[Any]) -> int:
 def check_not_photo(census: Census, where: str) -> None:
     """Refuse a picture whose neighbouring pixels mostly differ (E102).
 
-    Notes
-    -----
     Measured on pairs of neighbours of which one is not the most frequent value: in stones wider
     than 3 px most of them are equal, in photos few are.
     """
@@ -170,18 +154,6 @@ def blended(census: Census, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
     That is what anti-aliasing, blur and interpolation leave at edges; a small stone on plain
     background is the extreme of its surroundings.
-
-    Parameters
-    ----------
-    census : Census
-        Of the picture; positions keep the order of values.
-    chosen : (h, w) bool array
-        Pixels to judge.
-
-    Returns
-    -------
-    (n,) bool array
-        In the order of ``np.nonzero(chosen)``.
     """
     here = census.index[chosen]
     low = ndimage.minimum_filter(census.index, 5)[chosen]

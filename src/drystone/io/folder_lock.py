@@ -28,20 +28,6 @@ def locked(folder: Path, within: str = "") -> Iterator[None]:
 
     Files that a killed run was writing there are removed.  Where the file system knows no locks
     there is none.
-
-    Parameters
-    ----------
-    folder : Path
-        That files can be written to.
-    within : str
-        Pattern of the folders in it that belong to it, and in which no other run may be.
-
-    Raises
-    ------
-    UsageError
-        E149: another run works there.
-    PlanError
-        E206: no file can be written there.
     """
     path = folder / LOCK
     file = _taken(path)

@@ -21,16 +21,6 @@ def foreign(failed: Callable[[str], DrystoneError]) -> Iterator[None]:
 
     Parsers of other people raise anything on damaged bytes, so there is no list of what to expect.
     Only the call into them belongs inside: a fault of ours must stay one.
-
-    Parameters
-    ----------
-    failed : callable
-        Makes the error from a reason.
-
-    Raises
-    ------
-    DrystoneError
-        What `failed` makes; E110 where the memory is not large enough.
     """
     try:
         with warnings.catch_warnings():

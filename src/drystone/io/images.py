@@ -23,38 +23,16 @@ _MODES = frozenset({"1", "L", "P", "LA", "PA", "I", "I;16", "F", "RGB", "RGBA"})
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """The values of a picture as the file holds them.
+    """The values of a picture as the file holds them."""
 
-    Parameters
-    ----------
-    values : (h, w) or (h, w, c) array
-        Values, palette indices or colour channels, without what says that it is alpha; c = 2 and
-        4 are left for arrays, and for channels of a TIFF that do not say what they are.
-    lossy : bool
-        True when the format does not keep values exactly.
-    """
-
+    # (h, w), values, palette indices or colour channels, without what says that it is alpha; c =
+    # 2 and 4 are left for arrays, and for channels of a TIFF that do not say what they are
     values: NDArray[Any]
-    lossy: bool = False
+    lossy: bool = False  # true when the format does not keep values exactly
 
 
 def decode(data: bytes, where: str, max_px: int) -> Picture:
-    """Decode the bytes of a picture file; the format is told by its first bytes.
-
-    Parameters
-    ----------
-    data : bytes
-        The whole file.
-    where : str
-        Its name, for messages.
-    max_px : int
-        Larger pictures are refused (E110) before they are decoded.
-
-    Raises
-    ------
-    InputError
-        E106 empty or damaged, E107 unknown format, E109 several pages, E110 too large.
-    """
+    """Decode the bytes of a picture file; the format is told by its first bytes."""
     if not data:
         raise InputError(
             "E106", "the file is empty (0 bytes).", where=where, cure="Export it again."

@@ -17,18 +17,6 @@ def json_of(text: str, **hooks: Any) -> Any:
     """Return what JSON says; ValueError when it is none, or is nested deeper than `DEEPEST`.
 
     Whoever walks through it may then call itself for every level.
-
-    Parameters
-    ----------
-    text : str
-        All of it.
-    **hooks
-        Of :func:`json.loads`.
-
-    Examples
-    --------
-    >>> json_of('{"a": [1, 2]}')
-    {'a': [1, 2]}
     """
     # Before it is parsed: Python's own limit depends on how deep the caller is.
     if _depth(text) > DEEPEST:

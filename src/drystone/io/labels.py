@@ -17,58 +17,21 @@ _GREY_TOLERANCE = 48
 
 @dataclass(frozen=True, eq=False)
 class IdImage:
-    """An image of ids, and how bright it was.
+    """An image of ids, and how bright it was."""
 
-    Parameters
-    ----------
-    ids : (h, w) integer array
-        Values in 0 ... 2^32-1; the background still has its own.
-    background : int
-        The value that is not stone.
-    brightness : (h, w) integer array or None
-        Largest channel of a colour picture; None when `ids` are its values.
-    nearly_grey : bool
-        False when the picture shows colours.
-    notices : tuple of Notice
-        How colours became ids.
-    """
-
-    ids: NDArray[Any]
-    background: int
+    ids: NDArray[Any]  # (h, w), values in 0 ... 2^32-1; the background still has its own
+    background: int  # the value that is not stone
+    # (h, w), largest channel of a colour picture; None when `ids` are its values
     brightness: NDArray[Any] | None = None
-    nearly_grey: bool = True
-    notices: tuple[Notice, ...] = ()
+    nearly_grey: bool = True  # false when the picture shows colours
+    notices: tuple[Notice, ...] = ()  # how colours became ids
 
 
 def to_ids(values: NDArray[Any], background: int, where: str) -> IdImage:
     """Read ids from grey values, palette indices, numbers or colours.
 
-    Parameters
-    ----------
-    values : (h, w) or (h, w, c) array
-        Of bools, integers or whole floats; c = 1, 2 (grey, alpha), 3 (RGB) or 4 (RGBA), where
-        alpha tells nothing that the other channels do not.
-    background : int
-        The value that is not stone; -1 is allowed for arrays.
-    where : str
-        Name for messages.
-
-    Raises
-    ------
-    LabelImageError
-        E108 values that cannot be ids.
-    InputError
-        E109 not one picture, or a last channel that is no alpha.
-
-    Notes
-    -----
     Where R = G = B the id is the grey value, else R + 256 G + 65536 B; alpha is ignored.  When
     that would give two colours one id, R + 256 G + 65536 B is used for the greys as well.
-
-    Examples
-    --------
-    >>> to_ids(np.array([[[44, 1, 0], [7, 7, 7]]], np.uint8), 0, "two.png").ids
-    array([[300,   7]], dtype=uint32)
     """
     values = _as_picture(values, where)
     values = _whole_numbers(values, where)

@@ -16,13 +16,7 @@ def short(text: object, most: int = 100) -> str:
 
 
 def listed(things: Iterable[object], between: str = ", ", most: int = SHOWN) -> str:
-    """Return the first of some things, and how many more there are.
-
-    Examples
-    --------
-    >>> listed(range(2, 12)), listed("ab", "; ")
-    ('2, 3, 4, 5, 6, 7, 8, 9, and 2 more', 'a; b')
-    """
+    """Return the first of some things, and how many more there are."""
     found = list(things)
     said = [short(thing, _LONGEST) for thing in found[:most]]
     if len(found) > most:

@@ -23,50 +23,21 @@ _NOISE = 1 / 16
 
 @dataclass(frozen=True, eq=False)
 class BinaryMask:
-    """A picture read as stone and background.
+    """A picture read as stone and background."""
 
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        True where there is stone.
-    background, stone : int
-        The two values of the picture.
-    between_px : int
-        Pixels with values between them (anti-aliasing), given to the nearer one.
-    lost : float
-        Share of the plain areas off the background that are taken for background, where a mask is
-        forced.
-    """
-
-    mask: Mask
-    background: int
-    stone: int
-    between_px: int
+    mask: Mask  # (h, w), true where there is stone
+    background: int  # the two values of the picture
+    stone: int  # the two values of the picture
+    between_px: int  # pixels with values between them (anti-aliasing), given to the nearer one
+    # share of the plain areas off the background that are taken for background, where a mask is
+    # forced
     lost: float = 0.0
 
 
 def find_mask(
     image: IdImage, ids: Census, wanted: bool | None, *, lossy: bool = False
 ) -> BinaryMask | None:
-    """Read a picture as a binary mask if it is one.
-
-    Parameters
-    ----------
-    image : IdImage
-        The picture.
-    ids : Census
-        Of ``image.ids``; at least two values.
-    wanted : bool or None
-        True forces a mask, False forbids it, None decides: two values, one of them the
-        background, are a mask, and so is a picture of two values and blended edges.
-    lossy : bool
-        True when compression left noise in the background.
-
-    Returns
-    -------
-    BinaryMask or None
-        None when the picture holds ids.
-    """
+    """Read a picture as a binary mask if it is one."""
     if wanted is False:
         return None
     if len(ids.values) == 2 and (wanted or image.background in ids.values):
@@ -112,15 +83,7 @@ def _lost(census: Census, binary: BinaryMask, noise: float) -> float:
 
 
 def components(mask: Mask) -> tuple[NDArray[np.int32], int]:
-    """Label the 8-connected components of a mask, from 1 in row order.
-
-    Examples
-    --------
-    >>> components(np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]], bool))[0]
-    array([[0, 0, 1],
-           [2, 0, 0],
-           [0, 2, 0]], dtype=int32)
-    """
+    """Label the 8-connected components of a mask, from 1 in row order."""
     found, count = ndimage.label(mask, _WHOLE)
     return np.asarray(found, np.int32), int(count)
 

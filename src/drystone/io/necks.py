@@ -28,25 +28,8 @@ def neck_width_px(mask: Mask, most_px: int = 2**22) -> int | None:
 
     A width of 0 means that the parts meet at a corner of pixels only.
 
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        One 8-connected piece.
-    most_px : int
-        A larger mask, or one that is noise, is looked at in a coarser picture.  There a neck that
-        is thinner than one of its pixels counts as one of them.
-
-    Notes
-    -----
     The neck is the smallest erosion that leaves two parts, each thicker than the neck by a
     factor 1.6 and with at least 15 % of what the erosion leaves.
-
-    Examples
-    --------
-    >>> mask = np.zeros((20, 44), bool)
-    >>> mask[:, :20] = mask[:, 24:] = mask[8:12] = True
-    >>> neck_width_px(mask)
-    4
     """
     step = math.ceil(math.sqrt(mask.size / most_px))
     depth = ndimage.distance_transform_edt(np.pad(mask[::step, ::step], 1))

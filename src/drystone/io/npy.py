@@ -14,22 +14,7 @@ BEGINNING = b"\x93NUMPY"
 
 
 def array_of(data: bytes, where: str, max_px: int) -> NDArray[Any]:
-    """Return the array of an NPY file; it can be read only.
-
-    Parameters
-    ----------
-    data : bytes
-        The whole file.
-    where : str
-        Its name, for messages.
-    max_px : int
-        Larger arrays are refused.
-
-    Raises
-    ------
-    InputError
-        E106 damaged, or with Python objects in it, E110 too large.
-    """
+    """Return the array of an NPY file; it can be read only."""
     with foreign(lambda why: damaged(why, where)):
         file = io.BytesIO(data)
         version = np.lib.format.read_magic(file)

@@ -32,31 +32,15 @@ MOST_PIECES = 100_000
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """The pixels of one id before they are a stone.
+    """The pixels of one id before they are a stone."""
 
-    Parameters
-    ----------
-    id : int
-        Positive.
-    mask : (h, w) bool array
-        Its pixels within its bounding box.
-    row, col : int
-        Upper left pixel of the box in its picture.
-    picture_height : int
-        Of the picture, px.
-    others : (h, w) bool array or None
-        Pixels of the box that belong to other stones.
-    name : str
-        File name of a one-stone mask.
-    """
-
-    id: int
-    mask: Mask
-    row: int
-    col: int
-    picture_height: int
-    others: Mask | None = None
-    name: str = ""
+    id: int  # positive
+    mask: Mask  # (h, w), its pixels within its bounding box
+    row: int  # upper left pixel of the box in its picture
+    col: int  # upper left pixel of the box in its picture
+    picture_height: int  # of the picture, px
+    others: Mask | None = None  # (h, w), pixels of the box that belong to other stones
+    name: str = ""  # file name of a one-stone mask
 
     @cached_property
     def area_px(self) -> int:
@@ -102,13 +86,7 @@ class Patch:
 
 
 def check_count(count: int, where: str) -> None:
-    """Refuse more pieces than a picture of stones can have (E110).
-
-    Raises
-    ------
-    LabelImageError
-        E110.
-    """
+    """Refuse more pieces than a picture of stones can have (E110)."""
     if count > MOST_PIECES:
         raise LabelImageError(
             "E110",
@@ -119,17 +97,7 @@ def check_count(count: int, where: str) -> None:
 
 
 def cut(index: NDArray[Any], ids: NDArray[np.int64], name: str = "") -> list[Patch]:
-    """Cut every id out of an image, each looked at within its bounding box only.
-
-    Parameters
-    ----------
-    index : (h, w) integer array
-        Positions from 1 in `ids`; 0 is background.
-    ids : (n,) int array
-        The ids; 0 marks a position that is background.
-    name : str
-        File name of a one-stone mask.
-    """
+    """Cut every id out of an image, each looked at within its bounding box only."""
     stone = np.concatenate(([False], ids != 0))
     patches = []
     for position, window in enumerate(ndimage.find_objects(index), start=1):
@@ -191,13 +159,7 @@ def filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], l
 
 
 def enclosed(mask: Mask) -> Mask:
-    """Return the pixels that no 4-connected way around the mask reaches: its holes.
-
-    Examples
-    --------
-    >>> int(enclosed(np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], bool)).sum())
-    1
-    """
+    """Return the pixels that no 4-connected way around the mask reaches: its holes."""
     around = np.ones((mask.shape[0] + 2, mask.shape[1] + 2), bool)
     np.logical_not(mask, out=around[1:-1, 1:-1])
     if not _is_plain(mask):
@@ -230,13 +192,6 @@ def piece_numbers(patches: list[Patch], settings: ReadSettings) -> dict[int, lis
     """Return the ids of the further pieces of every patch that is split.
 
     They come after the largest id (where ids end: the free ones from 1), whatever is skipped.
-
-    Parameters
-    ----------
-    patches : list of Patch
-        All that were found, skipped ones included.
-    settings : ReadSettings
-        Empty is the answer unless its ``pieces`` is "split".
     """
     if settings.pieces != "split" or not patches:
         return {}
@@ -258,24 +213,7 @@ def piece_numbers(patches: list[Patch], settings: ReadSettings) -> dict[int, lis
 def in_one_piece(
     patches: list[Patch], settings: ReadSettings, where: str, numbers: Mapping[int, list[int]]
 ) -> tuple[list[Patch], list[Notice]]:
-    """Leave every stone one 8-connected piece.
-
-    Parameters
-    ----------
-    patches : list of Patch
-        With filled holes.
-    settings : ReadSettings
-        ``pieces`` decides; where they are split, ``skip`` is heard here, for each piece.
-    where : str
-        Name for messages.
-    numbers : mapping of int to list of int
-        Of :func:`piece_numbers`.
-
-    Raises
-    ------
-    LabelImageError
-        E103 when a stone has several pieces and the settings do not allow for it.
-    """
+    """Leave every stone one 8-connected piece."""
     result, refused, dropped = [], [], []
     several: list[tuple[Patch, list[Patch]]] = []
     for patch in patches:

@@ -20,13 +20,7 @@ RECORD = "photo"
 
 
 def photo_of(stones: Path) -> Path | None:
-    """Return the photograph in the frame of a label image; None when there is none.
-
-    Parameters
-    ----------
-    stones : Path
-        What the stones are read from: a label image, or the folder that `drystone segment` wrote.
-    """
+    """Return the photograph in the frame of a label image; None when there is none."""
     labels = stones / LABELS if (stones / LABELS).is_file() else stones
     sidecar = read_sidecar(labels)
     if sidecar is None or not sidecar.photo:
@@ -40,13 +34,7 @@ def photo_of(stones: Path) -> Path | None:
 
 
 def check_place(photo: Path | None, folder: Path) -> None:
-    """Refuse to replace a photograph that no plan put beside itself.
-
-    Raises
-    ------
-    UsageError
-        E129.
-    """
+    """Refuse to replace a photograph that no plan put beside itself."""
     if photo is None:
         return
     copy = _copy_of(photo, folder)
@@ -64,25 +52,6 @@ def place_photo(photo: Path | None, folder: Path) -> tuple[Path | None, Mapping[
     """Put a photograph of the stones beside a plan; the copy of an earlier plan is removed.
 
     A photograph that no plan put there stays.
-
-    Parameters
-    ----------
-    photo : Path or None
-        Of the stones; it may lie in the folder already.
-    folder : Path
-        Of the plan; its plan.json, if any, is still that of the earlier plan.
-
-    Returns
-    -------
-    beside : Path or None
-        The photograph beside the plan.
-    record : mapping
-        What the source of the plan must say; empty when nothing was put there.
-
-    Raises
-    ------
-    UsageError
-        E129 when a photograph that is not of a plan has the name of the copy.
     """
     check_place(photo, folder)
     # All is read before anything is removed: the photograph may be what an earlier plan left.

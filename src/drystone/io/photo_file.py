@@ -34,23 +34,12 @@ _TURNS = {
 
 @dataclass(frozen=True, eq=False)
 class Photo:
-    """A photograph.
+    """A photograph."""
 
-    Parameters
-    ----------
-    values : (h, w, 3) uint8 array
-        RGB, the right way up.
-    name : str
-        Base name of its file.
-    sha256 : str
-        Of the file, in hexadecimal digits.
-    notices : tuple of Notice
-        W173 it was turned as its EXIF data say; W174 its depth was reduced or its alpha ignored.
-    """
-
-    values: NDArray[np.uint8]
-    name: str
-    sha256: str
+    values: NDArray[np.uint8]  # (h, w, 3), RGB, the right way up
+    name: str  # base name of its file
+    sha256: str  # of the file, in hexadecimal digits
+    # W173 it was turned as its EXIF data say; W174 its depth was reduced or its alpha ignored
     notices: tuple[Notice, ...] = ()
 
     @property
@@ -60,21 +49,7 @@ class Photo:
 
 
 def read_photo(path: str | Path, max_px: int = MAX_PX) -> Photo:
-    """Read a JPEG, PNG or TIFF photograph.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    max_px : int
-        Larger photographs are refused before they are decoded.
-
-    Raises
-    ------
-    InputError
-        E100 it cannot be read, E106 empty or damaged, E107 no photograph that is known, E109
-        several pages, E110 too large.
-    """
+    """Read a JPEG, PNG or TIFF photograph."""
     path = Path(path)
     data = _bytes_of(path)
     values, orientation, deep = _decode(data, str(path), max_px)

@@ -15,20 +15,7 @@ SAME_SHAPE = 0.02
 
 
 def read_photo_picture(photo: Path, source_px: tuple[float, float]) -> Image.Image:
-    """Read the photograph of the stones as RGB, turned as its EXIF data say.
-
-    Parameters
-    ----------
-    photo : Path
-        Shows the whole source image, at any resolution.
-    source_px : (float, float)
-        Width and height of the source image.
-
-    Raises
-    ------
-    InputError
-        E189 when it cannot be read, or shows something of another shape than the source image.
-    """
+    """Read the photograph of the stones as RGB, turned as its EXIF data say."""
     try:
         check = partial(check_size, where=photo.name, max_px=MAX_PX)
         with opened(file_bytes(photo), photo.name, check) as read:

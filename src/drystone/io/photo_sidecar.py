@@ -21,24 +21,14 @@ LABELS = "stones.png"
 
 @dataclass(frozen=True)
 class PhotoSidecar:
-    """Beside a label image that was found in a photograph.
+    """Beside a label image that was found in a photograph."""
 
-    Parameters
-    ----------
-    width_px, height_px : int
-        Size of the label image, so that a scale does not go to another picture.
-    px_per_m : float or None
-        Px of the label image in a metre.
-    photo : str
-        Base name of the photograph in the frame of the label image, beside it; empty for none.
-    details : mapping
-        What else was found out: markers, residuals, doubts.  For people.
-    """
-
-    width_px: int
-    height_px: int
-    px_per_m: float | None = None
+    width_px: int  # size of the label image, so that a scale does not go to another picture
+    height_px: int  # size of the label image, so that a scale does not go to another picture
+    px_per_m: float | None = None  # px of the label image in a metre
+    # base name of the photograph in the frame of the label image, beside it; empty for none
     photo: str = ""
+    # what else was found out: markers, residuals, doubts.  For people
     details: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -59,18 +49,7 @@ def write_sidecar(sidecar: PhotoSidecar, folder: Path) -> Path:
 
 
 def read_sidecar(labels: Path) -> PhotoSidecar | None:
-    """Read what stands beside a label image; None when there is nothing of this kind.
-
-    Parameters
-    ----------
-    labels : Path
-        The label image.  Only one of the name `LABELS` has a sidecar.
-
-    Raises
-    ------
-    InputError
-        E112 when it is damaged.
-    """
+    """Read what stands beside a label image; None when there is nothing of this kind."""
     if labels.name != LABELS:  # a folder such as "." has no name to replace
         return None
     path = labels.with_name(SIDECAR)

@@ -50,22 +50,7 @@ def format_of(data: bytes) -> str:
 
 @contextmanager
 def opened(data: bytes, where: str, check: Callable[[int, int], None]) -> Iterator[Image.Image]:
-    """Open a picture; what Pillow raises while it is decoded, inside, is a coded error too.
-
-    Parameters
-    ----------
-    data : bytes
-        The whole file, in one of the formats.
-    where : str
-        Its name, for messages.
-    check : callable
-        Refuses a width and a height, before anything is decoded.
-
-    Raises
-    ------
-    InputError
-        E106 damaged, E107 unknown format, E110 too large.
-    """
+    """Open a picture; what Pillow raises while it is decoded, inside, is a coded error too."""
     kind = format_of(data)
     plugin = next((plugin for name, _, plugin in _FORMATS if name == kind), None)
     if plugin is None:

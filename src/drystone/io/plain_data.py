@@ -27,20 +27,7 @@ def _shallow(value: Any) -> Any:
 
 
 def from_plain(kind: type[Value], data: Any) -> Value:
-    """Return what :func:`as_json` was given, once its JSON is read.
-
-    Parameters
-    ----------
-    kind : type
-        Of the value: a dataclass, or what its fields may be.
-    data : anything
-        From JSON, of any origin.
-
-    Raises
-    ------
-    ValueError
-        It is no value of this type.
-    """
+    """Return what :func:`as_json` was given, once its JSON is read."""
     found: Value = _read(kind, data)
     return found
 

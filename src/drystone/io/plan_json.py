@@ -72,13 +72,7 @@ def read_plan(path: str | Path) -> Plan:
 
 
 def plan_to_json(plan: Plan) -> dict[str, Any]:
-    """Return the contents of plan.json, keys in the order of the contract (DESIGN 2).
-
-    Raises
-    ------
-    PlanError
-        E205: a value that the schema does not allow.
-    """
+    """Return the contents of plan.json, keys in the order of the contract (DESIGN 2)."""
     source = {name: plan.source[name] for name in _SOURCE_NAMES if name in plan.source}
     data = {
         "schema": SCHEMA,
@@ -108,13 +102,7 @@ def plan_to_json(plan: Plan) -> dict[str, Any]:
 
 
 def plan_from_json(data: Mapping[str, Any]) -> Plan:
-    """Return the plan of the contents of a plan.json.
-
-    Raises
-    ------
-    PlanError
-        E204: it is no plan of this version; E205: it is not as the schema says.
-    """
+    """Return the plan of the contents of a plan.json."""
     return _from_json(data, "plan")
 
 

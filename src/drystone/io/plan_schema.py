@@ -59,15 +59,7 @@ def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def validate_plan(data: Any, where: str) -> None:
-    """Refuse what is no plan of this version (E204) or not as the schema says (E205).
-
-    Parameters
-    ----------
-    data : Any
-        Contents of a plan.json.
-    where : str
-        Name for messages.
-    """
+    """Refuse what is no plan of this version (E204) or not as the schema says (E205)."""
     if not isinstance(data, Mapping) or "schema" not in data:
         raise PlanError(
             "E204",

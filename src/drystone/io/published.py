@@ -17,42 +17,15 @@ VARIABLE = "DRYSTONE_DATA"
 
 @dataclass(frozen=True)
 class Fetched:
-    """A file of a published set that is there and has the right contents.
+    """A file of a published set that is there and has the right contents."""
 
-    Parameters
-    ----------
-    file : PublishedFile
-        What it is.
-    path : Path
-        Where it is.
-    downloaded : bool
-        Whether it was not there before.
-    """
-
-    file: PublishedFile
-    path: Path
-    downloaded: bool
+    file: PublishedFile  # what it is
+    path: Path  # where it is
+    downloaded: bool  # whether it was not there before
 
 
 def published_folder(given: str | None) -> Path | None:
-    """Return the folder that published data is read from.
-
-    Parameters
-    ----------
-    given : str or None
-        What an option names: it wins.
-
-    Returns
-    -------
-    Path or None
-        What the option or ``DRYSTONE_DATA`` names, whether it exists or not; else the cache of
-        ``drystone fetch`` when it has something in it; else None.
-
-    Examples
-    --------
-    >>> published_folder("stones").name
-    'stones'
-    """
+    """Return the folder that published data is read from."""
     named = given or os.environ.get(VARIABLE)
     if named:
         return Path(named)
@@ -61,13 +34,7 @@ def published_folder(given: str | None) -> Path | None:
 
 
 def destination(given: str | None) -> Path:
-    """Return the folder that files are fetched into: the option, ``DRYSTONE_DATA`` or the cache.
-
-    Raises
-    ------
-    InputError
-        E162 when neither is named and pooch, which knows where caches are, is not installed.
-    """
+    """Return the folder that files are fetched into: the option, ``DRYSTONE_DATA`` or the cache."""
     named = given or os.environ.get(VARIABLE)
     if named:
         return Path(named)
@@ -78,26 +45,7 @@ def destination(given: str | None) -> Path:
 
 
 def published_file(folder: Path, name: str) -> Path:
-    """Return the path of a published file, which has the contents that were released.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of published data.
-    name : str
-        Of the file there, for example ``"almeida/R.png"``; one that is in no set is not checked.
-
-    Returns
-    -------
-    Path
-        Also of a file that is missing or may not be read: whoever opens it says so.
-
-    Raises
-    ------
-    InputError
-        E160 when the file has other contents: figures of other stones would pass for those of
-        the published ones.
-    """
+    """Return the path of a published file, which has the contents that were released."""
     path = folder / name
     for known, published in SETS.items():
         for file in published.files:
@@ -109,24 +57,7 @@ def published_file(folder: Path, name: str) -> Path:
 
 
 def fetch_set(wanted: PublishedSet, folder: Path, *, address: str = RAW) -> list[Fetched]:
-    """Bring the files of a set into a folder, with their licence; what is there is only checked.
-
-    Parameters
-    ----------
-    wanted : PublishedSet
-        One of :data:`drystone.io.published_sets.SETS`.
-    folder : Path
-        Folder of published data; made when it is missing.
-    address : str
-        Where the repository is served.
-
-    Raises
-    ------
-    InputError
-        E160 when a file has other contents than the published one: it is never replaced, and a
-        download of that kind is never kept.  E161 when a file cannot be downloaded, E162 when
-        pooch is not installed.
-    """
+    """Bring the files of a set into a folder, with their licence; what is there is only checked."""
     fetched = []
     for file in wanted.files:
         path, url = folder / file.name, f"{address}/{file.address}"

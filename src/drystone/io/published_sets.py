@@ -44,54 +44,26 @@ PAPER = (
 
 @dataclass(frozen=True)
 class PublishedFile:
-    """One file of a published set.
+    """One file of a published set."""
 
-    Parameters
-    ----------
-    name : str
-        Where it belongs in a folder of published data, for example ``"almeida/R.png"``.
-    commit : str
-        Commit of the repository that it is taken from, 40 hexadecimal digits.
-    path : str
-        Its path there.
-    sha256 : str
-        What its bytes must hash to.
-    """
-
-    name: str
-    commit: str
-    path: str
-    sha256: str
+    name: str  # where it belongs in a folder of published data, for example ``"almeida/R.png"``
+    commit: str  # commit of the repository that it is taken from, 40 hexadecimal digits
+    path: str  # its path there
+    sha256: str  # what its bytes must hash to
 
     @property
     def address(self) -> str:
-        """Where it follows :data:`RAW`.
-
-        Examples
-        --------
-        >>> SETS["almeida"].files[1].address.split("/", 1)[1]
-        'Tests/Almeida/PR/data/wall_labels.png'
-        """
+        """Where it follows :data:`RAW`."""
         return f"{self.commit}/{self.path}"
 
 
 @dataclass(frozen=True)
 class PublishedSet:
-    """Files that belong together.
+    """Files that belong together."""
 
-    Parameters
-    ----------
-    text : str
-        What they show.
-    source : str
-        Whose stones they are: to be cited beside :data:`PAPER`.
-    files : tuple of PublishedFile
-        Label images, one id a stone.
-    """
-
-    text: str
-    source: str
-    files: tuple[PublishedFile, ...]
+    text: str  # what they show
+    source: str  # whose stones they are: to be cited beside :data:`PAPER`
+    files: tuple[PublishedFile, ...]  # label images, one id a stone
 
 
 # The files lie in two commits: the repository has no release to name instead.

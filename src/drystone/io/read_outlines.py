@@ -23,32 +23,7 @@ def stones_of(
     where: str,
     settings: ReadSettings,
 ) -> StoneSet:
-    """Read a file of outlines.
-
-    Parameters
-    ----------
-    read : callable
-        Of :func:`drystone.io.outlines_in.detect.outline_reader`.
-    data : bytes
-        The whole file.
-    where : str
-        Its name.
-    settings : ReadSettings
-        ``unit``, ``px_per_m`` and ``image`` are for such files.
-
-    Returns
-    -------
-    StoneSet
-        Its source has a scale when the file has a unit.
-
-    Raises
-    ------
-    InputError
-        E113 ... E116, see ``docs/errors.md``.
-    UsageError
-        E118 when the file has another unit than the settings say, or says nothing of images and
-        one is asked for; when a background or a mask is.
-    """
+    """Read a file of outlines."""
     if len(data) > MOST_TEXT_BYTES:
         megabytes = f"{len(data) / 1e6:.0f} MB, and the limit is {MOST_TEXT_BYTES / 1e6:g} MB"
         raise InputError(

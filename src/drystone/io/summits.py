@@ -17,19 +17,12 @@ class Summits:
     A part begins where an erosion leaves its summit, and grows as less is eroded, until a deeper
     part reaches it: there it ends, and becomes one with that.
 
-    Parameters
-    ----------
-    depth : (h, w) float array
-        Distance to the background, px; 0 on the rim.
-
-    Notes
-    -----
     The pixels of a row between two lowest places are a hill: what an erosion leaves of one hangs
     together.  So parts are made of hills and of the highest passes between them, of which there
     are few, and not of pixels.
     """
 
-    depth: NDArray[np.float64]
+    depth: NDArray[np.float64]  # (h, w), distance to the background, px; 0 on the rim
 
     @cached_property
     def level(self) -> Whole:

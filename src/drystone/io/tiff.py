@@ -54,47 +54,21 @@ _EXPANDS = 2**26
 
 @dataclass(frozen=True)
 class TiffPage:
-    """What must be known before a TIFF is decoded.
+    """What must be known before a TIFF is decoded."""
 
-    Parameters
-    ----------
-    width, height : int
-        Size in px.
-    lossy : bool
-        True for JPEG inside TIFF.
-    unreadable : str
-        Why it cannot be decoded without loss; empty when it can.
-    colours : str
-        Colour mode that holds no ids, such as CMYK; empty for all others.
-    alpha : bool
-        True when the last channel is transparency, and says so.
-    bits : int
-        Of a channel.
-    orientation : int
-        How the camera was held, 1 to 8.
-    negative : bool
-        True when 0 is white.
-    """
-
-    width: int
-    height: int
-    lossy: bool
-    unreadable: str
-    colours: str
-    alpha: bool
-    bits: int
-    orientation: int
-    negative: bool
+    width: int  # size in px
+    height: int  # size in px
+    lossy: bool  # true for JPEG inside TIFF
+    unreadable: str  # why it cannot be decoded without loss; empty when it can
+    colours: str  # colour mode that holds no ids, such as CMYK; empty for all others
+    alpha: bool  # true when the last channel is transparency, and says so
+    bits: int  # of a channel
+    orientation: int  # how the camera was held, 1 to 8
+    negative: bool  # true when 0 is white
 
 
 def inspect(data: bytes, where: str) -> TiffPage:
-    """Read the tags of a TIFF and decode nothing.
-
-    Raises
-    ------
-    InputError
-        E106 damaged, E109 several pages, planes or more channels than colours and alpha.
-    """
+    """Read the tags of a TIFF and decode nothing."""
     pages = _count_pages(data, where)
     if pages > 1:
         raise several_pages(f"{pages} pages", where)
@@ -124,15 +98,6 @@ def values(data: bytes, where: str, check: Callable[[int, int], None]) -> NDArra
     """Decode the only page of a TIFF, channels last; palette indices and numbers are kept.
 
     Pixels are where the file has them: its orientation turns nothing, however it is compressed.
-
-    Parameters
-    ----------
-    data : bytes
-        Of a file that was inspected, and found readable.
-    where : str
-        Its name, for messages.
-    check : callable
-        Refuses a width and a height.
     """
     with _page(data, where) as page:
         compression, bits, kind = (

@@ -42,20 +42,11 @@ thousands of poses and scales came to .6 of what it allows."""
 
 @dataclass(frozen=True, eq=False)
 class GivenWall:
-    """A wall from a file.
+    """A wall from a file."""
 
-    Parameters
-    ----------
-    labels : (h, w) uint32 array or None
-        None for a block model, which has no pixels.
-    plan : Plan or None
-        When the file was a plan; its image is the wall image beside it.
-    blocks : mapping or None
-        A block model as it was written, also that of a plan on outlines.
-    """
-
-    labels: Labels | None
-    plan: Plan | None = None
+    labels: Labels | None  # (h, w), none for a block model, which has no pixels
+    plan: Plan | None = None  # when the file was a plan; its image is the wall image beside it
+    # A block model as it was written, also that of a plan on outlines
     blocks: dict[str, Any] | None = None
 
     @property
@@ -76,15 +67,7 @@ MOST_MPX = 200.0
 
 
 def read_wall(path: Path, *, background: int = 0) -> GivenWall:
-    """Read a label image, a plan.json (with the wall image beside it), or a block model.
-
-    Parameters
-    ----------
-    path : Path
-        The file, or the folder of a plan.
-    background : int
-        The value of a label image that is no stone.
-    """
+    """Read a label image, a plan.json (with the wall image beside it), or a block model."""
     if path.is_dir():
         path /= "plan.json"
     if path.suffix.lower() != ".json":
@@ -148,13 +131,7 @@ def read_image_of(plan: Plan, folder: Path) -> Labels | None:
 
 
 def read_blocks_of(plan: Plan, folder: Path) -> Any:
-    """Return what blocks.json beside a plan on outlines holds; None when it is not there.
-
-    Raises
-    ------
-    InputError
-        E132 when it cannot be read or is no JSON.
-    """
+    """Return what blocks.json beside a plan on outlines holds; None when it is not there."""
     path = folder / BLOCKS
     if plan.settings.get("geometry") != "exact" or not path.exists():
         return None

@@ -37,11 +37,6 @@ def read_coco(content: Mapping[str, Any], where: str, settings: ReadSettings) ->
     Polygons of one annotation are united, which is COCO's own rule: it has no holes but in run
     lengths.  Files that the automatic masks of SAM were released in have ``image`` instead of
     ``images``, and are read as :mod:`~drystone.io.outlines_in.sam` says.
-
-    Raises
-    ------
-    InputError
-        E114 naming the annotation that cannot be used, E115 when the image is not told.
     """
     chosen, image = _chosen(content, where, settings.image)
     with entry(where, "the list of categories"):

@@ -38,20 +38,7 @@ _EXPECTED = (
 
 
 def outline_reader(data: bytes, name: str) -> Reader | None:
-    """Return what reads a file of outlines; None when it is none, so perhaps a picture.
-
-    Parameters
-    ----------
-    data : bytes
-        The whole file.
-    name : str
-        Its name.
-
-    Examples
-    --------
-    >>> outline_reader(b"BM and so on", "stones.bmp") is None
-    True
-    """
+    """Return what reads a file of outlines; None when it is none, so perhaps a picture."""
     suffix = PurePath(name).suffix.lower()
     # The two letters of a BMP may begin a text, too.
     if not data or data.startswith(BEGINNING) or format_of(data) not in ("", "BMP"):

@@ -52,14 +52,6 @@ def read_dxf(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
 
     Where there is a layer of the name STONES, only its outlines are stones.  An outline in
     another one is its hole.  What is hidden, or on a layer that is off or frozen, does not count.
-
-    Raises
-    ------
-    InputError
-        E106 for a damaged file, E116 when the drawing has no unit, E114 for coordinates that
-        cannot be used.
-    UsageError
-        E305 when ezdxf is not installed.
     """
     ezdxf = load_ezdxf()
     document = _document(ezdxf, data, where)
@@ -173,20 +165,7 @@ def _outline(drawn: Drawn, where: str, aside: Counter[str]) -> Points | None:
 
 
 def spline(control: Any, knots: Any, weights: Any, degree: int) -> Points:
-    """Return points on a B-spline, its ends included.
-
-    Parameters
-    ----------
-    control : (n, 2 or 3) array_like
-        Control points.
-    knots : (n + degree + 1,) array_like
-        Ascending.  The curve lives between the knots `degree` and `n`: of a periodic spline the
-        others lie beyond its ends.
-    weights : (n,) array_like
-        Empty for a spline that is not rational.
-    degree : int
-        From 1.
-    """
+    """Return points on a B-spline, its ends included."""
     if degree > _MOST_DEGREE:
         raise ValueError(f"its degree is {degree}; the limit is {_MOST_DEGREE}")
     points = np.asarray(control, dtype=float)[:, :2]

@@ -16,21 +16,11 @@ _MOST = 100_000
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """An entity where it is drawn.
+    """An entity where it is drawn."""
 
-    Parameters
-    ----------
-    entity : DXFEntity
-        As its block defines it.
-    layer : str
-        Its own; that of the block reference for what is on layer 0 in a block.
-    matrix : Matrix44
-        From its block to the model space.
-    """
-
-    entity: Any
-    layer: str
-    matrix: Any
+    entity: Any  # as its block defines it
+    layer: str  # its own; that of the block reference for what is on layer 0 in a block
+    matrix: Any  # from its block to the model space
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,11 +37,6 @@ def drawn_entities(document: Any, where: str, aside: Counter[str]) -> list[Drawn
 
     A block on a frozen layer is hidden with all that is in it.  On a layer that is off, only what
     has its layer from the block reference is, as CAD programs show it.
-
-    Raises
-    ------
-    InputError
-        E114 for blocks that cannot be used, or that are in each other.
     """
     start = _Place(import_module("ezdxf.math").Matrix44())
     walk = _Walk(document, where, aside)

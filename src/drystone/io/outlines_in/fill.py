@@ -27,15 +27,7 @@ def box_of(area: Area) -> tuple[int, int, int, int]:
 
 
 class Room:
-    """Pixels that the stones of a file may fill, boxes around them included, asked for before.
-
-    Parameters
-    ----------
-    where : str
-        Name of the file, for messages.
-    max_px : int
-        Of a picture; all stones together may have twice as many.
-    """
+    """Pixels that the stones of a file may fill, boxes around them included, asked for before."""
 
     def __init__(self, where: str, max_px: int) -> None:
         self.where, self.max_px = where, max_px
@@ -98,21 +90,7 @@ def _box_of_mask(placed: PlacedMask) -> tuple[int, int, int, int]:
 
 
 def filled_area(area: Area) -> PlacedMask | None:
-    """Return the pixels whose centres lie in an area; None when there are none.
-
-    Parameters
-    ----------
-    area : Area
-        In px, y down; pixel (row, col) is the unit square from (x, y) = (col, row).  A centre on
-        a left or upper edge is inside, on a right or lower edge outside, so areas that meet share
-        no pixel.
-
-    Examples
-    --------
-    >>> square = np.array([[0, 0], [3, 0], [3, 2], [0, 2]], float)
-    >>> filled_area(Area((square,))).mask.shape
-    (2, 3)
-    """
+    """Return the pixels whose centres lie in an area; None when there are none."""
     top, bottom, left, right = box_of(area)
     height, width = bottom - top, right - left
     if height < 1 or width < 1:

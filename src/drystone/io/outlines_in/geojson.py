@@ -40,12 +40,6 @@ def read_geojson(content: Mapping[str, Any], where: str, settings: ReadSettings)
     up; without one, or with "px", coordinates are px of an image with y down, as image tools
     write them, unless its ``frame`` is that of a wall of drystone, or all y are negative.  The id
     of a stone is the ``id`` of its feature or of its properties, its name their ``name``.
-
-    Raises
-    ------
-    InputError
-        E114 naming the feature that cannot be used, E116 for degrees of latitude, and for a map
-        projection without a unit.
     """
     if any(name in str(content.get("crs", "")) for name in _DEGREES):
         raise InputError(

@@ -37,11 +37,6 @@ def read_labelme(content: Mapping[str, Any], where: str, settings: ReadSettings)
 
     Shapes of one label and ``group_id`` are one stone.  A label that is a number, also after
     the word stone, is its id.
-
-    Raises
-    ------
-    InputError
-        E114 naming the shape that cannot be used.
     """
     parts: dict[object, list[tuple[tuple[Area, ...], tuple[PlacedMask, ...]]]] = {}
     names: dict[object, str] = {}

@@ -41,23 +41,12 @@ _PLY_FACES = re.compile(rb"^element\s+face\s+(\d{1,18})", re.MULTILINE)
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A body of a mesh.
+    """A body of a mesh."""
 
-    Parameters
-    ----------
-    name : str
-        Empty when it has none.
-    vertices : (n, 3) float array
-        Of the whole file.
-    faces : sequence of integer arrays
-        Positions in `vertices`, three or more a face.
-    said : tuple of str
-        All that the file says of it after o or g, each once; only of an OBJ.
-    """
-
-    name: str
-    vertices: NDArray[np.float64]
-    faces: Sequence[NDArray[np.int64]]
+    name: str  # empty when it has none
+    vertices: NDArray[np.float64]  # (n, 3), of the whole file
+    faces: Sequence[NDArray[np.int64]]  # positions in `vertices`, three or more a face
+    # all that the file says of it after o or g, each once; only of an OBJ
     said: tuple[str, ...] = ()
 
 
@@ -81,13 +70,6 @@ def read_mesh(kind: str, data: bytes, where: str, settings: ReadSettings) -> Out
     Named objects of an OBJ are a stone each; otherwise every connected body is one.  Meshes
     that drystone wrote are seen along Y with Z up, others along the axis in which all of it
     together is thinnest.  Their unit is taken as the metre unless the settings name another.
-
-    Raises
-    ------
-    InputError
-        E106 for a damaged file, E114 for a mesh without faces or with impossible ones.
-    UsageError
-        E305 when trimesh is not installed (PLY).
     """
     bodies = _BODIES[kind](data, where)
     used = np.unique(np.concatenate([np.concatenate(list(b.faces)) for b in bodies]))

@@ -27,84 +27,45 @@ _WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
 
 @dataclass(frozen=True, eq=False)
 class Area:
-    """What rings enclose together.
+    """What rings enclose together."""
 
-    Parameters
-    ----------
-    rings : tuple of (n, 2) float arrays
-        Not closed, in any sense of rotation, in the unit of the file.
-    rule : {"evenodd", "nonzero"}
-        Which points are inside: by the number of rings around them, or by the sum of their turns.
-    """
-
+    # (n, 2), not closed, in any sense of rotation, in the unit of the file
     rings: tuple[Points, ...]
+    # which points are inside: by the number of rings around them, or by the sum of their turns
     rule: Literal["evenodd", "nonzero"] = "evenodd"
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedMask:
-    """Pixels at a place of a picture.
+    """Pixels at a place of a picture."""
 
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        Row 0 at the top.
-    row, col : int
-        Of its upper left pixel.
-    """
-
-    mask: Mask
-    row: int
-    col: int
+    mask: Mask  # (h, w), row 0 at the top
+    row: int  # of its upper left pixel
+    col: int  # of its upper left pixel
 
 
 @dataclass(frozen=True, eq=False)
 class OutlinedStone:
-    """A stone of a file: the union of areas and masks.
+    """A stone of a file: the union of areas and masks."""
 
-    Parameters
-    ----------
-    id : int or None
-        The file's own number, if it has one, be it one that no stone can have.
-    name : str
-        The file's own name.
-    areas : tuple of Area
-        Outlines.
-    masks : tuple of PlacedMask
-        Pixels; only in files in px.
-    """
-
-    id: int | None
-    name: str = ""
-    areas: tuple[Area, ...] = ()
-    masks: tuple[PlacedMask, ...] = ()
+    id: int | None  # the file's own number, if it has one, be it one that no stone can have
+    name: str = ""  # the file's own name
+    areas: tuple[Area, ...] = ()  # outlines
+    masks: tuple[PlacedMask, ...] = ()  # pixels; only in files in px
 
 
 @dataclass(frozen=True, eq=False)
 class OutlineFile:
-    """What a file of outlines holds.
+    """What a file of outlines holds."""
 
-    Parameters
-    ----------
-    stones : tuple of OutlinedStone
-        In the order of the file.
-    unit_m : float or None
-        Metres in a unit of the file; None when its unit is the px of an image.
-    y_up : bool
-        False when y runs down, as in images.
-    size_px : (int, int) or None
-        Width and height of the image of a file in px, if the file says so.
-    notices : tuple of Notice
-        What had to be decided.
-    names_images : bool
-        The file says of which image each stone is, so that one of them can be asked for.
-    """
-
-    stones: tuple[OutlinedStone, ...]
+    stones: tuple[OutlinedStone, ...]  # in the order of the file
+    # metres in a unit of the file; None when its unit is the px of an image
     unit_m: float | None = None
-    y_up: bool = False
+    y_up: bool = False  # false when y runs down, as in images
+    # width and height of the image of a file in px, if the file says so
     size_px: tuple[int, int] | None = None
-    notices: tuple[Notice, ...] = ()
+    notices: tuple[Notice, ...] = ()  # what had to be decided
+    # the file says of which image each stone is, so that one of them can be asked for
     names_images: bool = False
 
 
@@ -112,11 +73,6 @@ def number_in(text: object) -> int | None:
     """Return the number that a label is, or that follows the word stone in it.
 
     Numbers are returned as they are, also those that no stone can have; labels only when one can.
-
-    Examples
-    --------
-    >>> number_in("stone_012"), number_in(0), number_in("0"), number_in("wall 3"), number_in(True)
-    (12, 0, None, None, None)
     """
     if isinstance(text, bool) or not isinstance(text, int | str):
         return None
@@ -131,12 +87,6 @@ def numbered(stones: tuple[OutlinedStone, ...]) -> tuple[tuple[OutlinedStone, ..
     """Give every stone an id: the file's own when all differ, else 1, 2, 3 and so on.
 
     A file with any number of its own is not numbered anew without a notice (W119).
-
-    Examples
-    --------
-    >>> stones, notices = numbered((OutlinedStone(0), OutlinedStone(1)))
-    >>> print(notices[0].message)
-    0 cannot be the number of a stone: all are numbered in order (0 is now 1, 1 is now 2).
     """
     own = [stone.id for stone in stones if stone.id is not None]
     several = sorted(number for number, count in Counter(own).items() if count > 1)
@@ -191,13 +141,7 @@ def side_px(value: Any) -> int:
 
 
 def ring(points: Any) -> Points:
-    """Return a ring from numbers; ValueError when it is none.
-
-    Parameters
-    ----------
-    points : (n, 2) array_like
-        Closed or not; further columns (heights) are left out.
-    """
+    """Return a ring from numbers; ValueError when it is none."""
     corners = np.asarray(points, dtype=float)
     if corners.ndim != 2 or corners.shape[1] < 2:
         raise ValueError("points are pairs of numbers")

@@ -45,13 +45,7 @@ def overlap(one: PlacedMask, other: PlacedMask) -> NDArray[np.bool_] | None:
 
 
 def meeting_boxes(masks: Sequence[PlacedMask], where: str) -> list[tuple[int, int]]:
-    """Return the pairs (i, j), i < j, of masks whose boxes overlap.
-
-    Raises
-    ------
-    InputError
-        E110 when there are more of them, or larger ones, than can be compared.
-    """
+    """Return the pairs (i, j), i < j, of masks whose boxes overlap."""
     sides = [(m.row, m.col, m.row + m.mask.shape[0], m.col + m.mask.shape[1]) for m in masks]
     top, left, bottom, right = np.array(sides, dtype=np.int64).reshape(-1, 4).T
     pairs: list[tuple[int, int]] = []
@@ -83,22 +77,6 @@ def without_nested(
     2. of two masks that share `INSIDE` of their union, the smaller one is the same thing again;
     3. a mask of which `INSIDE` is covered by two or more smaller ones is a group of those;
     4. a mask of which `INSIDE` lies in a larger one that is kept is a part of it.
-
-    Parameters
-    ----------
-    stones : list of OutlinedStone
-        With ids.
-    where : str
-        Name of the file, for messages.
-    skip : tuple of int
-        Ids that do not count; naming parts there makes their group a stone.
-
-    Returns
-    -------
-    kept : list of OutlinedStone
-        Those with an id in `skip` included, as they are.
-    notices : list of Notice
-        Which were left out, and why.
     """
     placed = {i: pixels_of(stone) for i, stone in enumerate(stones) if stone.id not in skip}
     masks = {i: mask for i, mask in placed.items() if mask is not None}

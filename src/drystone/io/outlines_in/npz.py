@@ -30,19 +30,7 @@ def is_npz(data: bytes) -> bool:
 
 
 def read_npz(data: bytes, where: str, max_px: int) -> NDArray[Any] | OutlineFile:
-    """Read the arrays of an archive.
-
-    Returns
-    -------
-    array or OutlineFile
-        The only array, or that of the name labels, as it is; else a stone for every array.
-
-    Raises
-    ------
-    InputError
-        E106 for a damaged file, E110 for arrays that are too large, E114 for arrays that are no
-        masks of one picture.
-    """
+    """Read the arrays of an archive."""
     found = {
         name.removesuffix(".npy"): array_of(member, where, max_px)
         for name, member in _members(data, where, max_px).items()

@@ -22,25 +22,13 @@ USUAL_SIDE_PX = 160.0
 
 @dataclass(frozen=True, eq=False)
 class Rastered:
-    """Stones of a file as pixels.
+    """Stones of a file as pixels."""
 
-    Parameters
-    ----------
-    patches : list of Patch
-        In the order of the file; they may overlap.
-    width, height : int
-        Of the picture that they are in, px.
-    px_per_m : float or None
-        Its scale; None for a file in px.
-    notices : list of Notice
-        What was decided on the way.
-    """
-
-    patches: list[Patch]
-    width: int
-    height: int
-    px_per_m: float | None
-    notices: list[Notice]
+    patches: list[Patch]  # in the order of the file; they may overlap
+    width: int  # of the picture that they are in, px
+    height: int  # of the picture that they are in, px
+    px_per_m: float | None  # its scale; None for a file in px
+    notices: list[Notice]  # what was decided on the way
 
 
 def rastered(file: OutlineFile, settings: ReadSettings, where: str) -> Rastered:
@@ -48,21 +36,6 @@ def rastered(file: OutlineFile, settings: ReadSettings, where: str) -> Rastered:
 
     A file in px keeps its own px.  A drawing is drawn in the box around all its stones, whose
     lower left corner becomes that of the picture.
-
-    Parameters
-    ----------
-    file : OutlineFile
-        Its stones have ids.
-    settings : ReadSettings
-        ``px_per_m`` for a drawing; None chooses one for which the longer side of the median
-        stone is about `USUAL_SIDE_PX`.
-    where : str
-        Name for messages.
-
-    Raises
-    ------
-    LabelImageError
-        E104 without stones, E110 for too large a picture.
     """
     if not file.stones:
         raise LabelImageError(

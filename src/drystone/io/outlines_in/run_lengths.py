@@ -28,28 +28,7 @@ def size_of(value: Mapping[str, Any]) -> tuple[int, int]:
 
 
 def mask_of(value: Mapping[str, Any], room: Room) -> PlacedMask | None:
-    """Return the mask of run lengths, cut to its bounding box; None when no pixel is set.
-
-    Parameters
-    ----------
-    value : mapping
-        With ``size`` (height, width) and ``counts``: numbers, or text as pycocotools packs them.
-    room : Room
-        For its pixels.
-
-    Raises
-    ------
-    ValueError
-        When the counts do not add up to the size, or the text is none of this kind.
-    InputError
-        E110 when it is too large.
-
-    Examples
-    --------
-    >>> mask_of({"size": [2, 3], "counts": [1, 2, 3]}, Room("a.json", 9)).mask.astype(int)
-    array([[0, 1],
-           [1, 0]])
-    """
+    """Return the mask of run lengths, cut to its bounding box; None when no pixel is set."""
     width, height = size_of(value)
     check_size(width, height, room.where, room.max_px)
     counts = value["counts"]
@@ -80,11 +59,6 @@ def unpacked(text: str | bytes) -> NDArray[np.int64]:
 
     Five bits a character, least first, 32 for one more to come; from the fourth count on it is
     the difference to the one before the last.
-
-    Examples
-    --------
-    >>> unpacked("6210")
-    array([6, 2, 1, 2])
     """
     data = text.encode() if isinstance(text, str) else text
     counts: list[int] = []

@@ -25,11 +25,6 @@ def read_sam(content: list[Mapping[str, Any]], where: str, settings: ReadSetting
 
     Masks may lie in each other: what is ground, a group or a part of a stone is left out as
     :func:`~drystone.io.outlines_in.nested.without_nested` says.
-
-    Raises
-    ------
-    InputError
-        E114 naming the mask that cannot be used, E115 when they are of several images.
     """
     images = {str(found["image_id"]) for found in content if "image_id" in found}
     several = len({str(found.get("image_id")) for found in content}) > 1

@@ -25,24 +25,7 @@ def areas_of(shape: Any) -> tuple[Area, ...]:
 
 
 def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
-    """Make holes of rings that lie in others, as drawings for cutting mean them.
-
-    Parameters
-    ----------
-    rings : sequence of (n, 2) arrays
-        Outlines and holes in any order.
-
-    Returns
-    -------
-    list of (int, Area)
-        Outlines with their holes, and the position of the outline; a ring in a hole is an
-        outline again.
-
-    Raises
-    ------
-    ValueError
-        When there are too many crossings, or rings in each other, to find out.
-    """
+    """Make holes of rings that lie in others, as drawings for cutting mean them."""
     shapes = _valid(np.array([shapely.Polygon(ring) for ring in rings], dtype=object))
     tree = shapely.STRtree(shapes)
     size = shapely.area(shapes)
@@ -64,18 +47,7 @@ def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
 
 
 def shadow(polygons: Sequence[Points]) -> tuple[Area, ...]:
-    """Return the union of the polygons of a body as it is seen.
-
-    Parameters
-    ----------
-    polygons : sequence of (n, 2) arrays
-        Its faces in the plane of the picture; those seen from the side have no area.
-
-    Raises
-    ------
-    ValueError
-        When faces cross themselves too often.
-    """
+    """Return the union of the polygons of a body as it is seen."""
     # Edges of neighbours are the same numbers, so the union leaves no slits.
     seen = shapely.polygons([np.asarray(p) for p in polygons]) if _alike(polygons) else [
         shapely.Polygon(p) for p in polygons

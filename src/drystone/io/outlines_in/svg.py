@@ -92,11 +92,6 @@ def read_svg(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
     closed nor filled, text, what is hidden or has no paint, and a rectangle over the whole page
     are left aside.  A width in mm (cm, in, pt …)
     makes it a drawing to scale; otherwise its unit is px, or what the settings say.
-
-    Raises
-    ------
-    InputError
-        E106 for what is no XML, E114 naming the element that cannot be used.
     """
     if data.count(b"<") > 2 * _MOST_ELEMENTS:
         raise _too_large(f"more than {_MOST_ELEMENTS} elements", where)

@@ -31,38 +31,14 @@ Corner = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Subpath:
-    """A line of a path.
+    """A line of a path."""
 
-    Parameters
-    ----------
-    points : (n, 2) float array
-        Corners in order.
-    closed : bool
-        Whether the path says so, or it ends where it began.
-    """
-
-    points: Points
-    closed: bool
+    points: Points  # (n, 2), corners in order
+    closed: bool  # whether the path says so, or it ends where it began
 
 
 def subpaths(data: str) -> list[Subpath]:
-    """Return the lines of path data.
-
-    Parameters
-    ----------
-    data : str
-        The attribute ``d``.
-
-    Raises
-    ------
-    ValueError
-        When it is none.
-
-    Examples
-    --------
-    >>> subpaths("M1 1 h2 v2 z")[0].points.tolist()
-    [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0]]
-    """
+    """Return the lines of path data."""
     pen = _Pen()
     for command, numbers in _segments(data):
         pen.draw(command, numbers)
@@ -188,13 +164,7 @@ class _Pen:
 
 
 def bezier(points: Points) -> Points:
-    """Return points on a Bézier curve of any degree, without its first.
-
-    Parameters
-    ----------
-    points : (n, 2) array
-        Control points, its ends included.
-    """
+    """Return points on a Bézier curve of any degree, without its first."""
     t = np.arange(1, CORNERS_OF_CURVE + 1) / CORNERS_OF_CURVE
     degree = len(points) - 1
     weights = [math.comb(degree, k) * t**k * (1.0 - t) ** (degree - k) for k in range(degree + 1)]
@@ -204,15 +174,7 @@ def bezier(points: Points) -> Points:
 
 
 def arc(start: Corner, shape: list[float], end: Corner) -> Points:
-    """Return points on an elliptical arc, without its first (SVG 1.1, F.6).
-
-    Parameters
-    ----------
-    start, end : (2,) arrays
-        Where it begins and ends.
-    shape : list of float
-        Both radii, turn of the x axis in degrees, large-arc flag, sweep flag.
-    """
+    """Return points on an elliptical arc, without its first (SVG 1.1, F.6)."""
     rx, ry = abs(shape[0]), abs(shape[1])
     if rx == 0.0 or ry == 0.0 or (start == end).all():
         return end[None]

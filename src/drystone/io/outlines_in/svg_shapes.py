@@ -32,13 +32,7 @@ PX_M = 0.0254 / 96.0
 
 
 def length(text: str) -> tuple[float, str]:
-    """Split a length into number and unit; ValueError when it is none.
-
-    Examples
-    --------
-    >>> length("120.5mm"), length("30")
-    ((120.5, 'mm'), (30.0, ''))
-    """
+    """Split a length into number and unit; ValueError when it is none."""
     found = _LENGTH.fullmatch(text.strip())
     if found is None:
         raise ValueError(f"{text[:30]!r} is no length")
@@ -46,13 +40,7 @@ def length(text: str) -> tuple[float, str]:
 
 
 def transform(text: str) -> Matrix:
-    """Return the (3, 3) matrix of the attribute ``transform``.
-
-    Examples
-    --------
-    >>> transform("translate(10) scale(2, 3)").tolist()
-    [[2.0, 0.0, 10.0], [0.0, 3.0, 0.0], [0.0, 0.0, 1.0]]
-    """
+    """Return the (3, 3) matrix of the attribute ``transform``."""
     matrix, place = np.eye(3), 0
     text = "" if text.strip() == "none" else text.rstrip()
     while place < len(text):
@@ -96,17 +84,7 @@ def moved(matrix: Matrix, points: Points) -> Points:
 def lines_of(
     kind: str, attributes: Mapping[str, str], view: tuple[float, float] | None = None
 ) -> list[Subpath]:
-    """Return the lines of a shape in its own coordinates; ValueError when it cannot be used.
-
-    Parameters
-    ----------
-    kind : str
-        One of `SHAPES`.
-    attributes : mapping
-        Of its element.
-    view : (float, float), optional
-        Width and height that per cents are of, user units.
-    """
+    """Return the lines of a shape in its own coordinates; ValueError when it cannot be used."""
     if kind == "path":
         data = attributes.get("d", "")
         return [] if data.strip() == "none" else subpaths(data)

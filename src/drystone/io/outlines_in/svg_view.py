@@ -22,36 +22,16 @@ _SHARES = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
 
 @dataclass(frozen=True, eq=False)
 class Page:
-    """What the root element says.
+    """What the root element says."""
 
-    Parameters
-    ----------
-    matrix : Matrix
-        From its user units to the page.
-    unit_m : float or None
-        Metres in a unit of the page; None for px.
-    size : (float, float) or None
-        Of the page, in its unit, if it is known.
-    view : (float, float) or None
-        What per cents are of.
-    """
-
-    matrix: Matrix
-    unit_m: float | None
-    size: tuple[float, float] | None
-    view: View | None
+    matrix: Matrix  # from its user units to the page
+    unit_m: float | None  # metres in a unit of the page; None for px
+    size: tuple[float, float] | None  # of the page, in its unit, if it is known
+    view: View | None  # what per cents are of
 
 
 def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
-    """Read width, height and viewBox of the root; ValueError when they cannot be used.
-
-    Parameters
-    ----------
-    root : mapping
-        Its attributes.
-    settings : ReadSettings
-        Of which the unit counts.
-    """
+    """Read width, height and viewBox of the root; ValueError when they cannot be used."""
     sides = [length(root.get(name, "100%")) for name in ("width", "height")]
     physical = all(unit in UNITS_M for _, unit in sides)
     if not physical and any(unit not in {"", "px", "%"} for _, unit in sides):
@@ -83,22 +63,7 @@ def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
 def inner_view(
     element: ET.Element, use: ET.Element | None, around: View | None
 ) -> tuple[Matrix, View | None] | None:
-    """Return the way out of the viewport of an inner svg or a symbol, and what per cents are of.
-
-    Parameters
-    ----------
-    element : Element
-        The svg or symbol; ValueError when it cannot be used.
-    use : Element or None
-        What shows it; its width and height come first.
-    around : (float, float) or None
-        What per cents around it are of.
-
-    Returns
-    -------
-    (Matrix, (float, float) or None) or None
-        None when nothing of it can be seen.
-    """
+    """Return the way out of the viewport of an inner svg or a symbol, and what per cents are of."""
     said, box, size = dict(element.attrib), view_box(element.attrib), None
     for name in ("width", "height"):
         given = (one.get(name, "auto") for one in (use, element) if one is not None)
@@ -126,22 +91,7 @@ def view_box(attributes: Mapping[str, str]) -> list[float]:
 
 
 def fitted(box: Sequence[float], size: Sequence[float], ratio: str = "") -> Matrix:
-    """Return the way from the units of a viewBox to a viewport with its origin at (0, 0).
-
-    Parameters
-    ----------
-    box : sequence of 4 floats
-        Its left and upper edge, width and height.
-    size : sequence of 2 floats
-        Width and height of the viewport.
-    ratio : str
-        preserveAspectRatio: all of the box in the middle, unless it says otherwise.
-
-    Examples
-    --------
-    >>> fitted((0, 0, 10, 10), (40, 20), "xMaxYMin").tolist()
-    [[2.0, 0.0, 20.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0]]
-    """
+    """Return the way from the units of a viewBox to a viewport with its origin at (0, 0)."""
     found = _RATIO.fullmatch(ratio.strip() or "xMidYMid")
     if found is None:
         raise ValueError(f"its preserveAspectRatio is {ratio!r}")
