@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 
 from drystone.errors import InputError
-from drystone.io.photo_sidecar import PhotoSidecar, write_sidecar
+from drystone.io.photo_beside import PhotoSidecar, write_sidecar
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.pictures import areas, two_stones
 

@@ -33,7 +33,7 @@ def test_an_orientation_turns_no_label_image_in_any_compression(orientation, dty
     packed = ["raw", "packbits", "tiff_adobe_deflate", "tiff_lzw"]
     for compression in [*packed, *(["group4", "group3"] if dtype is bool else [])]:
         data = pillow(labels, "TIFF", compression=compression, tiffinfo={274: orientation})
-        values = decode(data, "l.tif", LIMIT).values
+        values = decode(data, LIMIT).values
         np.testing.assert_array_equal(values.astype(dtype), labels, err_msg=compression)
 
 
@@ -41,7 +41,7 @@ def test_an_orientation_turns_no_label_image_in_any_compression(orientation, dty
 def test_an_orientation_turns_no_mask_in_a_lossy_tiff(orientation):
     mask = (two_stones() > 0).astype(np.uint8) * np.uint8(255)
     data = pillow(mask, "TIFF", compression="jpeg", tiffinfo={274: orientation})
-    np.testing.assert_array_equal(decode(data, "l.tif", LIMIT).values > 127, mask > 0)
+    np.testing.assert_array_equal(decode(data, LIMIT).values > 127, mask > 0)
 
 
 @pytest.mark.parametrize("kind", ["PNG", "JPEG"])
@@ -49,7 +49,7 @@ def test_an_orientation_turns_no_mask_in_other_formats(kind):
     mask = (two_stones() > 0).astype(np.uint8) * np.uint8(255)
     exif = Image.Exif()
     exif[0x0112] = 6
-    values = decode(pillow(mask, kind, exif=exif), "l", LIMIT).values
+    values = decode(pillow(mask, kind, exif=exif), LIMIT).values
     np.testing.assert_array_equal(values > 127, mask > 0)
 
 
@@ -97,7 +97,7 @@ def test_an_array_with_alpha_is_read(colour, alpha):
 def test_alpha_of_an_array_on_another_background():
     white = np.where(two_stones() == 0, 255, rgb(two_stones())[..., 0])
     values = with_last(white, (two_stones() > 0) * np.uint8(255))
-    assert int((to_ids(values, 255, "a").ids == 255).sum()) == 40 * 60 - 975
+    assert int((to_ids(values, 255).ids == 255).sum()) == 40 * 60 - 975
     settings = ReadSettings(background=255)
     assert sorted(areas(read_stones(values, settings=settings)).values()) == [375, 600]
 

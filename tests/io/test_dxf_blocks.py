@@ -19,7 +19,7 @@ def outlines(document):
     """What is read of a drawing: the polygon of every stone by its name."""
     text = io.StringIO()
     document.write(text)
-    found = read_dxf(text.getvalue().encode(), "stones.dxf", ReadSettings())
+    found = read_dxf(text.getvalue().encode(), ReadSettings())
     shapes = {s.name: shapely.Polygon(s.areas[0].rings[0]) for s in found.stones}
     assert len(shapes) == len(found.stones)
     return shapes, " ".join(notice.message for notice in found.notices)
@@ -93,7 +93,7 @@ def test_dxf_blocks_in_rows_mirrored_and_stretched():
     lens.add_blockref("DISK", (3, 0), dxfattribs={"rotation": 30, "xscale": 2})
     space.add_blockref("LENS", (10, 50), dxfattribs={"layer": "lens", "rotation": 90, "yscale": -3})
     document.write(text)
-    found = read_dxf(text.getvalue().encode(), "stones.dxf", ReadSettings()).stones
+    found = read_dxf(text.getvalue().encode(), ReadSettings()).stones
     shapes = [(s.name, shapely.Polygon(s.areas[0].rings[0])) for s in found]
     assert [shape.bounds for name, shape in shapes if name == "mirrored"] == [(-8, 0, 0, 3)]
     # Mirrored in x axis of the block, then turned: x and y change places.

@@ -1,12 +1,11 @@
 """Every damaged file of outlines gets a coded error that names the entry; extras are named too."""
 
 import json
-from importlib import import_module
+import sys
 
 import pytest
 
 from drystone.errors import InputError, UsageError
-from drystone.io.outlines_in import dxf, meshes
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.known_stones import masks
 from tests.io.test_annotations import coco, geojson, labelme, runs
@@ -162,20 +161,14 @@ def test_names_can_be_written_and_printed(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("load", "name"), [(dxf.load_ezdxf, "ezdxf"), (meshes.load_trimesh, "trimesh")]
+    ("name", "text", "package", "extra"),
+    [("a.dxf", "0\nSECTION\n", "ezdxf", "cad"), ("a.ply", "ply\n", "trimesh", "mesh")],
 )
-def test_extras_that_are_not_installed(monkeypatch, load, name):
-    def missing(module):
-        if module == name:
-            raise ImportError(module)
-        return import_module(module)
-
-    for module in (dxf, meshes):
-        monkeypatch.setattr(module, "import_module", missing)
-    with pytest.raises(
-        UsageError, match=rf"E305 .*{name} is not installed.*pip install drystone\["
-    ):
-        load()
+def test_extras_that_are_not_installed(tmp_path, monkeypatch, name, text, package, extra):
+    monkeypatch.setitem(sys.modules, package, None)
+    said = rf"E305 .*{package} is not installed.*pip install drystone\[{extra}\]"
+    with pytest.raises(UsageError, match=said):
+        read(tmp_path, text, name)
 
 
 @pytest.mark.parametrize("bad", [{"unit": "yard"}, {"px_per_m": 0.0}, {"px_per_m": float("inf")}])

@@ -6,8 +6,16 @@ from pathlib import Path
 import pytest
 
 from drystone.errors import InputError, UsageError
-from drystone.io.photo_beside import check_place, photo_beside, photo_of, place_photo
-from drystone.io.photo_sidecar import SIDECAR, PhotoSidecar, read_sidecar, write_sidecar
+from drystone.io.photo_beside import (
+    SIDECAR,
+    PhotoSidecar,
+    check_place,
+    photo_beside,
+    photo_of,
+    place_photo,
+    read_sidecar,
+    write_sidecar,
+)
 
 
 def test_it_comes_back(tmp_path: Path) -> None:

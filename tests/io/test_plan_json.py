@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 from drystone.errors import PlanError
 from drystone.io.plan_json import (
     plan_from_json,
+    plan_schema,
     plan_to_json,
     read_plan,
     write_plan,
 )
-from drystone.io.plan_schema import plan_schema
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from tests.strategies import repeatable
 

@@ -9,8 +9,15 @@ import pytest
 
 from drystone.errors import InputError
 from drystone.io import published as module
-from drystone.io.published import destination, fetch_set, published_file, published_folder
-from drystone.io.published_sets import LICENCE, NOTICE, SETS
+from drystone.io.published import (
+    LICENCE,
+    NOTICE,
+    SETS,
+    destination,
+    fetch_set,
+    published_file,
+    published_folder,
+)
 from tests.io.served import CONTENTS, lay_open, nobody, serving, toy_set
 
 
@@ -32,7 +39,7 @@ def test_no_two_files_are_the_same() -> None:
     assert len(files) == 8
     for field in ("name", "address", "sha256"):
         assert len({getattr(file, field) for file in files}) == len(files)
-    assert all(len(file.commit) == 40 and len(file.sha256) == 64 for file in files)
+    assert all(len(f.address.split("/")[0]) == 40 and len(f.sha256) == 64 for f in files)
 
 
 def test_files_are_downloaded_once_and_with_their_licence(tmp_path: Path) -> None:

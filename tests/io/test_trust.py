@@ -53,7 +53,7 @@ def test_files_that_are_read_or_refused(
 
 def test_the_tiff_of_these_tests_can_be_read() -> None:
     for big in (False, True):
-        values = decode(tiff_of(big=big), "a.tif", LIMIT).values
+        values = decode(tiff_of(big=big), LIMIT).values
         assert values.tolist() == np.arange(24).reshape(4, 6).tolist()
 
 
@@ -114,7 +114,7 @@ def test_what_libraries_print_reaches_nobody(capfd: pytest.CaptureFixture[str]) 
     data = bytearray(pillow(two_stones(7, 9, np.uint8), "TIFF", compression="tiff_lzw"))
     data[8:60] = bytes(52)  # libtiff says so in C
     with pytest.raises(InputError, match="E10"):
-        decode(bytes(data), "a.tif", LIMIT)
+        decode(bytes(data), LIMIT)
     with silent_stderr():
         os.write(2, b"noise")
     os.write(2, b"heard")

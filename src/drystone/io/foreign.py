@@ -5,8 +5,10 @@ import os
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
 
-from drystone.errors import DrystoneError, InputError
+from drystone.errors import DrystoneError, InputError, UsageError
 
 _LONGEST = 200
 
@@ -29,13 +31,22 @@ def foreign(failed: Callable[[str], DrystoneError]) -> Iterator[None]:
     except DrystoneError:
         raise
     except MemoryError as error:
-        raise InputError(
-            "E110", "there is not enough memory for what is in this file.",
-            where=failed("").where, cure="Reduce it or crop it.",
-        ) from error  # fmt: skip
+        what = "there is not enough memory for what is in this file."
+        where = failed("").where
+        raise InputError("E110", what, where=where, cure="Reduce it or crop it.") from error
     except Exception as error:
         reason = " ".join(str(error).split())[:_LONGEST] or type(error).__name__
         raise failed(reason) from error
+
+
+def extra(package: str, does: str, where: str, name: str) -> Any:
+    """Return a package that is an extra, so it is loaded only when it is needed (E305)."""
+    try:
+        return import_module(package)
+    except ImportError as error:
+        what = f"{package} is not installed, and it {does}."
+        cure = f"Install it with `pip install drystone[{name}]`."
+        raise UsageError("E305", what, where=where, cure=cure) from error
 
 
 @contextmanager

@@ -2,9 +2,12 @@
 
 import json
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from drystone.io.file_bytes import file_bytes
 
 DEEPEST = 100
 """How many lists and objects may be in each other; plans and outlines have less than 12."""
@@ -25,6 +28,11 @@ def json_of(text: str, **hooks: Any) -> Any:
         return json.loads(text, **hooks)
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
+
+
+def json_in(path: Path) -> Any:
+    """Return what a JSON file says; OSError when it cannot be read, ValueError when it is none."""
+    return json_of(file_bytes(path).decode("utf-8-sig"))
 
 
 def _depth(text: str) -> int:

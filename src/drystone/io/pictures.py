@@ -20,6 +20,7 @@ from PIL import (
 )
 
 from drystone.errors import InputError
+from drystone.io.file_errors import damaged, too_large
 from drystone.io.foreign import foreign, silent_stderr
 
 _FORMATS: tuple[tuple[str, tuple[bytes, ...], type[ImageFile.ImageFile]], ...] = (
@@ -83,31 +84,11 @@ def _scans(data: bytes) -> int:
     return count
 
 
-def damaged(why: str, where: str) -> InputError:
-    """Make the error for bytes that are not what their format says (E106)."""
-    return InputError(
-        "E106", f"the file is damaged or cut short ({why}).", where=where,
-        cure="Copy or export it again.",
-    )  # fmt: skip
-
-
-def check_size(width: int, height: int, where: str, max_px: int, cure: str = _CURE) -> None:
+def check_size(width: int, height: int, max_px: int, cure: str = _CURE) -> None:
     """Refuse pictures that would fill the memory (E110)."""
     if width * height > max_px or max(width, height) > _MOST_SIDE_PX:
-        raise InputError(
-            "E110",
+        raise too_large(
             f"{width} x {height} px are {width * height / 1e6:.0f} million; the limit is "
             f"{max_px / 1e6:g} million, and {_MOST_SIDE_PX} of a side.",
-            where=where,
-            cure=cure,
+            cure,
         )
-
-
-def several_pages(found: str, where: str) -> InputError:
-    """Make the error for stacks and animations (E109)."""
-    return InputError(
-        "E109",
-        f"{found} were found where one picture is needed.",
-        where=where,
-        cure="Give one page as a picture of its own, or a folder of one-stone masks.",
-    )

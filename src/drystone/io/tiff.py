@@ -15,8 +15,9 @@ import tifffile
 from numpy.typing import NDArray
 from PIL.Image import Transpose
 
+from drystone.io.file_errors import damaged, several_pages
 from drystone.io.foreign import foreign
-from drystone.io.pictures import damaged, opened, several_pages
+from drystone.io.pictures import opened
 
 _BY_TIFFFILE = {1, 8, 32773, 32946}
 """No compression, deflate, PackBits: decoded by tifffile without further packages."""
@@ -94,12 +95,12 @@ def inspect(data: bytes, where: str) -> TiffPage:
     return found
 
 
-def values(data: bytes, where: str, check: Callable[[int, int], None]) -> NDArray[Any]:
+def values(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
     """Decode the only page of a TIFF, channels last; palette indices and numbers are kept.
 
     Pixels are where the file has them: its orientation turns nothing, however it is compressed.
     """
-    with _page(data, where) as page:
+    with _page(data) as page:
         compression, bits, kind = (
             int(n) for n in (page.compression, page.bitspersample, page.sampleformat)
         )
@@ -109,18 +110,17 @@ def values(data: bytes, where: str, check: Callable[[int, int], None]) -> NDArra
             (int(a), int(n)) for a, n in zip(page.dataoffsets, page.databytecounts, strict=False)
         ]
     if compression not in _BY_TIFFFILE:
-        return _values_by_pillow(
-            data, where, check, unsigned=bits == 32 and kind == 1, negative=negative
-        )
+        unsigned = bits == 32 and kind == 1
+        return _values_by_pillow(data, check, unsigned=unsigned, negative=negative)
     if compression != 1:
-        _check_expanded(data, packed, compression, size, where)
-    with _page(data, where) as page:
+        _check_expanded(data, packed, compression, size)
+    with _page(data) as page:
         found = np.asarray(page.asarray())
         return np.moveaxis(found, 0, -1) if page.axes == "SYX" else found
 
 
 @contextmanager
-def _page(data: bytes, where: str) -> Iterator[Any]:
+def _page(data: bytes, where: str = "") -> Iterator[Any]:
     """Open the first page with tifffile, the variants of microscopes that lead elsewhere aside."""
     with foreign(lambda why: damaged(why, where)):
         file = tifffile.TiffFile(  # noqa: TID251 - its chain was followed
@@ -181,21 +181,21 @@ def _unreadable(page: Any) -> str:
 
 
 def _check_expanded(
-    data: bytes, packed: list[tuple[int, int]], compression: int, size: int, where: str
+    data: bytes, packed: list[tuple[int, int]], compression: int, size: int
 ) -> None:
     """Refuse packed bytes that become many more than the picture has."""
     total, most = sum(count for _, count in packed), 2 * size + _EXPANDS
     if total > len(data):
-        raise damaged("its strips lie in each other", where)
+        raise damaged("its strips lie in each other")
     if total * 1032 <= _EXPANDS:  # the most that deflate can do
         return
     expanded = 0
     for start, count in packed:
         piece = data[start : start + count]
-        with foreign(lambda why: damaged(why, where)):
+        with foreign(damaged):
             expanded += (_inflated if compression != 32773 else _unpacked)(piece, most)
         if expanded > most:
-            raise damaged("its strips are larger than the picture", where)
+            raise damaged("its strips are larger than the picture")
 
 
 def _inflated(piece: bytes, most: int) -> int:
@@ -218,9 +218,9 @@ def _unpacked(piece: bytes, most: int) -> int:
 
 
 def _values_by_pillow(
-    data: bytes, where: str, check: Callable[[int, int], None], *, unsigned: bool, negative: bool
+    data: bytes, check: Callable[[int, int], None], *, unsigned: bool, negative: bool
 ) -> NDArray[Any]:
-    with opened(data, where, check) as image:
+    with opened(data, "", check) as image:
         # Pillow turns a picture when it loads it.
         back = _BACK.get(image.getexif().get(ORIENTATION, 1))
         mode = image.mode

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from drystone.contacts.given import polygons_from_json
 from drystone.contacts.given_parts import read_mu
 from drystone.errors import InputError, Notice, UsageError
-from drystone.io.blocks_json import BLOCKS
 from drystone.io.file_bytes import file_bytes
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
 from drystone.io.listed import listed
+from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
 from drystone.kernels.label_runs import label_runs

@@ -1,29 +1,34 @@
-"""COCO: a JSON file of annotations with polygons or run lengths, for one image or for many."""
+"""COCO, and the automatic masks of Segment Anything (SAM): JSON of polygons and run lengths."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import PurePath
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from drystone.errors import InputError, Notice
+from drystone.io.file_errors import entry
 from drystone.io.listed import listed, short
-from drystone.io.outlines_in.fill import Room, check_reach
+from drystone.io.outlines_in.fill import Room, check_reach, trimmed
 from drystone.io.outlines_in.model import (
     Area,
     OutlinedStone,
     OutlineFile,
-    PlacedMask,
-    entry,
     left_aside,
     number_in,
     ring,
     side_px,
 )
 from drystone.io.outlines_in.nested import without_nested
-from drystone.io.outlines_in.run_lengths import is_runs, mask_of, size_of
+from drystone.io.patches import PlacedMask
+from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
 
 _OF_MODEL = ("predicted_iou", "stability_score")
+_MOST_PX = 2**31
+_AT_ONCE = 64
 
 
 def is_coco(content: object) -> bool:
@@ -31,89 +36,145 @@ def is_coco(content: object) -> bool:
     return isinstance(content, Mapping) and isinstance(content.get("annotations"), list)
 
 
-def read_coco(content: Mapping[str, Any], where: str, settings: ReadSettings) -> OutlineFile:
+def is_sam(content: object) -> bool:
+    """Tell SAM (and lists of results in COCO's form) by their keys."""
+    return isinstance(content, list) and all(
+        isinstance(found, Mapping) and "segmentation" in found for found in content
+    )
+
+
+class _Stones:
+    """Stones that are read one by one, and the size of the image that they are in."""
+
+    def __init__(self, settings: ReadSettings) -> None:
+        self.settings = settings
+        self.room = Room(int(settings.max_image_mpx * 1e6))
+        self.stones: list[OutlinedStone] = []
+        self.sizes: set[tuple[int, int]] = set()
+
+    def add(self, segmentation: Any, number: int | None, name: str = "") -> None:
+        """Add a stone of polygons, rows of truth values, or run lengths, which take of the room."""
+        areas, mask = [], None
+        if _is_runs(segmentation):
+            mask = mask_of(segmentation, self.room)
+            self.sizes.add(_size_of(segmentation))
+        else:
+            for flat in segmentation:
+                if len(flat) % 2:
+                    raise ValueError("a polygon has an odd number of coordinates")
+                areas.append(Area((ring(list(zip(flat[0::2], flat[1::2], strict=True))),)))
+        masks = () if mask is None else (mask,)
+        self.stones.append(OutlinedStone(number, name, tuple(areas), masks))
+
+    def add_rows(self, segmentation: Any, number: int) -> None:
+        """Add a stone of rows of truth values."""
+        rows = np.asarray(segmentation)
+        if rows.ndim != 2 or rows.dtype.kind not in "biu":
+            raise ValueError("its rows are not of one length, or of no truth values")
+        self.sizes.add((rows.shape[1], rows.shape[0]))
+        mask = trimmed(PlacedMask(rows.astype(bool), 0, 0))
+        self.stones.append(OutlinedStone(number, masks=() if mask is None else (mask,)))
+
+    def without_nested(self) -> list[Notice]:
+        """Leave out what is ground, a group or a part of a stone, as a model finds them."""
+        check_reach(self.stones, self.room.max_px)
+        self.stones, notices = without_nested(self.stones, self.settings.skip)
+        return notices
+
+    def size_in(self, image: Mapping[str, Any] | None) -> tuple[int, int] | None:
+        """Return the size that the image and all masks agree on; E114 when they do not."""
+        with entry("the image"):
+            if image is not None and image.get("width") and image.get("height"):
+                self.sizes.add((side_px(image["width"]), side_px(image["height"])))
+            if len(self.sizes) > 1:
+                found = listed(f"{width} x {height}" for width, height in sorted(self.sizes))
+                raise ValueError(f"its sizes differ: {found} px")
+        return next(iter(self.sizes), None)
+
+
+def read_coco(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
     """Read the annotations of one image.
 
     Polygons of one annotation are united, which is COCO's own rule: it has no holes but in run
     lengths.  Files that the automatic masks of SAM were released in have ``image`` instead of
-    ``images``, and are read as :mod:`~drystone.io.outlines_in.sam` says.
+    ``images``; their masks may lie in each other, as those of :func:`read_sam`.
     """
-    chosen, image = _chosen(content, where, settings.image)
-    with entry(where, "the list of categories"):
+    chosen, image = _chosen(content, settings.image)
+    with entry("the list of categories"):
         categories = {c.get("id"): str(c.get("name", "")) for c in content.get("categories") or ()}
     shown = categories if len(categories) > 1 else {}
-    stones, sizes, aside, masks_of_crowds = [], set(), Counter[str](), 0
-    room = Room(where, int(settings.max_image_mpx * 1e6))
+    stones, aside, masks_of_crowds = _Stones(settings), Counter[str](), 0
     only_crowds = all(map(_is_crowd, chosen))
     for number, found in enumerate(chosen):
-        with entry(where, f"annotation {found.get('id', number)}"):
+        with entry(f"annotation {found.get('id', number)}"):
             segmentation = found.get("segmentation")
             if _is_crowd(found):
                 # CVAT (datumaro) calls every mask a crowd; the attributes are its own, too.
-                if not is_runs(segmentation) or not (only_crowds or "attributes" in found):
+                if not _is_runs(segmentation) or not (only_crowds or "attributes" in found):
                     aside["crowd regions (several stones as one)"] += 1
                     continue
                 masks_of_crowds += 1
             if not segmentation:
                 aside["annotations without an outline"] += 1
                 continue
-            areas, masks = shape_of(segmentation, room)
-            if is_runs(segmentation):
-                sizes.add(size_of(segmentation))
             name = shown.get(found.get("category_id"), "")
-            stones.append(OutlinedStone(number_in(found.get("id")), name, areas, masks))
-    size = size_in(image, sizes, where)
-    notices: list[Notice] = left_aside(aside)
+            stones.add(segmentation, number_in(found.get("id")), name)
+    size = stones.size_in(image)
+    notices = left_aside(aside)
     if masks_of_crowds:
         text = f"{masks_of_crowds} masks are marked as crowds, as CVAT marks all: a stone each."
         notices.append(Notice("W119", text, "Skip the ids of those that are several stones."))
     if any(name in found for found in chosen for name in _OF_MODEL):
-        check_reach(stones, where, room.max_px)
-        stones, nested = without_nested(stones, where, settings.skip)
-        notices += nested
-    return OutlineFile(tuple(stones), size_px=size, notices=tuple(notices), names_images=True)
+        notices += stones.without_nested()
+    return OutlineFile(stones.stones, size_px=size, notices=notices, names_images=True)
+
+
+def read_sam(content: list[Mapping[str, Any]], settings: ReadSettings) -> OutlineFile:
+    """Read a list of masks, numbered from 1 in the order of the file.
+
+    Masks may lie in each other: what is ground, a group or a part of a stone is left out as
+    :func:`~drystone.io.outlines_in.nested.without_nested` says.
+    """
+    images = {str(found["image_id"]) for found in content if "image_id" in found}
+    several = len({str(found.get("image_id")) for found in content}) > 1
+    if images and (several or settings.image):
+        if settings.image not in images:
+            no_such = f"no image is called {settings.image!r}"
+            what = no_such if settings.image else f"masks of {len(images)} images are in it"
+            raise _image_needed(what, sorted(images))
+        content = [found for found in content if str(found.get("image_id")) == settings.image]
+    stones = _Stones(settings)
+    for number, found in enumerate(content, start=1):
+        with entry(f"mask {number}"):
+            segmentation = found["segmentation"]
+            add = stones.add_rows if _is_nested_list(segmentation) else stones.add
+            add(segmentation, number)
+    notices = stones.without_nested()
+    size = stones.size_in(None)
+    return OutlineFile(stones.stones, size_px=size, notices=notices, names_images=bool(images))
+
+
+def _is_nested_list(segmentation: Any) -> bool:
+    """Tell rows of truth values from polygons, which have at least 6 numbers that are none."""
+    if not isinstance(segmentation, list) or not segmentation:
+        return False
+    first = segmentation[0]
+    return isinstance(first, list) and all(value in (0, 1) for value in first)
 
 
 def _is_crowd(found: Mapping[str, Any]) -> bool:
     return found.get("iscrowd") not in (None, 0, "0", "")
 
 
-def shape_of(segmentation: Any, room: Room) -> tuple[tuple[Area, ...], tuple[PlacedMask, ...]]:
-    """Return a segmentation as areas or as a mask, which takes of the room."""
-    if is_runs(segmentation):
-        mask = mask_of(segmentation, room)
-        return (), () if mask is None else (mask,)
-    polygons = []
-    for flat in segmentation:
-        if len(flat) % 2:
-            raise ValueError("a polygon has an odd number of coordinates")
-        polygons.append(Area((ring(list(zip(flat[0::2], flat[1::2], strict=True))),)))
-    return tuple(polygons), ()
-
-
-def size_in(
-    image: Mapping[str, Any] | None, masks: set[tuple[int, int]], where: str
-) -> tuple[int, int] | None:
-    """Return the size that the image and all run lengths agree on; E114 when they do not."""
-    sizes = set(masks)
-    with entry(where, "the image"):
-        if image is not None and image.get("width") and image.get("height"):
-            sizes.add((side_px(image["width"]), side_px(image["height"])))
-        if len(sizes) > 1:
-            found = listed(f"{width} x {height}" for width, height in sorted(sizes))
-            raise ValueError(f"its sizes differ: {found} px")
-    return sizes.pop() if sizes else None
-
-
 def _chosen(
-    content: Mapping[str, Any], where: str, name: str
+    content: Mapping[str, Any], name: str
 ) -> tuple[list[Mapping[str, Any]], Mapping[str, Any] | None]:
     """Return the annotations of the image that was asked for, or of the only one."""
     annotations = content["annotations"]
     images = content.get("images") or ()
     if isinstance(content.get("image"), Mapping):
         images = ({**content["image"], "id": None},)
-    with entry(where, "the list of images"):
+    with entry("the list of images"):
         if not all(isinstance(found, Mapping) for found in annotations):
             raise TypeError("annotations are no objects")
         known = {image.get("id"): image for image in images}
@@ -122,20 +183,95 @@ def _chosen(
     if name:
         used = [i for i in known if name in (names[i], PurePath(names[i]).name, str(i))]
         if len(used) != 1:
-            raise image_needed(f"no image or several are called {name!r}", where, names.values())
+            raise _image_needed(f"no image or several are called {name!r}", names.values())
     if len(used) > 1:
-        raise image_needed(
-            f"stones of {len(used)} images are in it", where, [names.get(i, str(i)) for i in used]
-        )
+        what = f"stones of {len(used)} images are in it"
+        raise _image_needed(what, [names.get(i, str(i)) for i in used])
     only = used[0] if used else None
     image = known.get(only) or (next(iter(known.values())) if len(known) == 1 else None)
     return [found for found in annotations if found.get("image_id") == only], image
 
 
-def image_needed(what: str, where: str, names: Sequence[str] | Any) -> InputError:
+def _image_needed(what: str, names: Iterable[str]) -> InputError:
     """Make the error for several images in one file (E115)."""
-    return InputError(
-        "E115", f"{what}.", where=where,
-        cure="Say which one with --image NAME (ReadSettings.image); there are "
-        f"{listed(map(short, names))}.",
-    )  # fmt: skip
+    there = listed(map(short, names))
+    cure = f"Say which one with --image NAME (ReadSettings.image); there are {there}."
+    return InputError("E115", f"{what}.", cure=cure)
+
+
+def _is_runs(value: object) -> bool:
+    return isinstance(value, Mapping) and "counts" in value
+
+
+def _size_of(value: Mapping[str, Any]) -> tuple[int, int]:
+    """Return width and height of run lengths."""
+    height, width = (int(side) for side in value["size"])
+    if min(height, width) < 1 or height * width > _MOST_PX:
+        raise ValueError(f"a picture of {width} x {height} px")
+    return width, height
+
+
+def mask_of(value: Mapping[str, Any], room: Room) -> PlacedMask | None:
+    """Return the mask of run lengths, cut to its bounding box; None when no pixel is set.
+
+    They are column by column, background first: ``size`` (height, width) and ``counts``, which are
+    numbers, or text as pycocotools packs them.
+    """
+    width, height = _size_of(value)
+    check_size(width, height, room.max_px)
+    counts = value["counts"]
+    runs = unpacked(counts) if isinstance(counts, str | bytes) else _numbers(counts)
+    if int(runs.sum()) != width * height:
+        raise ValueError(f"counts add up to {int(runs.sum())}, not to {width} x {height} px")
+    ends = np.cumsum(runs)
+    starts, stops = ends[0::2][: len(ends) // 2], ends[1::2]
+    starts, stops = starts[stops > starts], stops[stops > starts]
+    if not len(starts):
+        return None
+    first, last = int(starts[0]) // height, (int(stops[-1]) - 1) // height
+    ends = np.clip(ends, first * height, (last + 1) * height)
+    runs = ends - np.concatenate(([first * height], ends[:-1]))
+    columns = np.repeat(np.arange(len(runs)) % 2 == 1, runs).reshape(-1, height)
+    rows = np.flatnonzero(columns.any(axis=0))
+    top, bottom = int(rows[0]), int(rows[-1]) + 1
+    room.take((bottom - top) * len(columns))
+    mask = np.empty((bottom - top, len(columns)), bool)
+    for begin in range(0, len(columns), _AT_ONCE):  # what a cache holds
+        some = slice(begin, begin + _AT_ONCE)
+        mask[:, some] = columns[some, top:bottom].T
+    return PlacedMask(mask, top, first)
+
+
+def unpacked(text: str | bytes) -> NDArray[np.int64]:
+    """Return the counts of compressed run lengths.
+
+    Five bits a character, least first, 32 for one more to come; from the fourth count on it is
+    the difference to the one before the last.
+    """
+    data = text.encode() if isinstance(text, str) else text
+    counts: list[int] = []
+    number, shift = 0, 0
+    for byte in data:
+        bits = byte - 48
+        if not 0 <= bits < 64 or shift > 30:
+            raise ValueError(f"{chr(byte)!r} does not belong into packed counts")
+        number |= (bits & 31) << shift
+        shift += 5
+        if bits & 32:
+            continue
+        if bits & 16:
+            number -= 1 << shift
+        counts.append(number + counts[-2] if len(counts) > 2 else number)
+        number, shift = 0, 0
+    if shift:
+        raise ValueError("packed counts are cut short")
+    return _numbers(counts)
+
+
+def _numbers(counts: Any) -> NDArray[np.int64]:
+    runs = np.asarray(counts)
+    if runs.ndim != 1 or (runs.size and runs.dtype.kind not in "iu"):
+        raise ValueError("counts are whole numbers")
+    if runs.size and (int(runs.min()) < 0 or int(runs.max()) > _MOST_PX):
+        raise ValueError("a count is below 0 or too large")
+    return runs.astype(np.int64)

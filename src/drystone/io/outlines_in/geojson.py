@@ -5,13 +5,13 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from drystone.errors import InputError, Notice
+from drystone.io.file_errors import entry
 from drystone.io.listed import short
 from drystone.io.outlines_in.model import (
     METRES,
     Area,
     OutlinedStone,
     OutlineFile,
-    entry,
     left_aside,
     number_in,
     ring,
@@ -33,7 +33,7 @@ def is_geojson(content: object) -> bool:
     return isinstance(kind, str) and kind in _KINDS
 
 
-def read_geojson(content: Mapping[str, Any], where: str, settings: ReadSettings) -> OutlineFile:
+def read_geojson(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
     """Read polygons and multi-polygons, a stone a feature.
 
     A foreign member ``unit`` of the file ("m", "mm" …), or the setting, makes it a drawing with y
@@ -42,26 +42,22 @@ def read_geojson(content: Mapping[str, Any], where: str, settings: ReadSettings)
     of a stone is the ``id`` of its feature or of its properties, its name their ``name``.
     """
     if any(name in str(content.get("crs", "")) for name in _DEGREES):
-        raise InputError(
-            "E116", "its coordinates are degrees of latitude and longitude.", where=where,
-            cure="Project it to metres, and give the file a member \"unit\": \"m\".",
-        )  # fmt: skip
+        what = "its coordinates are degrees of latitude and longitude."
+        raise _no_unit(what, 'Project it to metres, and give the file a member "unit": "m".')
     if content.get("crs") and not settings.unit and "unit" not in content:
-        raise InputError(
-            "E116", "its coordinates are those of a map, and it does not say their unit.",
-            where=where, cure="Say it with --unit m (or ft; ReadSettings.unit), or px if they are "
-            "px of an image after all.",
-        )  # fmt: skip
+        raise _no_unit(
+            "its coordinates are those of a map, and it does not say their unit.",
+            "Say it with --unit m (or ft; ReadSettings.unit), or px if they are px of an image "
+            "after all.",
+        )
     unit = content.get("unit", "px")
     if unit not in (*METRES, "px"):
-        raise InputError(
-            "E116", f"its unit {short(repr(unit))} is not known.", where=where,
-            cure=f"Use one of px, {', '.join(METRES)}.",
-        )  # fmt: skip
+        what = f"its unit {short(repr(unit))} is not known."
+        raise _no_unit(what, f"Use one of px, {', '.join(METRES)}.")
     stones: list[OutlinedStone] = []
     aside = Counter[str]()
-    for number, feature in enumerate(_features(content, where)):
-        with entry(where, f"feature {number} (from 0)"):
+    for number, feature in enumerate(_features(content)):
+        with entry(f"feature {number} (from 0)"):
             stones += _stones(feature, aside)
     unit_m = METRES.get(unit if "unit" in content else settings.unit or "px")
     upwards = unit_m is not None or str(content.get("frame")).startswith("wall")
@@ -70,7 +66,11 @@ def read_geojson(content: Mapping[str, Any], where: str, settings: ReadSettings)
         upwards = True
         text = "all y are negative: y runs up, as GIS programs have it over a picture."
         notices.append(Notice("W119", text))
-    return OutlineFile(tuple(stones), unit_m, upwards, notices=tuple(notices))
+    return OutlineFile(stones, unit_m, upwards, notices=notices)
+
+
+def _no_unit(what: str, cure: str) -> InputError:
+    return InputError("E116", what, cure=cure)
 
 
 def _below(stones: list[OutlinedStone]) -> bool:
@@ -79,8 +79,8 @@ def _below(stones: list[OutlinedStone]) -> bool:
     return bool(rings) and all(ring[:, 1].max() <= 0.0 for ring in rings)
 
 
-def _features(content: Mapping[str, Any], where: str) -> Iterator[Mapping[str, Any]]:
-    with entry(where, "the list of features"):
+def _features(content: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    with entry("the list of features"):
         if content["type"] == "FeatureCollection":
             yield from content["features"]
         elif content["type"] == "Feature":

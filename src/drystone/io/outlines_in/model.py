@@ -2,25 +2,23 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
 
-from drystone.errors import InputError, Notice
+from drystone.errors import Notice
 from drystone.io.labels import MAX_ID
 from drystone.io.listed import listed, short
+from drystone.io.patches import PlacedMask
 from drystone.kernels.polygons import Points
-from drystone.kernels.raster import Mask
 
 METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048})
 """Metres in each unit that a user may name."""
 
 _LARGEST = 10**9
-_LONGEST = 300
 _STONE_NAME = re.compile(r"(?:stones?[ _-]*)?0*([1-9][0-9]*)", re.IGNORECASE)
 _WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
 
@@ -29,44 +27,32 @@ _WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
 class Area:
     """What rings enclose together."""
 
-    # (n, 2), not closed, in any sense of rotation, in the unit of the file
     rings: tuple[Points, ...]
-    # which points are inside: by the number of rings around them, or by the sum of their turns
+    """(n, 2) each, not closed, in any sense of rotation, in the unit of the file."""
     rule: Literal["evenodd", "nonzero"] = "evenodd"
-
-
-@dataclass(frozen=True, eq=False)
-class PlacedMask:
-    """Pixels at a place of a picture."""
-
-    mask: Mask  # (h, w), row 0 at the top
-    row: int  # of its upper left pixel
-    col: int  # of its upper left pixel
+    """What is inside: by the number of rings around it, or by the sum of their turns."""
 
 
 @dataclass(frozen=True, eq=False)
 class OutlinedStone:
     """A stone of a file: the union of areas and masks."""
 
-    id: int | None  # the file's own number, if it has one, be it one that no stone can have
+    id: int | None  # the file's own number, be it one that no stone can have
     name: str = ""  # the file's own name
-    areas: tuple[Area, ...] = ()  # outlines
-    masks: tuple[PlacedMask, ...] = ()  # pixels; only in files in px
+    areas: tuple[Area, ...] = ()
+    masks: tuple[PlacedMask, ...] = ()  # only in files in px
 
 
 @dataclass(frozen=True, eq=False)
 class OutlineFile:
     """What a file of outlines holds."""
 
-    stones: tuple[OutlinedStone, ...]  # in the order of the file
-    # metres in a unit of the file; None when its unit is the px of an image
-    unit_m: float | None = None
-    y_up: bool = False  # false when y runs down, as in images
-    # width and height of the image of a file in px, if the file says so
-    size_px: tuple[int, int] | None = None
-    notices: tuple[Notice, ...] = ()  # what had to be decided
-    # the file says of which image each stone is, so that one of them can be asked for
-    names_images: bool = False
+    stones: Sequence[OutlinedStone]  # in the order of the file
+    unit_m: float | None = None  # metres in its unit; None when that is the px of an image
+    y_up: bool = False  # False when y runs down, as in images
+    size_px: tuple[int, int] | None = None  # width, height of the image of a file in px, if said
+    notices: Sequence[Notice] = ()
+    names_images: bool = False  # it says of which image each stone is, so one can be asked for
 
 
 def number_in(text: object) -> int | None:
@@ -83,7 +69,9 @@ def number_in(text: object) -> int | None:
     return number if 0 < number <= MAX_ID else None
 
 
-def numbered(stones: tuple[OutlinedStone, ...]) -> tuple[tuple[OutlinedStone, ...], list[Notice]]:
+def numbered(
+    stones: Sequence[OutlinedStone],
+) -> tuple[Sequence[OutlinedStone], list[Notice]]:
     """Give every stone an id: the file's own when all differ, else 1, 2, 3 and so on.
 
     A file with any number of its own is not numbered anew without a notice (W119).
@@ -93,7 +81,7 @@ def numbered(stones: tuple[OutlinedStone, ...]) -> tuple[tuple[OutlinedStone, ..
     beyond = sorted({number for number in own if not 0 < number <= MAX_ID})
     if len(own) == len(stones) and not several and not beyond:
         return stones, []
-    result = tuple(replace(stone, id=i) for i, stone in enumerate(stones, start=1))
+    result = [replace(stone, id=i) for i, stone in enumerate(stones, start=1)]
     if not own:
         return result, []
     if several:
@@ -115,10 +103,10 @@ def numbered(stones: tuple[OutlinedStone, ...]) -> tuple[tuple[OutlinedStone, ..
 
 
 def without_wedges(
-    stones: tuple[OutlinedStone, ...],
-) -> tuple[tuple[OutlinedStone, ...], list[Notice]]:
+    stones: Sequence[OutlinedStone],
+) -> tuple[list[OutlinedStone], list[Notice]]:
     """Leave out wedges of a planned wall, which nobody found."""
-    kept = tuple(stone for stone in stones if not _WEDGE_NAME.fullmatch(stone.name))
+    kept = [stone for stone in stones if not _WEDGE_NAME.fullmatch(stone.name)]
     left = len(stones) - len(kept)
     return kept, [Notice("W119", f"{left} wedges of a planned wall were left out.")] if left else []
 
@@ -155,24 +143,3 @@ def ring(points: Any) -> Points:
     if np.abs(corners).max() > _LARGEST:
         raise ValueError("a coordinate is beyond 1e9")
     return corners
-
-
-@contextmanager
-def entry(where: str, what: str) -> Iterator[None]:
-    """Turn what fails in one entry of a file into an error that names it (E114)."""
-    try:
-        yield
-    except KeyError as error:
-        raise damaged(where, f"{what} has no {error}") from error
-    except (TypeError, ValueError, IndexError, AttributeError, ArithmeticError) as error:
-        raise damaged(where, f"{what} cannot be used ({error})") from error
-
-
-def damaged(where: str, what: str) -> InputError:
-    """Make the error for a file whose content is not what its format says (E114)."""
-    return InputError(
-        "E114",
-        f"{short(what, _LONGEST)}.",
-        where=where,
-        cure="Correct it, or export the file again.",
-    )

@@ -1,0 +1,66 @@
+"""The errors that several readers raise, and the name of the file that they are of."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from drystone.errors import DrystoneError, InputError, UsageError
+from drystone.io.listed import short
+
+_LONGEST = 300
+
+
+@contextmanager
+def naming(where: str) -> Iterator[None]:
+    """Give errors of the block the name of their file, unless they say where they are."""
+    try:
+        yield
+    except DrystoneError as error:
+        error.where = error.where or where
+        raise
+
+
+@contextmanager
+def entry(what: str) -> Iterator[None]:
+    """Turn what fails in one entry of a file into an error that names it (E114)."""
+    try:
+        yield
+    except KeyError as error:
+        raise unusable(f"{what} has no {error}") from error
+    except (TypeError, ValueError, IndexError, AttributeError, ArithmeticError) as error:
+        raise unusable(f"{what} cannot be used ({error})") from error
+
+
+def damaged(
+    why: str, where: str = "", what: str = "file", cure: str = "Copy or export it again."
+) -> InputError:
+    """Make the error for bytes that are not what their format says (E106)."""
+    text = f"the {what} is damaged or cut short ({why})."
+    return InputError("E106", text, where=where, cure=cure)
+
+
+def unread(what: str, cure: str) -> InputError:
+    """Make the error for a format, or a kind of it, that is not read (E107)."""
+    return InputError("E107", what, cure=cure)
+
+
+def several_pages(found: str, where: str = "") -> InputError:
+    """Make the error for stacks and animations (E109)."""
+    cure = "Give one page as a picture of its own, or a folder of one-stone masks."
+    what = f"{found} were found where one picture is needed."
+    return InputError("E109", what, where=where, cure=cure)
+
+
+def too_large(what: str, cure: str) -> InputError:
+    """Make the error for what would fill the memory, or take too long (E110)."""
+    return InputError("E110", what, cure=cure)
+
+
+def unusable(what: str) -> InputError:
+    """Make the error for a file whose content is not what its format says (E114)."""
+    cure = "Correct it, or export the file again."
+    return InputError("E114", f"{short(what, _LONGEST)}.", cure=cure)
+
+
+def unfit(what: str, cure: str) -> UsageError:
+    """Make the error for settings that are not for what is read (E118)."""
+    return UsageError("E118", what, cure=cure)
