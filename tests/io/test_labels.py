@@ -5,8 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from drystone.io.census import take_census
-from drystone.io.labels import to_ids
+from drystone.io.labels import take_census, to_ids
 from tests.naive import io as naive
 
 shapes = array_shapes(min_dims=2, max_dims=2, min_side=1, max_side=9)

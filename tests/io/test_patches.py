@@ -10,9 +10,9 @@ from scipy import ndimage
 from drystone.errors import LabelImageError
 from drystone.io import necks
 from drystone.io import patches as module
-from drystone.io.census import take_census
+from drystone.io.labels import take_census
 from drystone.io.necks import Summits, neck_width_px
-from drystone.io.patches import Patch, cut, enclosed
+from drystone.io.patches import StonePatch, cut, enclosed
 from drystone.io.read_stones import read_stones
 from tests.io.pictures import discs
 from tests.naive import io as naive
@@ -45,11 +45,11 @@ def test_holes(mask):
 
 @given(arrays(bool, shapes))
 def test_large_masks_are_looked_at_on_runs_to_the_same_end(mask):
-    found = Patch(mask, 0, 0, 1, 12)
+    found = StonePatch(mask, 0, 0, 1, 12)
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(module, "_LARGE_PX", 1)
         patched.setattr(module, "_PLAIN_PX", 0)
-        holes, areas = enclosed(mask), Patch(mask, 0, 0, 1, 12).piece_areas_px
+        holes, areas = enclosed(mask), StonePatch(mask, 0, 0, 1, 12).piece_areas_px
     np.testing.assert_array_equal(holes, enclosed(mask))
     assert areas == found.piece_areas_px
 
@@ -58,11 +58,11 @@ def test_a_large_plain_mask_takes_no_labels_of_pixels(monkeypatch):
     mask = np.ones((1100, 1000), bool)
     mask[40:50, 40:50] = mask[:, 500] = False
     monkeypatch.setattr(module.ndimage, "label", None)
-    assert Patch(mask, 0, 0, 1, 1100).piece_areas_px == (1100 * 500 - 100, 1100 * 499)
+    assert StonePatch(mask, 0, 0, 1, 1100).piece_areas_px == (1100 * 500 - 100, 1100 * 499)
     assert np.argwhere(enclosed(mask)).tolist() == np.argwhere(~mask[:, :500]).tolist()
     monkeypatch.undo()
     mask[:, ::40] = False  # many runs
-    assert len(Patch(mask, 0, 0, 1, 1100).piece_areas_px) == 25 + 1
+    assert len(StonePatch(mask, 0, 0, 1, 1100).piece_areas_px) == 25 + 1
 
 
 @pytest.mark.parametrize("width", [2, 4, 6, 8])

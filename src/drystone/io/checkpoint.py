@@ -66,12 +66,9 @@ def read_checkpoint(
         if standing is not None:
             _check(standing, frozenset(stone_ids), search)
     except (OSError, ValueError, RecursionError) as error:
-        raise PlanError(
-            "E207",
-            f"the search cannot go on from it: {error}.",
-            where=str(path),
-            cure="Remove it and give the same command again: the partial plan is gone on from.",
-        ) from error
+        what = f"the search cannot go on from it: {error}."
+        cure = "Remove it and give the same command again: the partial plan is gone on from."
+        raise PlanError("E207", what, where=str(path), cure=cure) from error
     return Checkpoint(data["made_of"], standing)
 
 

@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.errors import InputError, LabelImageError
-from drystone.io.census import Census
 from drystone.io.json_text import json_in
-from drystone.io.labels import IdImage
+from drystone.io.labels import Census, IdImage
 from drystone.kernels.ids import counted
 
 RARE_PX = 10
@@ -142,10 +141,11 @@ def _photo(census: Census) -> LabelImageError:
 
 
 def blended(census: Census, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Tell which chosen pixels lie strictly between darker and brighter ones 2 px around.
+    """Tell which chosen pixels, (h, w), lie strictly between darker and brighter ones 2 px around.
 
     That is what anti-aliasing, blur and interpolation leave at edges; a small stone on plain
-    background is the extreme of its surroundings.
+    background is the extreme of its surroundings.  The answer is in the order of
+    ``np.nonzero(chosen)``.
     """
     here = census.index[chosen]
     low = ndimage.minimum_filter(census.index, 5)[chosen]

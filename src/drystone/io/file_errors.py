@@ -1,12 +1,34 @@
-"""The errors that several readers raise, and the name of the file that they are of."""
+"""What is said of files: errors that several readers raise, the name of the file, and lists.
 
-from collections.abc import Iterator
+Strangers make lists and names as long as they like.
+"""
+
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 from drystone.errors import DrystoneError, InputError, UsageError
-from drystone.io.listed import short
 
-_LONGEST = 300
+SHOWN = 8
+MANY = 50
+"""Of what was left out or added, which users look up one by one."""
+
+_LONGEST = 500  # of a thing in a list
+_LONGEST_WHAT = 300
+
+
+def short(text: object, most: int = 100) -> str:
+    """Return the beginning of a text, such as a name."""
+    said = str(text)
+    return said if len(said) <= most else f"{said[:most]} …"
+
+
+def listed(things: Iterable[object], between: str = ", ", most: int = SHOWN) -> str:
+    """Return the first of some things, and how many more there are."""
+    found = list(things)
+    said = [short(thing, _LONGEST) for thing in found[:most]]
+    if len(found) > most:
+        said.append(f"and {len(found) - most} more")
+    return between.join(said)
 
 
 @contextmanager
@@ -58,7 +80,7 @@ def too_large(what: str, cure: str) -> InputError:
 def unusable(what: str) -> InputError:
     """Make the error for a file whose content is not what its format says (E114)."""
     cure = "Correct it, or export the file again."
-    return InputError("E114", f"{short(what, _LONGEST)}.", cure=cure)
+    return InputError("E114", f"{short(what, _LONGEST_WHAT)}.", cure=cure)
 
 
 def unfit(what: str, cure: str) -> UsageError:

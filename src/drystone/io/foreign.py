@@ -22,7 +22,8 @@ def foreign(failed: Callable[[str], DrystoneError]) -> Iterator[None]:
     """Turn whatever another package raises into a coded error, and silence its warnings.
 
     Parsers of other people raise anything on damaged bytes, so there is no list of what to expect.
-    Only the call into them belongs inside: a fault of ours must stay one.
+    Only the call into them belongs inside: a fault of ours must stay one.  `failed` makes the error
+    from a reason; E110 says where the memory is not large enough.
     """
     try:
         with warnings.catch_warnings():

@@ -7,10 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from drystone.io.census import Census, take_census
 from drystone.io.checks import blended
 from drystone.io.file_errors import unfit
-from drystone.io.labels import IdImage
+from drystone.io.labels import Census, IdImage, take_census
 from drystone.kernels.raster import Mask
 
 _USUAL_STONE_VALUES = (1, 255, 65535, 2**32 - 1)

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.errors import LabelImageError, Notice
-from drystone.io.file_errors import naming
+from drystone.io.file_errors import MANY, listed, naming, short
 from drystone.io.labels import MAX_ID
-from drystone.io.listed import MANY, listed, short
 from drystone.io.necks import neck_width_px
 from drystone.io.read_settings import Pieces, ReadSettings
 from drystone.kernels.ids import counted
@@ -67,7 +66,7 @@ class PlacedMask:
 
 
 @dataclass(frozen=True, eq=False)
-class Patch(PlacedMask):
+class StonePatch(PlacedMask):
     """The pixels of one id, within their bounding box, before they are a stone."""
 
     id: int  # positive
@@ -93,7 +92,7 @@ class Patch(PlacedMask):
             check_count(len(areas))
         return tuple(areas.tolist())
 
-    def pieces(self) -> list["Patch"]:
+    def pieces(self) -> list["StonePatch"]:
         """Return the 8-connected pieces, the largest first, equal ones in row order."""
         if len(self.piece_areas_px) == 1:
             return [self]
@@ -122,7 +121,7 @@ def check_count(count: int) -> None:
         raise LabelImageError("E110", what, cure=cure)
 
 
-def cut(index: NDArray[Any], ids: NDArray[np.int64], name: str = "") -> list[Patch]:
+def cut(index: NDArray[Any], ids: NDArray[np.int64], name: str = "") -> list[StonePatch]:
     """Cut every id out of an image, each looked at within its bounding box only.
 
     `index`, (h, w), has positions from 1 in `ids`; an index of 0 and an id of 0 are background.
@@ -136,12 +135,12 @@ def cut(index: NDArray[Any], ids: NDArray[np.int64], name: str = "") -> list[Pat
         mask = inside == position
         others = stone[inside] & ~mask
         row, col = window[0].start, window[1].start
-        patches.append(Patch(mask, row, col, int(ids[position - 1]), len(index), others, name))
+        patches.append(StonePatch(mask, row, col, int(ids[position - 1]), len(index), others, name))
     return patches
 
 
 def stone_set(
-    found: Sequence[Patch], notices: Sequence[Notice], source: Source, settings: ReadSettings
+    found: Sequence[StonePatch], notices: Sequence[Notice], source: Source, settings: ReadSettings
 ) -> StoneSet:
     """Put patches in order and make stones of them; every decision becomes a notice."""
     pieces_so_far = 0
@@ -175,7 +174,7 @@ def stone_set(
     return StoneSet(tuple(patch.to_stone() for patch in patches), source, tuple(noticed))
 
 
-def _smallest_stone_px(patches: Sequence[Patch], settings: ReadSettings) -> float:
+def _smallest_stone_px(patches: Sequence[StonePatch], settings: ReadSettings) -> float:
     """Return the area from which a patch is a stone: max(10 px, 0.1 % of the median area)."""
     if settings.min_area_px is not None:
         return settings.min_area_px
@@ -183,10 +182,12 @@ def _smallest_stone_px(patches: Sequence[Patch], settings: ReadSettings) -> floa
     return max(MIN_AREA_PX, 0.001 * float(np.median(areas))) if areas else MIN_AREA_PX
 
 
-def _without_specks(patches: Sequence[Patch], limit_px: float) -> tuple[list[Patch], list[Notice]]:
+def _without_specks(
+    patches: Sequence[StonePatch], limit_px: float
+) -> tuple[list[StonePatch], list[Notice]]:
     """Leave out patches whose largest piece is smaller than a stone can be, and list them."""
-    kept: list[Patch] = []
-    specks: list[Patch] = []
+    kept: list[StonePatch] = []
+    specks: list[StonePatch] = []
     for patch in patches:
         largest_px = max(patch.piece_areas_px, default=0)
         (kept if largest_px >= limit_px else specks).append(patch)
@@ -199,7 +200,9 @@ def _without_specks(patches: Sequence[Patch], limit_px: float) -> tuple[list[Pat
     return kept, [Notice("W113", f"{message}: {listed(places, most=MANY)}.", cure)]
 
 
-def _filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], list[Notice]]:
+def _filled(
+    patches: list[StonePatch], settings: ReadSettings
+) -> tuple[list[StonePatch], list[Notice]]:
     """Fill the holes of all patches (or only report them, ``holes="keep"``)."""
     result, found = [], []
     for patch in patches:
@@ -222,7 +225,7 @@ def _filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], 
     return result, [Notice("W112", f"holes filled: {listed(found, '; ', MANY)}.", cure)]
 
 
-def piece_numbers(patches: Sequence[Patch], settings: ReadSettings) -> dict[int, list[int]]:
+def piece_numbers(patches: Sequence[StonePatch], settings: ReadSettings) -> dict[int, list[int]]:
     """Return the ids of the further pieces of every patch that is split.
 
     They come after the largest id (where ids end: the free ones from 1), whatever is skipped.
@@ -239,11 +242,11 @@ def piece_numbers(patches: Sequence[Patch], settings: ReadSettings) -> dict[int,
 
 
 def _in_one_piece(
-    patches: list[Patch], settings: ReadSettings, numbers: dict[int, list[int]]
-) -> tuple[list[Patch], list[Notice]]:
+    patches: list[StonePatch], settings: ReadSettings, numbers: dict[int, list[int]]
+) -> tuple[list[StonePatch], list[Notice]]:
     """Leave every stone one 8-connected piece; pieces that become stones are skipped here."""
     result, refused, dropped, made = [], [], [], []
-    new: list[Patch] = []
+    new: list[StonePatch] = []
     for patch in patches:
         largest, *further = pieces = patch.pieces()
         result.append(largest)
@@ -277,19 +280,19 @@ def _in_one_piece(
     return result, [Notice("W111", text, cure)]
 
 
-def _is_refused(pieces: list[Patch], rule: Pieces) -> bool:
+def _is_refused(pieces: list[StonePatch], rule: Pieces) -> bool:
     if rule == "auto":
         areas = [piece.area_px for piece in pieces]
         return sum(areas[1:]) >= SMALL_SHARE * sum(areas)
     return rule == "error"
 
 
-def _describe(patch: Patch, pieces: list[Patch]) -> str:
+def _describe(patch: StonePatch, pieces: list[StonePatch]) -> str:
     places = listed(f"{p.area_px} px at column {p.col}, row {p.row}" for p in pieces)
     return f"stone {patch}: {places}"
 
 
-def _suspect_necks(patches: list[Patch]) -> list[Notice]:
+def _suspect_necks(patches: list[StonePatch]) -> list[Notice]:
     """Report large stones with a neck; of one or two stones every one, as no size is usual."""
     median = float(np.median([patch.area_px for patch in patches]))
     notices = []

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from drystone.errors import InputError, UsageError
+from drystone.io.file_errors import short
 from drystone.io.json_text import json_in
-from drystone.io.listed import short
 from drystone.io.read_settings import MOST_PX_PER_M
 from drystone.whole_files import refuse_existing, write_whole
 

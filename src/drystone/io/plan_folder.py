@@ -59,12 +59,9 @@ def write_plan_folder(result: PlanResult, folder: str | Path) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise PlanError(
-            "E206",
-            f"the folder cannot be made ({error.strerror}).",
-            where=str(folder),
-            cure="Give a folder that exists, has room and may be written to.",
-        ) from error
+        what = f"the folder cannot be made ({error.strerror})."
+        cure = "Give a folder that exists, has room and may be written to."
+        raise PlanError("E206", what, where=str(folder), cure=cure) from error
     if RECORD not in result.plan.source:
         place_photo(None, folder)  # that of an earlier plan shows other stones
     replaces = (folder / "plan.json").exists()
@@ -93,12 +90,9 @@ def _refuse_stones(source: Mapping[str, Any], folder: Path) -> None:
         else:
             same = sha256(path.read_bytes()).hexdigest() == source["sha256"]
         if same:
-            raise UsageError(
-                "E129",
-                "the stones of this plan were read from it, and what is read is never replaced.",
-                where=str(path),
-                cure="Write the plan into another folder.",
-            )
+            what = "the stones of this plan were read from it, and what is read is never replaced."
+            cure = "Write the plan into another folder."
+            raise UsageError("E129", what, where=str(path), cure=cure)
 
 
 def blocks_to_json(wall: Wall, model: RigidBlockModel) -> dict[str, Any]:

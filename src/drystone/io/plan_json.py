@@ -263,27 +263,18 @@ def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 def _validate(data: Any, where: str) -> None:
     """Refuse what is no plan of this version (E204) or not as the schema says (E205)."""
     if not isinstance(data, Mapping) or "schema" not in data:
-        raise PlanError(
-            "E204",
-            f'this is no plan: it is no JSON object with "schema": "{SCHEMA}".',
-            where=where,
-            cure="Give the plan.json that `drystone plan -o` wrote.",
-        )
+        what = f'this is no plan: it is no JSON object with "schema": "{SCHEMA}".'
+        cure = "Give the plan.json that `drystone plan -o` wrote."
+        raise PlanError("E204", what, where=where, cure=cure)
     if data["schema"] != SCHEMA:
-        raise PlanError(
-            "E204",
-            f"the plan is of version {_short(data['schema'])}; this drystone reads {SCHEMA}.",
-            where=f"{where}: $.schema",
-            cure="Read it with the drystone that wrote it, or plan again with this one.",
-        )
+        what = f"the plan is of version {_short(data['schema'])}; this drystone reads {SCHEMA}."
+        cure = "Read it with the drystone that wrote it, or plan again with this one."
+        raise PlanError("E204", what, where=f"{where}: $.schema", cure=cure)
     bad = _not_finite(data, "$")
     if bad is not None:
-        raise PlanError(
-            "E205",
-            "the number is not finite; JSON has no NaN and no infinity.",
-            where=f"{where}: {_short(bad, quote=False)}",
-            cure="Write null where nothing could be computed, if the schema allows it.",
-        )
+        what = "the number is not finite; JSON has no NaN and no infinity."
+        cure = "Write null where nothing could be computed, if the schema allows it."
+        raise PlanError("E205", what, where=f"{where}: {_short(bad, quote=False)}", cure=cure)
     errors = list(jsonschema.Draft202012Validator(plan_schema()).iter_errors(data))
     if errors:
         first = errors[0]

@@ -135,7 +135,10 @@ class Fetched:
 
 
 def published_folder(given: str | None) -> Path | None:
-    """Return the folder that published data is read from."""
+    """Return the folder that published data is read from: what is named, there or not.
+
+    Else it is the cache of ``drystone fetch``, when that has something in it.
+    """
     named = given or os.environ.get(VARIABLE)
     if named:
         return Path(named)
@@ -155,7 +158,11 @@ def destination(given: str | None) -> Path:
 
 
 def published_file(folder: Path, name: str) -> Path:
-    """Return the path of a published file, which has the contents that were released."""
+    """Return the path of a published file, which has the contents that were released.
+
+    Other contents are refused (E160): figures of other stones would pass for those of the
+    published ones.  A file that is missing or in no set is not checked: whoever opens it says so.
+    """
     path = folder / name
     for known, published in SETS.items():
         for file in published.files:
@@ -167,7 +174,10 @@ def published_file(folder: Path, name: str) -> Path:
 
 
 def fetch_set(wanted: PublishedSet, folder: Path, *, address: str = RAW) -> list[Fetched]:
-    """Bring the files of a set into a folder, with their licence; what is there is only checked."""
+    """Bring the files of a set into a folder, with their licence; what is there is only checked.
+
+    A file of other contents is never replaced, and a download of that kind is never kept (E160).
+    """
     fetched = []
     for file in wanted.files:
         path, url = folder / file.name, f"{address}/{file.address}"
@@ -220,12 +230,8 @@ def _download(file: PublishedFile, path: Path, url: str) -> None:
             raise
         if (answer := getattr(error, "response", None)) is not None:
             answer.close()  # pooch leaves the connection of a refusal (404) open
-        raise InputError(
-            "E161",
-            f"cannot be downloaded ({_reason(error)}).",
-            where=str(path),
-            cure=_by_hand(url, path),
-        ) from error
+        what = f"cannot be downloaded ({_reason(error)})."
+        raise InputError("E161", what, where=str(path), cure=_by_hand(url, path)) from error
 
 
 def _cache() -> Path | None:
@@ -254,19 +260,11 @@ def _by_hand(url: str, path: Path) -> str:
 
 def _other_contents(path: Path, cure: str, url: str) -> InputError:
     """Return the error for a file that is not the published one."""
-    return InputError(
-        "E160",
-        "has other contents than the published file (SHA-256).",
-        where=str(path),
-        cure=f"{cure} save {url} there.",
-    )
+    what = "has other contents than the published file (SHA-256)."
+    return InputError("E160", what, where=str(path), cure=f"{cure} save {url} there.")
 
 
 def _extra_missing(where: str, cure: str) -> InputError:
     """Return the error for the missing library."""
-    return InputError(
-        "E162",
-        "pooch, which downloads, is not installed.",
-        where=where,
-        cure=f"`pip install 'drystone[fetch]'`. {cure}",
-    )
+    what = "pooch, which downloads, is not installed."
+    return InputError("E162", what, where=where, cure=f"`pip install 'drystone[fetch]'`. {cure}")

@@ -11,15 +11,14 @@ from typing import Any
 import numpy as np
 
 from drystone.errors import InputError
-from drystone.io.file_errors import too_large, unfit
+from drystone.io.file_errors import listed, short, too_large, unfit
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
-from drystone.io.listed import listed, short
 from drystone.io.npy import BEGINNING
-from drystone.io.outlines_in.coco import is_coco, is_sam, read_coco, read_sam
+from drystone.io.outlines_in.coco import read_coco, read_sam
 from drystone.io.outlines_in.dxf import is_dxf, read_dxf
-from drystone.io.outlines_in.geojson import is_geojson, read_geojson
-from drystone.io.outlines_in.labelme import is_labelme, read_labelme
+from drystone.io.outlines_in.geojson import KINDS, read_geojson
+from drystone.io.outlines_in.labelme import read_labelme
 from drystone.io.outlines_in.meshes import mesh_kind, read_mesh
 from drystone.io.outlines_in.model import METRES, OutlineFile, numbered, without_wedges
 from drystone.io.outlines_in.raster import rastered
@@ -35,12 +34,6 @@ Reader = Callable[[bytes, ReadSettings], OutlineFile]
 MOST_TEXT_BYTES = 500_000_000
 """Larger files of outlines are refused; that of all images of COCO has 450 MB."""
 
-_JSON: tuple[tuple[Callable[[object], bool], Callable[..., OutlineFile]], ...] = (
-    (is_labelme, read_labelme),
-    (is_coco, read_coco),
-    (is_sam, read_sam),
-    (is_geojson, read_geojson),
-)
 _EXPECTED = (
     "labelme (shapes), COCO (annotations, images), masks of SAM (a list with segmentation each) "
     "or GeoJSON (type, features)"
@@ -70,9 +63,16 @@ def outline_reader(data: bytes, name: str) -> Reader | None:
 def _read_json(data: bytes, settings: ReadSettings) -> OutlineFile:
     with foreign(lambda why: _no_stones(f"cannot be read, it may be cut short ({why})")):
         content = json_of(data.decode(json.detect_encoding(data), "surrogatepass"))
-    for is_format, read in _JSON:
-        if is_format(content):
-            return read(content, settings)
+    if isinstance(content, list):
+        if all(isinstance(found, Mapping) and "segmentation" in found for found in content):
+            return read_sam(content, settings)
+    elif isinstance(content, Mapping):
+        if isinstance(content.get("shapes"), list):
+            return read_labelme(content, settings)
+        if isinstance(content.get("annotations"), list):
+            return read_coco(content, settings)
+        if isinstance(kind := content.get("type"), str) and kind in KINDS:
+            return read_geojson(content, settings)
     raise _no_stones(*_what_else(content))
 
 

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import InputError, LabelImageError, Notice
-from drystone.io.census import Census, take_census
 from drystone.io.checks import (
     check_background,
     check_no_plan,
@@ -20,14 +19,13 @@ from drystone.io.checks import (
     check_not_uniform,
 )
 from drystone.io.file_bytes import file_bytes
-from drystone.io.file_errors import naming
+from drystone.io.file_errors import listed, naming
 from drystone.io.images import FORMATS, SUFFIXES, Picture, decode
-from drystone.io.labels import IdImage, check_no_zero, to_ids
-from drystone.io.listed import listed
+from drystone.io.labels import Census, IdImage, check_no_zero, take_census, to_ids
 from drystone.io.masks import BinaryMask, components, find_mask
 from drystone.io.outlines_in.model import OutlineFile
 from drystone.io.outlines_in.npz import is_npz, read_npz
-from drystone.io.patches import Patch, check_count, cut, stone_set
+from drystone.io.patches import StonePatch, check_count, cut, stone_set
 from drystone.io.photo_beside import LABELS, SIDECAR, PhotoSidecar, read_sidecar
 from drystone.io.read_outlines import check_no_image, check_unit, outline_reader, stones_of
 from drystone.io.read_settings import ReadSettings
@@ -227,7 +225,7 @@ def _read_folder(folder: Path, name: str, settings: ReadSettings) -> StoneSet:
         sizes.append(mask.shape)
         notices += [notice] if notice else []
         patches += cut(mask.astype(np.int32), np.array([number]), own) or [
-            Patch(np.zeros((1, 1), bool), 0, 0, number, len(mask), name=own)
+            StonePatch(np.zeros((1, 1), bool), 0, 0, number, len(mask), name=own)
         ]
     height, width = np.max(sizes, axis=0).tolist()
     source = Source(name, digest.hexdigest(), width, height, names, _of_px(settings))

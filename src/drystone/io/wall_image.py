@@ -8,7 +8,6 @@ import tifffile
 from PIL import Image
 
 from drystone.errors import InputError, UsageError
-from drystone.io.census import take_census
 from drystone.io.checks import (
     check_background,
     check_not_lossy,
@@ -19,7 +18,7 @@ from drystone.io.checks import (
 from drystone.io.file_bytes import file_bytes
 from drystone.io.file_errors import naming
 from drystone.io.images import decode
-from drystone.io.labels import check_no_zero, to_ids
+from drystone.io.labels import check_no_zero, take_census, to_ids
 from drystone.model.wall import Labels
 from drystone.whole_files import write_whole
 

@@ -13,9 +13,9 @@ from drystone.contacts.given import polygons_from_json
 from drystone.contacts.given_parts import read_mu
 from drystone.errors import InputError, Notice, UsageError
 from drystone.io.file_bytes import file_bytes
+from drystone.io.file_errors import listed
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
-from drystone.io.listed import listed
 from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
@@ -25,6 +25,8 @@ from drystone.model.plan import Plan
 from drystone.model.wall import Labels
 from drystone.statics.joints import loose_blocks
 from drystone.statics.model import RigidBlockModel
+
+_TOGETHER = "Keep the files of a plan together, or plan again."
 
 CENTROID_PX = 0.01
 """Between centroids of a plan and of its block model, source px: rounding of either file only."""
@@ -73,31 +75,22 @@ def read_wall(path: Path, *, background: int = 0) -> GivenWall:
     if path.suffix.lower() != ".json":
         return GivenWall(read_wall_image(path, background=background))
     if background:
-        raise UsageError(
-            "E118",
-            f"a background of {background} is of a label image, and this is none.",
-            where=str(path),
-            cure="Leave --background (background in Python) out.",
-        )
+        what = f"a background of {background} is of a label image, and this is none."
+        cure = "Leave --background (background in Python) out."
+        raise UsageError("E118", what, where=str(path), cure=cure)
     content = _read_json(path)
     if isinstance(content, dict) and ("blocks" in content or "blocks_xywh" in content):
         return GivenWall(None, blocks=content)
     plan = read_plan(path)
     labels = read_image_of(plan, path.parent)
     if labels is None:
-        raise InputError(
-            "E133",
-            f"there is no {image_name(plan)} beside the plan.",
-            where=str(path),
-            cure="Keep the files of a plan together, or give the label image itself.",
-        )
+        what = f"there is no {image_name(plan)} beside the plan."
+        cure = "Keep the files of a plan together, or give the label image itself."
+        raise InputError("E133", what, where=str(path), cure=cure)
     if not shows(labels, plan):
-        raise InputError(
-            "E133",
-            f"the {image_name(plan)} beside the plan shows other stones than the plan.",
-            where=str(path),
-            cure="Keep the files of a plan together, or give the label image itself.",
-        )
+        what = f"the {image_name(plan)} beside the plan shows other stones than the plan."
+        cure = "Keep the files of a plan together, or give the label image itself."
+        raise InputError("E133", what, where=str(path), cure=cure)
     if plan.settings.get("geometry") != "exact":
         _refuse_misplaced(labels, plan, path)
         return GivenWall(labels, plan)
@@ -135,7 +128,7 @@ def read_blocks_of(plan: Plan, folder: Path) -> Any:
     path = folder / BLOCKS
     if plan.settings.get("geometry") != "exact" or not path.exists():
         return None
-    content = _read_json(path, "Keep the files of a plan together, or plan again.")
+    content = _read_json(path, _TOGETHER)
     return {} if content is None else content  # a null is there, and is no block model
 
 
@@ -165,8 +158,7 @@ def _blocks_of(plan: Plan, path: Path) -> dict[str, Any]:
         what = f"the {BLOCKS} beside the plan has its stones in other places than the plan."
     else:
         return blocks
-    cure = "Keep the files of a plan together, or plan again."
-    raise InputError("E133", what, where=str(path), cure=cure)
+    raise InputError("E133", what, where=str(path), cure=_TOGETHER)
 
 
 def _where_planned(plan: Plan, polygons: Mapping[int, Points]) -> bool:
@@ -185,13 +177,9 @@ def _refuse_misplaced(labels: Labels, plan: Plan, path: Path) -> None:
     for block, (centroid, allowed_px) in _seen(labels).items():
         x, y = planned[block]
         if not math.dist(centroid, (x / unit, y / unit)) <= allowed_px:
-            raise InputError(
-                "E133",
-                f"the {image_name(plan)} beside the plan shows {block} in another place than the "
-                "plan has it.",
-                where=str(path),
-                cure="Keep the files of a plan together, or plan again.",
-            )
+            shown = f"{image_name(plan)} beside the plan shows {block}"
+            what = f"the {shown} in another place than the plan has it."
+            raise InputError("E133", what, where=str(path), cure=_TOGETHER)
 
 
 def _seen(labels: Labels) -> dict[int, tuple[tuple[float, float], float]]:

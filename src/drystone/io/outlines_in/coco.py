@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import InputError, Notice
-from drystone.io.file_errors import entry
-from drystone.io.listed import listed, short
+from drystone.io.file_errors import entry, listed, short
 from drystone.io.outlines_in.fill import Room, check_reach, trimmed
 from drystone.io.outlines_in.model import (
     Area,
@@ -29,18 +28,6 @@ from drystone.io.read_settings import ReadSettings
 _OF_MODEL = ("predicted_iou", "stability_score")
 _MOST_PX = 2**31
 _AT_ONCE = 64
-
-
-def is_coco(content: object) -> bool:
-    """Tell COCO by its keys."""
-    return isinstance(content, Mapping) and isinstance(content.get("annotations"), list)
-
-
-def is_sam(content: object) -> bool:
-    """Tell SAM (and lists of results in COCO's form) by their keys."""
-    return isinstance(content, list) and all(
-        isinstance(found, Mapping) and "segmentation" in found for found in content
-    )
 
 
 class _Stones:

@@ -5,8 +5,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from drystone.errors import InputError, Notice
-from drystone.io.file_errors import entry
-from drystone.io.listed import short
+from drystone.io.file_errors import entry, short
 from drystone.io.outlines_in.model import (
     METRES,
     Area,
@@ -18,19 +17,13 @@ from drystone.io.outlines_in.model import (
 )
 from drystone.io.read_settings import ReadSettings
 
-_KINDS = frozenset(
+KINDS = frozenset(
     {
         "FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon", "Point",
         "MultiPoint", "LineString", "MultiLineString",
     }
 )  # fmt: skip
 _DEGREES = ("CRS84", "4326", "WGS84")
-
-
-def is_geojson(content: object) -> bool:
-    """Tell GeoJSON by its type."""
-    kind = content.get("type") if isinstance(content, Mapping) else None
-    return isinstance(kind, str) and kind in _KINDS
 
 
 def read_geojson(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:

@@ -27,11 +27,6 @@ from drystone.io.read_settings import ReadSettings
 _CORNERS_OF_CIRCLE = 256
 
 
-def is_labelme(content: object) -> bool:
-    """Tell labelme by its keys."""
-    return isinstance(content, Mapping) and isinstance(content.get("shapes"), list)
-
-
 def read_labelme(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
     """Read polygons, rectangles, circles and masks.
 

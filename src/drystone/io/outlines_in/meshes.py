@@ -12,9 +12,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from drystone.errors import InputError, Notice
-from drystone.io.file_errors import damaged, unusable
+from drystone.io.file_errors import damaged, listed, short, unusable
 from drystone.io.foreign import extra, foreign
-from drystone.io.listed import listed, short
 from drystone.io.outlines_in.model import METRES, OutlinedStone, OutlineFile, number_in
 from drystone.io.outlines_in.silhouettes import shadow
 from drystone.io.read_settings import ReadSettings
@@ -33,7 +32,7 @@ _PLY_FACES = re.compile(rb"^element\s+face\s+(\d{1,18})", re.MULTILINE)
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class MeshBody:
     """A body of a mesh."""
 
     name: str  # empty when it has none
@@ -86,14 +85,14 @@ def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
     return OutlineFile(stones, unit_m, y_up=True, notices=notices)
 
 
-def _united(body: Body) -> Notice:
+def _united(body: MeshBody) -> Notice:
     shown = listed(map(short, body.said))
     why = "of the groups of a face the first counts, and what follows # is a comment"
     text = f"{why}, so {short(body.name)} is one stone of: {shown}."
     return Notice("W119", text, "Give every stone an object (o) of its own if they are several.")
 
 
-def _stl_bodies(data: bytes) -> list[Body]:
+def _stl_bodies(data: bytes) -> list[MeshBody]:
     """Read triangles; equal corners are one vertex, so that bodies hang together."""
     corners = _stl_text(data) if _is_text(data) else _stl_binary(data)
     vertices, places = np.unique(corners, axis=0, return_inverse=True)
@@ -124,7 +123,7 @@ def _is_text(data: bytes) -> bool:
     return data.lstrip().startswith(b"solid") and b"facet" in data[:_HEAD]
 
 
-def _ply_bodies(data: bytes) -> list[Body]:
+def _ply_bodies(data: bytes) -> list[MeshBody]:
     trimesh = extra("trimesh", "reads PLY", "mesh", "mesh")
     with foreign(_cut):
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type="ply", process=True)
@@ -139,7 +138,7 @@ def _cut(why: str) -> InputError:
     return damaged(why, what="mesh")
 
 
-def _obj_bodies(data: bytes) -> list[Body]:
+def _obj_bodies(data: bytes) -> list[MeshBody]:
     """Read vertices, faces and object names of an OBJ; faces may have any number of corners.
 
     Where there are objects (o), groups (g) are their parts; otherwise they are the stones.
@@ -166,7 +165,7 @@ def _obj_bodies(data: bytes) -> list[Body]:
     vertices = np.array(points, float).reshape(-1, 3)
     if not any(part.kind for part in parts):
         return _bodies(vertices, parts.get(nameless, []))
-    return [Body(part.name, vertices, parts[part], tuple(said[part])) for part in parts]
+    return [MeshBody(part.name, vertices, parts[part], tuple(said[part])) for part in parts]
 
 
 class _Part(NamedTuple):
@@ -201,7 +200,7 @@ def _face(words: list[str], count: int) -> NDArray[np.int64]:
     return corners
 
 
-def _bodies(vertices: NDArray[np.float64], faces: list[NDArray[np.int64]]) -> list[Body]:
+def _bodies(vertices: NDArray[np.float64], faces: list[NDArray[np.int64]]) -> list[MeshBody]:
     """Split faces into bodies that hang together, in the order of their first faces."""
     if not faces or not len(vertices):
         raise unusable("the mesh has no faces")
@@ -212,7 +211,7 @@ def _bodies(vertices: NDArray[np.float64], faces: list[NDArray[np.int64]]) -> li
     found: dict[int, list[NDArray[np.int64]]] = {}
     for label, face in zip(labels.tolist(), faces, strict=True):
         found.setdefault(label, []).append(face)
-    return [Body("", vertices, part) for part in found.values()]
+    return [MeshBody("", vertices, part) for part in found.values()]
 
 
 _BODIES = {"obj": _obj_bodies, "ply": _ply_bodies, "stl": _stl_bodies}

@@ -10,8 +10,8 @@ from typing import Any, Literal
 import numpy as np
 
 from drystone.errors import Notice
+from drystone.io.file_errors import listed, short
 from drystone.io.labels import MAX_ID
-from drystone.io.listed import listed, short
 from drystone.io.patches import PlacedMask
 from drystone.kernels.polygons import Points
 

@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from drystone.errors import Notice
-from drystone.io.file_errors import too_large
-from drystone.io.listed import MANY, listed
+from drystone.io.file_errors import MANY, listed, too_large
 from drystone.io.outlines_in.fill import pixels_of, united
 from drystone.io.outlines_in.model import OutlinedStone
 from drystone.io.patches import PlacedMask, enclosed

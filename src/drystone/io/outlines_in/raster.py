@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from drystone.errors import LabelImageError, Notice
-from drystone.io.listed import listed, short
+from drystone.io.file_errors import listed, short
 from drystone.io.outlines_in.fill import check_reach, pixels_of, trimmed
 from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile
 from drystone.io.outlines_in.nested import meeting_boxes
-from drystone.io.patches import Patch, PlacedMask
+from drystone.io.patches import StonePatch, PlacedMask
 from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
@@ -29,7 +29,7 @@ USUAL_SIDE_PX = 160.0
 class Rastered:
     """Stones of a file as pixels."""
 
-    patches: list[Patch]  # in the order of the file; they may overlap
+    patches: list[StonePatch]  # in the order of the file; they may overlap
     width: int  # of the picture that they are in, px
     height: int  # of the picture that they are in, px
     px_per_m: float | None  # its scale; None for a file in px
@@ -70,7 +70,7 @@ def rastered(file: OutlineFile, settings: ReadSettings) -> Rastered:
             empty.append(name)
             continue
         place = inside.mask, inside.row, inside.col
-        patches.append(Patch(*place, stone.id or 0, height, None, stone.name))
+        patches.append(StonePatch(*place, stone.id or 0, height, None, stone.name))
     if lost:
         notices.append(Notice("W119", f"outside the image, cut off: {listed(lost, '; ')}."))
     if empty:
@@ -147,7 +147,7 @@ def _within(placed: PlacedMask, width: int, height: int) -> PlacedMask | None:
     return trimmed(PlacedMask(inside, placed.row + top, placed.col + left))
 
 
-def _beside_others(patches: list[Patch]) -> tuple[list[Patch], list[Notice]]:
+def _beside_others(patches: list[StonePatch]) -> tuple[list[StonePatch], list[Notice]]:
     """Tell every patch which pixels of its box are others', and say which overlap."""
     others: dict[int, PlacedMask] = {}
     overlaps = []

@@ -25,7 +25,11 @@ def areas_of(shape: Any) -> tuple[Area, ...]:
 
 
 def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
-    """Make holes of rings that lie in others, as drawings for cutting mean them."""
+    """Return outlines with the rings in them as holes, as drawings for cutting mean them.
+
+    Each comes with its position; a ring in a hole is an outline again.  ValueError when there are
+    too many crossings, or rings in each other, to find out.
+    """
     shapes = _valid(np.array([shapely.Polygon(ring) for ring in rings], dtype=object))
     tree = shapely.STRtree(shapes)
     size = shapely.area(shapes)
@@ -47,7 +51,10 @@ def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
 
 
 def shadow(polygons: Sequence[Points]) -> tuple[Area, ...]:
-    """Return the union of the polygons of a body as it is seen."""
+    """Return the union of a body's faces, (n, 2) each, in the plane of the picture.
+
+    Faces that are seen from the side have no area.
+    """
     # Edges of neighbours are the same numbers, so the union leaves no slits.
     seen = shapely.polygons([np.asarray(p) for p in polygons]) if _alike(polygons) else [
         shapely.Polygon(p) for p in polygons

@@ -154,7 +154,10 @@ def bezier(points: Points) -> Points:
 
 
 def arc(start: Corner, shape: list[float], end: Corner) -> Points:
-    """Return points on an elliptical arc, without its first (SVG 1.1, F.6)."""
+    """Return points on an elliptical arc, without its first (SVG 1.1, F.6).
+
+    Its shape: both radii, turn of the x axis in degrees, large-arc flag, sweep flag.
+    """
     rx, ry = abs(shape[0]), abs(shape[1])
     if rx == 0.0 or ry == 0.0 or (start == end).all():
         return end[None]

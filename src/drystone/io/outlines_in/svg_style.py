@@ -20,7 +20,11 @@ _PLAIN = "Save it as plain SVG, with attributes instead of styles."
 
 
 class Styles:
-    """Properties of elements by simple rules of style sheets, by `style`, and by attributes."""
+    """Properties of elements by simple rules of style sheets, by `style`, and by attributes.
+
+    ValueError where a rule that may hide, fill, move or shape has a selector that is more than a
+    tag, a class or an id, or stands under a condition.
+    """
 
     def __init__(self, root: ET.Element) -> None:
         # Of every selector: each property, how much its rule weighs, and its value.

@@ -150,7 +150,10 @@ def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
 def inner_view(
     element: ET.Element, use: ET.Element | None, around: View | None
 ) -> tuple[Matrix, View | None] | None:
-    """Return the way out of the viewport of an inner svg or a symbol, and what per cents are of."""
+    """Return the way out of the viewport of an inner svg or a symbol, and what per cents are of.
+
+    The width and height of the `use` that shows it come first.  None when nothing can be seen.
+    """
     said, box, size = dict(element.attrib), view_box(element.attrib), None
     for name in ("width", "height"):
         given = (one.get(name, "auto") for one in (use, element) if one is not None)
