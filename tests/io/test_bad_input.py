@@ -9,7 +9,7 @@ from scipy import ndimage
 
 from drystone.errors import ExitCode, InputError, LabelImageError, UsageError
 from drystone.io.read_stones import ReadSettings, read_stones
-from tests.io.pictures import areas, codes, discs, many_stones, two_stones
+from tests.io.pictures import areas, codes, many_stones, two_stones
 
 
 def message(stones, code):
@@ -105,13 +105,6 @@ def test_stones_that_touch_everywhere_are_not_blended():
     assert len(read_stones(labels, settings=settings)) == len(np.unique(labels)) - 1
 
 
-def test_labels_scaled_by_nearest_neighbour_are_fine(tmp_path):
-    labels = many_stones(first=20, step=4).astype(np.uint8)
-    image = Image.fromarray(labels).resize((333, 261), Image.Resampling.NEAREST)
-    image.save(tmp_path / "a.png")
-    assert len(read_stones(tmp_path / "a.png")) == 48
-
-
 def test_many_slivers_are_no_blending():
     labels = np.zeros((120, 120), np.uint8)
     labels[5:50, 5:115] = 250
@@ -148,14 +141,6 @@ def test_two_stones_under_one_id_are_suspected():
     assert "stone 500 has 2.1 times the median area and a neck of about 6 px" in text
 
 
-def test_touching_stones_of_different_ids_stay_two():
-    labels = np.zeros((30, 60), np.uint16)
-    labels[5:25, 5:30], labels[5:25, 30:55] = 4, 9
-    stones = read_stones(labels)
-    assert areas(stones) == {4: 500, 9: 500}
-    assert codes(stones) == []
-
-
 # -- pieces and holes --------------------------------------------------------------------------
 
 
@@ -184,27 +169,9 @@ def test_pieces_of_two_percent_are_refused_by_default():
     assert areas(read_stones(labels, settings=ReadSettings(pieces="keep-largest")))[5] == 375
 
 
-def test_many_pieces_are_counted_not_listed():
-    labels = np.zeros((60, 60), np.uint16)
-    labels[30:50, 5:25] = 5
-    labels[2:22:2, 2:42:2] = 5
-    labels[30:50, 30:50] = 9
-    with pytest.raises(LabelImageError, match=r"E103.*: stone 5: 400 px .* and 193 more\.") as told:
-        read_stones(labels)
-    assert told.value.what.count("at column") == 8
-
-
 def test_pieces_error_refuses_any():
     with pytest.raises(LabelImageError, match=r"E103"):
         read_stones(pieces(7), settings=ReadSettings(pieces="error"))
-
-
-def test_split_makes_stones_and_loses_nothing():
-    stones = read_stones(pieces(), settings=ReadSettings(pieces="split"))
-    assert areas(stones) == {5: 375, 9: 600, 10: 375, 11: 15}
-    assert "stone 5: 10 (375 px), 11 (15 px)" in message(stones, "W111")
-    assert stones.by_id(10).left_px in (5, 32)
-    assert {stones.by_id(i).left_px for i in (5, 10, 11)} == {5, 32, 40}
 
 
 def test_split_lists_bits_too_small_to_be_stones():
@@ -303,13 +270,6 @@ def test_white_background(mask):
         read_stones(labels)
     stones = read_stones(labels, settings=ReadSettings(background=255))
     assert sorted(areas(stones).values()) == [375, 600]
-
-
-def test_black_stones_on_white():
-    mask = np.where(two_stones() > 0, 0, 255).astype(np.uint8)
-    with pytest.raises(LabelImageError, match=r"E105.*Use --background 255 "):
-        read_stones(mask)
-    assert areas(read_stones(mask, settings=ReadSettings(background=255))) == {1: 375, 2: 600}
 
 
 def test_a_stone_cropped_to_its_box_is_no_background():
@@ -454,12 +414,6 @@ def test_folder_with_a_damaged_or_jpeg_mask(tmp_path):
         read_stones(tmp_path, settings=ReadSettings(mask=True))
 
 
-def test_folder_of_antialiased_masks(tmp_path):
-    cover = discs((40, 40), [(20, 20)], 12)
-    Image.fromarray((cover * 255).astype(np.uint8)).save(tmp_path / "a.png")
-    assert areas(read_stones(tmp_path)) == {1: int((cover * 255 >= 127.5).sum())}
-
-
 @pytest.mark.parametrize("given", [".", "..", "../set", "../set/"])
 def test_folder_is_named_however_it_is_given(tmp_path, monkeypatch, given):
     (tmp_path / "set" / "deeper").mkdir(parents=True)
@@ -492,25 +446,6 @@ def test_a_picture_has_no_images_to_choose_from(tmp_path):
     for source in (two_stones(), tmp_path, tmp_path / "a.png"):
         with pytest.raises(UsageError, match=r"E118.*'tray-3.jpg'.*Leave --image"):
             read_stones(source, settings=settings)
-
-
-def test_cures_name_options_and_settings():
-    holed = pieces(7)
-    holed[8:10, 8:10] = 0
-    holed[0, 0] = 77
-    text = " ".join(map(str, read_stones(holed).notices))
-    for said in (
-        "--pieces split (pieces='split' in Python)",
-        "--holes keep (holes='keep' in Python)",
-        "--min-area PX (min_area_px in Python)",
-    ):
-        assert said in text
-
-
-def test_unknown_ids_to_skip_are_said():
-    stones = read_stones(two_stones(), settings=ReadSettings(skip=(300, 8)))
-    assert areas(stones) == {70000: 600}
-    assert "no stone 8 to skip" in message(stones, "W116")
 
 
 @pytest.mark.parametrize(

@@ -67,16 +67,6 @@ def test_dxf_inserts_on_hidden_layers_do_not_count():
     assert "1 INSERT of a block that is not there" in said
 
 
-def test_dxf_inserts_on_the_layer_of_stones_are_the_stones():
-    document, space = with_blocks()
-    space.add_blockref("BOX", (10, 10), dxfattribs={"layer": "Stones"})
-    space.add_blockref("OWN", (20, 10), dxfattribs={"layer": "Stones"})
-    space.add_lwpolyline([(0, 0), (90, 0), (90, 90), (0, 90)], close=True)
-    shapes, said = outlines(document)
-    assert [shape.bounds for shape in shapes.values()] == [(10, 10, 14, 13)]
-    assert "2 entities outside the layer STONES" in said
-
-
 def test_dxf_blocks_in_rows_mirrored_and_stretched():
     document, space = with_blocks()
     space.add_blockref("BOX", (0, 0), dxfattribs={"layer": "mirrored", "xscale": -2})

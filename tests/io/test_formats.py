@@ -78,17 +78,6 @@ def test_32_bit_tiff_ids_survive(tmp_path, options, top):
     assert areas(read_stones(path)) == {300: 375, top: 600}
 
 
-@pytest.mark.parametrize(
-    ("dtype", "top"), [(np.uint8, 255), (np.uint16, 65535), (np.int32, 2**31 - 1)]
-)
-@pytest.mark.parametrize("compression", ["tiff_lzw", "packbits", "tiff_adobe_deflate"])
-def test_compressed_tiff(dtype, top, compression):
-    # tifffile has no LZW of its own; Pillow takes over, and the numbers stay.
-    labels = two_stones(3, top, dtype)
-    data = pillow(labels, "TIFF", compression=compression)
-    np.testing.assert_array_equal(decode(data, LIMIT).values, labels)
-
-
 def test_lzw_tiff_of_unsigned_32_bits():
     labels = two_stones(3, 2**32 - 1)
     data = pillow(labels.view(np.int32), "TIFF", compression="tiff_lzw")
@@ -96,20 +85,6 @@ def test_lzw_tiff_of_unsigned_32_bits():
     assert data.count(signed) == 1  # the tag that Pillow cannot write otherwise
     data = data.replace(signed, unsigned)
     np.testing.assert_array_equal(decode(data, LIMIT).values, labels)
-
-
-def test_signed_and_float_tiff_with_whole_numbers():
-    for dtype in (np.int16, np.int32, np.float32):
-        labels = two_stones(7, 300, dtype)
-        values = decode(tiff(labels), LIMIT).values
-        assert areas(read_stones(values)) == {7: 375, 300: 600}
-
-
-@pytest.mark.parametrize("write", [lambda a: pillow(a, "TIFF", compression="group4"), tiff])
-def test_one_bit_tiff_keeps_the_values_of_the_file(write):
-    mask = two_stones() > 0
-    values = decode(write(mask), LIMIT).values
-    np.testing.assert_array_equal(values.astype(bool), mask)
 
 
 @pytest.mark.parametrize("mode", ["1", "L"])
@@ -157,15 +132,6 @@ def test_colours_are_ids_and_alpha_is_ignored(tmp_path, alpha):
     assert "2 stones" in stones.notices[0].message
 
 
-@pytest.mark.parametrize("channels", [2, 3, 4])
-def test_grey_pictures_in_colour_modes_are_grey(tmp_path, channels):
-    grey = two_stones(8, 255, np.uint8)
-    Image.fromarray(np.dstack([grey] * channels)).save(tmp_path / "g.png")
-    stones = read_stones(tmp_path / "g.png")
-    assert areas(stones) == {8: 375, 255: 600}
-    assert codes(stones) == []
-
-
 @pytest.mark.parametrize("planar", ["contig", "separate"])
 def test_colour_tiff(planar):
     values = rgb(two_stones())
@@ -193,10 +159,6 @@ def test_arrays_and_npy(tmp_path, array):
         stones = read_stones(source)
         assert areas(stones) == {300: 375, 70000: 600}
         assert (stones.source.width_px, stones.source.height_px) == (60, 40)
-
-
-def test_largest_id_of_arrays():
-    assert areas(read_stones(two_stones(1, 2**32 - 1, np.uint64)))[2**32 - 1] == 600
 
 
 def test_source_names_the_bytes(tmp_path):

@@ -8,10 +8,9 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from scipy import ndimage
 
 from drystone.errors import LabelImageError
-from drystone.io import necks
 from drystone.io import patches as module
 from drystone.io.labels import take_census
-from drystone.io.necks import Summits, neck_width_px
+from drystone.io.necks import neck_width_px
 from drystone.io.patches import StonePatch, cut, enclosed
 from drystone.io.read_stones import read_stones
 from tests.io.pictures import discs
@@ -54,17 +53,6 @@ def test_large_masks_are_looked_at_on_runs_to_the_same_end(mask):
     assert areas == found.piece_areas_px
 
 
-def test_a_large_plain_mask_takes_no_labels_of_pixels(monkeypatch):
-    mask = np.ones((1100, 1000), bool)
-    mask[40:50, 40:50] = mask[:, 500] = False
-    monkeypatch.setattr(module.ndimage, "label", None)
-    assert StonePatch(mask, 0, 0, 1, 1100).piece_areas_px == (1100 * 500 - 100, 1100 * 499)
-    assert np.argwhere(enclosed(mask)).tolist() == np.argwhere(~mask[:, :500]).tolist()
-    monkeypatch.undo()
-    mask[:, ::40] = False  # many runs
-    assert len(StonePatch(mask, 0, 0, 1, 1100).piece_areas_px) == 25 + 1
-
-
 @pytest.mark.parametrize("width", [2, 4, 6, 8])
 def test_neck_width(width):
     mask = discs((50, 90), [(25, 22), (25, 68)], 20.3) >= 0.5
@@ -90,16 +78,6 @@ def test_a_neck_in_a_coarser_picture():
     mask[80:120, 150:210] = False
     mask[99:100, 150:210] = True  # hit or missed, it is not thicker than a pixel of 4 px
     assert neck_width_px(mask, 72_000 // 16) == 4
-
-
-def test_necks_of_noise_are_looked_for_in_a_coarser_picture(monkeypatch):
-    asked = []
-    monkeypatch.setattr(necks, "Summits", lambda depth: asked.append(depth.size) or Summits(depth))
-    noise = np.random.default_rng(0).random((1024, 1024)) < 0.97
-    noise[300:700, 300:700] = True
-    assert neck_width_px(noise) is None
-    assert len(asked) == 2
-    assert asked[1] < asked[0] / 3
 
 
 def test_noise_is_no_picture_of_stones():

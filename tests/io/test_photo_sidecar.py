@@ -24,21 +24,10 @@ def test_it_comes_back(tmp_path: Path) -> None:
     assert read_sidecar(tmp_path / "stones.png") == PhotoSidecar(640, 480, 512.5, "photo.jpg")
 
 
-def test_another_picture_has_none(tmp_path: Path) -> None:
-    write_sidecar(PhotoSidecar(640, 480), tmp_path)
-    assert read_sidecar(tmp_path / "other.png") is None
-    assert read_sidecar(tmp_path / "deeper" / "stones.png") is None
-
-
 def test_a_folder_without_a_name_has_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert read_sidecar(Path()) is None
     assert photo_of(Path()) is None
-
-
-def test_json_of_another_kind_is_left_alone(tmp_path: Path) -> None:
-    (tmp_path / SIDECAR).write_text('{"schema": "drystone-plan/1"}', encoding="utf-8")
-    assert read_sidecar(tmp_path / "stones.png") is None
 
 
 @pytest.mark.parametrize(
@@ -128,13 +117,6 @@ def test_a_damaged_plan_owns_no_photograph(tmp_path: Path, text: str) -> None:
     (tmp_path / "plan.json").write_text(text, encoding="utf-8")
     place_photo(None, tmp_path)
     assert (tmp_path / "photo.png").read_bytes() == b"mine"
-
-
-def test_a_sidecar_may_have_a_byte_order_mark(tmp_path: Path) -> None:
-    write_sidecar(PhotoSidecar(640, 480, 200.0), tmp_path)
-    path = tmp_path / "stones.json"
-    path.write_text(path.read_text("utf-8"), encoding="utf-8-sig")
-    assert read_sidecar(tmp_path / "stones.png") == PhotoSidecar(640, 480, 200.0)
 
 
 def test_the_name_of_a_photograph_leads_nowhere_else(tmp_path: Path) -> None:

@@ -55,16 +55,6 @@ def test_files_are_downloaded_once_and_with_their_licence(tmp_path: Path) -> Non
     assert not any(file.downloaded for file in again)
 
 
-def test_only_what_is_missing_is_downloaded(tmp_path: Path) -> None:
-    lay_open(tmp_path / "served")
-    have = tmp_path / "here" / "toy" / "R.png"
-    have.parent.mkdir(parents=True)
-    have.write_bytes(CONTENTS["toy/R.png"])
-    with serving(tmp_path / "served") as address:
-        fetched = fetch_set(toy_set(), tmp_path / "here", address=address)
-    assert [file.downloaded for file in fetched] == [False, True]
-
-
 def test_what_arrived_before_a_failure_has_its_licence(tmp_path: Path) -> None:
     lay_open(tmp_path / "served")
     (tmp_path / "served" / toy_set().files[1].address).unlink()
@@ -111,12 +101,6 @@ def test_an_address_that_is_not_there_is_no_network_error_of_the_disk(tmp_path: 
     with serving(tmp_path) as address, pytest.raises(InputError, match=r"E161 .*404") as caught:
         fetch_set(toy_set(), tmp_path / "here", address=address)
     assert caught.value.code == "E161"
-
-
-def test_what_the_disk_refuses_is_said_by_the_system(tmp_path: Path) -> None:
-    (tmp_path / "toy").write_text("a file where a folder should be", encoding="utf-8")
-    with pytest.raises(OSError, match="toy"):
-        fetch_set(toy_set(), tmp_path, address=nobody())
 
 
 def test_a_full_disk_is_no_fault_of_the_network(
@@ -183,13 +167,6 @@ def test_a_published_file_is_opened_only_with_its_contents(toys: Path) -> None:
     assert published_file(toys, "toy/IR.png").exists()
 
 
-def test_a_file_that_is_cut_off_is_named_with_its_folder(toys: Path) -> None:
-    (toys / "toy" / "R.png").write_bytes(CONTENTS["toy/R.png"][:5])
-    with pytest.raises(InputError, match="E160") as caught:
-        published_file(toys, "toy/R.png")
-    assert caught.value.where == str(toys / "toy" / "R.png")
-
-
 def test_files_of_the_cache_are_fetched_again_without_naming_it(
     toys: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -204,12 +181,3 @@ def test_what_is_missing_or_in_no_set_is_not_checked(toys: Path) -> None:
     assert published_file(toys, "mine.png") == toys / "mine.png"
     (toys / "toy" / "R.png").unlink()
     assert not published_file(toys, "toy/R.png").exists()
-
-
-def test_a_published_file_is_hashed_once(toys: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    read = []
-    plain = Path.read_bytes
-    monkeypatch.setattr(Path, "read_bytes", lambda path: read.append(path) or plain(path))
-    for _ in range(3):
-        published_file(toys, "toy/R.png")
-    assert read == [toys / "toy" / "R.png"]
