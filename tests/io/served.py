@@ -26,9 +26,7 @@ def toy_set() -> PublishedSet:
         "Nobody (2000)",
         tuple(
             PublishedFile(
-                name,
-                f"{COMMIT}/Tests/{Path(name).stem}/labels.png",
-                sha256(contents).hexdigest(),
+                name, f"{COMMIT}/Tests/{Path(name).stem}/labels.png", sha256(contents).hexdigest()
             )
             for name, contents in CONTENTS.items()
         ),

@@ -12,14 +12,7 @@ from pycocotools import mask as coco_mask
 
 from drystone.errors import InputError
 from drystone.io.read_stones import ReadSettings, read_stones
-from tests.io.known_stones import (
-    HEIGHT,
-    PIECES,
-    STONES,
-    WIDTH,
-    compare,
-    masks,
-)
+from tests.io.known_stones import HEIGHT, PIECES, STONES, WIDTH, compare, masks
 from tests.io.pictures import codes
 
 EXACT = (1.0, 0.0, 0.0)

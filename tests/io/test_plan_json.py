@@ -13,13 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.errors import PlanError
-from drystone.io.plan_json import (
-    plan_from_json,
-    plan_schema,
-    plan_to_json,
-    read_plan,
-    write_plan,
-)
+from drystone.io.plan_json import plan_from_json, plan_schema, plan_to_json, read_plan, write_plan
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from tests.strategies import repeatable
 
@@ -97,10 +91,7 @@ def test_equal_plans_give_equal_bytes(tmp_path: Path) -> None:
     other = plan(
         settings=dict(reversed(list(one.settings.items()))),
         source=dict(reversed(list(one.source.items()))),
-        steps=(
-            stone_step(indices=dict(reversed(INDICES.items())), angle_deg=12),
-            *one.steps[1:],
-        ),
+        steps=(stone_step(indices=dict(reversed(INDICES.items())), angle_deg=12), *one.steps[1:]),
         width=560,
         seed=np.int64(1),
     )

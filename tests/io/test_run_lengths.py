@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from pycocotools import mask as coco_mask
 
-from drystone.io.outlines_in.coco import mask_of, unpacked
+from drystone.io.outlines_in.annotations import mask_of, unpacked
 from drystone.io.outlines_in.fill import Room
 from tests.io.test_annotations import runs
 

@@ -5,6 +5,7 @@ import math
 import operator
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import fields
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -136,54 +137,39 @@ def _same(value: Any) -> Any:
     return value
 
 
-_Field = tuple[Callable[[Any], Any], Callable[[Any], Any]]
-_WHOLE: _Field = (_whole, int)
-_NUMBER: _Field = (_number, _number)
-_POINT: _Field = (_numbers, _point)
-
-_STEPS: Mapping[str, tuple[type[StoneStep | WedgeStep], Mapping[str, _Field]]] = {
-    "stone": (
-        StoneStep,
-        {
-            "step": _WHOLE,
-            "stone": _WHOLE,
-            "angle_deg": (_number, float),
-            "source_centroid": _POINT,
-            "centroid": _POINT,
-            "side": (_same, _same),
-            "cluster": _WHOLE,
-            "rotation_moves": _WHOLE,
-            "indices": (_indices, _known_indices),
-            "course_height": _NUMBER,
-            "alpha_left": _NUMBER,
-            "alpha_right": _NUMBER,
-        },
-    ),
-    "wedge": (
-        WedgeStep,
-        {
-            "step": _WHOLE,
-            "id": _WHOLE,
-            "under": _WHOLE,
-            "polygon": (lambda points: [_numbers(point) for point in points], _polygon),
-            "alpha_left": _NUMBER,
-            "alpha_right": _NUMBER,
-        },
-    ),
+_WHOLE = (_whole, int)
+_NUMBER = (_number, _number)
+_POINT = (_numbers, _point)
+_FORMS: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
+    "angle_deg": (_number, float),
+    "source_centroid": _POINT,
+    "centroid": _POINT,
+    "side": (_same, _same),
+    "indices": (_indices, _known_indices),
+    "course_height": _NUMBER,
+    "alpha_left": _NUMBER,
+    "alpha_right": _NUMBER,
+    "polygon": (lambda points: [_numbers(point) for point in points], _polygon),
 }
-"""Type of each kind of step, and how each of its fields is written and read."""
+"""How the fields of steps are written and read that are no whole numbers."""
+
+
+def _names(step: Any) -> list[str]:
+    """Return the fields of a step, or of a type of steps, in their order."""
+    return [field.name for field in fields(step) if field.name != "kind"]
 
 
 def _step_to_json(step: StoneStep | WedgeStep) -> dict[str, Any]:
-    kind = "stone" if isinstance(step, StoneStep) else "wedge"
-    said = {name: write(getattr(step, name)) for name, (write, _) in _STEPS[kind][1].items()}
-    return {"step": said.pop("step"), "kind": kind, **said}
+    """Return the fields of a step in their order, the kind as the second."""
+    values = {name: _FORMS.get(name, _WHOLE)[0](getattr(step, name)) for name in _names(step)}
+    return {"step": values.pop("step"), "kind": step.kind, **values}
 
 
 def _step_from_json(data: Mapping[str, Any]) -> StoneStep | WedgeStep:
-    step, fields = _STEPS[data["kind"]]
+    step: type[StoneStep | WedgeStep] = StoneStep if data["kind"] == "stone" else WedgeStep
     # A plan of other hands may leave out what the contract does not ask for: None.
-    return step(**{name: read(data.get(name)) for name, (_, read) in fields.items()})
+    values = {name: _FORMS.get(name, _WHOLE)[1](data.get(name)) for name in _names(step)}
+    return step(**values)
 
 
 def _plain(value: Any, *, ordered: bool = True) -> Any:

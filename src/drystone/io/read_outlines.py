@@ -15,10 +15,14 @@ from drystone.io.file_errors import listed, short, too_large, unfit
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
 from drystone.io.npy import BEGINNING
-from drystone.io.outlines_in.coco import read_coco, read_sam
+from drystone.io.outlines_in.annotations import (
+    GEOJSON_KINDS,
+    read_coco,
+    read_geojson,
+    read_labelme,
+    read_sam,
+)
 from drystone.io.outlines_in.dxf import is_dxf, read_dxf
-from drystone.io.outlines_in.geojson import KINDS, read_geojson
-from drystone.io.outlines_in.labelme import read_labelme
 from drystone.io.outlines_in.meshes import mesh_kind, read_mesh
 from drystone.io.outlines_in.model import METRES, OutlineFile, numbered, without_wedges
 from drystone.io.outlines_in.raster import rastered
@@ -71,7 +75,7 @@ def _read_json(data: bytes, settings: ReadSettings) -> OutlineFile:
             return read_labelme(content, settings)
         if isinstance(content.get("annotations"), list):
             return read_coco(content, settings)
-        if isinstance(kind := content.get("type"), str) and kind in KINDS:
+        if isinstance(kind := content.get("type"), str) and kind in GEOJSON_KINDS:
             return read_geojson(content, settings)
     raise _no_stones(*_what_else(content))
 
@@ -116,18 +120,13 @@ def stones_of(read: Reader, data: bytes, name: str, settings: ReadSettings) -> S
     ]
     kept, wedges = without_wedges(named)
     stones, renumbered = numbered(kept)
-    drawn = rastered(replace(file, stones=stones), settings)
-    source = Source(
-        name,
-        hashlib.sha256(data).hexdigest(),
-        drawn.width,
-        drawn.height,
-        # What has px of its own has no other resolution.
-        reading=(settings if drawn.px_per_m else replace(settings, px_per_m=None)).changed(),
-        px_per_m=drawn.px_per_m,
-    )
-    notices = [*file.notices, *wedges, *renumbered, *drawn.notices]
-    return stone_set(drawn.patches, notices, source, settings)
+    patches, size_px, px_per_m, said = rastered(replace(file, stones=stones), settings)
+    # What has px of its own has no other resolution.
+    reading = (settings if px_per_m else replace(settings, px_per_m=None)).changed()
+    digest = hashlib.sha256(data).hexdigest()
+    source = Source(name, digest, *size_px, reading=reading, px_per_m=px_per_m)
+    notices = [*file.notices, *wedges, *renumbered, *said]
+    return stone_set(patches, notices, source, settings)
 
 
 def check_unit(unit_m: float | None, settings: ReadSettings) -> None:

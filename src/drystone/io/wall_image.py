@@ -76,11 +76,7 @@ def write_labels(labels: Labels, path: str | Path) -> None:
 
 
 def read_wall_image(
-    path: str | Path,
-    *,
-    background: int = 0,
-    max_image_mpx: float = 200.0,
-    planned: bool = False,
+    path: str | Path, *, background: int = 0, max_image_mpx: float = 200.0, planned: bool = False
 ) -> Labels:
     """Read any label image as a wall: every pixel keeps its id, nothing is dropped or split.
 

@@ -69,9 +69,7 @@ def number_in(text: object) -> int | None:
     return number if 0 < number <= MAX_ID else None
 
 
-def numbered(
-    stones: Sequence[OutlinedStone],
-) -> tuple[Sequence[OutlinedStone], list[Notice]]:
+def numbered(stones: Sequence[OutlinedStone]) -> tuple[Sequence[OutlinedStone], list[Notice]]:
     """Give every stone an id: the file's own when all differ, else 1, 2, 3 and so on.
 
     A file with any number of its own is not numbered anew without a notice (W119).
@@ -102,9 +100,7 @@ def numbered(
     return result, [Notice("W119", text, cure)]
 
 
-def without_wedges(
-    stones: Sequence[OutlinedStone],
-) -> tuple[list[OutlinedStone], list[Notice]]:
+def without_wedges(stones: Sequence[OutlinedStone]) -> tuple[list[OutlinedStone], list[Notice]]:
     """Leave out wedges of a planned wall, which nobody found."""
     kept = [stone for stone in stones if not _WEDGE_NAME.fullmatch(stone.name)]
     left = len(stones) - len(kept)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from drystone.io.file_errors import listed, short
 from drystone.io.outlines_in.fill import check_reach, pixels_of, trimmed
 from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile
 from drystone.io.outlines_in.nested import meeting_boxes
-from drystone.io.patches import StonePatch, PlacedMask
+from drystone.io.patches import PlacedMask, StonePatch
 from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
@@ -25,19 +25,13 @@ USUAL_SIDE_PX = 160.0
 """Longer side of the median stone of a drawing without a resolution."""
 
 
-@dataclass(frozen=True, eq=False)
-class Rastered:
-    """Stones of a file as pixels."""
+def rastered(
+    file: OutlineFile, settings: ReadSettings
+) -> tuple[list[StonePatch], tuple[int, int], float | None, list[Notice]]:
+    """Turn outlines of stones that have ids into patches, which may overlap.
 
-    patches: list[StonePatch]  # in the order of the file; they may overlap
-    width: int  # of the picture that they are in, px
-    height: int  # of the picture that they are in, px
-    px_per_m: float | None  # its scale; None for a file in px
-    notices: list[Notice]  # what was decided on the way
-
-
-def rastered(file: OutlineFile, settings: ReadSettings) -> Rastered:
-    """Turn outlines of stones that have ids into pixels.
+    Beside them stand the width and height of their picture, px, and its scale, px a metre, which
+    is None for a file in px.
 
     A file in px keeps its own px.  A drawing is drawn in the box around all its stones, whose
     lower left corner becomes that of the picture; without a resolution in the settings the longer
@@ -76,7 +70,7 @@ def rastered(file: OutlineFile, settings: ReadSettings) -> Rastered:
     if empty:
         notices.append(Notice("W119", f"without a pixel, left out: {listed(empty, '; ')}."))
     patches, overlaps = _beside_others(patches)
-    return Rastered(patches, width, height, px_per_m, notices + overlaps)
+    return patches, (width, height), px_per_m, notices + overlaps
 
 
 def _usual_scale(file: OutlineFile) -> tuple[float, Notice]:

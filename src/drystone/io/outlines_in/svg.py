@@ -10,13 +10,7 @@ import numpy as np
 from drystone.errors import InputError, Notice
 from drystone.io.file_errors import damaged, entry, too_large, unusable
 from drystone.io.foreign import foreign
-from drystone.io.outlines_in.model import (
-    Area,
-    OutlinedStone,
-    OutlineFile,
-    left_aside,
-    number_in,
-)
+from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile, left_aside, number_in
 from drystone.io.outlines_in.svg_shapes import SHAPES, lines_of
 from drystone.io.outlines_in.svg_style import Styles, tag
 from drystone.io.outlines_in.svg_view import (

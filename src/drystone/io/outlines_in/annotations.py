@@ -1,7 +1,9 @@
-"""COCO, and the automatic masks of Segment Anything (SAM): JSON of polygons and run lengths."""
+"""Annotations in JSON: labelme, COCO, the automatic masks of Segment Anything (SAM), GeoJSON."""
 
+import base64
+import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import PurePath
 from typing import Any
 
@@ -12,6 +14,7 @@ from drystone.errors import InputError, Notice
 from drystone.io.file_errors import entry, listed, short
 from drystone.io.outlines_in.fill import Room, check_reach, trimmed
 from drystone.io.outlines_in.model import (
+    METRES,
     Area,
     OutlinedStone,
     OutlineFile,
@@ -22,12 +25,92 @@ from drystone.io.outlines_in.model import (
 )
 from drystone.io.outlines_in.nested import without_nested
 from drystone.io.patches import PlacedMask
-from drystone.io.pictures import check_size
+from drystone.io.pictures import check_size, opened
 from drystone.io.read_settings import ReadSettings
 
+_CORNERS_OF_CIRCLE = 256
 _OF_MODEL = ("predicted_iou", "stability_score")
 _MOST_PX = 2**31
 _AT_ONCE = 64
+GEOJSON_KINDS = frozenset(
+    {
+        "FeatureCollection", "Feature", "GeometryCollection", "Polygon", "MultiPolygon", "Point",
+        "MultiPoint", "LineString", "MultiLineString",
+    }
+)  # fmt: skip
+_DEGREES = ("CRS84", "4326", "WGS84")
+
+
+def read_labelme(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
+    """Read polygons, rectangles, circles and masks.
+
+    Shapes of one label and ``group_id`` are one stone.  A label that is a number, also after
+    the word stone, is its id.
+    """
+    parts: dict[object, tuple[str, list[Area], list[PlacedMask]]] = {}
+    aside = Counter[str]()
+    room = Room(int(settings.max_image_mpx * 1e6))
+    for number, shape in enumerate(content["shapes"]):
+        with entry(f"shape {number} (from 0)"):
+            kind, label = shape.get("shape_type") or "polygon", str(shape.get("label") or "")
+            read = _mask(shape, room) if kind == "mask" else _area(kind, shape["points"])
+            if read is None:
+                aside[f"{kind}s"] += 1
+                continue
+            group = shape.get("group_id")
+            key = ("alone", number) if group is None else (label, str(group))
+            _, areas, masks = parts.setdefault(key, (label, [], []))
+            if isinstance(read, Area):
+                areas.append(read)
+            else:
+                masks.append(read)
+    stones = [
+        OutlinedStone(number_in(name), name, tuple(areas), tuple(masks))
+        for name, areas, masks in parts.values()
+    ]
+    return OutlineFile(stones, size_px=_size_in_labelme(content), notices=left_aside(aside))
+
+
+def _size_in_labelme(content: Mapping[str, Any]) -> tuple[int, int] | None:
+    with entry("the size of the image"):
+        width, height = content.get("imageWidth"), content.get("imageHeight")
+        if width is None or height is None:
+            return None
+        return side_px(width), side_px(height)
+
+
+def _area(kind: str, points: Any) -> Area | None:
+    # X-AnyLabeling writes all four corners of a rectangle, also of one that is turned.
+    if kind == "rectangle" and len(points) != 4:
+        (x0, y0), (x1, y1) = points
+        points = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+    elif kind == "circle":
+        (x, y), (on_x, on_y) = points
+        angles = np.arange(_CORNERS_OF_CIRCLE) * (2.0 * math.pi / _CORNERS_OF_CIRCLE)
+        circle = math.hypot(on_x - x, on_y - y) * np.column_stack([np.cos(angles), np.sin(angles)])
+        points = circle + np.array([x, y])
+    elif kind not in {"polygon", "rectangle", "oriented_rectangle", "rotation"}:
+        return None
+    return Area((ring(points),))
+
+
+def _mask(shape: Mapping[str, Any], room: Room) -> PlacedMask:
+    """Return a shape that is a picture within a box, as a model draws it."""
+
+    def check(width: int, height: int) -> None:
+        check_size(width, height, room.max_px)
+        room.take(width * height)
+
+    (x0, y0), _ = shape["points"]
+    data = base64.b64decode(shape["mask"], validate=True)
+    try:
+        with opened(data, "", check) as image:
+            mask = np.asarray(image.convert("L")) > 0
+    except InputError as error:
+        if error.code == "E110":
+            raise
+        raise ValueError(f"its mask is no picture: {error.what}") from error
+    return PlacedMask(mask, round(float(y0)), round(float(x0)))
 
 
 class _Stones:
@@ -262,3 +345,85 @@ def _numbers(counts: Any) -> NDArray[np.int64]:
     if runs.size and (int(runs.min()) < 0 or int(runs.max()) > _MOST_PX):
         raise ValueError("a count is below 0 or too large")
     return runs.astype(np.int64)
+
+
+def read_geojson(content: Mapping[str, Any], settings: ReadSettings) -> OutlineFile:
+    """Read polygons and multi-polygons, a stone a feature.
+
+    A foreign member ``unit`` of the file ("m", "mm" …), or the setting, makes it a drawing with y
+    up; without one, or with "px", coordinates are px of an image with y down, as image tools
+    write them, unless its ``frame`` is that of a wall of drystone, or all y are negative.  The id
+    of a stone is the ``id`` of its feature or of its properties, its name their ``name``.
+    """
+    if any(name in str(content.get("crs", "")) for name in _DEGREES):
+        what = "its coordinates are degrees of latitude and longitude."
+        raise _no_unit(what, 'Project it to metres, and give the file a member "unit": "m".')
+    if content.get("crs") and not settings.unit and "unit" not in content:
+        raise _no_unit(
+            "its coordinates are those of a map, and it does not say their unit.",
+            "Say it with --unit m (or ft; ReadSettings.unit), or px if they are px of an image "
+            "after all.",
+        )
+    unit = content.get("unit", "px")
+    if unit not in (*METRES, "px"):
+        what = f"its unit {short(repr(unit))} is not known."
+        raise _no_unit(what, f"Use one of px, {', '.join(METRES)}.")
+    stones: list[OutlinedStone] = []
+    aside = Counter[str]()
+    for number, feature in enumerate(_features(content)):
+        with entry(f"feature {number} (from 0)"):
+            stones += _stones_of_feature(feature, aside)
+    unit_m = METRES.get(unit if "unit" in content else settings.unit or "px")
+    upwards = unit_m is not None or str(content.get("frame")).startswith("wall")
+    notices = left_aside(aside)
+    if not upwards and _below(stones):
+        upwards = True
+        text = "all y are negative: y runs up, as GIS programs have it over a picture."
+        notices.append(Notice("W119", text))
+    return OutlineFile(stones, unit_m, upwards, notices=notices)
+
+
+def _no_unit(what: str, cure: str) -> InputError:
+    return InputError("E116", what, cure=cure)
+
+
+def _below(stones: list[OutlinedStone]) -> bool:
+    """Tell whether all is below a picture's upper edge with y up, where y down has no pixel."""
+    rings = [ring for stone in stones for area in stone.areas for ring in area.rings]
+    return bool(rings) and all(ring[:, 1].max() <= 0.0 for ring in rings)
+
+
+def _features(content: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    with entry("the list of features"):
+        if content["type"] == "FeatureCollection":
+            yield from content["features"]
+        elif content["type"] == "Feature":
+            yield content
+        else:
+            yield {"geometry": content}
+
+
+def _stones_of_feature(feature: Mapping[str, Any], aside: Counter[str]) -> Iterator[OutlinedStone]:
+    geometry = feature["geometry"]
+    if geometry is None:
+        aside["features without a geometry"] += 1
+        return
+    said = {**(feature.get("properties") or {})}
+    own = number_in(feature.get("id"))
+    if own is None:
+        own = number_in(said.get("id", said.get("stone")))
+    name = str(said.get("name") or (feature["id"] if isinstance(feature.get("id"), str) else ""))
+    kind = geometry["type"]
+    if kind == "GeometryCollection":
+        for part in geometry["geometries"]:
+            yield from _stones_of_feature({**feature, "geometry": part}, aside)
+    elif said.get("kind", "stone") != "stone":
+        aside[f"features of the kind {said['kind']!r}"] += 1
+    elif kind in {"Polygon", "MultiPolygon"}:
+        polygons = [geometry["coordinates"]] if kind == "Polygon" else geometry["coordinates"]
+        areas = tuple(Area(tuple(ring(points) for points in rings)) for rings in polygons)
+        if not areas or not all(area.rings for area in areas):
+            raise ValueError("a polygon has no ring")
+        yield OutlinedStone(own, name, areas)
+    else:
+        aside[f"{kind}s"] += 1
