@@ -53,29 +53,20 @@ def tiff(values, **options):
     return buffer.getvalue()
 
 
-@pytest.mark.parametrize("kind", ["PNG", "TIFF", "BMP", "GIF"])
-def test_8_bit_pictures(tmp_path, kind):
-    labels = two_stones(7, 255, np.uint8)
-    path = tmp_path / "stones.any"
-    path.write_bytes(pillow(labels, kind, optimize=False))  # GIF: keep unused colours
-    assert areas(read_stones(path)) == {7: 375, 255: 600}
+PICTURES = [
+    # GIF: keep unused colours
+    *((255, lambda a, k=kind: pillow(a.astype(np.uint8), k, optimize=False))
+      for kind in ("PNG", "TIFF", "BMP", "GIF")),
+    *((65535, write) for write in (lambda a: pillow(a.astype(np.uint16), "PNG"), tiff)),
+    *((top, lambda a, o=options: tiff(a, **o)) for top in (70000, 2**32 - 1) for options in (
+        {}, {"compression": "zlib"}, {"predictor": 2, "compression": 8}, {"byteorder": ">"})),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize("write", [lambda a: pillow(a, "PNG"), tiff])
-def test_16_bit_ids_survive(tmp_path, write):
-    path = tmp_path / "stones.png"
-    path.write_bytes(write(two_stones(300, 65535, np.uint16)))
-    assert areas(read_stones(path)) == {300: 375, 65535: 600}
-
-
-@pytest.mark.parametrize(
-    "options", [{}, {"compression": "zlib"}, {"predictor": 2, "compression": 8}, {"byteorder": ">"}]
-)
-@pytest.mark.parametrize("top", [70000, 2**32 - 1])
-def test_32_bit_tiff_ids_survive(tmp_path, options, top):
-    path = tmp_path / "stones.tif"
-    path.write_bytes(tiff(two_stones(300, top), **options))
-    assert areas(read_stones(path)) == {300: 375, top: 600}
+@pytest.mark.parametrize(("top", "write"), PICTURES)
+def test_ids_of_8_16_and_32_bits_survive(tmp_path, top, write):
+    (tmp_path / "stones.any").write_bytes(write(two_stones(7, top)))
+    assert areas(read_stones(tmp_path / "stones.any")) == {7: 375, top: 600}
 
 
 def test_lzw_tiff_of_unsigned_32_bits():
