@@ -121,16 +121,8 @@ def _indices(values: Mapping[str, float | None]) -> dict[str, float | None]:
     return {name: _number(values[name]) for name in (*_INDEX_NAMES, *others) if name in values}
 
 
-def _known_indices(data: Mapping[str, float | None]) -> dict[str, float | None]:
-    return {name: _number(data[name]) for name in _INDEX_NAMES}
-
-
 def _point(pair: Sequence[float]) -> Point:
     return float(pair[0]), float(pair[1])
-
-
-def _polygon(points: Iterable[Sequence[float]]) -> tuple[Point, ...]:
-    return tuple(_point(point) for point in points)
 
 
 def _same(value: Any) -> Any:
@@ -145,11 +137,14 @@ _FORMS: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
     "source_centroid": _POINT,
     "centroid": _POINT,
     "side": (_same, _same),
-    "indices": (_indices, _known_indices),
+    "indices": (_indices, lambda data: {name: _number(data[name]) for name in _INDEX_NAMES}),
     "course_height": _NUMBER,
     "alpha_left": _NUMBER,
     "alpha_right": _NUMBER,
-    "polygon": (lambda points: [_numbers(point) for point in points], _polygon),
+    "polygon": (
+        lambda points: list(map(_numbers, points)),
+        lambda points: tuple(map(_point, points)),
+    ),
 }
 """How the fields of steps are written and read that are no whole numbers."""
 

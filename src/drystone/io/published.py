@@ -184,7 +184,8 @@ def fetch_set(wanted: PublishedSet, folder: Path, *, address: str = RAW) -> list
         missing = not path.exists()
         if missing:
             _download(file, path, url)
-            _write_notice(folder)  # at once: the next file may fail
+            if not (folder / NOTICE).exists():  # at once, as it asks for: the next file may fail
+                write_whole(folder / NOTICE, LICENCE.encode())
         elif sha256(path.read_bytes()).hexdigest() != file.sha256:
             raise _other_contents(path, "Move it away and fetch it again, or", url)
         fetched.append(Fetched(file, path, missing))
@@ -204,12 +205,6 @@ def _sha256(path: Path) -> str | None:
 def _hash_of(path: Path, _size: int, _mtime_ns: int) -> str:
     """Return the hash of a file, read once as long as it stays the same."""
     return sha256(path.read_bytes()).hexdigest()
-
-
-def _write_notice(folder: Path) -> None:
-    """Write the licence beside the files, as it asks for."""
-    if not (folder / NOTICE).exists():
-        write_whole(folder / NOTICE, LICENCE.encode())
 
 
 def _download(file: PublishedFile, path: Path, url: str) -> None:

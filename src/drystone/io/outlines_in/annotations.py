@@ -68,15 +68,10 @@ def read_labelme(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
         OutlinedStone(number_in(name), name, tuple(areas), tuple(masks))
         for name, areas, masks in parts.values()
     ]
-    return OutlineFile(stones, size_px=_size_in_labelme(content), notices=left_aside(aside))
-
-
-def _size_in_labelme(content: Mapping[str, Any]) -> tuple[int, int] | None:
     with entry("the size of the image"):
-        width, height = content.get("imageWidth"), content.get("imageHeight")
-        if width is None or height is None:
-            return None
-        return side_px(width), side_px(height)
+        sides = content.get("imageWidth"), content.get("imageHeight")
+        size = None if None in sides else (side_px(sides[0]), side_px(sides[1]))
+    return OutlineFile(stones, size_px=size, notices=left_aside(aside))
 
 
 def _area(kind: str, points: Any) -> Area | None:
@@ -376,7 +371,9 @@ def read_geojson(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
     unit_m = METRES.get(unit if "unit" in content else settings.unit or "px")
     upwards = unit_m is not None or str(content.get("frame")).startswith("wall")
     notices = left_aside(aside)
-    if not upwards and _below(stones):
+    rings = [one for stone in stones for area in stone.areas for one in area.rings]
+    # All is below a picture's upper edge with y up, where y down has no pixel.
+    if not upwards and rings and all(one[:, 1].max() <= 0.0 for one in rings):
         upwards = True
         text = "all y are negative: y runs up, as GIS programs have it over a picture."
         notices.append(Notice("W119", text))
@@ -385,12 +382,6 @@ def read_geojson(content: Mapping[str, Any], settings: ReadSettings) -> OutlineF
 
 def _no_unit(what: str, cure: str) -> InputError:
     return InputError("E116", what, cure=cure)
-
-
-def _below(stones: list[OutlinedStone]) -> bool:
-    """Tell whether all is below a picture's upper edge with y up, where y down has no pixel."""
-    rings = [ring for stone in stones for area in stone.areas for ring in area.rings]
-    return bool(rings) and all(ring[:, 1].max() <= 0.0 for ring in rings)
 
 
 def _features(content: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:

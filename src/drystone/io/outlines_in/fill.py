@@ -70,7 +70,8 @@ def check_reach(stones: Iterable[OutlinedStone], max_px: int) -> None:
                 "limit be raised (max_image_mpx).",
             )
         room.take(width * height)
-        crossed = sum(_rows_crossed(ring) for area in stone.areas for ring in area.rings)
+        heights = (np.ceil(ring[:, 1] - 0.5) for area in stone.areas for ring in area.rings)
+        crossed = sum(int(np.abs(np.diff(rows, append=rows[:1])).sum()) for rows in heights)
         if crossed > width * height + _FREE_ROWS:
             raise too_large(
                 f"the outline of stone {name} goes up and down over {crossed} rows of pixels, and "
@@ -130,10 +131,6 @@ def pixels_of(stone: OutlinedStone) -> PlacedMask | None:
     """Return the pixels of a stone whose outlines are in px, y down; None when it has none."""
     filled = (filled_area(area) for area in stone.areas)
     return united([*(mask for mask in filled if mask is not None), *stone.masks])
-
-
-def _rows_crossed(ring: Points) -> int:
-    return int(np.abs(np.diff(np.ceil(ring[:, 1] - 0.5), append=np.ceil(ring[:1, 1] - 0.5))).sum())
 
 
 def _add_crossings(turns: NDArray[np.int32], ring: Points, top: int, left: int) -> None:

@@ -94,7 +94,8 @@ def _united(body: MeshBody) -> Notice:
 
 def _stl_bodies(data: bytes) -> list[MeshBody]:
     """Read triangles; equal corners are one vertex, so that bodies hang together."""
-    corners = _stl_text(data) if _is_text(data) else _stl_binary(data)
+    is_text = data.lstrip().startswith(b"solid") and b"facet" in data[:_HEAD]
+    corners = _stl_text(data) if is_text else _stl_binary(data)
     vertices, places = np.unique(corners, axis=0, return_inverse=True)
     return _bodies(vertices, list(places.reshape(-1, 3)))
 
@@ -117,10 +118,6 @@ def _stl_binary(data: bytes) -> NDArray[np.float64]:
     if not np.isfinite(corners).all():
         raise unusable("a vertex is not finite")
     return corners.astype(float)
-
-
-def _is_text(data: bytes) -> bool:
-    return data.lstrip().startswith(b"solid") and b"facet" in data[:_HEAD]
 
 
 def _ply_bodies(data: bytes) -> list[MeshBody]:

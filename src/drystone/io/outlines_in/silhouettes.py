@@ -56,9 +56,10 @@ def shadow(polygons: Sequence[Points]) -> tuple[Area, ...]:
     Faces that are seen from the side have no area.
     """
     # Edges of neighbours are the same numbers, so the union leaves no slits.
-    seen = shapely.polygons([np.asarray(p) for p in polygons]) if _alike(polygons) else [
-        shapely.Polygon(p) for p in polygons
-    ]  # fmt: skip
+    if len({len(polygon) for polygon in polygons}) == 1:
+        seen = shapely.polygons([np.asarray(polygon) for polygon in polygons])
+    else:
+        seen = [shapely.Polygon(polygon) for polygon in polygons]
     shapes = np.asarray(seen, dtype=object)
     shapes = shapes[shapely.area(shapes) > 0.0]
     return areas_of(shapely.union_all(_valid(shapes)))
@@ -85,7 +86,3 @@ def _crossings(ring: Points, most: int) -> int:
         if found > 2 * most:
             break
     return found // 2
-
-
-def _alike(polygons: Sequence[Points]) -> bool:
-    return len({len(polygon) for polygon in polygons}) == 1
