@@ -31,10 +31,10 @@ LARGEST_BYTES = 200_000_000
 class Checkpoint:
     """A plan that is being made."""
 
-    # all that shapes the plan: stones, wall, seed, settings, of JSON's own types
     made_of: Mapping[str, Any]
-    # where its search stands; None while there is but a first wall
+    """All that shapes the plan: stones, wall, seed, settings, of JSON's own types."""
     standing: Standing | None = None
+    """Where its search stands; None while there is but a first wall."""
 
 
 def write_checkpoint(checkpoint: Checkpoint, folder: Path) -> None:
@@ -54,7 +54,10 @@ def write_checkpoint(checkpoint: Checkpoint, folder: Path) -> None:
 def read_checkpoint(
     folder: Path, stone_ids: Collection[int], search: SearchSettings
 ) -> Checkpoint | None:
-    """Read the checkpoint in the folder of a plan."""
+    """Read the checkpoint in the folder of a plan, if there is one.
+
+    One that is damaged, of another program, or of another version of this one is refused (E207).
+    """
     path = folder / CHECKPOINT
     if not path.is_file():
         return None

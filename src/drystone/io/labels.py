@@ -20,7 +20,7 @@ _GREY_TOLERANCE = 48
 class Census:
     """The different values of an image."""
 
-    index: NDArray[np.int32]  # (h, w), pixel by pixel 1 + the position of its value in `values`
+    index: NDArray[np.int32]  # (h, w), 1 + the position of its value in `values`
     values: NDArray[np.int64]  # (n,), different values, ascending
 
     @cached_property
@@ -64,9 +64,9 @@ class IdImage:
 
     ids: NDArray[Any]  # (h, w), values in 0 ... 2^32-1; the background still has its own
     background: int  # the value that is not stone
-    # (h, w), largest channel of a colour picture; None when `ids` are its values
     brightness: NDArray[Any] | None = None
-    nearly_grey: bool = True  # false when the picture shows colours
+    """(h, w), largest channel of a colour picture; None when `ids` are its values."""
+    nearly_grey: bool = True  # False when the picture shows colours
     notices: tuple[Notice, ...] = ()  # how colours became ids
 
 

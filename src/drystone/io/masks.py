@@ -24,9 +24,9 @@ _NOISE = 1 / 16
 class BinaryMask:
     """A picture read as stone and background."""
 
-    mask: Mask  # (h, w), true where there is stone
-    background: int  # the two values of the picture
-    stone: int  # the two values of the picture
+    mask: Mask  # (h, w), True where there is stone
+    background: int  # this and the next: the two values of the picture
+    stone: int
     between_px: int  # pixels with values between them (anti-aliasing), given to the nearer one
 
 

@@ -46,8 +46,8 @@ class Photo:
     values: NDArray[np.uint8]  # (h, w, 3), RGB, the right way up
     name: str  # base name of its file
     sha256: str  # of the file, in hexadecimal digits
-    # W173 it was turned as its EXIF data say; W174 its depth was reduced or its alpha ignored
     notices: tuple[Notice, ...] = ()
+    """W173 it was turned as its EXIF data say; W174 its depth was reduced or its alpha ignored."""
 
     @property
     def size_px(self) -> tuple[int, int]:

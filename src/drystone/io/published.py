@@ -129,9 +129,9 @@ VARIABLE = "DRYSTONE_DATA"
 class Fetched:
     """A file of a published set that is there and has the right contents."""
 
-    file: PublishedFile  # what it is
-    path: Path  # where it is
-    downloaded: bool  # whether it was not there before
+    file: PublishedFile
+    path: Path
+    downloaded: bool  # it was not there before
 
 
 def published_folder(given: str | None) -> Path | None:

@@ -57,15 +57,15 @@ _EXPANDS = 2**26
 class TiffPage:
     """What must be known before a TIFF is decoded."""
 
-    width: int  # size in px
-    height: int  # size in px
-    lossy: bool  # true for JPEG inside TIFF
+    width: int  # px
+    height: int
+    lossy: bool  # JPEG inside TIFF
     unreadable: str  # why it cannot be decoded without loss; empty when it can
     colours: str  # colour mode that holds no ids, such as CMYK; empty for all others
-    alpha: bool  # true when the last channel is transparency, and says so
+    alpha: bool  # the last channel is transparency, and says so
     bits: int  # of a channel
     orientation: int  # how the camera was held, 1 to 8
-    negative: bool  # true when 0 is white
+    negative: bool  # 0 is white
 
 
 def inspect(data: bytes, where: str) -> TiffPage:

@@ -46,10 +46,10 @@ thousands of poses and scales came to .6 of what it allows."""
 class GivenWall:
     """A wall from a file."""
 
-    labels: Labels | None  # (h, w), none for a block model, which has no pixels
+    labels: Labels | None  # (h, w), None for a block model, which has no pixels
     plan: Plan | None = None  # when the file was a plan; its image is the wall image beside it
-    # A block model as it was written, also that of a plan on outlines
     blocks: dict[str, Any] | None = None
+    """A block model as it was written, also that of a plan on outlines."""
 
     @property
     def wedge_ids(self) -> frozenset[int]:

@@ -38,8 +38,8 @@ class MeshBody:
     name: str  # empty when it has none
     vertices: NDArray[np.float64]  # (n, 3), of the whole file
     faces: Sequence[NDArray[np.int64]]  # positions in `vertices`, three or more a face
-    # all that the file says of it after o or g, each once; only of an OBJ
     said: tuple[str, ...] = ()
+    """All that the file says of it after o or g, each once; only of an OBJ."""
 
 
 def mesh_kind(data: bytes, suffix: str) -> str | None:
