@@ -10,8 +10,7 @@ from drystone.cli.parser import build_parser
 from drystone.cli.settings import recorded_method, settings_from
 from drystone.drawing.export.formats import FORMATS as EXPORTERS
 from drystone.io.photo_beside import photo_beside, photo_of
-from drystone.io.photo_file import read_photo
-from drystone.io.photo_picture import read_photo_picture
+from drystone.io.photo_file import read_photo, read_photo_picture
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
 from drystone.photo.segment_photo import segment_photo

@@ -68,13 +68,3 @@ def interruptible() -> Iterator[None]:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
-
-
-@pytest.fixture(scope="session")
-def trust_dir() -> Path:
-    """Folder of files that once hung, ran or crashed the readers; skip when it is absent."""
-    default = Path(__file__).resolve().parents[2] / "shared" / "cases"
-    folder = Path(os.environ.get("DRYSTONE_CASES", default)) / "trust"
-    if not folder.is_dir():
-        pytest.skip("failing inputs are absent (set DRYSTONE_CASES to their folder)")
-    return folder

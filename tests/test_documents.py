@@ -30,8 +30,7 @@ from drystone.generate import (
     brick_stones,
     lay_out,
 )
-from drystone.io.plan_json import plan_from_json
-from drystone.io.plan_schema import plan_schema
+from drystone.io.plan_json import plan_from_json, plan_schema
 from drystone.io.read_settings import ReadSettings
 from drystone.io.wall_image import write_labels
 from drystone.model.settings import range_text

@@ -13,7 +13,7 @@ import shapely
 from PIL import Image
 
 from drystone.drawing.pictures import check as check_picture
-from drystone.io.blocks_json import BLOCKS
+from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.planner.events import Callbacks, Step
 from tests.cli.conftest import EXACT, Run

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from drystone.cli.commands.segment import WRITTEN
-from drystone.io.photo_sidecar import LABELS, PhotoSidecar, write_sidecar
+from drystone.io.photo_beside import LABELS, PhotoSidecar, write_sidecar
 from tests.cli.conftest import WALL, Run
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from drystone.io.photo_sidecar import PhotoSidecar, write_sidecar
+from drystone.io.photo_beside import PhotoSidecar, write_sidecar
 from drystone.io.plan_json import read_plan
 from tests.cli.conftest import Run
 

@@ -291,10 +291,7 @@ FILES: dict[str, tuple[Callable[[], bytes], str]] = {
     "lzma.npz": (lambda: npz({"a.npy": saved(two_stones())}, zipfile.ZIP_LZMA), "E106"),
     "bzip2.npz": (lambda: npz({"a.npy": saved(two_stones())}, zipfile.ZIP_BZIP2), "E106"),
     "other.npz": (lambda: npz({"a.npy": saved(two_stones()), "b.txt": b"stones"}), "E106"),
-    "infinite.dxf": (
-        lambda: dxf(polygon((0, 0), (9, 0), (9, 9))).replace(b"9.0", b"1e999"),
-        "E1",
-    ),
+    "infinite.dxf": (lambda: dxf(polygon((0, 0), (9, 0), (9, 9))).replace(b"9.0", b"1e999"), "E1"),
     "infinite.obj": (lambda: b"v 0 0 0\nv 1e999 0 0\nv 0 0 1\nf 1 2 3\n", "E114"),
     "faces.ply": (lambda: PLY % (b"9" * 5000), "E1"),
     "side.json": (

@@ -8,7 +8,7 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from threading import Thread
 
-from drystone.io.published_sets import PublishedFile, PublishedSet
+from drystone.io.published import PublishedFile, PublishedSet
 
 COMMIT = "0123456789abcdef0123456789abcdef01234567"
 CONTENTS = {"toy/R.png": b"regular stones", "toy/IR.png": b"irregular stones"}
@@ -26,7 +26,7 @@ def toy_set() -> PublishedSet:
         "Nobody (2000)",
         tuple(
             PublishedFile(
-                name, COMMIT, f"Tests/{Path(name).stem}/labels.png", sha256(contents).hexdigest()
+                name, f"{COMMIT}/Tests/{Path(name).stem}/labels.png", sha256(contents).hexdigest()
             )
             for name, contents in CONTENTS.items()
         ),

@@ -3,7 +3,6 @@
 import base64
 import io
 import json
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -11,17 +10,9 @@ import pytest
 from PIL import Image
 from pycocotools import mask as coco_mask
 
-from drystone.errors import InputError, LabelImageError
+from drystone.errors import InputError
 from drystone.io.read_stones import ReadSettings, read_stones
-from tests.io.known_stones import (
-    HEIGHT,
-    PIECES,
-    STONES,
-    WIDTH,
-    compare,
-    label_image,
-    masks,
-)
+from tests.io.known_stones import HEIGHT, PIECES, STONES, WIDTH, compare, masks
 from tests.io.pictures import codes
 
 EXACT = (1.0, 0.0, 0.0)
@@ -97,11 +88,6 @@ def test_labelme_keeps_labels_as_ids_and_joins_groups(tmp_path):
     assert "W119" not in codes(stones)  # stones that touch share no pixel
 
 
-def test_labelme_pieces_of_a_group_are_one_stone(tmp_path):
-    with pytest.raises(LabelImageError, match=r"E103.*stone 34 \(34\)"):
-        read_stones(written(tmp_path, labelme()))
-
-
 def test_labelme_rectangles_circles_and_masks(tmp_path):
     rng = np.random.default_rng(3)
     grain = rng.random((20, 30)) < 0.9
@@ -138,16 +124,6 @@ def test_rectangles_of_four_corners_as_x_anylabeling_writes_them(tmp_path, kind)
     (stone,) = read_stones(written(tmp_path, labelme(shapes=[shape])))
     assert stone.area_px == pytest.approx(30**2 + 20**2, rel=0.01)
     assert stone.centroid == pytest.approx((35, HEIGHT - 35), abs=0.1)
-
-
-def test_labels_that_are_no_different_numbers_are_names(tmp_path):
-    same = labelme()
-    for shape in same["shapes"]:
-        shape["label"] = "stone 5"
-    stones = read_stones(written(tmp_path, same), settings=PIECES)
-    assert [stone.id for stone in stones] == list(range(1, len(STONES) + 1))
-    assert {stone.name for stone in stones} == {"stone 5"}
-    assert any("not different (5)" in notice.message for notice in stones.notices)
 
 
 def test_coco_polygons(tmp_path):
@@ -213,26 +189,6 @@ def test_coco_masks_of_cvat_are_stones_though_marked_as_crowds(tmp_path, mixed):
     assert "marked as crowds" in stones.notices[0].message
 
 
-def test_three_hundred_stones_of_a_photograph_are_read_in_seconds(tmp_path):
-    found = {}
-    for i in range(300):
-        row, col = divmod(i, 20)
-        first = (col * 200 + 10) * 3000 + row * 200 + 10
-        counts = [first, *[170, 3000 - 170] * 159, 170]
-        found[i + 1] = {"size": [3000, 4000], "counts": [*counts, 12_000_000 - sum(counts)]}
-    one = np.zeros((3000, 4000), bool, order="F")
-    one[4 * 200 + 10 : 4 * 200 + 180, 210:370] = True
-    found[82] = runs(one)
-    content = coco(found)
-    content["images"][0] |= {"width": 4000, "height": 3000}
-    path = written(tmp_path, content)
-    start = time.process_time()
-    stones = read_stones(path)
-    seconds = time.process_time() - start
-    assert [stone.area_px for stone in stones] == [170 * 160] * 300
-    assert seconds < 10.0  # about .5 s
-
-
 @pytest.mark.parametrize("form", ["packed", "counts", "rows", "released"])
 def test_sam_masks_that_do_not_nest(tmp_path, form):
     found = [
@@ -296,19 +252,6 @@ def test_overlapping_outlines_keep_all_their_pixels(tmp_path):
     stones = read_stones(written(tmp_path, labelme(shapes=shapes)))
     assert [stone.area_px for stone in stones] == [2500, 2000]
     assert "1 and 2 (500 px)" in stones.notices[0].message
-
-
-def test_a_stone_in_the_hole_of_another_is_said(tmp_path):
-    square = [[[10, 10], [90, 10], [90, 90], [10, 90]], [[20, 20], [80, 20], [80, 80], [20, 80]]]
-    inner = [[[30, 30], [70, 30], [70, 70], [30, 70]]]
-    features = [
-        {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": c}}
-        for c in (square, inner)
-    ]
-    path = written(tmp_path, {"type": "FeatureCollection", "features": features})
-    stones = read_stones(path)
-    (notice,) = [n for n in stones.notices if n.code == "W112"]
-    assert "3600 px, 1600 px of them other stones'" in notice.message
 
 
 def test_what_reaches_over_the_image_is_cut_off(tmp_path):
@@ -415,9 +358,3 @@ def test_geojson_kinds_that_are_no_stones(tmp_path):
     assert "1 Points, 1 features without a geometry" in stones.notices[0].message
     bare = geojson()["features"][0]["geometry"]
     assert read_stones(written(tmp_path, bare)).by_id(1).area_px == masks()[3].sum()
-
-
-def test_label_image_is_the_truth():
-    labels = label_image()
-    assert set(np.unique(labels)) == {0, *STONES}
-    assert sum(int(mask.sum()) for mask in masks().values()) == (labels > 0).sum()

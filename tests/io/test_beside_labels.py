@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 
 from drystone.errors import InputError
-from drystone.io.photo_sidecar import PhotoSidecar, write_sidecar
+from drystone.io.photo_beside import PhotoSidecar, write_sidecar
 from drystone.io.read_stones import ReadSettings, read_stones
 from tests.io.pictures import areas, two_stones
 
@@ -34,10 +34,6 @@ def test_a_resolution_does_not_change_a_picture(tmp_path):
     assert stones.source.reading == ()
 
 
-def test_a_photograph_without_a_scale(tmp_path):
-    assert read_stones(segmented(tmp_path, px_per_m=None)).source.px_per_m is None
-
-
 def test_another_picture_than_the_one_that_was_measured(tmp_path):
     segmented(tmp_path, width=600, height=400)
     with pytest.raises(InputError, match=r"E117 .*60 x 40 px.*600 x 400.*drystone segment"):
@@ -48,11 +44,3 @@ def test_other_names_and_other_files_have_no_scale(tmp_path):
     segmented(tmp_path)
     (tmp_path / "stones.png").rename(tmp_path / "other.png")
     assert read_stones(tmp_path / "other.png").source.px_per_m is None
-
-
-def test_a_photo_is_sent_to_segment(tmp_path):
-    rng = np.random.default_rng(0)
-    photo = rng.integers(0, 255, (80, 80, 3), dtype=np.uint8)
-    Image.fromarray(photo).save(tmp_path / "photo.png")
-    with pytest.raises(InputError, match=r"E102.*drystone segment PHOTO"):
-        read_stones(tmp_path / "photo.png")

@@ -1,7 +1,6 @@
 """The block model that is written beside a plan on outlines."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,7 +8,7 @@ import shapely
 
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.contacts.settled import model_of_outlines
-from drystone.io.blocks_json import BLOCKS, blocks_to_json, write_blocks
+from drystone.io.plan_folder import blocks_to_json
 from drystone.model.site import Site
 from drystone.model.wall import Wall
 from drystone.statics.limit import lateral_resistance
@@ -66,26 +65,15 @@ def test_polygons_are_those_of_the_plan_wedges_too(px_per_m: float | None) -> No
     assert planned.symmetric_difference(found).area == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_wall_of_pixels_needs_none(tmp_path: Path) -> None:
-    wall, model = built()
-    assert write_blocks(wall, model, tmp_path) == tmp_path / BLOCKS
-    text = (tmp_path / BLOCKS).read_text(encoding="utf-8")
-    assert json.loads(text) == json.loads(json.dumps(blocks_to_json(wall, model)))
-    assert text.endswith("}\n")
-    assert [path.name for path in tmp_path.iterdir()] == [BLOCKS]
-    on_pixels = example().wall
-    (tmp_path / BLOCKS).unlink()
-    assert write_blocks(on_pixels, model, tmp_path) is None
-    assert list(tmp_path.iterdir()) == []
+def test_a_wall_of_pixels_needs_none() -> None:
+    _, model = built()
     with pytest.raises(ValueError, match="are their pixels"):
-        blocks_to_json(on_pixels, model)
+        blocks_to_json(example().wall, model)
 
 
-def test_an_empty_wall_has_no_blocks(tmp_path: Path) -> None:
+def test_an_empty_wall_has_no_blocks() -> None:
     wall = Wall.empty(Site.from_source(40.0, 20.0, 0.5), exact=True)
     assert wall.outlines is not None
-    model = model_of_outlines(wall.outlines, 0.58, 0.1)
-    assert write_blocks(wall, model, tmp_path) is not None
-    read = json.loads((tmp_path / BLOCKS).read_text(encoding="utf-8"))
+    read = blocks_to_json(wall, model_of_outlines(wall.outlines, 0.58, 0.1))
     assert read == {"mu": 0.58, "blocks": [], "interfaces": []}
     assert model_from_json(read).blocks == ()

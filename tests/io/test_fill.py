@@ -71,14 +71,6 @@ def test_halves_of_a_polygon_share_no_pixel_and_leave_none(tens, data):
     np.testing.assert_array_equal(np.any(both, axis=0), whole(filled_area(Area((ring,)))))
 
 
-def test_edges_on_centres_belong_to_one_side():
-    left = Area((np.array([[0.5, 0.5], [3.5, 0.5], [3.5, 4.5], [0.5, 4.5]]),))
-    right = Area((np.array([[3.5, 0.5], [6.5, 0.5], [6.5, 4.5], [3.5, 4.5]]),))
-    one, other = whole(filled_area(left)), whole(filled_area(right))
-    assert one.sum() == other.sum() == 12
-    assert not (one & other).any()
-
-
 def test_what_holds_no_centre_is_nothing():
     assert filled_area(Area((np.array([[0.6, 0.6], [0.9, 0.6], [0.9, 0.9]]),))) is None
     assert filled_area(Area((np.array([[0.0, 0.0], [9.0, 0.0], [4.0, 0.0]]),))) is None

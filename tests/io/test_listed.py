@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from drystone.errors import DrystoneError
-from drystone.io.listed import listed, short
+from drystone.io.file_errors import listed, short
 from drystone.io.read_settings import ReadSettings
 from drystone.io.read_stones import read_stones
 

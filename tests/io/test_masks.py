@@ -54,14 +54,6 @@ def test_stones_that_meet_at_a_corner_are_one_component():
     assert "meet at a corner only" in stones.notices[1].message
 
 
-def test_specks_keep_their_numbers():
-    mask = two_stones() > 0
-    mask[0, 0] = True
-    stones = read_stones(mask)
-    assert areas(stones) == {2: 375, 3: 600}
-    assert codes(stones) == ["W114", "W113"]
-
-
 def test_a_single_stone_keeps_its_id():
     labels = two_stones()
     labels[labels == 70000] = 0
@@ -94,13 +86,6 @@ def test_antialiased_mask(tmp_path, colour):
     between = int(((cover > 0) & (cover < 255)).sum())
     assert codes(stones) == ["W114"]
     assert f"{between} px of values between them" in stones.notices[0].message
-
-
-def test_antialiased_mask_on_white():
-    cover = discs((70, 70), [(15, 15), (50, 50)], 10.3)
-    values = 255 - (cover * 255).astype(np.uint8)
-    stones = read_stones(values, settings=ReadSettings(background=255))
-    assert stones.total_area_px == int((values <= 127).sum())
 
 
 def test_a_grey_stone_among_antialiased_ones_is_not_taken_for_an_edge():
@@ -161,11 +146,6 @@ def test_a_mask_of_any_grey_can_be_forced_in_a_lossy_file(tmp_path, value, quali
     labels = np.minimum(many_stones(3, 4), 1) * value
     Image.fromarray(labels.astype(np.uint8)).save(tmp_path / "mask.jpg", quality=quality)
     assert len(read_stones(tmp_path / "mask.jpg", settings=ReadSettings(mask=True))) == 12
-
-
-def test_a_mask_of_several_shades_can_be_forced():
-    labels = many_stones(3, 4, first=140, step=10)
-    assert len(read_stones(labels, settings=ReadSettings(mask=True))) == 12
 
 
 def test_a_blurred_mask_can_be_forced():

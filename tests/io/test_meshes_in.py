@@ -121,19 +121,6 @@ def boxes(*names):
     return "\n".join(lines)
 
 
-def test_obj_names_of_several_words(tmp_path):
-    scene = trimesh.Scene()
-    for i in (3, 1, 2):
-        box = trimesh.creation.box((1.0, 1.0, 0.1))
-        box.apply_translation((1.5 * i, 0.0, 0.0))  # they would be in pieces together
-        scene.add_geometry(box, geom_name=f"Stone {i}")
-    text = scene.export(file_type="obj")
-    assert "o Stone 1\n" in text
-    stones = read_stones(saved(tmp_path, text, "s.obj"), settings=ReadSettings(px_per_m=50))
-    assert [(stone.id, stone.name) for stone in stones] == [(i, f"Stone {i}") for i in (1, 2, 3)]
-    assert [stone.left_px for stone in stones] == [0, 75, 150]
-
-
 WHY = "of the groups of a face the first counts, and what follows # is a comment"
 
 

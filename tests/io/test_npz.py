@@ -1,13 +1,10 @@
 """Archives of arrays."""
 
-import io
-import zipfile
-
 import numpy as np
 import pytest
 
 from drystone.errors import InputError
-from drystone.io.read_stones import ReadSettings, read_stones
+from drystone.io.read_stones import read_stones
 from tests.io.known_stones import PIECES, compare, label_image, masks
 from tests.io.pictures import areas, two_stones
 
@@ -61,19 +58,3 @@ def test_damaged_archives(tmp_path):
     np.savez(path, a=np.array([{}], dtype=object), b=np.zeros(3))
     with pytest.raises(InputError, match=r"E106.*pickle"):
         read_stones(path)
-
-
-def test_archives_that_would_fill_the_memory(tmp_path):
-    path = saved(tmp_path, a=np.zeros((1000, 1000)), b=np.zeros((1000, 1000)))
-    assert path.stat().st_size < 20_000
-    with pytest.raises(InputError, match=r"E110"):
-        read_stones(path, settings=ReadSettings(max_image_mpx=0.5))
-
-
-def test_other_archives_are_unknown(tmp_path):
-    with io.BytesIO() as buffer:
-        with zipfile.ZipFile(buffer, "w") as archive:
-            archive.writestr("a.txt", "stones")
-        (tmp_path / "a.zip").write_bytes(buffer.getvalue())
-    with pytest.raises(InputError, match=r"E107.*NPZ"):
-        read_stones(tmp_path / "a.zip")

@@ -74,17 +74,6 @@ def test_numbers_that_are_kept_or_were_never_there_are_not_spoken_of(tmp_path, c
     assert read(tmp_path, content) == (ids, [])
 
 
-def test_features_of_a_gis_begin_at_zero(tmp_path):
-    content = geojson()
-    content["features"] = [f for f in content["features"] if f["id"] != 34]
-    for number, feature in enumerate(content["features"]):
-        feature["id"] = number
-    stones = read_stones(written(tmp_path, content), settings=ReadSettings(pieces="keep-largest"))
-    assert [stone.id for stone in stones] == list(range(1, len(stones) + 1))
-    (said,) = [n.message for n in stones.notices if n.code == "W119"]
-    assert said.startswith("0 cannot be the number of a stone: all are numbered in order (0 is now")
-
-
 SVG = '<svg xmlns="http://www.w3.org/2000/svg"><rect id="1" width="30" height="30"/></svg>'
 FILES = {
     "labelme.json": json.dumps(of_labelme(["1", "2"])),

@@ -8,13 +8,11 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from scipy import ndimage
 
 from drystone.errors import LabelImageError
-from drystone.io import necks
 from drystone.io import patches as module
-from drystone.io.census import take_census
+from drystone.io.labels import take_census
 from drystone.io.necks import neck_width_px
-from drystone.io.patches import Patch, cut, enclosed
+from drystone.io.patches import StonePatch, cut, enclosed
 from drystone.io.read_stones import read_stones
-from drystone.io.summits import Summits
 from tests.io.pictures import discs
 from tests.naive import io as naive
 
@@ -46,24 +44,13 @@ def test_holes(mask):
 
 @given(arrays(bool, shapes))
 def test_large_masks_are_looked_at_on_runs_to_the_same_end(mask):
-    found = Patch(1, mask, 0, 0, 12)
+    found = StonePatch(mask, 0, 0, 1, 12)
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(module, "_LARGE_PX", 1)
         patched.setattr(module, "_PLAIN_PX", 0)
-        holes, areas = enclosed(mask), Patch(1, mask, 0, 0, 12).piece_areas_px
+        holes, areas = enclosed(mask), StonePatch(mask, 0, 0, 1, 12).piece_areas_px
     np.testing.assert_array_equal(holes, enclosed(mask))
     assert areas == found.piece_areas_px
-
-
-def test_a_large_plain_mask_takes_no_labels_of_pixels(monkeypatch):
-    mask = np.ones((1100, 1000), bool)
-    mask[40:50, 40:50] = mask[:, 500] = False
-    monkeypatch.setattr(module.ndimage, "label", None)
-    assert Patch(1, mask, 0, 0, 1100).piece_areas_px == (1100 * 500 - 100, 1100 * 499)
-    assert np.argwhere(enclosed(mask)).tolist() == np.argwhere(~mask[:, :500]).tolist()
-    monkeypatch.undo()
-    mask[:, ::40] = False  # many runs
-    assert len(Patch(1, mask, 0, 0, 1100).piece_areas_px) == 25 + 1
 
 
 @pytest.mark.parametrize("width", [2, 4, 6, 8])
@@ -91,16 +78,6 @@ def test_a_neck_in_a_coarser_picture():
     mask[80:120, 150:210] = False
     mask[99:100, 150:210] = True  # hit or missed, it is not thicker than a pixel of 4 px
     assert neck_width_px(mask, 72_000 // 16) == 4
-
-
-def test_necks_of_noise_are_looked_for_in_a_coarser_picture(monkeypatch):
-    asked = []
-    monkeypatch.setattr(necks, "Summits", lambda depth: asked.append(depth.size) or Summits(depth))
-    noise = np.random.default_rng(0).random((1024, 1024)) < 0.97
-    noise[300:700, 300:700] = True
-    assert neck_width_px(noise) is None
-    assert len(asked) == 2
-    assert asked[1] < asked[0] / 3
 
 
 def test_noise_is_no_picture_of_stones():

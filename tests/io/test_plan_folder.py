@@ -1,6 +1,7 @@
 """A plan from Python is a folder that every command reads."""
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +16,17 @@ from drystone.io.walls import read_wall
 from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
 
 
+@cache
+def planned(geometry: str = "raster") -> ds.PlanResult:
+    settings = greedy({"geometry": geometry})
+    return ds.plan_wall(rubble(), 100, 36, scale=1.0, settings=settings, budget=1, px_per_m=100)
+
+
 @pytest.mark.parametrize("geometry", ["exact", "raster"])
 def test_commands_read_what_python_wrote(
     geometry: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    settings = greedy({"geometry": geometry})
-    result = ds.plan_wall(rubble(), 100, 36, scale=1.0, seed=2, settings=settings, px_per_m=100)
+    result = planned(geometry)
     path = ds.write_plan_folder(result, tmp_path / "new" / "out")
     assert path == tmp_path / "new" / "out" / "plan.json"
     assert ds.read_plan(path) == result.plan
@@ -35,11 +41,8 @@ def test_commands_read_what_python_wrote(
 
 def test_no_file_of_another_wall_is_left(tmp_path: Path) -> None:
     for geometry in ("exact", "raster"):
-        result = ds.plan_wall(
-            rubble(), 100, 36, scale=1.0, settings=greedy({"geometry": geometry}), budget=1
-        )
         (tmp_path / "mine.txt").write_text("mine")
-        ds.write_plan_folder(result, str(tmp_path))
+        ds.write_plan_folder(planned(geometry), str(tmp_path))
     assert {path.name for path in tmp_path.iterdir()} == {
         "mine.txt", "plan.json", "settings.toml", "wall.png",
     }  # fmt: skip
@@ -68,10 +71,9 @@ def test_a_planner_becomes_a_plan_at_any_step() -> None:
 
 def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    result = ds.plan_wall(rubble(), 100, 36, scale=1.0, settings=greedy({}), budget=1)
     for place in (tmp_path / "file", tmp_path / "file" / "in"):
         with pytest.raises(ds.DrystoneError, match=r"E206 .*file"):
-            ds.write_plan_folder(result, place)
+            ds.write_plan_folder(planned(), place)
 
 
 def test_stones_of_a_few_px_are_not_taken_for_blended_ids(tmp_path: Path) -> None:
@@ -110,9 +112,7 @@ def test_files_that_no_plan_left_stay(tmp_path: Path) -> None:
     mine = {name: tmp_path / name for name in ("wall.tif", "blocks.json", "photo.jpg")}
     for path in mine.values():
         path.write_bytes(b"mine")
-    settings = greedy({"geometry": "raster"})
-    result = ds.plan_wall(rubble(), 100, 36, scale=1.0, settings=settings, budget=1)
-    ds.write_plan_folder(result, tmp_path)
+    ds.write_plan_folder(planned(), tmp_path)
     assert {path.read_bytes() for path in mine.values()} == {b"mine"}
 
 
@@ -121,8 +121,7 @@ def test_the_photograph_of_an_earlier_plan_goes(tmp_path: Path) -> None:
     photo.parent.mkdir()
     Image.fromarray(np.zeros((8, 8, 3), np.uint8)).save(photo)
     folder = tmp_path / "out"
-    settings = greedy({"geometry": "raster"})
-    result = ds.plan_wall(rubble(), 100, 36, scale=1.0, settings=settings, budget=1)
+    result = planned()
     folder.mkdir()
     _, record = place_photo(photo, folder)
     source = {**result.plan.source, **record}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from drystone.io.read_stones import ReadSettings, read_stones
+from drystone.io.read_stones import read_stones
 from tests.io.pictures import codes
 
 COUNTS = {
@@ -36,12 +36,3 @@ def test_published_picture(data_dir, name):
         rows = slice(top, top + stone.mask.shape[0])
         cols = slice(stone.left_px, stone.left_px + stone.mask.shape[1])
         assert (grey[rows, cols][stone.mask] == stone.id).all()
-
-
-def test_the_pieces_of_noise_20_are_listed_and_can_be_refused_or_kept(data_dir):
-    path = data_dir / "thangavelu/noise_20.png"
-    text = read_stones(path).notices[0].message
-    assert "stone 22: 1 px at column 139, row 398" in text
-    assert "stone 211: 11 px at column 311, row 213" in text
-    split = read_stones(path, settings=ReadSettings(pieces="split", min_area_px=1))
-    assert (len(split), split.total_area_px) == (25, 208954)

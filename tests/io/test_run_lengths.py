@@ -7,13 +7,13 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from pycocotools import mask as coco_mask
 
+from drystone.io.outlines_in.annotations import mask_of, unpacked
 from drystone.io.outlines_in.fill import Room
-from drystone.io.outlines_in.run_lengths import mask_of, unpacked
 from tests.io.test_annotations import runs
 
 
 def room():
-    return Room("a.json", 10**8)
+    return Room(10**8)
 
 
 @given(arrays(bool, st.tuples(st.integers(1, 40), st.integers(1, 40))), st.booleans())

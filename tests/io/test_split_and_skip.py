@@ -55,13 +55,6 @@ def test_all_skipped():
         split(in_pieces(), ALL)
 
 
-def test_pieces_are_not_numbered_like_specks():
-    labels = in_pieces()
-    labels[49, 89] = 5
-    assert areas(split(labels, ())) == {1: 400, 2: 324, 3: 256, 6: 225, 7: 144, 8: 121}
-    assert areas(split(labels, (5,))) == areas(split(labels, ()))
-
-
 def test_what_is_a_speck_beside_skipped_giants_is_not_numbered():
     labels = np.pad(in_pieces(), ((0, 400), (0, 400)))
     labels[60:440, 2:242], labels[60:440, 246:486], labels[4:50, 100:480] = 7, 8, 9
@@ -70,13 +63,6 @@ def test_what_is_a_speck_beside_skipped_giants_is_not_numbered():
     for skip in ((7, 8), (7, 8, 9), (1, 9)):
         left = {i: area for i, area in everything.items() if i not in skip}
         assert areas(split(labels, skip)) == left
-
-
-def test_a_stone_in_one_piece_that_is_skipped_is_not_spoken_of():
-    labels = in_pieces()
-    labels[30:33, 5:8] = 0
-    assert any("holes filled: stone 2" in n.message for n in split(labels, ()).notices)
-    assert not any("stone 2" in n.message for n in split(labels, (2,)).notices)
 
 
 @given(

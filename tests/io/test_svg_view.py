@@ -11,7 +11,7 @@ from drystone.io.read_stones import ReadSettings
 def bounds(body, page='width="200mm" height="100mm" viewBox="0 0 200 100"'):
     """Boxes around all that is read of a drawing: left, top, width, height; and what is said."""
     text = f'<svg xmlns="http://www.w3.org/2000/svg" {page}>{body}</svg>'
-    found = read_svg(text.encode(), "stones.svg", ReadSettings())
+    found = read_svg(text.encode(), ReadSettings())
     rings = [np.concatenate(stone.areas[0].rings) for stone in found.stones]
     boxes = [[*ring.min(axis=0), *np.ptp(ring, axis=0)] for ring in rings]
     return np.array(boxes).round(9).tolist(), " ".join(n.message for n in found.notices)

@@ -36,18 +36,6 @@ def test_wall_image_keeps_every_id(tmp_path: Path, ids: tuple[int, ...], name: s
     assert [p.name for p in tmp_path.iterdir()] == [name]
 
 
-def test_png_has_16_bits_and_tiff_32(tmp_path: Path) -> None:
-    with Image.open(write_wall_image(wall(1, 2), tmp_path)) as image:
-        assert image.mode == "I;16"
-    assert tifffile.imread(write_wall_image(wall(1, 70000), tmp_path)).dtype == np.uint32
-
-
-def test_equal_walls_give_equal_bytes(tmp_path: Path) -> None:
-    for ids in ((1, 300), (1, 70000)):
-        first = write_wall_image(wall(*ids), tmp_path).read_bytes()
-        assert write_wall_image(wall(*ids), tmp_path).read_bytes() == first
-
-
 def test_empty_wall_is_written(tmp_path: Path) -> None:
     path = write_wall_image(np.zeros((3, 4), np.uint32), tmp_path)
     assert np.asarray(Image.open(path)).tolist() == [[0] * 4] * 3
@@ -56,33 +44,6 @@ def test_empty_wall_is_written(tmp_path: Path) -> None:
 def test_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
     with pytest.raises(PlanError, match="E206"):
         write_wall_image(wall(1, 2), tmp_path / "none")
-
-
-def rgb(labels: np.ndarray, channels: int = 3) -> np.ndarray:
-    colours = np.zeros((*labels.shape, channels), np.uint8)
-    for channel in range(3):
-        colours[:, :, channel] = labels >> (8 * channel) & 255
-    return colours
-
-
-def test_any_kind_of_label_image_is_read_as_a_wall(tmp_path: Path) -> None:
-    small, large = wall(8, 255), wall(300, 70000)
-    grey = np.dstack([small] * 3 + [np.full_like(small, 255)]).astype(np.uint8)
-    palette = Image.fromarray(small.astype(np.uint8))
-    palette = palette.convert("P")
-    palette.putpalette([value for i in range(256) for value in (i, 255 - i, 7)])
-    Image.fromarray(small.astype(np.uint8)).save(tmp_path / "8.png")
-    Image.fromarray(rgb(large)).save(tmp_path / "rgb.png")
-    Image.fromarray(rgb(large, 4)).save(tmp_path / "clear.png")
-    Image.fromarray(grey).save(tmp_path / "grey.png")
-    palette.save(tmp_path / "palette.png")
-    tifffile.imwrite(tmp_path / "16.tif", wall(300, 2).astype(np.uint16))
-    np.save(tmp_path / "wall.npy", large)
-    for name, expected in {
-        "8.png": small, "rgb.png": large, "clear.png": large, "grey.png": small,
-        "palette.png": small, "16.tif": wall(300, 2), "wall.npy": large,
-    }.items():  # fmt: skip
-        np.testing.assert_array_equal(read_wall_image(tmp_path / name), expected, err_msg=name)
 
 
 def test_nothing_is_dropped_split_or_filled(tmp_path: Path) -> None:

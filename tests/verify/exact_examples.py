@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from drystone.contacts.settled import model_of_outlines
-from drystone.io.blocks_json import blocks_to_json
+from drystone.io.plan_folder import blocks_to_json
 from drystone.kernels.polygons import Points, on_grid
 from drystone.kernels.raster import turn
 from drystone.model.placement import Settled, Side

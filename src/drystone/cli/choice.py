@@ -5,8 +5,7 @@ from typing import Any
 
 from drystone.cli.output import make_folder, refuse_file
 from drystone.drawing.words.content import number
-from drystone.io.plan_folder import write_plan_folder
-from drystone.io.plan_names import WRITTEN
+from drystone.io.plan_folder import WRITTEN, write_plan_folder
 from drystone.search.plan_result import PlanResult
 from drystone.whole_files import refuse_existing
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from drystone.errors import UsageError
 from drystone.io.images import SUFFIXES
-from drystone.io.photo_sidecar import LABELS, read_sidecar
-from drystone.io.plan_names import DRAWN, WRITTEN
+from drystone.io.photo_beside import LABELS, read_sidecar
+from drystone.io.plan_folder import DRAWN, WRITTEN
 
 
 def refuse_inputs(read: Iterable[Path], written: Iterable[Path]) -> None:

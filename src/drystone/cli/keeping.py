@@ -12,8 +12,8 @@ from drystone.cli.choice import clear_choice
 from drystone.errors import DrystoneError, Notice
 from drystone.io.checkpoint import Checkpoint, remove_checkpoint, write_checkpoint
 from drystone.io.photo_beside import place_photo
+from drystone.io.plan_folder import WRITTEN as WITH_PLAN
 from drystone.io.plan_folder import write_plan_folder
-from drystone.io.plan_names import WRITTEN as WITH_PLAN
 from drystone.planner.events import UNFINISHED
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import SoFar

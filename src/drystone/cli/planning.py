@@ -33,7 +33,7 @@ from drystone.drawing.words.times import profile_rows, profile_summary
 from drystone.errors import DrystoneError, ExitCode, UsageError
 from drystone.io.checkpoint import CHECKPOINT
 from drystone.io.photo_beside import check_place, photo_beside, place_photo
-from drystone.io.photo_picture import read_photo_picture
+from drystone.io.photo_file import read_photo_picture
 from drystone.io.plan_folder import write_plan_folder
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from drystone.drawing.assembly.parts import Assembly
-from drystone.io.photo_picture import read_photo_picture
+from drystone.io.photo_file import read_photo_picture
 from drystone.kernels.polygons import Points
 
 CROP_PX = 240

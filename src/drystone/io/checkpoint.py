@@ -29,28 +29,16 @@ LARGEST_BYTES = 200_000_000
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """A plan that is being made.
-
-    Parameters
-    ----------
-    made_of : mapping
-        All that shapes the plan: stones, wall, seed, settings, of JSON's own types.
-    standing : Standing or None
-        Where its search stands; None while there is but a first wall.
-    """
+    """A plan that is being made."""
 
     made_of: Mapping[str, Any]
+    """All that shapes the plan: stones, wall, seed, settings, of JSON's own types."""
     standing: Standing | None = None
+    """Where its search stands; None while there is but a first wall."""
 
 
 def write_checkpoint(checkpoint: Checkpoint, folder: Path) -> None:
-    """Write a checkpoint into the folder of its plan.
-
-    Raises
-    ------
-    PlanError
-        E206: it cannot be written.
-    """
+    """Write a checkpoint into the folder of its plan."""
     data = as_json(
         {
             "schema": SCHEMA,
@@ -66,26 +54,9 @@ def write_checkpoint(checkpoint: Checkpoint, folder: Path) -> None:
 def read_checkpoint(
     folder: Path, stone_ids: Collection[int], search: SearchSettings
 ) -> Checkpoint | None:
-    """Read the checkpoint in the folder of a plan.
+    """Read the checkpoint in the folder of a plan, if there is one.
 
-    Parameters
-    ----------
-    folder : Path
-        Of the plan.
-    stone_ids : collection of int
-        Stones that there are.
-    search : SearchSettings
-        By which the search goes on.
-
-    Returns
-    -------
-    checkpoint : Checkpoint or None
-        None when there is none.
-
-    Raises
-    ------
-    PlanError
-        E207: it is damaged, of another program, or of another version of this one.
+    One that is damaged, of another program, or of another version of this one is refused (E207).
     """
     path = folder / CHECKPOINT
     if not path.is_file():
@@ -98,12 +69,9 @@ def read_checkpoint(
         if standing is not None:
             _check(standing, frozenset(stone_ids), search)
     except (OSError, ValueError, RecursionError) as error:
-        raise PlanError(
-            "E207",
-            f"the search cannot go on from it: {error}.",
-            where=str(path),
-            cure="Remove it and give the same command again: the partial plan is gone on from.",
-        ) from error
+        what = f"the search cannot go on from it: {error}."
+        cure = "Remove it and give the same command again: the partial plan is gone on from."
+        raise PlanError("E207", what, where=str(path), cure=cure) from error
     return Checkpoint(data["made_of"], standing)
 
 

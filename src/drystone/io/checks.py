@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.errors import InputError, LabelImageError
-from drystone.io.census import Census
-from drystone.io.file_bytes import file_bytes
-from drystone.io.json_text import json_of
+from drystone.io.json_text import json_in
+from drystone.io.labels import Census, IdImage
 from drystone.kernels.ids import counted
 
 RARE_PX = 10
@@ -28,20 +27,18 @@ refused without reason has no cure, so the limit keeps clear of those."""
 _CLEAN_EXPORT = "Export the ids as PNG or TIFF, without anti-aliasing or resampling."
 
 
-def check_no_plan(folder: Path, where: str) -> None:
+def check_no_plan(folder: Path) -> None:
     """Refuse the folder of a plan (E113), whose pictures are no masks of stones."""
     try:
-        content = json_of(file_bytes(folder / "plan.json").decode("utf-8-sig"))
+        content = json_in(folder / "plan.json")
     except (OSError, ValueError):
         return
     if isinstance(content, dict) and "steps" in content and "source" in content:
-        raise InputError(
-            "E113", "this folder is a plan, made of stones already.", where=where,
-            cure="Give the stones, or use it with --from.",
-        )  # fmt: skip
+        cure = "Give the stones, or use it with --from."
+        raise InputError("E113", "this folder is a plan, made of stones already.", cure=cure)
 
 
-def check_not_uniform(census: Census, background: int, where: str) -> None:
+def check_not_uniform(census: Census, background: int) -> None:
     """Refuse a picture of one value (E104)."""
     if len(census.values) > 1:
         return
@@ -50,37 +47,19 @@ def check_not_uniform(census: Census, background: int, where: str) -> None:
     what = f"no stones: all {width} x {height} px are {value}"
     if value == background:
         hint = "Draw every stone in an id of its own, from 1."
-        raise LabelImageError("E104", f"{what} (background).", where=where, cure=hint)
-    raise LabelImageError(
-        "E104",
-        f"{what}, and nothing tells stone from background.",
-        where=where,
-        cure=f"Is {value} the background? Then the stones are missing; else leave a rim of 0.",
-    )
+        raise LabelImageError("E104", f"{what} (background).", cure=hint)
+    cure = f"Is {value} the background? Then the stones are missing; else leave a rim of 0."
+    raise LabelImageError("E104", f"{what}, and nothing tells stone from background.", cure=cure)
 
 
 def check_background(
-    index: NDArray[Any],
-    census: Census,
-    background: int,
-    where: str,
-    cure: str = "Use --background {0} (background={0} in Python)",
+    census: Census, background: int, cure: str = "Use --background {0} (background={0} in Python)"
 ) -> None:
-    """Refuse a picture whose background is plainly another value (E105).
+    """Refuse a picture whose background is plainly another value (E105), {0} in the cure.
 
-    Parameters
-    ----------
-    index : (h, w) integer array
-        Positions (from 1) of the pixels' values in the census.
-    census : Census
-        The values of the picture; of a mask its two ends.
-    background : int
-        What the settings say.
-    where : str
-        Name for messages.
-    cure : str
-        What to do when {0} is the background.
+    Of a mask the census has the two ends.
     """
+    index = census.index
     common = int(counted(index, len(census.values)).argmax())
     value = int(census.values[common - 1])
     if value == background:
@@ -94,7 +73,6 @@ def check_background(
             "E105",
             f"the value {value} fills {(index == common).mean():.0%} of the picture and its "
             f"borders: it looks like the background, which is {background} by the settings.",
-            where=where,
             cure=f"{cure.format(value)}; if it is a stone, give the picture a rim of {background}.",
         )
 
@@ -109,12 +87,13 @@ def _has_islands(index: NDArray[Any], common: int) -> bool:
     return bool(areas.max() >= RARE_PX)
 
 
-def check_not_lossy(ids: Census, brightness: NDArray[Any], where: str) -> None:
+def check_not_lossy(ids: Census, image: IdImage) -> None:
     """Refuse JPEG: it changes values, so ids are lost (E101), or it is a photo (E102)."""
+    brightness = image.ids if image.brightness is None else image.brightness
     # In JPEG labels .4 ... .95 of all neighbours are equal, in photos less than .2 (measured).
     equal = brightness[:, :-1] == brightness[:, 1:]
     if equal.size and len(ids.values) > _MANY_VALUES and equal.mean() < _PLAIN_SHARE_LOSSY:
-        raise _photo(ids, where)
+        raise _photo(ids)
     rare = int((ids.counts < RARE_PX).sum())
     plain = _plain_areas(brightness)
     guess = f" Its plain areas look like {plain} stones." if plain else ""
@@ -122,7 +101,6 @@ def check_not_lossy(ids: Census, brightness: NDArray[Any], where: str) -> None:
         "E101",
         f"JPEG is lossy: {len(ids.values)} values, {rare} of them on less than {RARE_PX} px, "
         f"so ids are lost.{guess}",
-        where=where,
         cure=f"{_CLEAN_EXPORT} As stones, a black-and-white mask can be read with --mask "
         "(mask=True in Python). If it is a photograph, find the stones in it with "
         "`drystone segment PHOTO`.",
@@ -138,11 +116,9 @@ def _plain_areas(brightness: NDArray[Any]) -> int:
     return int((np.bincount(plain.ravel(), minlength=found + 1)[1:] >= RARE_PX).sum())
 
 
-def check_not_photo(census: Census, where: str) -> None:
+def check_not_photo(census: Census) -> None:
     """Refuse a picture whose neighbouring pixels mostly differ (E102).
 
-    Notes
-    -----
     Measured on pairs of neighbours of which one is not the most frequent value: in stones wider
     than 3 px most of them are equal, in photos few are.
     """
@@ -152,36 +128,24 @@ def check_not_photo(census: Census, where: str) -> None:
     pairs = (left != common) | (right != common)
     equal = int(((left == right) & pairs).sum())
     if equal < _PLAIN_SHARE * int(pairs.sum()):
-        raise _photo(census, where)
+        raise _photo(census)
 
 
-def _photo(census: Census, where: str) -> LabelImageError:
+def _photo(census: Census) -> LabelImageError:
     return LabelImageError(
         "E102",
         f"this looks like a photo ({len(census.values):,} colours, few of them in plain areas).",
-        where=where,
         cure="Find the stones in it with `drystone segment PHOTO`, or give a label image: one id "
         "a stone, 0 where there is none, as PNG or TIFF.",
     )
 
 
 def blended(census: Census, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Tell which chosen pixels lie strictly between darker and brighter ones 2 px around.
+    """Tell which chosen pixels, (h, w), lie strictly between darker and brighter ones 2 px around.
 
     That is what anti-aliasing, blur and interpolation leave at edges; a small stone on plain
-    background is the extreme of its surroundings.
-
-    Parameters
-    ----------
-    census : Census
-        Of the picture; positions keep the order of values.
-    chosen : (h, w) bool array
-        Pixels to judge.
-
-    Returns
-    -------
-    (n,) bool array
-        In the order of ``np.nonzero(chosen)``.
+    background is the extreme of its surroundings.  The answer is in the order of
+    ``np.nonzero(chosen)``.
     """
     here = census.index[chosen]
     low = ndimage.minimum_filter(census.index, 5)[chosen]
@@ -189,13 +153,13 @@ def blended(census: Census, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray((low < here) & (here < high))
 
 
-def check_not_resampled(census: Census, background: int, where: str) -> None:
+def check_not_resampled(census: Census, background: int) -> None:
     """Refuse labels that were blurred, anti-aliased or scaled by interpolation (E101)."""
-    _check_no_values_of_edges(census, where)
-    _check_no_edges_of_others(census, background, where)
+    _check_no_values_of_edges(census)
+    _check_no_edges_of_others(census, background)
 
 
-def _check_no_values_of_edges(census: Census, where: str) -> None:
+def _check_no_values_of_edges(census: Census) -> None:
     """Refuse values that are there at the edges of stones only."""
     if len(census.values) <= 20:
         return
@@ -210,12 +174,11 @@ def _check_no_values_of_edges(census: Census, where: str) -> None:
             f"the ids were blended at the edges of stones: {len(census.values)} values, "
             f"{int(thin.sum())} of them in edges only; about {max(0, int(plain.sum()) - 1)} are "
             "stones.",
-            where=where,
             cure=f"{_CLEAN_EXPORT} Scale label images by nearest neighbour.",
         )
 
 
-def _check_no_edges_of_others(census: Census, background: int, where: str) -> None:
+def _check_no_edges_of_others(census: Census, background: int) -> None:
     """Refuse edges in the ids of other stones: blending leaves them where ids are dense."""
     if len(census.values) < _FEW_VALUES:
         return
@@ -231,7 +194,6 @@ def _check_no_edges_of_others(census: Census, background: int, where: str) -> No
             "E101",
             f"the ids were blended at the edges of stones: {between} of {outline} px there have "
             "a value between those on either side, which is the id of another stone.",
-            where=where,
             cure=f"{_CLEAN_EXPORT} Scale label images by nearest neighbour.",
         )
 

@@ -14,21 +14,7 @@ _KINDS = {
 
 
 def file_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
-    """Read a regular file, of which the size is known before it is read.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    most : int
-        Larger ones are refused.
-
-    Raises
-    ------
-    OSError
-        Its ``strerror`` says why it cannot be read, also where it is a pipe or a device, which
-        may have no end, or too large.
-    """
+    """Read a regular file, of which the size is known before it is read."""
     found = path.stat()
     kind = _KINDS.get(stat.S_IFMT(found.st_mode))
     if kind is not None:

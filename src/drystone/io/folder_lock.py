@@ -27,21 +27,8 @@ def locked(folder: Path, within: str = "") -> Iterator[None]:
     """Keep other runs out of a folder, as long as the block lasts.
 
     Files that a killed run was writing there are removed.  Where the file system knows no locks
-    there is none.
-
-    Parameters
-    ----------
-    folder : Path
-        That files can be written to.
-    within : str
-        Pattern of the folders in it that belong to it, and in which no other run may be.
-
-    Raises
-    ------
-    UsageError
-        E149: another run works there.
-    PlanError
-        E206: no file can be written there.
+    there is none.  `within` is the pattern of the folders in it that belong to it, and in which no
+    other run may be.
     """
     path = folder / LOCK
     file = _taken(path)
@@ -78,12 +65,9 @@ def _taken(path: Path) -> BinaryIO:
             if error.errno not in _TAKEN:
                 return file
             file.close()
-            raise UsageError(
-                "E149",
-                "another run of drystone works in this folder.",
-                where=str(path.parent),
-                cure="Choose another with -o, or wait until that run has ended.",
-            ) from error
+            what = "another run of drystone works in this folder."
+            cure = "Choose another with -o, or wait until that run has ended."
+            raise UsageError("E149", what, where=str(path.parent), cure=cure) from error
         file.close()
 
 
@@ -91,12 +75,9 @@ def _opened(path: Path) -> BinaryIO:
     try:
         return path.open("ab")
     except OSError as error:
-        raise PlanError(
-            "E206",
-            f"no file can be written there ({error.strerror}).",
-            where=str(path.parent),
-            cure="Choose another folder with -o, one that has room and may be written to.",
-        ) from error
+        what = f"no file can be written there ({error.strerror})."
+        cure = "Choose another folder with -o, one that has room and may be written to."
+        raise PlanError("E206", what, where=str(path.parent), cure=cure) from error
 
 
 def _lock(file: BinaryIO) -> None:

@@ -5,8 +5,10 @@ import os
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
 
-from drystone.errors import DrystoneError, InputError
+from drystone.errors import DrystoneError, InputError, UsageError
 
 _LONGEST = 200
 
@@ -20,17 +22,8 @@ def foreign(failed: Callable[[str], DrystoneError]) -> Iterator[None]:
     """Turn whatever another package raises into a coded error, and silence its warnings.
 
     Parsers of other people raise anything on damaged bytes, so there is no list of what to expect.
-    Only the call into them belongs inside: a fault of ours must stay one.
-
-    Parameters
-    ----------
-    failed : callable
-        Makes the error from a reason.
-
-    Raises
-    ------
-    DrystoneError
-        What `failed` makes; E110 where the memory is not large enough.
+    Only the call into them belongs inside: a fault of ours must stay one.  `failed` makes the error
+    from a reason; E110 says where the memory is not large enough.
     """
     try:
         with warnings.catch_warnings():
@@ -39,13 +32,22 @@ def foreign(failed: Callable[[str], DrystoneError]) -> Iterator[None]:
     except DrystoneError:
         raise
     except MemoryError as error:
-        raise InputError(
-            "E110", "there is not enough memory for what is in this file.",
-            where=failed("").where, cure="Reduce it or crop it.",
-        ) from error  # fmt: skip
+        what = "there is not enough memory for what is in this file."
+        where = failed("").where
+        raise InputError("E110", what, where=where, cure="Reduce it or crop it.") from error
     except Exception as error:
         reason = " ".join(str(error).split())[:_LONGEST] or type(error).__name__
         raise failed(reason) from error
+
+
+def extra(package: str, does: str, where: str, name: str) -> Any:
+    """Return a package that is an extra, so it is loaded only when it is needed (E305)."""
+    try:
+        return import_module(package)
+    except ImportError as error:
+        what = f"{package} is not installed, and it {does}."
+        cure = f"Install it with `pip install drystone[{name}]`."
+        raise UsageError("E305", what, where=where, cure=cure) from error
 
 
 @contextmanager

@@ -1,9 +1,7 @@
 """Bytes of a picture file to its values, unchanged: no palette applied, no depth lost."""
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -11,7 +9,8 @@ from numpy.typing import NDArray
 
 from drystone.errors import InputError
 from drystone.io import npy, tiff
-from drystone.io.pictures import check_size, damaged, format_of, opened, several_pages
+from drystone.io.file_errors import damaged, several_pages, unread
+from drystone.io.pictures import check_size, format_of, opened
 
 FORMATS = (
     "PNG, TIFF, BMP, GIF, NPY, NPZ, JSON of labelme, COCO or SAM, GeoJSON, DXF, SVG, OBJ, PLY, STL "
@@ -23,94 +22,67 @@ _MODES = frozenset({"1", "L", "P", "LA", "PA", "I", "I;16", "F", "RGB", "RGBA"})
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """The values of a picture as the file holds them.
-
-    Parameters
-    ----------
-    values : (h, w) or (h, w, c) array
-        Values, palette indices or colour channels, without what says that it is alpha; c = 2 and
-        4 are left for arrays, and for channels of a TIFF that do not say what they are.
-    lossy : bool
-        True when the format does not keep values exactly.
-    """
+    """The values of a picture as the file holds them."""
 
     values: NDArray[Any]
-    lossy: bool = False
+    """(h, w) or (h, w, c): values, palette indices or colour channels, without what says that it is
+    alpha.  c = 2 and 4 are left for arrays, and for channels of a TIFF that do not say what they
+    are."""
+    lossy: bool = False  # the format does not keep values exactly
 
 
-def decode(data: bytes, where: str, max_px: int) -> Picture:
+def decode(data: bytes, max_px: int) -> Picture:
     """Decode the bytes of a picture file; the format is told by its first bytes.
 
-    Parameters
-    ----------
-    data : bytes
-        The whole file.
-    where : str
-        Its name, for messages.
-    max_px : int
-        Larger pictures are refused (E110) before they are decoded.
-
-    Raises
-    ------
-    InputError
-        E106 empty or damaged, E107 unknown format, E109 several pages, E110 too large.
+    Pictures of more than `max_px` are refused (E110) before they are decoded.
     """
     if not data:
-        raise InputError(
-            "E106", "the file is empty (0 bytes).", where=where, cure="Export it again."
-        )
-    kind = "NPY" if data.startswith(npy.BEGINNING) else format_of(data)
-    if kind not in _READERS:
-        raise InputError(
-            "E107",
-            f"this is none of the formats that stones are read from ({FORMATS}).",
-            where=where,
-            cure="Export a label image as PNG or TIFF: one id a stone, 0 where there is none.",
-        )
-    return _READERS[kind](data, where, max_px)
+        raise InputError("E106", "the file is empty (0 bytes).", cure="Export it again.")
+    if data.startswith(npy.BEGINNING):
+        return Picture(npy.array_of(data, max_px))
+    kind = format_of(data)
+    if kind == "TIFF":
+        return _read_tiff(data, max_px)
+    if kind == "PNG":
+        return _read_png(data, max_px)
+    if kind:
+        return Picture(_read_pillow(data, max_px), lossy=kind == "JPEG")
+    raise unread(
+        f"this is none of the formats that stones are read from ({FORMATS}).",
+        "Export a label image as PNG or TIFF: one id a stone, 0 where there is none.",
+    )
 
 
-def _read_png(data: bytes, where: str, max_px: int) -> Picture:
+def _read_png(data: bytes, max_px: int) -> Picture:
     if len(data) < 26:
-        raise damaged("its header is cut", where)
+        raise damaged("its header is cut")
     depth, colour_type = data[24], data[25]
     if depth == 16 and colour_type != 0:
         # Pillow would keep the upper 8 bits of each channel, and ids would merge.
-        raise InputError(
-            "E107",
+        raise unread(
             "this PNG has 16 bits a colour channel, which cannot be read without loss.",
-            where=where,
-            cure="Export the ids as 16-bit grey PNG, as 8-bit RGB PNG or as TIFF.",
+            "Export the ids as 16-bit grey PNG, as 8-bit RGB PNG or as TIFF.",
         )
-    picture = _read_pillow(data, where, max_px)
-    if colour_type == 0 and depth in (2, 4):
-        # Pillow stretches 2 and 4 bits to 0 ... 255; the ids are the file's own.
-        return Picture(picture.values // (255 // (2**depth - 1)))
-    return picture
+    values = _read_pillow(data, max_px)
+    # Pillow stretches 2 and 4 bits to 0 ... 255; the ids are the file's own.
+    stretched = colour_type == 0 and depth in (2, 4)
+    return Picture(values // (255 // (2**depth - 1)) if stretched else values)
 
 
-def _read_jpeg(data: bytes, where: str, max_px: int) -> Picture:
-    return Picture(_read_pillow(data, where, max_px).values, lossy=True)
-
-
-def _read_pillow(data: bytes, where: str, max_px: int) -> Picture:
-    with opened(data, where, partial(check_size, where=where, max_px=max_px)) as image:
+def _read_pillow(data: bytes, max_px: int) -> NDArray[Any]:
+    with opened(data, partial(check_size, max_px=max_px)) as image:
         frames, mode = getattr(image, "n_frames", 1), image.mode
         values = np.asarray(image) if frames == 1 and mode in _MODES else None
     if frames > 1:
-        raise several_pages(f"{frames} frames", where)
+        raise several_pages(f"{frames} frames")
     if values is None:
-        raise _no_ids(mode, where)
-    return Picture(_without_alpha(values) if mode in {"LA", "PA", "RGBA"} else values)
+        raise _no_ids(mode)
+    return _without_alpha(values) if mode in {"LA", "PA", "RGBA"} else values
 
 
-def _no_ids(mode: str, where: str) -> InputError:
-    return InputError(
-        "E107",
-        f"the colour mode {mode} does not hold ids.",
-        where=where,
-        cure="Export a grey, palette or RGB picture.",
-    )
+def _no_ids(mode: str) -> InputError:
+    what = f"the colour mode {mode} does not hold ids."
+    return unread(what, "Export a grey, palette or RGB picture.")
 
 
 def _without_alpha(values: NDArray[Any]) -> NDArray[Any]:
@@ -118,33 +90,19 @@ def _without_alpha(values: NDArray[Any]) -> NDArray[Any]:
     return values[:, :, 0] if values.shape[2] == 2 else values[:, :, :-1]
 
 
-def _read_tiff(data: bytes, where: str, max_px: int) -> Picture:
-    check = partial(check_size, where=where, max_px=max_px)
-    page = tiff.inspect(data, where)
+def _read_tiff(data: bytes, max_px: int) -> Picture:
+    check = partial(check_size, max_px=max_px)
+    page = tiff.inspect(data)
     check(page.width, page.height)
     if page.unreadable:
-        raise InputError(
-            "E107",
+        raise unread(
             f"TIFF with {page.unreadable} cannot be read.",
-            where=where,
-            cure="Export it uncompressed, with LZW or with deflate; ids of 16 or 32 bits in one "
+            "Export it uncompressed, with LZW or with deflate; ids of 16 or 32 bits in one "
             "channel.",
         )
     if page.colours:
-        raise _no_ids(page.colours, where)
-    values = tiff.values(data, where, check)
+        raise _no_ids(page.colours)
+    values = tiff.values(data, check)
     # Tags may speak of an alpha that is not there.
     alpha = page.alpha and values.ndim > 2
     return Picture(_without_alpha(values) if alpha else values, lossy=page.lossy)
-
-
-def _read_npy(data: bytes, where: str, max_px: int) -> Picture:
-    return Picture(npy.array_of(data, where, max_px))
-
-
-_READERS: Mapping[str, Callable[[bytes, str, int], Picture]] = MappingProxyType(
-    {
-        "PNG": _read_png, "TIFF": _read_tiff, "GIF": _read_pillow, "BMP": _read_pillow,
-        "JPEG": _read_jpeg, "NPY": _read_npy,
-    }
-)  # fmt: skip

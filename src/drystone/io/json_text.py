@@ -2,9 +2,12 @@
 
 import json
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from drystone.io.file_bytes import file_bytes
 
 DEEPEST = 100
 """How many lists and objects may be in each other; plans and outlines have less than 12."""
@@ -17,18 +20,6 @@ def json_of(text: str, **hooks: Any) -> Any:
     """Return what JSON says; ValueError when it is none, or is nested deeper than `DEEPEST`.
 
     Whoever walks through it may then call itself for every level.
-
-    Parameters
-    ----------
-    text : str
-        All of it.
-    **hooks
-        Of :func:`json.loads`.
-
-    Examples
-    --------
-    >>> json_of('{"a": [1, 2]}')
-    {'a': [1, 2]}
     """
     # Before it is parsed: Python's own limit depends on how deep the caller is.
     if _depth(text) > DEEPEST:
@@ -37,6 +28,11 @@ def json_of(text: str, **hooks: Any) -> Any:
         return json.loads(text, **hooks)
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
+
+
+def json_in(path: Path) -> Any:
+    """Return what a JSON file says; OSError when it cannot be read, ValueError when it is none."""
+    return json_of(file_bytes(path).decode("utf-8-sig"))
 
 
 def _depth(text: str) -> int:

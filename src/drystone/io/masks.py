@@ -1,16 +1,15 @@
 """Binary masks: which pictures are masks, and their stones (DESIGN 4.1)."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from drystone.errors import UsageError
-from drystone.io.census import Census, take_census
 from drystone.io.checks import blended
-from drystone.io.labels import IdImage
+from drystone.io.file_errors import unfit
+from drystone.io.labels import Census, IdImage, take_census
 from drystone.kernels.raster import Mask
 
 _USUAL_STONE_VALUES = (1, 255, 65535, 2**32 - 1)
@@ -23,49 +22,22 @@ _NOISE = 1 / 16
 
 @dataclass(frozen=True, eq=False)
 class BinaryMask:
-    """A picture read as stone and background.
+    """A picture read as stone and background."""
 
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        True where there is stone.
-    background, stone : int
-        The two values of the picture.
-    between_px : int
-        Pixels with values between them (anti-aliasing), given to the nearer one.
-    lost : float
-        Share of the plain areas off the background that are taken for background, where a mask is
-        forced.
-    """
-
-    mask: Mask
-    background: int
+    mask: Mask  # (h, w), True where there is stone
+    background: int  # this and the next: the two values of the picture
     stone: int
-    between_px: int
-    lost: float = 0.0
+    between_px: int  # pixels with values between them (anti-aliasing), given to the nearer one
 
 
 def find_mask(
     image: IdImage, ids: Census, wanted: bool | None, *, lossy: bool = False
 ) -> BinaryMask | None:
-    """Read a picture as a binary mask if it is one.
+    """Read a picture as a binary mask if it is one; ids that are to be read as one are refused.
 
-    Parameters
-    ----------
-    image : IdImage
-        The picture.
-    ids : Census
-        Of ``image.ids``; at least two values.
-    wanted : bool or None
-        True forces a mask, False forbids it, None decides: two values, one of them the
-        background, are a mask, and so is a picture of two values and blended edges.
-    lossy : bool
-        True when compression left noise in the background.
-
-    Returns
-    -------
-    BinaryMask or None
-        None when the picture holds ids.
+    `ids` is the census of the ids, of at least two values.  `wanted` forces a mask, or forbids it;
+    None decides: two values, one of them the background, are a mask, and so is a picture of two
+    values and blended edges.  Compression (`lossy`) left noise in the background.
     """
     if wanted is False:
         return None
@@ -80,21 +52,20 @@ def find_mask(
         return None
     if len(grey.values) > 1 and wanted:
         binary = _split(grey, image.background)
-        return replace(binary, lost=_lost(grey, binary, _NOISE if lossy else 0.0))
+        _check_lost(_lost(grey, binary, _NOISE if lossy else 0.0), binary)
+        return binary
     if len(grey.values) > 1 and _is_antialiased(grey, image.background):
         return _split(grey, image.background)
     return None
 
 
-def check_mask(binary: BinaryMask, where: str) -> None:
+def _check_lost(lost: float, binary: BinaryMask) -> None:
     """Refuse ids that are to be read as a mask (E118): many stones would be background."""
-    if binary.lost > _LOST:
-        raise UsageError(
-            "E118",
-            f"{binary.lost:.0%} of its plain areas are neither background "
+    if lost > _LOST:
+        raise unfit(
+            f"{lost:.0%} of its plain areas are neither background "
             f"({binary.background}) nor near to stone ({binary.stone}), and would be lost.",
-            where=where,
-            cure="If the values are ids, leave --mask (mask=True in Python) out, and export them "
+            "If the values are ids, leave --mask (mask=True in Python) out, and export them "
             "as PNG where they are in a JPEG.",
         )
 
@@ -112,15 +83,7 @@ def _lost(census: Census, binary: BinaryMask, noise: float) -> float:
 
 
 def components(mask: Mask) -> tuple[NDArray[np.int32], int]:
-    """Label the 8-connected components of a mask, from 1 in row order.
-
-    Examples
-    --------
-    >>> components(np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]], bool))[0]
-    array([[0, 0, 1],
-           [2, 0, 0],
-           [0, 2, 0]], dtype=int32)
-    """
+    """Label the 8-connected components of a mask, from 1 in row order."""
     found, count = ndimage.label(mask, _WHOLE)
     return np.asarray(found, np.int32), int(count)
 

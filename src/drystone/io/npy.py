@@ -7,30 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from drystone.io.file_errors import damaged
 from drystone.io.foreign import foreign
-from drystone.io.pictures import check_size, damaged
+from drystone.io.pictures import check_size
 
 BEGINNING = b"\x93NUMPY"
 
 
-def array_of(data: bytes, where: str, max_px: int) -> NDArray[Any]:
-    """Return the array of an NPY file; it can be read only.
-
-    Parameters
-    ----------
-    data : bytes
-        The whole file.
-    where : str
-        Its name, for messages.
-    max_px : int
-        Larger arrays are refused.
-
-    Raises
-    ------
-    InputError
-        E106 damaged, or with Python objects in it, E110 too large.
-    """
-    with foreign(lambda why: damaged(why, where)):
+def array_of(data: bytes, max_px: int) -> NDArray[Any]:
+    """Return the array of an NPY file; it can be read only."""
+    with foreign(damaged):
         file = io.BytesIO(data)
         version = np.lib.format.read_magic(file)
         read = np.lib.format.read_array_header_1_0
@@ -38,15 +24,15 @@ def array_of(data: bytes, where: str, max_px: int) -> NDArray[Any]:
             read = np.lib.format.read_array_header_2_0
         shape, fortran, dtype = read(file)
     if dtype.hasobject:
-        raise damaged("it holds Python objects, and pickle is not read", where)
+        raise damaged("it holds Python objects, and pickle is not read")
     if min(shape, default=0) < 0 or not dtype.itemsize:
-        raise damaged("a side is below 0, or its values have no bytes", where)
+        raise damaged("a side is below 0, or its values have no bytes")
     count, start = math.prod(shape), file.tell()
     if count * dtype.itemsize > len(data) - start:
-        raise damaged("there are fewer bytes than its shape asks for", where)
+        raise damaged("there are fewer bytes than its shape asks for")
     if count:
         height, width = (*shape, 1, 1)[:2]
-        check_size(width, height, where, max_px)
-    with foreign(lambda why: damaged(why, where)):
+        check_size(width, height, max_px)
+    with foreign(damaged):
         values = np.frombuffer(data, dtype, count, start)
         return values.reshape(shape, order="F" if fortran else "C")

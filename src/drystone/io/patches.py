@@ -1,8 +1,9 @@
 """Stones cut out of label images, with their holes and pieces put in order."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -10,18 +11,21 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.errors import LabelImageError, Notice
+from drystone.io.file_errors import MANY, listed, naming, short
 from drystone.io.labels import MAX_ID
-from drystone.io.listed import MANY, listed, short
+from drystone.io.necks import neck_width_px
 from drystone.io.read_settings import Pieces, ReadSettings
 from drystone.kernels.ids import counted
 from drystone.kernels.label_runs import label_runs, runs_in_pieces
 from drystone.kernels.raster import Mask
-from drystone.model.stone import Stone
+from drystone.model.stone import Source, Stone, StoneSet
 
 SMALL_SHARE = 0.02
 """Pieces that together are less than this share of their stone are left out by default."""
 
 MIN_AREA_PX = 10
+LARGE = 1.5
+"""Times the median area: smaller stones are not suspected of being two."""
 _LARGE_PX, _PLAIN_PX = 2**20, 64
 """From where pieces and holes are found on runs, and how many px there must be to a run."""
 _WHOLE = np.ones((3, 3), bool)
@@ -31,32 +35,44 @@ MOST_PIECES = 100_000
 
 
 @dataclass(frozen=True, eq=False)
-class Patch:
-    """The pixels of one id before they are a stone.
+class PlacedMask:
+    """Pixels at a place of a picture."""
 
-    Parameters
-    ----------
-    id : int
-        Positive.
-    mask : (h, w) bool array
-        Its pixels within its bounding box.
-    row, col : int
-        Upper left pixel of the box in its picture.
-    picture_height : int
-        Of the picture, px.
-    others : (h, w) bool array or None
-        Pixels of the box that belong to other stones.
-    name : str
-        File name of a one-stone mask.
-    """
-
-    id: int
-    mask: Mask
+    mask: Mask  # (h, w), row 0 at the top
     row: int
-    col: int
-    picture_height: int
-    others: Mask | None = None
-    name: str = ""
+    col: int  # of its upper left pixel
+
+    @property
+    def sides(self) -> tuple[int, int, int, int]:
+        """First row and column, and those after the last."""
+        height, width = self.mask.shape
+        return self.row, self.col, self.row + height, self.col + width
+
+    def shared(self, other: "PlacedMask") -> tuple[Mask, Mask]:
+        """Return the views of both masks on the box that they share."""
+        low = np.maximum(self.sides[:2], other.sides[:2])
+        high = np.maximum(low, np.minimum(self.sides[2:], other.sides[2:]))
+        (top, left), (bottom, right) = low.tolist(), high.tolist()
+        one, two = (
+            m.mask[top - m.row : bottom - m.row, left - m.col : right - m.col]
+            for m in (self, other)
+        )
+        return one, two
+
+    def common_px(self, other: "PlacedMask") -> int:
+        """Return the number of pixels that two masks share."""
+        one, two = self.shared(other)
+        return int((one & two).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class StonePatch(PlacedMask):
+    """The pixels of one id, within their bounding box, before they are a stone."""
+
+    id: int  # positive
+    picture_height: int  # px
+    others: Mask | None = None  # (h, w), pixels of the box that belong to other stones
+    name: str = ""  # file name of a one-stone mask
 
     @cached_property
     def area_px(self) -> int:
@@ -72,24 +88,20 @@ class Patch:
         else:
             found, count = ndimage.label(self.mask, _WHOLE)
             areas = counted(found, count)[1:]
-        check_count(len(areas), str(self))
+        with naming(str(self)):
+            check_count(len(areas))
         return tuple(areas.tolist())
 
-    def pieces(self) -> list["Patch"]:
+    def pieces(self) -> list["StonePatch"]:
         """Return the 8-connected pieces, the largest first, equal ones in row order."""
         if len(self.piece_areas_px) == 1:
             return [self]
         found, _ = ndimage.label(self.mask, _WHOLE)
-        pieces = [
-            replace(
-                self,
-                mask=found[window] == label,
-                row=self.row + window[0].start,
-                col=self.col + window[1].start,
-                others=None,
-            )
-            for label, window in enumerate(ndimage.find_objects(found), start=1)
-        ]
+        pieces = []
+        for label, (rows, cols) in enumerate(ndimage.find_objects(found), start=1):
+            mask, row, col = found[rows, cols] == label, rows.start, cols.start
+            place = {"row": self.row + row, "col": self.col + col}
+            pieces.append(replace(self, mask=mask, **place, others=None))
         return sorted(pieces, key=lambda piece: -piece.area_px)
 
     def __str__(self) -> str:
@@ -101,34 +113,18 @@ class Patch:
         return Stone(self.id, self.mask, self.col, bottom, self.name)
 
 
-def check_count(count: int, where: str) -> None:
-    """Refuse more pieces than a picture of stones can have (E110).
-
-    Raises
-    ------
-    LabelImageError
-        E110.
-    """
+def check_count(count: int) -> None:
+    """Refuse more pieces than a picture of stones can have (E110)."""
     if count > MOST_PIECES:
-        raise LabelImageError(
-            "E110",
-            f"there are more than {MOST_PIECES} pieces of stones: this looks like noise.",
-            where=where,
-            cure="Clean the picture (a median filter takes out specks), or crop it.",
-        )
+        what = f"there are more than {MOST_PIECES} pieces of stones: this looks like noise."
+        cure = "Clean the picture (a median filter takes out specks), or crop it."
+        raise LabelImageError("E110", what, cure=cure)
 
 
-def cut(index: NDArray[Any], ids: NDArray[np.int64], name: str = "") -> list[Patch]:
+def cut(index: NDArray[Any], ids: NDArray[np.int64], name: str = "") -> list[StonePatch]:
     """Cut every id out of an image, each looked at within its bounding box only.
 
-    Parameters
-    ----------
-    index : (h, w) integer array
-        Positions from 1 in `ids`; 0 is background.
-    ids : (n,) int array
-        The ids; 0 marks a position that is background.
-    name : str
-        File name of a one-stone mask.
+    `index`, (h, w), has positions from 1 in `ids`; an index of 0 and an id of 0 are background.
     """
     stone = np.concatenate(([False], ids != 0))
     patches = []
@@ -139,11 +135,46 @@ def cut(index: NDArray[Any], ids: NDArray[np.int64], name: str = "") -> list[Pat
         mask = inside == position
         others = stone[inside] & ~mask
         row, col = window[0].start, window[1].start
-        patches.append(Patch(int(ids[position - 1]), mask, row, col, index.shape[0], others, name))
+        patches.append(StonePatch(mask, row, col, int(ids[position - 1]), len(index), others, name))
     return patches
 
 
-def smallest_stone_px(patches: list[Patch], settings: ReadSettings) -> float:
+def stone_set(
+    found: Sequence[StonePatch], notices: Sequence[Notice], source: Source, settings: ReadSettings
+) -> StoneSet:
+    """Put patches in order and make stones of them; every decision becomes a notice."""
+    pieces_so_far = 0
+    for patch in found:
+        pieces_so_far += len(patch.piece_areas_px)
+        check_count(pieces_so_far)
+    numbers = piece_numbers(found, settings)
+    known = {patch.id for patch in found}.union(*numbers.values())
+    skip = set(settings.skip)
+    noticed = list(notices)
+    if unknown := sorted(skip - known):
+        noticed.append(Notice("W116", f"no stone {listed(unknown)} to skip.", "Check the ids."))
+    # One of several numbers stays until it is split.
+    patches = [p for p in found if not {p.id, *numbers.get(p.id, ())} <= skip]
+    # What is split must not depend on what is skipped.
+    limit_px = _smallest_stone_px(found if settings.pieces == "split" else patches, settings)
+    patches, specks = _without_specks(patches, limit_px)
+    patches, holes = _filled(patches, settings)
+    patches, pieces = _in_one_piece(patches, settings, numbers)
+    patches, bits = _without_specks(patches, limit_px)
+    if not patches:
+        why = " ".join(notice.message for notice in specks or (() if known else notices))
+        why = why or ("all were skipped." if known else "none has a pixel.")
+        raise LabelImageError(
+            "E104",
+            f"no stones are left: {why}",
+            cure="Check the picture, and what --min-area and --skip (min_area_px and skip in "
+            "Python) leave out.",
+        )
+    noticed += [*specks, *holes, *pieces, *bits, *_suspect_necks(patches)]
+    return StoneSet(tuple(patch.to_stone() for patch in patches), source, tuple(noticed))
+
+
+def _smallest_stone_px(patches: Sequence[StonePatch], settings: ReadSettings) -> float:
     """Return the area from which a patch is a stone: max(10 px, 0.1 % of the median area)."""
     if settings.min_area_px is not None:
         return settings.min_area_px
@@ -151,15 +182,17 @@ def smallest_stone_px(patches: list[Patch], settings: ReadSettings) -> float:
     return max(MIN_AREA_PX, 0.001 * float(np.median(areas))) if areas else MIN_AREA_PX
 
 
-def without_specks(patches: list[Patch], limit_px: float) -> tuple[list[Patch], list[Notice]]:
+def _without_specks(
+    patches: Sequence[StonePatch], limit_px: float
+) -> tuple[list[StonePatch], list[Notice]]:
     """Leave out patches whose largest piece is smaller than a stone can be, and list them."""
-    kept: list[Patch] = []
-    specks: list[Patch] = []
+    kept: list[StonePatch] = []
+    specks: list[StonePatch] = []
     for patch in patches:
         largest_px = max(patch.piece_areas_px, default=0)
         (kept if largest_px >= limit_px else specks).append(patch)
     if not specks:
-        return patches, []
+        return kept, []
     places = (f"{s} of {s.area_px} px at column {s.col}, row {s.row}" for s in specks)
     total = sum(speck.area_px for speck in specks)
     message = f"{len(specks)} specks < {limit_px:g} px left out ({total} px in all)"
@@ -167,7 +200,9 @@ def without_specks(patches: list[Patch], limit_px: float) -> tuple[list[Patch], 
     return kept, [Notice("W113", f"{message}: {listed(places, most=MANY)}.", cure)]
 
 
-def filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], list[Notice]]:
+def _filled(
+    patches: list[StonePatch], settings: ReadSettings
+) -> tuple[list[StonePatch], list[Notice]]:
     """Fill the holes of all patches (or only report them, ``holes="keep"``)."""
     result, found = [], []
     for patch in patches:
@@ -190,14 +225,93 @@ def filled(patches: list[Patch], settings: ReadSettings) -> tuple[list[Patch], l
     return result, [Notice("W112", f"holes filled: {listed(found, '; ', MANY)}.", cure)]
 
 
-def enclosed(mask: Mask) -> Mask:
-    """Return the pixels that no 4-connected way around the mask reaches: its holes.
+def piece_numbers(patches: Sequence[StonePatch], settings: ReadSettings) -> dict[int, list[int]]:
+    """Return the ids of the further pieces of every patch that is split.
 
-    Examples
-    --------
-    >>> int(enclosed(np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], bool)).sum())
-    1
+    They come after the largest id (where ids end: the free ones from 1), whatever is skipped.
     """
+    if settings.pieces != "split" or not patches:
+        return {}
+    stones, _ = _without_specks(patches, _smallest_stone_px(patches, settings))
+    whole, _ = _filled(stones, settings)
+    used = {patch.id for patch in patches}
+    numbers = chain(range(max(used) + 1, MAX_ID + 1), range(1, MAX_ID + 1))
+    free = (number for number in numbers if number not in used)
+    several = ((patch.id, patch.piece_areas_px[1:]) for patch in whole)
+    return {own: [next(free) for _ in further] for own, further in several if further}
+
+
+def _in_one_piece(
+    patches: list[StonePatch], settings: ReadSettings, numbers: dict[int, list[int]]
+) -> tuple[list[StonePatch], list[Notice]]:
+    """Leave every stone one 8-connected piece; pieces that become stones are skipped here."""
+    result, refused, dropped, made = [], [], [], []
+    new: list[StonePatch] = []
+    for patch in patches:
+        largest, *further = pieces = patch.pieces()
+        result.append(largest)
+        if not further:
+            continue
+        if _is_refused(pieces, settings.pieces):
+            refused.append(_describe(patch, pieces))
+        dropped.append(_describe(patch, further))
+        if settings.pieces == "split":
+            both = zip(further, numbers[patch.id], strict=True)
+            own = [replace(p, id=number) for p, number in both if number not in settings.skip]
+            new += own
+            if own:
+                made.append(f"stone {patch}: {listed(f'{p.id} ({p.area_px} px)' for p in own)}")
+    if refused:
+        raise LabelImageError(
+            "E103",
+            f"{len(refused)} stones are in several pieces: {listed(refused, '; ')}.",
+            cure="Correct the picture, or choose --pieces keep-largest (leave the others out) or "
+            "--pieces split (each piece a stone); in Python pieces='keep-largest' or "
+            "pieces='split'.",
+        )
+    if not dropped:
+        return result, []
+    if settings.pieces == "split":
+        kept = [patch for patch in result if patch.id not in settings.skip] + new
+        text = f"pieces became stones of their own: {listed(made, '; ', MANY)}."
+        return kept, [Notice("W111", text)] if new else []
+    cure = "Use --pieces split (pieces='split' in Python) to make them stones."
+    text = f"smaller pieces left out: {listed(dropped, '; ', MANY)}."
+    return result, [Notice("W111", text, cure)]
+
+
+def _is_refused(pieces: list[StonePatch], rule: Pieces) -> bool:
+    if rule == "auto":
+        areas = [piece.area_px for piece in pieces]
+        return sum(areas[1:]) >= SMALL_SHARE * sum(areas)
+    return rule == "error"
+
+
+def _describe(patch: StonePatch, pieces: list[StonePatch]) -> str:
+    places = listed(f"{p.area_px} px at column {p.col}, row {p.row}" for p in pieces)
+    return f"stone {patch}: {places}"
+
+
+def _suspect_necks(patches: list[StonePatch]) -> list[Notice]:
+    """Report large stones with a neck; of one or two stones every one, as no size is usual."""
+    median = float(np.median([patch.area_px for patch in patches]))
+    notices = []
+    for patch in patches:
+        ratio = patch.area_px / median
+        if len(patches) > 2 and ratio < LARGE:
+            continue
+        width = neck_width_px(patch.mask)
+        if width is not None:
+            size = f"has {ratio:.1f} times the median area and " if len(patches) > 2 else "has "
+            neck = f"a neck of about {width} px" if width else "parts that meet at a corner only"
+            message = f"stone {patch} {size}{neck}: maybe 2 stones."
+            cure = "If so, separate them by a line of background or give each its own id."
+            notices.append(Notice("W110", message, cure))
+    return notices
+
+
+def enclosed(mask: Mask) -> Mask:
+    """Return the pixels that no 4-connected way around the mask reaches: its holes."""
     around = np.ones((mask.shape[0] + 2, mask.shape[1] + 2), bool)
     np.logical_not(mask, out=around[1:-1, 1:-1])
     if not _is_plain(mask):
@@ -224,119 +338,3 @@ def _is_plain(mask: Mask) -> bool:
     some = (mask[row : row + step] for row in range(0, len(mask), step))
     runs = sum(np.count_nonzero(part[:, 1:] != part[:, :-1]) for part in some)
     return bool(_PLAIN_PX * runs < mask.size)
-
-
-def piece_numbers(patches: list[Patch], settings: ReadSettings) -> dict[int, list[int]]:
-    """Return the ids of the further pieces of every patch that is split.
-
-    They come after the largest id (where ids end: the free ones from 1), whatever is skipped.
-
-    Parameters
-    ----------
-    patches : list of Patch
-        All that were found, skipped ones included.
-    settings : ReadSettings
-        Empty is the answer unless its ``pieces`` is "split".
-    """
-    if settings.pieces != "split" or not patches:
-        return {}
-    stones, _ = without_specks(patches, smallest_stone_px(patches, settings))
-    whole, _ = filled(stones, settings)
-    used = {patch.id for patch in patches}
-    next_id = max(used)
-    numbers: dict[int, list[int]] = {}
-    for patch in whole:
-        for _ in patch.piece_areas_px[1:]:
-            next_id = next_id + 1 if next_id < MAX_ID else 1
-            while next_id in used:
-                next_id = next_id + 1 if next_id < MAX_ID else 1
-            used.add(next_id)
-            numbers.setdefault(patch.id, []).append(next_id)
-    return numbers
-
-
-def in_one_piece(
-    patches: list[Patch], settings: ReadSettings, where: str, numbers: Mapping[int, list[int]]
-) -> tuple[list[Patch], list[Notice]]:
-    """Leave every stone one 8-connected piece.
-
-    Parameters
-    ----------
-    patches : list of Patch
-        With filled holes.
-    settings : ReadSettings
-        ``pieces`` decides; where they are split, ``skip`` is heard here, for each piece.
-    where : str
-        Name for messages.
-    numbers : mapping of int to list of int
-        Of :func:`piece_numbers`.
-
-    Raises
-    ------
-    LabelImageError
-        E103 when a stone has several pieces and the settings do not allow for it.
-    """
-    result, refused, dropped = [], [], []
-    several: list[tuple[Patch, list[Patch]]] = []
-    for patch in patches:
-        pieces = patch.pieces()
-        result.append(pieces[0])
-        if len(pieces) == 1:
-            continue
-        several.append((patch, pieces[1:]))
-        if _is_refused(pieces, settings.pieces):
-            refused.append(_describe(patch, pieces))
-        dropped.append(_describe(patch, pieces[1:]))
-    if refused:
-        raise _in_pieces(refused, where)
-    if not several:
-        return result, []
-    if settings.pieces == "split":
-        new, text = _as_stones(several, numbers, settings.skip)
-        kept = [patch for patch in result if patch.id not in settings.skip] + new
-        said = [Notice("W111", f"pieces became stones of their own: {text}.")] if new else []
-        return kept, said
-    cure = "Use --pieces split (pieces='split' in Python) to make them stones."
-    text = f"smaller pieces left out: {listed(dropped, '; ', MANY)}."
-    return result, [Notice("W111", text, cure)]
-
-
-def _is_refused(pieces: list[Patch], rule: Pieces) -> bool:
-    if rule == "auto":
-        areas = [piece.area_px for piece in pieces]
-        return sum(areas[1:]) >= SMALL_SHARE * sum(areas)
-    return rule == "error"
-
-
-def _describe(patch: Patch, pieces: Iterable[Patch]) -> str:
-    places = listed(f"{p.area_px} px at column {p.col}, row {p.row}" for p in pieces)
-    return f"stone {patch}: {places}"
-
-
-def _in_pieces(refused: list[str], where: str) -> LabelImageError:
-    return LabelImageError(
-        "E103",
-        f"{len(refused)} stones are in several pieces: {listed(refused, '; ')}.",
-        where=where,
-        cure="Correct the picture, or choose --pieces keep-largest (leave the others out) or "
-        "--pieces split (each piece a stone); in Python pieces='keep-largest' or pieces='split'.",
-    )
-
-
-def _as_stones(
-    several: list[tuple[Patch, list[Patch]]],
-    numbers: Mapping[int, list[int]],
-    skip: tuple[int, ...],
-) -> tuple[list[Patch], str]:
-    """Give pieces their ids, and leave out those that are skipped."""
-    stones, text = [], []
-    for patch, pieces in several:
-        new = [
-            replace(piece, id=number)
-            for piece, number in zip(pieces, numbers[patch.id], strict=True)
-            if number not in skip
-        ]
-        stones += new
-        if new:
-            text.append(f"stone {patch}: {listed(f'{p.id} ({p.area_px} px)' for p in new)}")
-    return stones, listed(text, "; ", MANY)

@@ -1,16 +1,26 @@
-"""The photograph of the stones, beside their label image and beside a plan."""
+"""The photograph of the stones, beside their label image and beside a plan.
+
+What stands beside the label image of a photograph says its scale, and where it came from.
+"""
 
 import hashlib
+import json
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from drystone.errors import UsageError
-from drystone.io.file_bytes import file_bytes
-from drystone.io.json_text import json_of
-from drystone.io.photo_sidecar import LABELS, SIDECAR, read_sidecar
+from drystone.errors import InputError, UsageError
+from drystone.io.file_errors import short
+from drystone.io.json_text import json_in
+from drystone.io.read_settings import MOST_PX_PER_M
 from drystone.whole_files import refuse_existing, write_whole
+
+SCHEMA = "drystone-photo/1"
+SIDECAR = "stones.json"
+"""Name of the file beside `LABELS`."""
+LABELS = "stones.png"
 
 NAMES = ("photo.jpg", "photo.png")
 """Beside a plan; it shows the whole source image, at any resolution."""
@@ -19,14 +29,66 @@ RECORD = "photo"
 """In the source of a plan: the copy that was put beside it, so that a later one knows it."""
 
 
-def photo_of(stones: Path) -> Path | None:
-    """Return the photograph in the frame of a label image; None when there is none.
+@dataclass(frozen=True)
+class PhotoSidecar:
+    """Beside a label image that was found in a photograph."""
 
-    Parameters
-    ----------
-    stones : Path
-        What the stones are read from: a label image, or the folder that `drystone segment` wrote.
+    width_px: int  # of the label image, so that a scale does not go to another picture
+    height_px: int
+    px_per_m: float | None = None  # of the label image
+    photo: str = ""
+    """Base name of the photograph in the frame of the label image, beside it; empty for none."""
+    details: Mapping[str, Any] = field(default_factory=dict)
+    """What else was found out: markers, residuals, doubts.  For people."""
+
+
+def write_sidecar(sidecar: PhotoSidecar, folder: Path) -> Path:
+    """Write it into the folder of the label image."""
+    data = {
+        "schema": SCHEMA,
+        "labels": LABELS,
+        "width_px": sidecar.width_px,
+        "height_px": sidecar.height_px,
+        "px_per_m": sidecar.px_per_m,
+        "photo": sidecar.photo,
+        **sidecar.details,
+    }
+    path = folder / SIDECAR
+    write_whole(path, (json.dumps(data, indent=1, ensure_ascii=False) + "\n").encode())
+    return path
+
+
+def read_sidecar(labels: Path) -> PhotoSidecar | None:
+    """Read what stands beside a label image; None when there is nothing of this kind.
+
+    Only an image of the name `LABELS` has a sidecar.  A damaged one is refused (E112).
     """
+    if labels.name != LABELS:  # a folder such as "." has no name to replace
+        return None
+    path = labels.with_name(SIDECAR)
+    if not path.is_file():
+        return None
+    try:
+        data = json_in(path)
+        if not isinstance(data, dict) or data.get("schema") != SCHEMA:
+            return None
+        scale = data["px_per_m"]
+        if scale is not None and not 0.0 < float(scale) <= MOST_PX_PER_M:
+            raise ValueError(f"px_per_m is {scale}")
+        return PhotoSidecar(
+            int(data["width_px"]),
+            int(data["height_px"]),
+            None if scale is None else float(scale),
+            str(data.get("photo", "")),
+        )
+    except (OSError, ValueError, KeyError, TypeError, OverflowError) as error:
+        what = f"what it says of the photograph cannot be used ({short(error)})."
+        cure = "Find the stones again with `drystone segment`, or remove the file."
+        raise InputError("E112", what, where=str(path), cure=cure) from error
+
+
+def photo_of(stones: Path) -> Path | None:
+    """Return the photograph in the frame of a label image, or of the folder with it, if any."""
     labels = stones / LABELS if (stones / LABELS).is_file() else stones
     sidecar = read_sidecar(labels)
     if sidecar is None or not sidecar.photo:
@@ -40,49 +102,22 @@ def photo_of(stones: Path) -> Path | None:
 
 
 def check_place(photo: Path | None, folder: Path) -> None:
-    """Refuse to replace a photograph that no plan put beside itself.
-
-    Raises
-    ------
-    UsageError
-        E129.
-    """
+    """Refuse to replace a photograph that no plan put beside itself (E129)."""
     if photo is None:
         return
     copy = _copy_of(photo, folder)
     refuse_existing(copy, overwrite=True)
     if copy.exists() and not _is_ours(copy) and copy.read_bytes() != photo.read_bytes():
-        raise UsageError(
-            "E129",
-            "no plan put this photograph here, and that of these stones has the same name.",
-            where=str(copy),
-            cure="Choose another folder with -o, or move it away; --overwrite leaves it.",
-        )
+        what = "no plan put this photograph here, and that of these stones has the same name."
+        cure = "Choose another folder with -o, or move it away; --overwrite leaves it."
+        raise UsageError("E129", what, where=str(copy), cure=cure)
 
 
 def place_photo(photo: Path | None, folder: Path) -> tuple[Path | None, Mapping[str, Any]]:
     """Put a photograph of the stones beside a plan; the copy of an earlier plan is removed.
 
-    A photograph that no plan put there stays.
-
-    Parameters
-    ----------
-    photo : Path or None
-        Of the stones; it may lie in the folder already.
-    folder : Path
-        Of the plan; its plan.json, if any, is still that of the earlier plan.
-
-    Returns
-    -------
-    beside : Path or None
-        The photograph beside the plan.
-    record : mapping
-        What the source of the plan must say; empty when nothing was put there.
-
-    Raises
-    ------
-    UsageError
-        E129 when a photograph that is not of a plan has the name of the copy.
+    A photograph that no plan put there stays.  Returned are the photograph beside the plan, and
+    what the source of the plan must say: nothing when none was put there.
     """
     check_place(photo, folder)
     # All is read before anything is removed: the photograph may be what an earlier plan left.
@@ -116,8 +151,7 @@ def _is_ours(photo: Path) -> bool:
     if (photo.parent / SIDECAR).exists():
         return False  # it belongs to the label image that `drystone segment` wrote there
     try:
-        plan = json_of(file_bytes(photo.parent / "plan.json").decode("utf-8-sig"))
-        record = plan["source"][RECORD]
+        record = json_in(photo.parent / "plan.json")["source"][RECORD]
         name, digest = record["name"], record["sha256"]
     except (OSError, ValueError, LookupError, TypeError):
         return False

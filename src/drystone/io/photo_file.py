@@ -1,6 +1,7 @@
-"""Photographs as 8-bit RGB, the right way up."""
+"""Photographs as 8-bit RGB, the right way up: of stones, and beside a plan."""
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -13,6 +14,7 @@ from PIL import Image, ImageOps
 from drystone.errors import InputError, Notice
 from drystone.io import tiff
 from drystone.io.file_bytes import file_bytes
+from drystone.io.file_errors import naming, too_large, unread
 from drystone.io.pictures import check_size, format_of, opened
 from drystone.io.tiff import ORIENTATION
 from drystone.model.stone import writable
@@ -23,6 +25,9 @@ MAX_PX = 200_000_000
 MAX_SIDE_PX = 32_766
 """Wider or higher ones too: OpenCV turns none that are."""
 
+SAME_SHAPE = 0.02
+"""Widths over heights may differ by this share: a photograph of few px rounds them."""
+
 _REDUCE = "Reduce it or crop it; only in Python can the limit be raised (max_px)."
 
 _TURNS = {
@@ -30,28 +35,19 @@ _TURNS = {
     5: "mirrored and turned", 6: "turned by 90 degrees clockwise", 7: "mirrored and turned",
     8: "turned by 90 degrees counter-clockwise",
 }  # fmt: skip
+_BACK = {6: 8, 8: 6}
+"""Orientations whose opposite is another."""
 
 
 @dataclass(frozen=True, eq=False)
 class Photo:
-    """A photograph.
+    """A photograph."""
 
-    Parameters
-    ----------
-    values : (h, w, 3) uint8 array
-        RGB, the right way up.
-    name : str
-        Base name of its file.
-    sha256 : str
-        Of the file, in hexadecimal digits.
-    notices : tuple of Notice
-        W173 it was turned as its EXIF data say; W174 its depth was reduced or its alpha ignored.
-    """
-
-    values: NDArray[np.uint8]
-    name: str
-    sha256: str
+    values: NDArray[np.uint8]  # (h, w, 3), RGB, the right way up
+    name: str  # base name of its file
+    sha256: str  # of the file, in hexadecimal digits
     notices: tuple[Notice, ...] = ()
+    """W173 it was turned as its EXIF data say; W174 its depth was reduced or its alpha ignored."""
 
     @property
     def size_px(self) -> tuple[int, int]:
@@ -60,26 +56,13 @@ class Photo:
 
 
 def read_photo(path: str | Path, max_px: int = MAX_PX) -> Photo:
-    """Read a JPEG, PNG or TIFF photograph.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-    max_px : int
-        Larger photographs are refused before they are decoded.
-
-    Raises
-    ------
-    InputError
-        E100 it cannot be read, E106 empty or damaged, E107 no photograph that is known, E109
-        several pages, E110 too large.
-    """
+    """Read a JPEG, PNG or TIFF photograph."""
     path = Path(path)
-    data = _bytes_of(path)
-    values, orientation, deep = _decode(data, str(path), max_px)
+    with naming(str(path)):
+        data = _bytes_of(path)
+        values, orientation, deep = _decode(data, partial(_check, max_px=max_px))
+        rgb, notices = _to_rgb(values)
     name = writable(path.name)
-    rgb, notices = _to_rgb(values, str(path))
     if deep:
         notices = (Notice("W174", "16 bits a channel were scaled to 8."), *notices)
     if orientation in _TURNS:
@@ -93,46 +76,37 @@ def _bytes_of(path: Path) -> bytes:
     try:
         data = file_bytes(path)
     except OSError as error:
-        raise InputError(
-            "E100", f"the photograph cannot be read ({error.strerror}).", where=str(path),
-            cure="Check the path and your right to read it.",
-        ) from error  # fmt: skip
+        what = f"the photograph cannot be read ({error.strerror})."
+        cure = "Check the path and your right to read it."
+        raise InputError("E100", what, cure=cure) from error
     if not data:
-        raise InputError(
-            "E106", "the file is empty (0 bytes).", where=str(path), cure="Copy it again."
-        )
+        raise InputError("E106", "the file is empty (0 bytes).", cure="Copy it again.")
     return data
 
 
-def _decode(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int, bool]:
+def _decode(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any], int, bool]:
     """Return values (palettes and CMYK as RGB), the orientation, and if there were 16 bits."""
     kind = format_of(data)
     if kind == "TIFF":
-        values, orientation = _tiff(data, where, max_px)
+        values, orientation = _tiff(data, check)
         return values, orientation, values.dtype == np.uint16
     if kind in ("JPEG", "PNG"):
         # Colours of 16 bits come from Pillow as their upper 8.
-        return *_by_pillow(data, where, max_px), kind == "PNG" and data[24:25] == b"\x10"
-    raise InputError(
-        "E107", "this is no JPEG, PNG or TIFF.", where=where,
-        cure="Export the photograph as JPEG (phones: 'most compatible').",
-    )  # fmt: skip
+        return *_by_pillow(data, check), kind == "PNG" and data[24:25] == b"\x10"
+    cure = "Export the photograph as JPEG (phones: 'most compatible')."
+    raise unread("this is no JPEG, PNG or TIFF.", cure)
 
 
-def _check(width: int, height: int, where: str, max_px: int) -> None:
+def _check(width: int, height: int, max_px: int) -> None:
     """Refuse photographs that would fill the memory, or that OpenCV cannot turn (E110)."""
-    check_size(width, height, where, max_px, _REDUCE)
+    check_size(width, height, max_px, _REDUCE)
     if max(width, height) > MAX_SIDE_PX:
-        raise InputError(
-            "E110",
-            f"{width} x {height} px; the limit of a side is {MAX_SIDE_PX} px.",
-            where=where,
-            cure="Reduce it or crop it.",
-        )
+        what = f"{width} x {height} px; the limit of a side is {MAX_SIDE_PX} px."
+        raise too_large(what, "Reduce it or crop it.")
 
 
-def _by_pillow(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int]:
-    with opened(data, where, partial(_check, where=where, max_px=max_px)) as image:
+def _by_pillow(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any], int]:
+    with opened(data, check) as image:
         orientation = int(image.getexif().get(ORIENTATION, 1))
         mode = image.mode
         if mode in ("1", "CMYK", "YCbCr", "LAB", "HSV"):
@@ -146,34 +120,26 @@ def _by_pillow(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int]
     return values.astype(np.uint16) if mode == "I" else values, orientation
 
 
-def _tiff(data: bytes, where: str, max_px: int) -> tuple[NDArray[Any], int]:
-    page = tiff.inspect(data, where)
-    _check(page.width, page.height, where, max_px)
+def _tiff(data: bytes, check: Callable[[int, int], None]) -> tuple[NDArray[Any], int]:
+    page = tiff.inspect(data)
+    check(page.width, page.height)
     if page.bits <= 8:
         # Pillow turns a TIFF by itself when it reads it: taken back, so that it is said.
-        values, orientation = _by_pillow(data, where, max_px)
+        values, orientation = _by_pillow(data, check)
         return _turned(values, _BACK.get(orientation, orientation)), orientation
     if page.unreadable:
-        raise InputError(
-            "E107", f"TIFF with {page.unreadable} cannot be read.", where=where,
-            cure="Export it uncompressed or with LZW.",
-        )  # fmt: skip
+        what = f"TIFF with {page.unreadable} cannot be read."
+        raise unread(what, "Export it uncompressed or with LZW.")
     if page.colours:
-        raise InputError(
-            "E107", f"TIFF of {page.bits} bits a channel in {page.colours} cannot be read.",
-            where=where, cure="Export it in RGB, or with 8 bits a channel.",
-        )  # fmt: skip
-    values = tiff.values(data, where, partial(_check, where=where, max_px=max_px))
+        what = f"TIFF of {page.bits} bits a channel in {page.colours} cannot be read."
+        raise unread(what, "Export it in RGB, or with 8 bits a channel.")
+    values = tiff.values(data, check)
     # Pillow takes this back for 8 bits; ids keep the numbers of the file, light does not.
     if page.negative and values.dtype == np.uint16:
         values = values.copy()
         grey = np.atleast_3d(values)[..., :1]
         np.subtract(65535, grey, out=grey)
     return values, page.orientation
-
-
-_BACK = {6: 8, 8: 6}
-"""Orientations whose opposite is another."""
 
 
 def _turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
@@ -185,17 +151,15 @@ def _turned(values: NDArray[Any], orientation: int) -> NDArray[Any]:
     return np.array(ImageOps.exif_transpose(image))
 
 
-def _to_rgb(values: NDArray[Any], where: str) -> tuple[NDArray[np.uint8], tuple[Notice, ...]]:
+def _to_rgb(values: NDArray[Any]) -> tuple[NDArray[np.uint8], tuple[Notice, ...]]:
     """Return three channels of 8 bits, and what was lost."""
     notices: list[Notice] = []
     values = values[..., None] if values.ndim == 2 else values
     if values.dtype == np.uint16:
         values = np.round(values / 257.0).astype(np.uint8)
     if values.dtype != np.uint8 or values.ndim != 3 or not 1 <= values.shape[2] <= 4:
-        raise InputError(
-            "E107", f"values of type {values.dtype} are no photograph.", where=where,
-            cure="Export it with 8 or 16 bits a channel.",
-        )  # fmt: skip
+        what = f"values of type {values.dtype} are no photograph."
+        raise unread(what, "Export it with 8 or 16 bits a channel.")
     if values.shape[2] in (2, 4):
         if (values[..., -1] < 255).any():
             notices.append(Notice("W174", "Transparency was ignored."))
@@ -203,3 +167,32 @@ def _to_rgb(values: NDArray[Any], where: str) -> tuple[NDArray[np.uint8], tuple[
     if values.shape[2] == 1:
         values = np.repeat(values, 3, axis=2)
     return np.ascontiguousarray(values), tuple(notices)
+
+
+def read_photo_picture(photo: Path, source_px: tuple[float, float]) -> Image.Image:
+    """Read the photograph beside a plan as RGB, turned as its EXIF data say.
+
+    It shows the whole source image, of `source_px` (width, height), at any resolution; one that
+    cannot be read, or has another shape, is refused (E189).
+    """
+    try:
+        with opened(file_bytes(photo), partial(check_size, max_px=MAX_PX)) as read:
+            image = ImageOps.exif_transpose(read).convert("RGB")
+    except InputError as error:
+        raise _of_no_use(photo, f"the photograph cannot be read: {error.what}") from error
+    except OSError as error:
+        raise _of_no_use(photo, f"the photograph cannot be read ({error.strerror}).") from error
+    width, height = source_px
+    ratio = (image.width / image.height) / (width / height) if width and height else 0.0
+    if abs(ratio - 1.0) > SAME_SHAPE:
+        raise _of_no_use(
+            photo,
+            f"the photograph has {image.width} x {image.height} px and shows something else than "
+            f"the source image of {width:g} x {height:g} px.",
+        )
+    return image
+
+
+def _of_no_use(photo: Path, what: str) -> InputError:
+    cure = "Remove the file, or put the photograph there that the stones were found in."
+    return InputError("E189", what, where=photo.name, cure=cure)

@@ -22,6 +22,7 @@ from PIL import (
 )
 
 from drystone.errors import InputError
+from drystone.io.file_errors import damaged, too_large
 from drystone.io.foreign import foreign, silent_stderr
 
 _FORMATS: tuple[tuple[str, tuple[bytes, ...], type[ImageFile.ImageFile]], ...] = (
@@ -54,44 +55,29 @@ def format_of(data: bytes) -> str:
 
 
 @contextmanager
-def opened(data: bytes, where: str, check: Callable[[int, int], None]) -> Iterator[Image.Image]:
-    """Open a picture; what Pillow raises while it is decoded, inside, is a coded error too.
-
-    Parameters
-    ----------
-    data : bytes
-        The whole file, in one of the formats.
-    where : str
-        Its name, for messages.
-    check : callable
-        Refuses a width and a height, before anything is decoded.
-
-    Raises
-    ------
-    InputError
-        E106 damaged, E107 unknown format, E110 too large.
-    """
+def opened(data: bytes, check: Callable[[int, int], None]) -> Iterator[Image.Image]:
+    """Open a picture; what Pillow raises while it is decoded, inside, is a coded error too."""
     kind = format_of(data)
     plugin = next((plugin for name, _, plugin in _FORMATS if name == kind), None)
     if plugin is None:
         raise InputError(
             "E107", f"this is no picture ({', '.join(name for name, _, _ in _FORMATS)}).",
-            where=where, cure="Export it as PNG.",
+            cure="Export it as PNG.",
         )  # fmt: skip
     if kind == "JPEG" and _scans(data) > _MOST_SCANS:
-        raise damaged(f"it has more than {_MOST_SCANS} scans", where)
+        raise damaged(f"it has more than {_MOST_SCANS} scans")
     with ExitStack() as around:
-        around.enter_context(foreign(lambda why: damaged(why, where)))
+        around.enter_context(foreign(damaged))
         if kind == "TIFF":
             around.enter_context(silent_stderr())
         try:
             image = plugin(io.BytesIO(data))
             check(*image.size)
             if kind == "PNG" and not _holds_its_rows(data):
-                raise damaged("it does not hold all of its rows", where)
+                raise damaged("it does not hold all of its rows")
             yield image
         except Image.DecompressionBombError as error:  # a frame larger than the picture
-            raise InputError("E110", f"{error}.", where=where, cure=_CURE) from error
+            raise too_large(f"{error}.", _CURE) from error
 
 
 def _holds_its_rows(data: bytes) -> bool:
@@ -131,31 +117,13 @@ def _scans(data: bytes) -> int:
     return count
 
 
-def damaged(why: str, where: str) -> InputError:
-    """Make the error for bytes that are not what their format says (E106)."""
-    return InputError(
-        "E106", f"the file is damaged or cut short ({why}).", where=where,
-        cure="Copy or export it again.",
-    )  # fmt: skip
-
-
-def check_size(width: int, height: int, where: str, max_px: int, cure: str = _CURE) -> None:
+def check_size(width: int, height: int, max_px: int, cure: str = _CURE) -> None:
     """Refuse pictures that would fill the memory (E110)."""
     if width * height > max_px or max(width, height) > _MOST_SIDE_PX:
-        raise InputError(
-            "E110",
-            f"{width} x {height} px are {width * height / 1e6:.0f} million; the limit is "
+        # Numbers of a file may be longer than Python prints.
+        size = f"{width} x {height} px" if max(width, height) < 10**12 else "more than 1e12 px"
+        raise too_large(
+            f"{size} are {min(width * height, 10**18) / 1e6:.0f} million; the limit is "
             f"{max_px / 1e6:g} million, and {_MOST_SIDE_PX} of a side.",
-            where=where,
-            cure=cure,
+            cure,
         )
-
-
-def several_pages(found: str, where: str) -> InputError:
-    """Make the error for stacks and animations (E109)."""
-    return InputError(
-        "E109",
-        f"{found} were found where one picture is needed.",
-        where=where,
-        cure="Give one page as a picture of its own, or a folder of one-stone masks.",
-    )

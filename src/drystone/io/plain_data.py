@@ -5,6 +5,7 @@ import json
 import math
 import operator
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import cache
 from types import UnionType
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
@@ -27,37 +28,29 @@ def _shallow(value: Any) -> Any:
 
 
 def from_plain(kind: type[Value], data: Any) -> Value:
-    """Return what :func:`as_json` was given, once its JSON is read.
-
-    Parameters
-    ----------
-    kind : type
-        Of the value: a dataclass, or what its fields may be.
-    data : anything
-        From JSON, of any origin.
-
-    Raises
-    ------
-    ValueError
-        It is no value of this type.
-    """
+    """Return what :func:`as_json` was given, once its JSON is read."""
     found: Value = _read(kind, data)
     return found
 
 
 def _read(kind: Any, data: Any) -> Any:
-    origin = get_origin(kind)
+    origin, kinds = get_origin(kind), get_args(kind)
     if dataclasses.is_dataclass(kind):
         return _dataclass(kind, data)
     if origin is UnionType:
-        return _one_of(get_args(kind), data)
+        for one in kinds[:-1]:
+            with suppress(ValueError):
+                return _read(one, data)
+        return _read(kinds[-1], data)
     if origin is tuple:
-        return _tuple(get_args(kind), data)
-    if origin is Literal and isinstance(data, str) and data in get_args(kind):
-        return data
+        return _tuple(kinds, data)
     if kind is float and isinstance(data, int | float) and not isinstance(data, bool):
         return _float(data)
-    if origin is None and type(data) is kind:
+    if origin is Literal:
+        known = isinstance(data, str) and data in kinds
+    else:
+        known = origin is None and type(data) is kind
+    if known:
         return data
     raise ValueError(f"{str(data)[:40]!r} is not of type {kind}")
 
@@ -67,15 +60,6 @@ def _dataclass(kind: Any, data: Any) -> Any:
     if not isinstance(data, dict) or data.keys() != types.keys():
         raise ValueError(f"this is no {kind.__name__}")
     return kind(**{name: _read(one, data[name]) for name, one in types.items()})
-
-
-def _one_of(kinds: Sequence[Any], data: Any) -> Any:
-    for kind in kinds[:-1]:
-        try:
-            return _read(kind, data)
-        except ValueError:
-            pass
-    return _read(kinds[-1], data)
 
 
 def _tuple(kinds: Sequence[Any], data: Any) -> Any:

@@ -1,5 +1,6 @@
 """The folder of a plan: what every command that reads plans needs beside plan.json."""
 
+import json
 from collections.abc import Mapping
 from hashlib import sha256
 from pathlib import Path
@@ -8,13 +9,22 @@ from typing import Any
 import tomli_w
 
 from drystone.errors import PlanError, UsageError
-from drystone.io.blocks_json import BLOCKS, write_blocks
 from drystone.io.photo_beside import RECORD, place_photo
 from drystone.io.plan_json import write_plan
-from drystone.io.plan_names import WRITTEN
 from drystone.io.wall_image import write_wall_image
+from drystone.model.wall import Wall
 from drystone.search.plan_result import PlanResult
+from drystone.statics.model import RigidBlockModel
 from drystone.whole_files import write_whole
+
+BLOCKS = "blocks.json"
+"""Name of the file beside a plan whose geometry is exact."""
+
+WRITTEN = ("plan.json", "settings.toml", BLOCKS, "wall.png", "wall.tif")
+"""What is written with a plan, or taken out because it would belong to another wall."""
+
+DRAWN = ("report.html", "picture.png", "mechanism_left.png", "mechanism_right.png")
+"""What `drystone plan` draws of it."""
 
 
 def write_plan_folder(result: PlanResult, folder: str | Path) -> Path:
@@ -49,25 +59,23 @@ def write_plan_folder(result: PlanResult, folder: str | Path) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise PlanError(
-            "E206",
-            f"the folder cannot be made ({error.strerror}).",
-            where=str(folder),
-            cure="Give a folder that exists, has room and may be written to.",
-        ) from error
+        what = f"the folder cannot be made ({error.strerror})."
+        cure = "Give a folder that exists, has room and may be written to."
+        raise PlanError("E206", what, where=str(folder), cure=cure) from error
     if RECORD not in result.plan.source:
         place_photo(None, folder)  # that of an earlier plan shows other stones
     replaces = (folder / "plan.json").exists()
     write_plan(result.plan, folder / "plan.json")
     settings = tomli_w.dumps(dict(result.plan.settings))
     write_whole(folder / "settings.toml", settings.encode())
-    written = {write_wall_image(result.wall.labels, folder)}
-    if (blocks := write_blocks(result.wall, result.model, folder)) is not None:
-        written.add(blocks)
-    for name in ("wall.png", "wall.tif", BLOCKS) if replaces else ():
-        if folder / name not in written:
-            # One that an earlier run left would belong to another wall.
-            (folder / name).unlink(missing_ok=True)
+    written = {write_wall_image(result.wall.labels, folder).name}
+    if result.wall.outlines is not None:  # the model of a wall of pixels is its image
+        blocks = json.dumps(blocks_to_json(result.wall, result.model), indent=1)
+        write_whole(folder / BLOCKS, f"{blocks}\n".encode())
+        written.add(BLOCKS)
+    for name in {"wall.png", "wall.tif", BLOCKS} - written if replaces else ():
+        # One that an earlier run left would belong to another wall.
+        (folder / name).unlink(missing_ok=True)
     return folder / "plan.json"
 
 
@@ -82,9 +90,30 @@ def _refuse_stones(source: Mapping[str, Any], folder: Path) -> None:
         else:
             same = sha256(path.read_bytes()).hexdigest() == source["sha256"]
         if same:
-            raise UsageError(
-                "E129",
-                "the stones of this plan were read from it, and what is read is never replaced.",
-                where=str(path),
-                cure="Write the plan into another folder.",
-            )
+            what = "the stones of this plan were read from it, and what is read is never replaced."
+            cure = "Write the plan into another folder."
+            raise UsageError("E129", what, where=str(path), cure=cure)
+
+
+def blocks_to_json(wall: Wall, model: RigidBlockModel) -> dict[str, Any]:
+    """Return the block model (in source px) of a wall of outlines, in the plan's units."""
+    outlines = wall.outlines
+    if outlines is None:
+        raise ValueError("the stones of this wall are their pixels")
+    px_per_m = wall.site.px_per_m or 1.0
+    polygons = {
+        block: (outlines.polygons.polygon(place) / px_per_m).tolist()
+        for place, block in enumerate(outlines.ids)
+    }
+    return {
+        "mu": model.mu,
+        "blocks": [{"id": block.id, "polygon": polygons[block.id]} for block in model.blocks],
+        "interfaces": [
+            {
+                "between": [interface.block, interface.other],
+                "points": (interface.points / px_per_m).tolist(),
+                "normal": list(interface.normal),
+            }
+            for interface in model.interfaces
+        ],
+    }

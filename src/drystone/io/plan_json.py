@@ -1,16 +1,23 @@
 """The file form of plans: plan.json, described by plan.schema.json (DESIGN 2)."""
 
 import json
+import math
 import operator
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import fields
+from functools import cache
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import numpy as np
 
 from drystone.errors import PlanError
 from drystone.io.file_bytes import file_bytes
-from drystone.io.plan_schema import parse_plan, validate_plan
+from drystone.io.foreign import foreign
+from drystone.io.json_text import json_of
 from drystone.model.plan import SCHEMA, Plan, PlanMetrics, Point, StoneStep, WedgeStep
 from drystone.whole_files import write_whole
 
@@ -20,6 +27,7 @@ MOST_PLAN_BYTES = 100_000_000
 _INDEX_NAMES = ("SF", "LFR", "GDS", "NHR", "IWR", "IS", "LLC")
 _METRIC_NAMES = tuple(PlanMetrics.__dataclass_fields__)
 _SOURCE_NAMES = ("path", "sha256", "stones", "width_px", "height_px", "files", "reading")
+_LONGEST_MESSAGE = 240
 
 
 def write_plan(plan: Plan, path: str | Path) -> None:
@@ -62,23 +70,14 @@ def read_plan(path: str | Path) -> Plan:
     try:
         data = file_bytes(path, MOST_PLAN_BYTES)
     except OSError as error:
-        raise PlanError(
-            "E202",
-            f"the plan cannot be read ({error.strerror}).",
-            where=str(path),
-            cure="Give the plan.json that `drystone plan -o` wrote, or its folder.",
-        ) from error
-    return _from_json(parse_plan(data, str(path)), str(path))
+        what = f"the plan cannot be read ({error.strerror})."
+        cure = "Give the plan.json that `drystone plan -o` wrote, or its folder."
+        raise PlanError("E202", what, where=str(path), cure=cure) from error
+    return plan_from_json(_parsed(data, str(path)), str(path))
 
 
 def plan_to_json(plan: Plan) -> dict[str, Any]:
-    """Return the contents of plan.json, keys in the order of the contract (DESIGN 2).
-
-    Raises
-    ------
-    PlanError
-        E205: a value that the schema does not allow.
-    """
+    """Return the contents of plan.json, keys in the order of the contract (DESIGN 2)."""
     source = {name: plan.source[name] for name in _SOURCE_NAMES if name in plan.source}
     data = {
         "schema": SCHEMA,
@@ -95,62 +94,13 @@ def plan_to_json(plan: Plan) -> dict[str, Any]:
             {name: value for name, value in plan.source.items() if name not in source}
         ),
         "wall": {"width": _number(plan.width), "height": _number(plan.height)},
-        "steps": [
-            _stone_to_json(step) if isinstance(step, StoneStep) else _wedge_to_json(step)
-            for step in plan.steps
-        ],
+        "steps": [_step_to_json(step) for step in plan.steps],
         "unused": [_whole(stone_id) for stone_id in plan.unused],
         "stopped": plan.stopped,
         "metrics": {name: _number(getattr(plan.metrics, name)) for name in _METRIC_NAMES},
     }  # fmt: skip
-    validate_plan(data, "plan")
+    _validate(data, "plan")
     return data
-
-
-def plan_from_json(data: Mapping[str, Any]) -> Plan:
-    """Return the plan of the contents of a plan.json.
-
-    Raises
-    ------
-    PlanError
-        E204: it is no plan of this version; E205: it is not as the schema says.
-    """
-    return _from_json(data, "plan")
-
-
-def _stone_to_json(step: StoneStep) -> dict[str, Any]:
-    others = sorted(set(step.indices) - set(_INDEX_NAMES))
-    return {
-        "step": _whole(step.step),
-        "kind": "stone",
-        "stone": _whole(step.stone),
-        "angle_deg": _number(step.angle_deg),
-        "source_centroid": _numbers(step.source_centroid),
-        "centroid": _numbers(step.centroid),
-        "side": step.side,
-        "cluster": _whole(step.cluster),
-        "rotation_moves": _whole(step.rotation_moves),
-        "indices": {
-            name: _number(step.indices[name])
-            for name in (*_INDEX_NAMES, *others)
-            if name in step.indices
-        },
-        "course_height": _number(step.course_height),
-        "alpha_left": _number(step.alpha_left),
-        "alpha_right": _number(step.alpha_right),
-    }
-
-
-def _wedge_to_json(step: WedgeStep) -> dict[str, Any]:
-    return {
-        "step": _whole(step.step),
-        "kind": "wedge",
-        "id": _whole(step.id),
-        "under": _whole(step.under),
-        "polygon": [_numbers(point) for point in step.polygon],
-        "alpha_left": _number(step.alpha_left),
-        "alpha_right": _number(step.alpha_right),
-    }
 
 
 def _number(value: float | None) -> float | None:
@@ -166,6 +116,57 @@ def _whole(value: int) -> int:
     return operator.index(value)
 
 
+def _indices(values: Mapping[str, float | None]) -> dict[str, float | None]:
+    others = sorted(set(values) - set(_INDEX_NAMES))
+    return {name: _number(values[name]) for name in (*_INDEX_NAMES, *others) if name in values}
+
+
+def _point(pair: Sequence[float]) -> Point:
+    return float(pair[0]), float(pair[1])
+
+
+def _same(value: Any) -> Any:
+    return value
+
+
+_WHOLE = (_whole, int)
+_NUMBER = (_number, _number)
+_POINT = (_numbers, _point)
+_FORMS: Mapping[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
+    "angle_deg": (_number, float),
+    "source_centroid": _POINT,
+    "centroid": _POINT,
+    "side": (_same, _same),
+    "indices": (_indices, lambda data: {name: _number(data[name]) for name in _INDEX_NAMES}),
+    "course_height": _NUMBER,
+    "alpha_left": _NUMBER,
+    "alpha_right": _NUMBER,
+    "polygon": (
+        lambda points: list(map(_numbers, points)),
+        lambda points: tuple(map(_point, points)),
+    ),
+}
+"""How the fields of steps are written and read that are no whole numbers."""
+
+
+def _names(step: Any) -> list[str]:
+    """Return the fields of a step, or of a type of steps, in their order."""
+    return [field.name for field in fields(step) if field.name != "kind"]
+
+
+def _step_to_json(step: StoneStep | WedgeStep) -> dict[str, Any]:
+    """Return the fields of a step in their order, the kind as the second."""
+    values = {name: _FORMS.get(name, _WHOLE)[0](getattr(step, name)) for name in _names(step)}
+    return {"step": values.pop("step"), "kind": step.kind, **values}
+
+
+def _step_from_json(data: Mapping[str, Any]) -> StoneStep | WedgeStep:
+    step: type[StoneStep | WedgeStep] = StoneStep if data["kind"] == "stone" else WedgeStep
+    # A plan of other hands may leave out what the contract does not ask for: None.
+    values = {name: _FORMS.get(name, _WHOLE)[1](data.get(name)) for name in _names(step)}
+    return step(**values)
+
+
 def _plain(value: Any, *, ordered: bool = True) -> Any:
     """Return a value of JSON's own types, mappings in alphabetical order if `ordered`."""
     if isinstance(value, Mapping):
@@ -178,8 +179,9 @@ def _plain(value: Any, *, ordered: bool = True) -> Any:
     return value + 0.0 if isinstance(value, float) else value
 
 
-def _from_json(data: Any, where: str) -> Plan:
-    validate_plan(data, where)
+def plan_from_json(data: Any, where: str = "plan") -> Plan:
+    """Return the plan of the contents of a plan.json."""
+    _validate(data, where)
     units, wall = data["units"], data["wall"]
     # A plan of other hands may leave out the two metrics that the contract does not ask for.
     metrics: dict[str, Any] = {n: _number(data["metrics"].get(n)) for n in _METRIC_NAMES}
@@ -194,43 +196,114 @@ def _from_json(data: Any, where: str) -> Plan:
         source=data["source"],
         width=float(wall["width"]),
         height=float(wall["height"]),
-        steps=tuple(
-            _stone_from_json(step) if step["kind"] == "stone" else _wedge_from_json(step)
-            for step in data["steps"]
-        ),
+        steps=tuple(map(_step_from_json, data["steps"])),
         unused=tuple(int(stone_id) for stone_id in data["unused"]),
         stopped=data["stopped"],
         metrics=PlanMetrics(**metrics),
     )
 
 
-def _stone_from_json(data: Mapping[str, Any]) -> StoneStep:
-    return StoneStep(
-        step=int(data["step"]),
-        stone=int(data["stone"]),
-        angle_deg=float(data["angle_deg"]),
-        source_centroid=_point(data["source_centroid"]),
-        centroid=_point(data["centroid"]),
-        side=data["side"],
-        cluster=int(data["cluster"]),
-        rotation_moves=int(data["rotation_moves"]),
-        indices={name: _number(data["indices"][name]) for name in _INDEX_NAMES},
-        course_height=_number(data.get("course_height")),
-        alpha_left=_number(data["alpha_left"]),
-        alpha_right=_number(data["alpha_right"]),
-    )
+@cache
+def plan_schema() -> dict[str, Any]:
+    """Return the JSON Schema (Draft 2020-12) of plan.json."""
+    text = resources.files("drystone.io").joinpath("plan.schema.json").read_text("utf-8")
+    schema: dict[str, Any] = json.loads(text)
+    return schema
 
 
-def _wedge_from_json(data: Mapping[str, Any]) -> WedgeStep:
-    return WedgeStep(
-        step=int(data["step"]),
-        id=int(data["id"]),
-        under=int(data["under"]),
-        polygon=tuple(_point(point) for point in data["polygon"]),
-        alpha_left=_number(data.get("alpha_left")),
-        alpha_right=_number(data.get("alpha_right")),
-    )
+def _parsed(data: bytes, where: str) -> Any:
+    """Return the JSON in the bytes of a plan file; raise PlanError (E203) when there is none.
+
+    Stricter than Python's reader: NaN, infinities and repeated keys are refused.
+    """
+
+    def no_json(why: str) -> PlanError:
+        cure = "Give the plan.json that `drystone plan -o` wrote; it may be cut short."
+        return PlanError("E203", f"the file is no JSON ({why}).", where=where, cure=cure)
+
+    with foreign(no_json):
+        return json_of(
+            data.decode("utf-8-sig"),
+            parse_constant=_refuse_constant,
+            object_pairs_hook=_without_repeats,
+        )
 
 
-def _point(pair: Sequence[float]) -> Point:
-    return float(pair[0]), float(pair[1])
+def _refuse_constant(name: str) -> Any:
+    raise ValueError(f"{name} is no JSON number")
+
+
+def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        twice, _ = Counter(name for name, _ in pairs).most_common(1)[0]
+        raise ValueError(f"{_short(twice)} is given twice in one object")
+    return found
+
+
+def _validate(data: Any, where: str) -> None:
+    """Refuse what is no plan of this version (E204) or not as the schema says (E205)."""
+    if not isinstance(data, Mapping) or "schema" not in data:
+        what = f'this is no plan: it is no JSON object with "schema": "{SCHEMA}".'
+        cure = "Give the plan.json that `drystone plan -o` wrote."
+        raise PlanError("E204", what, where=where, cure=cure)
+    if data["schema"] != SCHEMA:
+        what = f"the plan is of version {_short(data['schema'])}; this drystone reads {SCHEMA}."
+        cure = "Read it with the drystone that wrote it, or plan again with this one."
+        raise PlanError("E204", what, where=f"{where}: $.schema", cure=cure)
+    bad = _not_finite(data, "$")
+    if bad is not None:
+        what = "the number is not finite; JSON has no NaN and no infinity."
+        cure = "Write null where nothing could be computed, if the schema allows it."
+        raise PlanError("E205", what, where=f"{where}: {_short(bad, quote=False)}", cure=cure)
+    errors = list(jsonschema.Draft202012Validator(plan_schema()).iter_errors(data))
+    if errors:
+        first = errors[0]
+        more = f" ({len(errors) - 1} more like this)" if len(errors) > 1 else ""
+        raise PlanError(
+            "E205",
+            f"{_short(first.message, quote=False)}{more}.",
+            where=f"{where}: {_short(first.json_path, quote=False)}",
+            cure=_cure(first),
+        )
+
+
+def _cure(error: jsonschema.ValidationError) -> str:
+    """Say what belongs there; of an object, only what is missing or which names it may have."""
+    schema = error.schema if isinstance(error.schema, Mapping) else {}
+    properties = schema.get("properties", {})
+    if error.validator == "required":
+        # There is one error for each missing name, which is found in its message alone.
+        missing = [name for name in error.validator_value if error.message.startswith(repr(name))]
+        schema = properties.get(missing[0], {}) if missing else {}
+    elif error.validator == "additionalProperties":
+        return f"Known there: {', '.join(properties)}."
+    if "$ref" in schema:
+        # What is said beside a reference comes before what is said behind it.
+        schema = plan_schema()["$defs"][schema["$ref"].removeprefix("#/$defs/")] | schema
+    meaning = schema.get("description", "")
+    return f"What belongs there: {meaning}" if meaning else "See plan.schema.json."
+
+
+def _not_finite(value: Any, path: str) -> str | None:
+    """Return the JSON path of the first number that is NaN, infinite or beyond a float."""
+    if isinstance(value, Mapping):
+        items: Iterable[tuple[str, Any]] = ((f".{key}", item) for key, item in value.items())
+    elif isinstance(value, list):
+        items = ((f"[{index}]", item) for index, item in enumerate(value))
+    else:
+        return path if isinstance(value, int | float) and not _is_finite(value) else None
+    found = (_not_finite(item, path + name) for name, item in items)
+    return next((bad for bad in found if bad is not None), None)
+
+
+def _is_finite(value: float) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
+
+
+def _short(value: Any, *, quote: bool = True) -> str:
+    text = repr(value) if quote else str(value)
+    return text if len(text) <= _LONGEST_MESSAGE else f"{text[:_LONGEST_MESSAGE]}..."

@@ -1,4 +1,4 @@
-"""Where published stone sets are looked for, and how they get there."""
+"""The published stone sets: what they are, where they are looked for, and how they get there."""
 
 import os
 import shlex
@@ -8,8 +8,118 @@ from hashlib import sha256
 from pathlib import Path
 
 from drystone.errors import InputError
-from drystone.io.published_sets import LICENCE, NOTICE, RAW, SETS, PublishedFile, PublishedSet
 from drystone.whole_files import write_whole
+
+REPOSITORY = "eesd-epfl/StablePacking-2D"
+"""Where the authors of the paper released the stones, under the MIT licence."""
+
+RAW = f"https://raw.githubusercontent.com/{REPOSITORY}"
+"""Address of its files, to be followed by a commit and a path."""
+
+NOTICE = "LICENSE-StablePacking-2D.txt"
+"""Name of the licence that is written beside the files, as it asks for."""
+
+LICENCE = """\
+MIT License
+
+Copyright (c) 2024 qianqing-wanggg
+
+Permission is hereby granted, free of charge, to any person obtaining a copy
+of this software and associated documentation files (the "Software"), to deal
+in the Software without restriction, including without limitation the rights
+to use, copy, modify, merge, publish, distribute, sublicense, and/or sell
+copies of the Software, and to permit persons to whom the Software is
+furnished to do so, subject to the following conditions:
+
+The above copyright notice and this permission notice shall be included in all
+copies or substantial portions of the Software.
+
+THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR
+IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY,
+FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE
+AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
+LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
+OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE
+SOFTWARE.
+"""
+
+PAPER = (
+    "Q. Wang, K. R. M. dos Santos and K. Beyer (2024), An image-based stacking method for 2D "
+    "dry-stone masonry walls"
+)
+"""The paper that the files were released with."""
+
+
+@dataclass(frozen=True)
+class PublishedFile:
+    """One file of a published set."""
+
+    name: str  # where it belongs in a folder of published data, for example "almeida/R.png"
+    address: str  # where it follows `RAW`: commit of the repository, and path there
+    sha256: str
+
+
+@dataclass(frozen=True)
+class PublishedSet:
+    """Files that belong together."""
+
+    text: str  # what they show
+    source: str  # whose stones they are: to be cited beside :data:`PAPER`
+    files: tuple[PublishedFile, ...]  # label images, one id a stone
+
+
+# The files lie in two commits: the repository has no release to name instead.
+_WALLS = "51d0d033607310b1e15d561948f3495b361e9e44"
+_MAIN = "e24a0dcec1fe9a9ca46710d186088ef704b3da38"
+
+_ALMEIDA = {
+    f"{_WALLS}/Tests/Almeida/galary_by_constrution_method/variant_two_bothsides_cutting_R": (
+        "R",
+        "62a493ea836e23accf6a8ec32fb78488f1153a1bcddf0b2ad33c9ce56159c823",
+    ),
+    f"{_MAIN}/Tests/Almeida/PR": (
+        "PR",
+        "2239bb1dd8cb76a852a2af07e559c36598832630f1fb9fad8aae04d23b46e011",
+    ),
+    f"{_WALLS}/Tests/Almeida/galary_by_constrution_method/sample_twice_bothsides_cutting_IR": (
+        "IR",
+        "c30b231063ea5ce5ca88e77fa3dc4b6d9ee5c31059fac92f410cdc7563a26dad",
+    ),
+}
+_THANGAVELU = {
+    10: "605bd54d3313ddb96d12e1cab1ad94985d1d81ba6a6e77fc5f973a2177814c3e",
+    20: "132ab556fec769248b2581685e087cccd71dcc21f43b8114845a100cb77fa6fb",
+    40: "efe89f2e936c5ca8169a6c46c9543b71e6d0991055a286ce1fe68da4fe18f33d",
+    50: "a14da7a6f6f66357711b016f0bb5a0819a24f2ffdf5c00732e001afb6b70ac6e",
+    70: "f165bbce912276812f0438a15edffcb7425d15135fc3e0d8ea33b8c6f41694b9",
+}
+
+SETS = {
+    "almeida": PublishedSet(
+        "walls of masons: regular (R), partially regular (PR) and irregular (IR) stones",
+        "Almeida et al. (2021), Construction and Building Materials, "
+        "https://www.sciencedirect.com/science/article/pii/S0950061821030804",
+        tuple(
+            PublishedFile(f"almeida/{name}.png", f"{folder}/data/wall_labels.png", digest)
+            for folder, (name, digest) in _ALMEIDA.items()
+        ),
+    ),
+    "thangavelu": PublishedSet(
+        "polygonal stones at the noise levels 10, 20, 40, 50 and 70",
+        "V. Thangavelu, Y. Liu, M. Saboia and N. Napp (2018), Dry stacking for automated "
+        "construction with irregular objects, IEEE International Conference on Robotics and "
+        "Automation",
+        tuple(
+            PublishedFile(
+                f"thangavelu/noise_{noise}.png",
+                f"{_WALLS}/Tests/Thangavelu/data/stones_noise_{noise}_labels.png",
+                digest,
+            )
+            for noise, digest in _THANGAVELU.items()
+        ),
+    ),
+}
+"""What there is, by name."""
 
 VARIABLE = "DRYSTONE_DATA"
 """Environment variable that names a folder of published data."""
@@ -17,41 +127,17 @@ VARIABLE = "DRYSTONE_DATA"
 
 @dataclass(frozen=True)
 class Fetched:
-    """A file of a published set that is there and has the right contents.
-
-    Parameters
-    ----------
-    file : PublishedFile
-        What it is.
-    path : Path
-        Where it is.
-    downloaded : bool
-        Whether it was not there before.
-    """
+    """A file of a published set that is there and has the right contents."""
 
     file: PublishedFile
     path: Path
-    downloaded: bool
+    downloaded: bool  # it was not there before
 
 
 def published_folder(given: str | None) -> Path | None:
-    """Return the folder that published data is read from.
+    """Return the folder that published data is read from: what is named, there or not.
 
-    Parameters
-    ----------
-    given : str or None
-        What an option names: it wins.
-
-    Returns
-    -------
-    Path or None
-        What the option or ``DRYSTONE_DATA`` names, whether it exists or not; else the cache of
-        ``drystone fetch`` when it has something in it; else None.
-
-    Examples
-    --------
-    >>> published_folder("stones").name
-    'stones'
+    Else it is the cache of ``drystone fetch``, when that has something in it.
     """
     named = given or os.environ.get(VARIABLE)
     if named:
@@ -61,13 +147,7 @@ def published_folder(given: str | None) -> Path | None:
 
 
 def destination(given: str | None) -> Path:
-    """Return the folder that files are fetched into: the option, ``DRYSTONE_DATA`` or the cache.
-
-    Raises
-    ------
-    InputError
-        E162 when neither is named and pooch, which knows where caches are, is not installed.
-    """
+    """Return the folder that files are fetched into: the option, ``DRYSTONE_DATA`` or the cache."""
     named = given or os.environ.get(VARIABLE)
     if named:
         return Path(named)
@@ -80,23 +160,8 @@ def destination(given: str | None) -> Path:
 def published_file(folder: Path, name: str) -> Path:
     """Return the path of a published file, which has the contents that were released.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder of published data.
-    name : str
-        Of the file there, for example ``"almeida/R.png"``; one that is in no set is not checked.
-
-    Returns
-    -------
-    Path
-        Also of a file that is missing or may not be read: whoever opens it says so.
-
-    Raises
-    ------
-    InputError
-        E160 when the file has other contents: figures of other stones would pass for those of
-        the published ones.
+    Other contents are refused (E160): figures of other stones would pass for those of the
+    published ones.  A file that is missing or in no set is not checked: whoever opens it says so.
     """
     path = folder / name
     for known, published in SETS.items():
@@ -111,21 +176,7 @@ def published_file(folder: Path, name: str) -> Path:
 def fetch_set(wanted: PublishedSet, folder: Path, *, address: str = RAW) -> list[Fetched]:
     """Bring the files of a set into a folder, with their licence; what is there is only checked.
 
-    Parameters
-    ----------
-    wanted : PublishedSet
-        One of :data:`drystone.io.published_sets.SETS`.
-    folder : Path
-        Folder of published data; made when it is missing.
-    address : str
-        Where the repository is served.
-
-    Raises
-    ------
-    InputError
-        E160 when a file has other contents than the published one: it is never replaced, and a
-        download of that kind is never kept.  E161 when a file cannot be downloaded, E162 when
-        pooch is not installed.
+    A file of other contents is never replaced, and a download of that kind is never kept (E160).
     """
     fetched = []
     for file in wanted.files:
@@ -133,7 +184,8 @@ def fetch_set(wanted: PublishedSet, folder: Path, *, address: str = RAW) -> list
         missing = not path.exists()
         if missing:
             _download(file, path, url)
-            _write_notice(folder)  # at once: the next file may fail
+            if not (folder / NOTICE).exists():  # at once, as it asks for: the next file may fail
+                write_whole(folder / NOTICE, LICENCE.encode())
         elif sha256(path.read_bytes()).hexdigest() != file.sha256:
             raise _other_contents(path, "Move it away and fetch it again, or", url)
         fetched.append(Fetched(file, path, missing))
@@ -155,12 +207,6 @@ def _hash_of(path: Path, _size: int, _mtime_ns: int) -> str:
     return sha256(path.read_bytes()).hexdigest()
 
 
-def _write_notice(folder: Path) -> None:
-    """Write the licence beside the files, as it asks for."""
-    if not (folder / NOTICE).exists():
-        write_whole(folder / NOTICE, LICENCE.encode())
-
-
 def _download(file: PublishedFile, path: Path, url: str) -> None:
     """Write a file that is not there yet."""
     try:
@@ -179,12 +225,8 @@ def _download(file: PublishedFile, path: Path, url: str) -> None:
             raise
         if (answer := getattr(error, "response", None)) is not None:
             answer.close()  # pooch leaves the connection of a refusal (404) open
-        raise InputError(
-            "E161",
-            f"cannot be downloaded ({_reason(error)}).",
-            where=str(path),
-            cure=_by_hand(url, path),
-        ) from error
+        what = f"cannot be downloaded ({_reason(error)})."
+        raise InputError("E161", what, where=str(path), cure=_by_hand(url, path)) from error
 
 
 def _cache() -> Path | None:
@@ -213,19 +255,11 @@ def _by_hand(url: str, path: Path) -> str:
 
 def _other_contents(path: Path, cure: str, url: str) -> InputError:
     """Return the error for a file that is not the published one."""
-    return InputError(
-        "E160",
-        "has other contents than the published file (SHA-256).",
-        where=str(path),
-        cure=f"{cure} save {url} there.",
-    )
+    what = "has other contents than the published file (SHA-256)."
+    return InputError("E160", what, where=str(path), cure=f"{cure} save {url} there.")
 
 
 def _extra_missing(where: str, cure: str) -> InputError:
     """Return the error for the missing library."""
-    return InputError(
-        "E162",
-        "pooch, which downloads, is not installed.",
-        where=where,
-        cure=f"`pip install 'drystone[fetch]'`. {cure}",
-    )
+    what = "pooch, which downloads, is not installed."
+    return InputError("E162", what, where=where, cure=f"`pip install 'drystone[fetch]'`. {cure}")

@@ -1,123 +1,155 @@
 """Stones from a file of outlines: labelling tools, drawings, meshes (see docs/formats.md)."""
 
 import hashlib
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
+from pathlib import PurePath
+from typing import Any
 
 import numpy as np
 
-from drystone.errors import InputError, UsageError
-from drystone.io.found import Found, stone_set
+from drystone.errors import InputError
+from drystone.io.file_errors import listed, short, too_large, unfit
+from drystone.io.foreign import foreign
+from drystone.io.json_text import json_of
+from drystone.io.npy import BEGINNING
+from drystone.io.outlines_in.annotations import (
+    GEOJSON_KINDS,
+    read_coco,
+    read_geojson,
+    read_labelme,
+    read_sam,
+)
+from drystone.io.outlines_in.dxf import is_dxf, read_dxf
+from drystone.io.outlines_in.meshes import mesh_kind, read_mesh
 from drystone.io.outlines_in.model import METRES, OutlineFile, numbered, without_wedges
 from drystone.io.outlines_in.raster import rastered
+from drystone.io.outlines_in.svg import is_svg, read_svg
+from drystone.io.patches import stone_set
+from drystone.io.photo_beside import LABELS, SCHEMA
+from drystone.io.pictures import format_of
 from drystone.io.read_settings import ReadSettings
 from drystone.model.stone import Source, StoneSet
+
+Reader = Callable[[bytes, ReadSettings], OutlineFile]
 
 MOST_TEXT_BYTES = 500_000_000
 """Larger files of outlines are refused; that of all images of COCO has 450 MB."""
 
+_EXPECTED = (
+    "labelme (shapes), COCO (annotations, images), masks of SAM (a list with segmentation each) "
+    "or GeoJSON (type, features)"
+)
 
-def stones_of(
-    read: Callable[[bytes, str, ReadSettings], OutlineFile],
-    data: bytes,
-    where: str,
-    settings: ReadSettings,
-) -> StoneSet:
-    """Read a file of outlines.
 
-    Parameters
-    ----------
-    read : callable
-        Of :func:`drystone.io.outlines_in.detect.outline_reader`.
-    data : bytes
-        The whole file.
-    where : str
-        Its name.
-    settings : ReadSettings
-        ``unit``, ``px_per_m`` and ``image`` are for such files.
+def outline_reader(data: bytes, name: str) -> Reader | None:
+    """Return what reads a file of outlines; None when it is none, so perhaps a picture."""
+    suffix = PurePath(name).suffix.lower()
+    # The two letters of a BMP may begin a text, too.
+    if not data or data.startswith(BEGINNING) or format_of(data) not in ("", "BMP"):
+        return None
+    begins = data[:64].lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
+    if suffix in {".json", ".geojson"} or begins in (b"{", b"["):
+        return _read_json
+    # A drawing names itself; the text of an OBJ is told by its lines, so it comes last.
+    if is_svg(data, suffix):
+        return read_svg
+    if suffix == ".bmp":
+        return None
+    if is_dxf(data, suffix):
+        return read_dxf
+    kind = mesh_kind(data, suffix)
+    return None if kind is None else partial(read_mesh, kind)
 
-    Returns
-    -------
-    StoneSet
-        Its source has a scale when the file has a unit.
 
-    Raises
-    ------
-    InputError
-        E113 ... E116, see ``docs/errors.md``.
-    UsageError
-        E118 when the file has another unit than the settings say, or says nothing of images and
-        one is asked for; when a background or a mask is.
-    """
+def _read_json(data: bytes, settings: ReadSettings) -> OutlineFile:
+    with foreign(lambda why: _no_stones(f"cannot be read, it may be cut short ({why})")):
+        content = json_of(data.decode(json.detect_encoding(data), "surrogatepass"))
+    if isinstance(content, list):
+        if all(isinstance(found, Mapping) and "segmentation" in found for found in content):
+            return read_sam(content, settings)
+    elif isinstance(content, Mapping):
+        if isinstance(content.get("shapes"), list):
+            return read_labelme(content, settings)
+        if isinstance(content.get("annotations"), list):
+            return read_coco(content, settings)
+        if isinstance(kind := content.get("type"), str) and kind in GEOJSON_KINDS:
+            return read_geojson(content, settings)
+    raise _no_stones(*_what_else(content))
+
+
+def _what_else(content: Any) -> tuple[str, ...]:
+    """Say what JSON that holds no outlines is, and what to give instead."""
+    if not isinstance(content, Mapping):
+        return ("has none of the known forms",)
+    if content.get("schema") == SCHEMA:
+        return f"stands beside the label image {LABELS}", f"Give {LABELS}, or their folder."
+    if "steps" in content and "source" in content:
+        return "is a plan, made of stones already", "Give the stones, or use it with --from."
+    if "blocks" in content or "blocks_xywh" in content:
+        return "is a block model of a wall", "Give the stones; `drystone analyse` reads it."
+    keys = listed(short(repr(key)) for key in content) or "nothing"
+    return (f"has none of the known forms (its keys are {keys})",)
+
+
+def _no_stones(what: str, cure: str = f"Stones are read from {_EXPECTED}.") -> InputError:
+    return InputError("E113", f"this JSON {what}.", cure=cure)
+
+
+def stones_of(read: Reader, data: bytes, name: str, settings: ReadSettings) -> StoneSet:
+    """Read a file of outlines; its source has a scale when the file has a unit."""
     if len(data) > MOST_TEXT_BYTES:
         megabytes = f"{len(data) / 1e6:.0f} MB, and the limit is {MOST_TEXT_BYTES / 1e6:g} MB"
-        raise InputError(
-            "E110", f"it has {megabytes}.", where=where,
-            cure="Export the outlines of one image, with fewer corners.",
-        )  # fmt: skip
+        cure = "Export the outlines of one image, with fewer corners."
+        raise too_large(f"it has {megabytes}.", cure)
     # What is not finite is refused; NumPy would warn of it as well.
     with np.errstate(all="ignore"):
-        file = read(data, where, settings)
-    check_unit(file.unit_m, settings, where)
-    _check_of_outlines(settings, where)
+        file = read(data, settings)
+    check_unit(file.unit_m, settings)
+    # Outlines say themselves what tells stone from background in pictures.
+    mask = "--no-mask" if settings.mask is False else "--mask"
+    _check_not_given(settings.background != 0, "--background", "background")
+    _check_not_given(settings.mask is not None, mask, "mask")
     if not file.names_images:
-        check_no_image(settings, where)
+        check_no_image(settings)
     # Half a character pair can be neither printed nor written.
-    named = tuple(replace(stone, name=_printable(stone.name)) for stone in file.stones)
+    named = [
+        replace(stone, name=stone.name.encode("utf-8", "replace").decode()) for stone in file.stones
+    ]
     kept, wedges = without_wedges(named)
     stones, renumbered = numbered(kept)
-    drawn = rastered(replace(file, stones=stones), settings, where)
-    notices = [*file.notices, *wedges, *renumbered, *drawn.notices]
-    source = Source(
-        where,
-        hashlib.sha256(data).hexdigest(),
-        drawn.width,
-        drawn.height,
-        # What has px of its own has no other resolution.
-        reading=(settings if drawn.px_per_m else replace(settings, px_per_m=None)).changed(),
-        px_per_m=drawn.px_per_m,
-    )
-    return stone_set(Found(drawn.patches, notices, where), source, settings)
+    patches, size_px, px_per_m, said = rastered(replace(file, stones=stones), settings)
+    # What has px of its own has no other resolution.
+    reading = (settings if px_per_m else replace(settings, px_per_m=None)).changed()
+    digest = hashlib.sha256(data).hexdigest()
+    source = Source(name, digest, *size_px, reading=reading, px_per_m=px_per_m)
+    notices = [*file.notices, *wedges, *renumbered, *said]
+    return stone_set(patches, notices, source, settings)
 
 
-def _printable(name: str) -> str:
-    return name.encode("utf-8", "replace").decode()
-
-
-def check_unit(unit_m: float | None, settings: ReadSettings, where: str) -> None:
+def check_unit(unit_m: float | None, settings: ReadSettings) -> None:
     """Refuse a unit in the settings that is not that of the file (E118)."""
-    if not settings.unit:
-        return
     asked = METRES.get(settings.unit)
-    if asked == unit_m or (asked and unit_m and abs(asked / unit_m - 1.0) < 1e-6):
-        return
-    own = "px" if unit_m is None else f"a unit of its own ({unit_m:g} m)"
-    raise UsageError(
-        "E118", f"this file is in {own}, not in {settings.unit}.", where=where,
-        cure="Leave the unit out: it is for drawings that do not say theirs.",
-    )  # fmt: skip
+    same = asked == unit_m or (asked and unit_m and abs(asked / unit_m - 1.0) < 1e-6)
+    if settings.unit and not same:
+        own = "px" if unit_m is None else f"a unit of its own ({unit_m:g} m)"
+        cure = "Leave the unit out: it is for drawings that do not say theirs."
+        raise unfit(f"this file is in {own}, not in {settings.unit}.", cure)
 
 
-def check_no_image(settings: ReadSettings, where: str) -> None:
+def check_no_image(settings: ReadSettings) -> None:
     """Refuse the name of an image where there are none to choose from (E118)."""
     if settings.image:
-        raise UsageError(
-            "E118", f"there is no choice of images here, as for {settings.image!r}.", where=where,
-            cure="Leave --image (image in Python) out: it is for annotations that name their "
-            "images (COCO, masks of SAM).",
-        )  # fmt: skip
+        raise unfit(
+            f"there is no choice of images here, as for {settings.image!r}.",
+            "Leave --image (image in Python) out: it is for annotations that name their images "
+            "(COCO, masks of SAM).",
+        )
 
 
-def _check_of_outlines(settings: ReadSettings, where: str) -> None:
-    """Refuse what tells stone from background in pictures: outlines say it themselves (E118)."""
-    mask = "--no-mask" if settings.mask is False else "--mask"
-    for given, option, name in (
-        (settings.background != 0, "--background", "background"),
-        (settings.mask is not None, mask, "mask"),
-    ):
-        if given:
-            raise UsageError(
-                "E118", f"this file says itself what is stone, so {option} has no meaning.",
-                where=where,
-                cure=f"Leave {option} ({name} in Python) out: it is for pictures of stones.",
-            )  # fmt: skip
+def _check_not_given(given: bool, option: str, name: str) -> None:
+    if given:
+        what = f"this file says itself what is stone, so {option} has no meaning."
+        raise unfit(what, f"Leave {option} ({name} in Python) out: it is for pictures of stones.")

@@ -15,8 +15,9 @@ import tifffile
 from numpy.typing import NDArray
 from PIL.Image import Transpose
 
+from drystone.io.file_errors import damaged, several_pages
 from drystone.io.foreign import foreign
-from drystone.io.pictures import damaged, opened, several_pages
+from drystone.io.pictures import opened
 
 _BY_TIFFFILE = {1, 8, 32773, 32946}
 """No compression, deflate, PackBits: decoded by tifffile without further packages."""
@@ -54,51 +55,25 @@ _EXPANDS = 2**26
 
 @dataclass(frozen=True)
 class TiffPage:
-    """What must be known before a TIFF is decoded.
+    """What must be known before a TIFF is decoded."""
 
-    Parameters
-    ----------
-    width, height : int
-        Size in px.
-    lossy : bool
-        True for JPEG inside TIFF.
-    unreadable : str
-        Why it cannot be decoded without loss; empty when it can.
-    colours : str
-        Colour mode that holds no ids, such as CMYK; empty for all others.
-    alpha : bool
-        True when the last channel is transparency, and says so.
-    bits : int
-        Of a channel.
-    orientation : int
-        How the camera was held, 1 to 8.
-    negative : bool
-        True when 0 is white.
-    """
-
-    width: int
+    width: int  # px
     height: int
-    lossy: bool
-    unreadable: str
-    colours: str
-    alpha: bool
-    bits: int
-    orientation: int
-    negative: bool
+    lossy: bool  # JPEG inside TIFF
+    unreadable: str  # why it cannot be decoded without loss; empty when it can
+    colours: str  # colour mode that holds no ids, such as CMYK; empty for all others
+    alpha: bool  # the last channel is transparency, and says so
+    bits: int  # of a channel
+    orientation: int  # how the camera was held, 1 to 8
+    negative: bool  # 0 is white
 
 
-def inspect(data: bytes, where: str) -> TiffPage:
-    """Read the tags of a TIFF and decode nothing.
-
-    Raises
-    ------
-    InputError
-        E106 damaged, E109 several pages, planes or more channels than colours and alpha.
-    """
-    pages = _count_pages(data, where)
+def inspect(data: bytes) -> TiffPage:
+    """Read the tags of a TIFF and decode nothing."""
+    pages = _count_pages(data)
     if pages > 1:
-        raise several_pages(f"{pages} pages", where)
-    with _page(data, where) as page:
+        raise several_pages(f"{pages} pages")
+    with _page(data) as page:
         planes, channels = _planes(page), int(page.samplesperpixel)
         compression, photometric = int(page.compression), int(page.photometric)
         orientation = page.tags.get(ORIENTATION)
@@ -116,61 +91,51 @@ def inspect(data: bytes, where: str) -> TiffPage:
         )
     if planes > 1 or channels > 4:
         said = f"{planes} planes" if planes > 1 else f"{channels} channels"
-        raise several_pages(said, where)
+        raise several_pages(said)
     return found
 
 
-def values(data: bytes, where: str, check: Callable[[int, int], None]) -> NDArray[Any]:
+def values(data: bytes, check: Callable[[int, int], None]) -> NDArray[Any]:
     """Decode the only page of a TIFF, channels last; palette indices and numbers are kept.
 
     Pixels are where the file has them: its orientation turns nothing, however it is compressed.
-
-    Parameters
-    ----------
-    data : bytes
-        Of a file that was inspected, and found readable.
-    where : str
-        Its name, for messages.
-    check : callable
-        Refuses a width and a height.
     """
-    with _page(data, where) as page:
+    with _page(data) as page:
         compression, bits, kind = (
             int(n) for n in (page.compression, page.bitspersample, page.sampleformat)
         )
         if len(page.dataoffsets) < math.prod(page.chunked):
             # tifffile fills the rest with 0.
-            raise damaged("it does not hold all of its strips", where)
+            raise damaged("it does not hold all of its strips")
         negative = int(page.photometric) == 0
         size = math.prod(page.shaped) * max(1, bits // 8)
         packed = [
             (int(a), int(n)) for a, n in zip(page.dataoffsets, page.databytecounts, strict=False)
         ]
     if compression not in _BY_TIFFFILE:
-        return _values_by_pillow(
-            data, where, check, unsigned=bits == 32 and kind == 1, negative=negative
-        )
+        unsigned = bits == 32 and kind == 1
+        return _values_by_pillow(data, check, unsigned=unsigned, negative=negative)
     if compression != 1:
-        _check_expanded(data, packed, compression, size, where)
-    with _page(data, where) as page:
+        _check_expanded(data, packed, compression, size)
+    with _page(data) as page:
         found = np.asarray(page.asarray())
         return np.moveaxis(found, 0, -1) if page.axes == "SYX" else found
 
 
 @contextmanager
-def _page(data: bytes, where: str) -> Iterator[Any]:
+def _page(data: bytes) -> Iterator[Any]:
     """Open the first page with tifffile, the variants of microscopes that lead elsewhere aside."""
-    with foreign(lambda why: damaged(why, where)):
+    with foreign(damaged):
         file = tifffile.TiffFile(  # noqa: TID251 - its chain was followed
             io.BytesIO(data), is_lsm=False, is_ndpi=False, is_scanimage=False
         )
         page = file.pages[0]
         if not all(isinstance(side, int) for side in page.shape):
-            raise damaged("a side of it is no number", where)
+            raise damaged("a side of it is no number")
         yield page
 
 
-def _count_pages(data: bytes, where: str) -> int:
+def _count_pages(data: bytes) -> int:
     """Follow the chain of pages, which tifffile does without end where it runs in a circle."""
     order = "<" if data[:2] == b"II" else ">"
     big = data[2:4] in (b"+\0", b"\0+")
@@ -180,7 +145,7 @@ def _count_pages(data: bytes, where: str) -> int:
         (place,) = struct.unpack_from(f"{order}{offset}", data, place)
         while place and place < len(data) and len(seen) < _MOST_PAGES:
             if place in seen:
-                raise damaged("its pages lead in a circle", where)
+                raise damaged("its pages lead in a circle")
             seen.add(place)
             (entries,) = struct.unpack_from(f"{order}{count}", data, place)
             place += struct.calcsize(f"{order}{count}") + entry * entries
@@ -219,21 +184,21 @@ def _unreadable(page: Any) -> str:
 
 
 def _check_expanded(
-    data: bytes, packed: list[tuple[int, int]], compression: int, size: int, where: str
+    data: bytes, packed: list[tuple[int, int]], compression: int, size: int
 ) -> None:
     """Refuse packed bytes that become many more than the picture has."""
     total, most = sum(count for _, count in packed), 2 * size + _EXPANDS
     if total > len(data):
-        raise damaged("its strips lie in each other", where)
+        raise damaged("its strips lie in each other")
     if total * 1032 <= _EXPANDS:  # the most that deflate can do
         return
     expanded = 0
     for start, count in packed:
         piece = data[start : start + count]
-        with foreign(lambda why: damaged(why, where)):
+        with foreign(damaged):
             expanded += (_inflated if compression != 32773 else _unpacked)(piece, most)
         if expanded > most:
-            raise damaged("its strips are larger than the picture", where)
+            raise damaged("its strips are larger than the picture")
 
 
 def _inflated(piece: bytes, most: int) -> int:
@@ -256,9 +221,9 @@ def _unpacked(piece: bytes, most: int) -> int:
 
 
 def _values_by_pillow(
-    data: bytes, where: str, check: Callable[[int, int], None], *, unsigned: bool, negative: bool
+    data: bytes, check: Callable[[int, int], None], *, unsigned: bool, negative: bool
 ) -> NDArray[Any]:
-    with opened(data, where, check) as image:
+    with opened(data, check) as image:
         # Pillow turns a picture when it loads it.
         back = _BACK.get(image.getexif().get(ORIENTATION, 1))
         mode = image.mode

@@ -7,8 +7,7 @@ import numpy as np
 import tifffile
 from PIL import Image
 
-from drystone.errors import InputError, LabelImageError, UsageError
-from drystone.io.census import take_census
+from drystone.errors import InputError, UsageError
 from drystone.io.checks import (
     check_background,
     check_not_lossy,
@@ -17,8 +16,9 @@ from drystone.io.checks import (
     check_not_uniform,
 )
 from drystone.io.file_bytes import file_bytes
+from drystone.io.file_errors import naming
 from drystone.io.images import decode
-from drystone.io.labels import IdImage, to_ids
+from drystone.io.labels import check_no_zero, take_census, to_ids
 from drystone.model.wall import Labels
 from drystone.whole_files import write_whole
 
@@ -70,21 +70,13 @@ def write_labels(labels: Labels, path: str | Path) -> None:
     elif suffix == ".png" and int(labels.max(initial=0)) <= _MAX_ID_16_BIT:
         Image.fromarray(labels.astype(np.uint16)).save(buffer, format="PNG")
     else:
-        raise UsageError(
-            "E139",
-            "label images are written as .png (ids to 65535) or .tif (any id).",
-            where=str(path),
-            cure="Choose another ending.",
-        )
+        what = "label images are written as .png (ids to 65535) or .tif (any id)."
+        raise UsageError("E139", what, where=str(path), cure="Choose another ending.")
     write_whole(path, buffer.getvalue())
 
 
 def read_wall_image(
-    path: str | Path,
-    *,
-    background: int = 0,
-    max_image_mpx: float = 200.0,
-    planned: bool = False,
+    path: str | Path, *, background: int = 0, max_image_mpx: float = 200.0, planned: bool = False
 ) -> Labels:
     """Read any label image as a wall: every pixel keeps its id, nothing is dropped or split.
 
@@ -116,46 +108,27 @@ def read_wall_image(
         E108 values that cannot be ids (0 too, when the background is another value).
     """
     path = Path(path)
-    where = path.name
     try:
         data = file_bytes(path)
     except OSError as error:
-        raise InputError(
-            "E100",
-            f"the file cannot be read ({error.strerror}).",
-            where=str(path),
-            cure="Give the label image of a wall: one id a stone, 0 where there is none.",
-        ) from error
-    picture = decode(data, where, int(max_image_mpx * 1e6))
-    image = to_ids(picture.values, background, where)
-    census = take_census(image.ids)
-    if picture.lossy:
-        brightness = image.ids if image.brightness is None else image.brightness
-        check_not_lossy(census, brightness, where)
-    if len(census.values) == 1:
-        # One stone may fill the whole image; no stone may not.
-        if int(census.values[0]) == image.background:
-            check_not_uniform(census, image.background, where)
-    else:
-        check_background(census.index, census, image.background, where, _CURE)
-        check_not_photo(census, where)
-        if not planned:
-            check_not_resampled(census, image.background, where)
-    return _with_zero_background(image, where)
-
-
-def _with_zero_background(image: IdImage, where: str) -> Labels:
+        what = f"the file cannot be read ({error.strerror})."
+        cure = "Give the label image of a wall: one id a stone, 0 where there is none."
+        raise InputError("E100", what, where=str(path), cure=cure) from error
+    with naming(path.name):
+        picture = decode(data, int(max_image_mpx * 1e6))
+        image = to_ids(picture.values, background)
+        census = take_census(image.ids)
+        if picture.lossy:
+            check_not_lossy(census, image)
+        if len(census.values) > 1:
+            check_background(census, image.background, _CURE)
+            check_not_photo(census)
+            if not planned:
+                check_not_resampled(census, image.background)
+        elif int(census.values[0]) == image.background:
+            # One stone may fill the whole image; no stone may not.
+            check_not_uniform(census, image.background)
+        check_no_zero(census.values, image.background)
     labels = image.ids.astype(np.uint32)
-    if image.background == 0:
-        return labels
-    if (labels == 0).any():
-        raise LabelImageError(
-            "E108",
-            f"the value 0 is there beside the background {image.background}, and no stone can "
-            "be 0.",
-            where=where,
-            cure=f"Set those pixels to {image.background} if they are background, else to a free "
-            "id.",
-        )
     labels[labels == image.background] = 0
     return labels

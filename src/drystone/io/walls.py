@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from drystone.contacts.given import polygons_from_json
 from drystone.contacts.given_parts import read_mu
 from drystone.errors import InputError, Notice, UsageError
-from drystone.io.blocks_json import BLOCKS
 from drystone.io.file_bytes import file_bytes
+from drystone.io.file_errors import listed
 from drystone.io.foreign import foreign
 from drystone.io.json_text import json_of
-from drystone.io.listed import listed
+from drystone.io.plan_folder import BLOCKS
 from drystone.io.plan_json import read_plan
 from drystone.io.wall_image import read_wall_image
 from drystone.kernels.label_runs import label_runs
@@ -25,6 +25,8 @@ from drystone.model.plan import Plan
 from drystone.model.wall import Labels
 from drystone.statics.joints import loose_blocks
 from drystone.statics.model import RigidBlockModel
+
+_TOGETHER = "Keep the files of a plan together, or plan again."
 
 CENTROID_PX = 0.01
 """Between centroids of a plan and of its block model, source px: rounding of either file only."""
@@ -42,21 +44,12 @@ thousands of poses and scales came to .6 of what it allows."""
 
 @dataclass(frozen=True, eq=False)
 class GivenWall:
-    """A wall from a file.
+    """A wall from a file."""
 
-    Parameters
-    ----------
-    labels : (h, w) uint32 array or None
-        None for a block model, which has no pixels.
-    plan : Plan or None
-        When the file was a plan; its image is the wall image beside it.
-    blocks : mapping or None
-        A block model as it was written, also that of a plan on outlines.
-    """
-
-    labels: Labels | None
-    plan: Plan | None = None
+    labels: Labels | None  # (h, w), None for a block model, which has no pixels
+    plan: Plan | None = None  # when the file was a plan; its image is the wall image beside it
     blocks: dict[str, Any] | None = None
+    """A block model as it was written, also that of a plan on outlines."""
 
     @property
     def wedge_ids(self) -> frozenset[int]:
@@ -76,45 +69,28 @@ MOST_MPX = 200.0
 
 
 def read_wall(path: Path, *, background: int = 0) -> GivenWall:
-    """Read a label image, a plan.json (with the wall image beside it), or a block model.
-
-    Parameters
-    ----------
-    path : Path
-        The file, or the folder of a plan.
-    background : int
-        The value of a label image that is no stone.
-    """
+    """Read a label image, a plan.json (with the wall image beside it), or a block model."""
     if path.is_dir():
         path /= "plan.json"
     if path.suffix.lower() != ".json":
         return GivenWall(read_wall_image(path, background=background))
     if background:
-        raise UsageError(
-            "E118",
-            f"a background of {background} is of a label image, and this is none.",
-            where=str(path),
-            cure="Leave --background (background in Python) out.",
-        )
+        what = f"a background of {background} is of a label image, and this is none."
+        cure = "Leave --background (background in Python) out."
+        raise UsageError("E118", what, where=str(path), cure=cure)
     content = _read_json(path)
     if isinstance(content, dict) and ("blocks" in content or "blocks_xywh" in content):
         return GivenWall(None, blocks=content)
     plan = read_plan(path)
     labels = read_image_of(plan, path.parent)
     if labels is None:
-        raise InputError(
-            "E133",
-            f"there is no {image_name(plan)} beside the plan.",
-            where=str(path),
-            cure="Keep the files of a plan together, or give the label image itself.",
-        )
+        what = f"there is no {image_name(plan)} beside the plan."
+        cure = "Keep the files of a plan together, or give the label image itself."
+        raise InputError("E133", what, where=str(path), cure=cure)
     if not shows(labels, plan):
-        raise InputError(
-            "E133",
-            f"the {image_name(plan)} beside the plan shows other stones than the plan.",
-            where=str(path),
-            cure="Keep the files of a plan together, or give the label image itself.",
-        )
+        what = f"the {image_name(plan)} beside the plan shows other stones than the plan."
+        cure = "Keep the files of a plan together, or give the label image itself."
+        raise InputError("E133", what, where=str(path), cure=cure)
     if plan.settings.get("geometry") != "exact":
         _refuse_misplaced(labels, plan, path)
         return GivenWall(labels, plan)
@@ -148,17 +124,11 @@ def read_image_of(plan: Plan, folder: Path) -> Labels | None:
 
 
 def read_blocks_of(plan: Plan, folder: Path) -> Any:
-    """Return what blocks.json beside a plan on outlines holds; None when it is not there.
-
-    Raises
-    ------
-    InputError
-        E132 when it cannot be read or is no JSON.
-    """
+    """Return what blocks.json beside a plan on outlines holds; None when it is not there."""
     path = folder / BLOCKS
     if plan.settings.get("geometry") != "exact" or not path.exists():
         return None
-    content = _read_json(path, "Keep the files of a plan together, or plan again.")
+    content = _read_json(path, _TOGETHER)
     return {} if content is None else content  # a null is there, and is no block model
 
 
@@ -188,8 +158,7 @@ def _blocks_of(plan: Plan, path: Path) -> dict[str, Any]:
         what = f"the {BLOCKS} beside the plan has its stones in other places than the plan."
     else:
         return blocks
-    cure = "Keep the files of a plan together, or plan again."
-    raise InputError("E133", what, where=str(path), cure=cure)
+    raise InputError("E133", what, where=str(path), cure=_TOGETHER)
 
 
 def _where_planned(plan: Plan, polygons: Mapping[int, Points]) -> bool:
@@ -208,13 +177,9 @@ def _refuse_misplaced(labels: Labels, plan: Plan, path: Path) -> None:
     for block, (centroid, allowed_px) in _seen(labels).items():
         x, y = planned[block]
         if not math.dist(centroid, (x / unit, y / unit)) <= allowed_px:
-            raise InputError(
-                "E133",
-                f"the {image_name(plan)} beside the plan shows {block} in another place than the "
-                "plan has it.",
-                where=str(path),
-                cure="Keep the files of a plan together, or plan again.",
-            )
+            shown = f"{image_name(plan)} beside the plan shows {block}"
+            what = f"the {shown} in another place than the plan has it."
+            raise InputError("E133", what, where=str(path), cure=_TOGETHER)
 
 
 def _seen(labels: Labels) -> dict[int, tuple[tuple[float, float], float]]:

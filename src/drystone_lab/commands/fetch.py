@@ -5,8 +5,16 @@ from pathlib import Path
 
 from drystone.cli.output import print_json
 from drystone.errors import ExitCode, UsageError
-from drystone.io.published import Fetched, destination, fetch_set
-from drystone.io.published_sets import LICENCE, PAPER, RAW, REPOSITORY, SETS
+from drystone.io.published import (
+    LICENCE,
+    PAPER,
+    RAW,
+    REPOSITORY,
+    SETS,
+    Fetched,
+    destination,
+    fetch_set,
+)
 
 
 def run(arguments: argparse.Namespace) -> ExitCode:

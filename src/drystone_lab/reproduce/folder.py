@@ -19,7 +19,7 @@ from PIL import PngImagePlugin
 from drystone.drawing.files import save
 from drystone.errors import DrystoneError, InputError, UsageError
 from drystone.io.folder_lock import has_files
-from drystone.io.published_sets import SETS
+from drystone.io.published import SETS
 from drystone.kernels.backend import describe
 from drystone.whole_files import write_whole
 from drystone_lab.reproduce.item import Item, Output, Picture

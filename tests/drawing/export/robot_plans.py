@@ -1,5 +1,6 @@
 """Assemblies of four small plans, for exports that are read back."""
 
+import json
 import tempfile
 from dataclasses import replace
 from functools import cache
@@ -14,7 +15,7 @@ import drystone as ds
 from drystone.drawing.assembly.parts import Assembly, Part
 from drystone.drawing.assembly.read import read_assembly
 from drystone.generate import RubbleSettings, rubble_stones
-from drystone.io.blocks_json import write_blocks
+from drystone.io.plan_folder import BLOCKS, blocks_to_json
 from drystone.io.wall_image import write_wall_image
 from drystone.model.wedge_shape import WedgeSettings
 from drystone.search.plan_result import PlanResult
@@ -53,7 +54,8 @@ def write_plan_folder(name: str, folder: Path) -> Path:
     """Write the plan of one of METRIC with the files beside it."""
     made = _planned(name)
     ds.write_plan(made.plan, folder / "plan.json")
-    write_blocks(made.wall, made.model, folder)
+    if made.wall.outlines is not None:
+        (folder / BLOCKS).write_text(json.dumps(blocks_to_json(made.wall, made.model)))
     write_wall_image(made.wall.labels, folder)
     return folder
 

@@ -20,7 +20,7 @@ from drystone.drawing.photo import VIEWER_PX, Photo
 from drystone.drawing.report.viewer_data import PATTERNS
 from drystone.drawing.words.content import Card
 from drystone.drawing.words.masons import WALLS, masons_wall, masons_words
-from drystone.io.published_sets import SETS
+from drystone.io.published import SETS
 from drystone.model.plan import StoneStep
 from drystone.statics.limit import lateral_resistance
 from tests.drawing.report.walls import result, sha256, written

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from drystone.io.published_sets import LICENCE, PAPER, SETS
+from drystone.io.published import LICENCE, PAPER, SETS
 from drystone_lab.commands import fetch
 from tests.cli.conftest import Run
 from tests.io.served import COMMIT, CONTENTS, lay_open, nobody, serving, toy_set

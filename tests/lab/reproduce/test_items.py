@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from drystone.errors import UsageError
-from drystone.io.published_sets import SETS
+from drystone.io.published import SETS
 from drystone_lab.reproduce.item import Item
 from drystone_lab.reproduce.items import ALSO, ITEMS, item_named, item_names
 

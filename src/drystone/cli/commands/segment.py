@@ -16,8 +16,8 @@ from drystone.cli.numbers import positive, whole_from
 from drystone.cli.output import prepare_folder, print_json, print_table
 from drystone.cli.scale import Ruled, add_scale, refuse_outside
 from drystone.errors import ExitCode, Notice, UsageError
+from drystone.io.photo_beside import LABELS, SIDECAR, PhotoSidecar, write_sidecar
 from drystone.io.photo_file import Photo, read_photo
-from drystone.io.photo_sidecar import LABELS, SIDECAR, PhotoSidecar, write_sidecar
 from drystone.model.stone_size import StoneSize, median_sides, sizes_of
 from drystone.photo.layout import MarkerLayout, parse_layout, parse_size_m
 from drystone.photo.segment_doubts import Doubt, doubts_of, notices_of, ruler_doubts

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from drystone.io.published_sets import SETS
+from drystone.io.published import SETS
 
 
 @dataclass(frozen=True)

@@ -2,21 +2,21 @@
 
 import io
 from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
 import numpy as np
 from scipy.interpolate import BSpline
 
-from drystone.errors import InputError, Notice, UsageError
-from drystone.io.foreign import foreign
-from drystone.io.outlines_in.dxf_blocks import Drawn, drawn_entities
+from drystone.errors import InputError, Notice
+from drystone.io.file_errors import damaged, too_large, unusable
+from drystone.io.foreign import extra, foreign
 from drystone.io.outlines_in.model import (
     METRES,
-    Area,
     OutlinedStone,
     OutlineFile,
-    damaged,
     left_aside,
     number_in,
     ring,
@@ -36,7 +36,28 @@ _CLOSED = 1e-6
 _FLATNESS = 2e-4
 """How far chords may stay away from a curve, as a share of the size of the outline."""
 _MOST_CORNERS = 10_000_000
+_DEEPEST = 64
+_MOST_ENTITIES = 100_000
+"""Entities and block references, those in rows and columns, and in blocks, one by one."""
 _MOST_DEGREE = 32
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """An entity where it is drawn."""
+
+    entity: Any  # as its block defines it
+    layer: str  # its own; that of the block reference for what is on layer 0 in a block
+    matrix: Any  # from its block to the model space
+
+
+@dataclass(frozen=True, eq=False)
+class _Insert:
+    """Where a block is drawn."""
+
+    matrix: Any
+    layer: str = "0"
+    depth: int = 0
 
 
 def is_dxf(data: bytes, suffix: str) -> bool:
@@ -47,67 +68,49 @@ def is_dxf(data: bytes, suffix: str) -> bool:
     return suffix == ".dxf" or (b"SECTION" in lines and lines[0] in {b"0", b"999"})
 
 
-def read_dxf(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
+def read_dxf(data: bytes, settings: ReadSettings) -> OutlineFile:
     """Read the closed outlines of the model space, also within block references.
 
     Where there is a layer of the name STONES, only its outlines are stones.  An outline in
     another one is its hole.  What is hidden, or on a layer that is off or frozen, does not count.
-
-    Raises
-    ------
-    InputError
-        E106 for a damaged file, E116 when the drawing has no unit, E114 for coordinates that
-        cannot be used.
-    UsageError
-        E305 when ezdxf is not installed.
     """
-    ezdxf = load_ezdxf()
-    document = _document(ezdxf, data, where)
-    unit_m = _unit(ezdxf, document, where, settings)
+    ezdxf = extra("ezdxf", "reads DXF", "dxf", "cad")
+    document = _document(ezdxf, data)
+    unit_m = _unit(ezdxf, document, settings)
     aside: Counter[str] = Counter()
-    shown = drawn_entities(document, where, aside)
+    shown = drawn_entities(document, aside)
     named = [drawn for drawn in shown if drawn.layer.upper() == _LAYER]
     if named:
         aside["entities outside the layer STONES"] = len(shown) - len(named)
     rings, names = [], []
     room = _MOST_CORNERS
     for drawn in named or shown:
-        corners = _outline(drawn, where, aside)
+        corners = _outline(drawn, aside)
         if corners is None:
             continue
         room -= len(corners)
         if room < 0:
-            raise InputError(
-                "E110", f"the drawing has more than {_MOST_CORNERS} corners, those on curves.",
-                where=where, cure="Export the outlines of stones only, with fewer corners.",
-            )  # fmt: skip
+            what = f"the drawing has more than {_MOST_CORNERS} corners, those on curves."
+            raise too_large(what, "Export the outlines of stones only, with fewer corners.")
         rings.append(corners)
-        with foreign(lambda why: damaged(where, f"the name of an outline cannot be used ({why})")):
+        with foreign(lambda why: unusable(f"the name of an outline cannot be used ({why})")):
             names.append(_name(drawn))
-    with foreign(lambda why: damaged(where, f"its outlines cannot be put in order ({why})")):
+    with foreign(lambda why: unusable(f"its outlines cannot be put in order ({why})")):
         found = with_holes(rings)
-    return _file(found, rings, names, unit_m, +aside)
+    # The one layer that all stones are on says nothing of a stone.
+    names = names if len(set(names)) > 1 or len(names) == 1 else [""] * len(names)
+    stones = [OutlinedStone(number_in(names[i]), names[i], (area,)) for i, area in found]
+    cure = "Only closed outlines are read: join lines and arcs to polylines, bind references."
+    notices = left_aside(+aside, cure)
+    if len(found) < len(rings):
+        text = f"{len(rings) - len(found)} outlines lie in others and are their holes."
+        cure = "If they are stones in a frame, put them on a layer STONES, or hide the frame."
+        notices.append(Notice("W119", text, cure))
+    return OutlineFile(stones, unit_m, y_up=True, notices=notices)
 
 
-def load_ezdxf() -> Any:
-    """Return ezdxf; it is an extra, so it is loaded only when it is needed (E305)."""
-    try:
-        return import_module("ezdxf")
-    except ImportError as error:
-        raise UsageError(
-            "E305", "ezdxf is not installed, and it reads DXF.", where="dxf",
-            cure="Install it with `pip install drystone[cad]`.",
-        ) from error  # fmt: skip
-
-
-def _document(ezdxf: Any, data: bytes, where: str) -> Any:
-    def cut(why: str) -> InputError:
-        return InputError(
-            "E106", f"the drawing is damaged or cut short ({why}).", where=where,
-            cure="Copy or export it again.",
-        )  # fmt: skip
-
-    with foreign(cut):
+def _document(ezdxf: Any, data: bytes) -> Any:
+    with foreign(lambda why: damaged(why, what="drawing")):
         if data.startswith(BINARY):
             tagger = import_module("ezdxf.lldxf.tagger")
             drawing = import_module("ezdxf.document").Drawing
@@ -125,9 +128,9 @@ def _text(data: bytes) -> str:
         return data.decode(page, "surrogateescape")
 
 
-def _unit(ezdxf: Any, document: Any, where: str, settings: ReadSettings) -> float | None:
+def _unit(ezdxf: Any, document: Any, settings: ReadSettings) -> float | None:
     units = import_module("ezdxf.units")
-    with foreign(lambda why: damaged(where, f"its unit cannot be used ({why})")):
+    with foreign(lambda why: unusable(f"its unit cannot be used ({why})")):
         number = int(document.header.get("$INSUNITS", 0))
     if number in {int(known) for known in ezdxf.units.InsertUnits} - {0}:
         return float(units.conversion_factor(ezdxf.units.InsertUnits(number), units.M))
@@ -137,19 +140,19 @@ def _unit(ezdxf: Any, document: Any, where: str, settings: ReadSettings) -> floa
         "E116",
         f"the drawing does not say its unit ($INSUNITS is {number}), so its stones could be of "
         "any size.",
-        where=where,
         cure="Say it with --unit mm (or cm, m, in, ft, px; ReadSettings.unit), or set it in the "
         "CAD program.",
     )
 
 
-def _outline(drawn: Drawn, where: str, aside: Counter[str]) -> Points | None:
+def _outline(drawn: Drawn, aside: Counter[str]) -> Points | None:
     """Return the corners of a closed outline; what is none is counted."""
     entity = drawn.entity
     kind, handle = entity.dxftype(), entity.dxf.get("handle", "?")
-    unusable = f"the {kind} of handle {handle} cannot be used"
-    with foreign(lambda why: damaged(where, f"{unusable} ({why})")):
-        if kind not in _OUTLINES or (kind == "POLYLINE" and not _is_line(entity)):
+    named = f"the {kind} of handle {handle}"
+    with foreign(lambda why: unusable(f"{named} cannot be used ({why})")):
+        is_mesh = kind == "POLYLINE" and not (entity.is_2d_polyline or entity.is_3d_polyline)
+        if kind not in _OUTLINES or is_mesh:
             aside[kind] += 1
             return None
         if kind == "SPLINE" and len(entity.control_points):
@@ -173,19 +176,11 @@ def _outline(drawn: Drawn, where: str, aside: Counter[str]) -> Points | None:
 
 
 def spline(control: Any, knots: Any, weights: Any, degree: int) -> Points:
-    """Return points on a B-spline, its ends included.
+    """Return points, (n, 2), on a B-spline, its ends included.
 
-    Parameters
-    ----------
-    control : (n, 2 or 3) array_like
-        Control points.
-    knots : (n + degree + 1,) array_like
-        Ascending.  The curve lives between the knots `degree` and `n`: of a periodic spline the
-        others lie beyond its ends.
-    weights : (n,) array_like
-        Empty for a spline that is not rational.
-    degree : int
-        From 1.
+    The curve lives between the ascending knots `degree` and n, the number of control points: of a
+    periodic spline the others lie beyond its ends.  `weights` is empty for one that is not
+    rational.
     """
     if degree > _MOST_DEGREE:
         raise ValueError(f"its degree is {degree}; the limit is {_MOST_DEGREE}")
@@ -200,10 +195,6 @@ def spline(control: Any, knots: Any, weights: Any, degree: int) -> Points:
     return np.asarray(found[:, :2] / found[:, 2:])
 
 
-def _is_line(entity: Any) -> bool:
-    return bool(entity.is_2d_polyline or entity.is_3d_polyline)
-
-
 def _name(drawn: Drawn) -> str:
     """Return what drystone wrote to the outline of a stone, else the layer."""
     entity = drawn.entity
@@ -213,20 +204,74 @@ def _name(drawn: Drawn) -> str:
     return "" if drawn.layer.upper() in {"0", _LAYER} else drawn.layer
 
 
-def _file(
-    found: list[tuple[int, Area]],
-    rings: list[Points],
-    names: list[str],
-    unit_m: float | None,
-    aside: Counter[str],
-) -> OutlineFile:
-    # The one layer that all stones are on says nothing of a stone.
-    shown = names if len(set(names)) > 1 or len(names) == 1 else [""] * len(names)
-    stones = tuple(OutlinedStone(number_in(shown[i]), shown[i], (area,)) for i, area in found)
-    cure = "Only closed outlines are read: join lines and arcs to polylines, bind references."
-    notices = left_aside(aside, cure)
-    if len(found) < len(rings):
-        text = f"{len(rings) - len(found)} outlines lie in others and are their holes."
-        cure = "If they are stones in a frame, put them on a layer STONES, or hide the frame."
-        notices.append(Notice("W119", text, cure))
-    return OutlineFile(stones, unit_m, y_up=True, notices=tuple(notices))
+def drawn_entities(document: Any, aside: Counter[str]) -> list[Drawn]:
+    """Return all that the model space shows; what is hidden or missing is counted.
+
+    A block on a frozen layer is hidden with all that is in it.  On a layer that is off, only what
+    has its layer from the block reference is, as CAD programs show it.
+    """
+    start = _Insert(import_module("ezdxf.math").Matrix44())
+    walk = _Blocks(document, aside)
+    with foreign(lambda why: unusable(f"a block or a dimension cannot be used ({why})")):
+        return list(walk.drawn(document.modelspace(), start))
+
+
+class _Blocks:
+    """Through all that is drawn."""
+
+    def __init__(self, document: Any, aside: Counter[str]) -> None:
+        self.document, self.aside = document, aside
+        self.composite = import_module("ezdxf.protocols").SupportsVirtualEntities
+        self.count = 0
+
+    def drawn(self, entities: Iterable[Any], place: _Insert) -> Iterator[Drawn]:
+        """Yield entities, and the parts of those that have parts, in the order of the file."""
+        for entity in entities:
+            self._count(place)
+            own = str(_attribute(entity, "layer", "0"))
+            layer = place.layer if own == "0" else own
+            if self._is_hidden(entity, layer):
+                self.aside["entities that are hidden, or on hidden layers"] += 1
+            elif entity.dxftype() == "INSERT":
+                yield from self._inserted(entity, _Insert(place.matrix, layer, place.depth + 1))
+                yield from self.drawn(entity.attribs, place)
+            elif isinstance(entity, self.composite):
+                # Dimensions are blocks too, but their parts are where they are drawn.
+                parts = entity.__virtual_entities__()
+                yield from self.drawn(parts, _Insert(place.matrix, layer, place.depth + 1))
+            else:
+                yield Drawn(entity, layer, place.matrix)
+
+    def _inserted(self, insert: Any, place: _Insert) -> Iterator[Drawn]:
+        block = self.document.blocks.get(insert.dxf.get("name", ""))
+        if block is None:
+            self.aside["INSERT of a block that is not there"] += 1
+            return
+        if block.block.is_xref or block.block.is_xref_overlay:
+            # What it shows is in another file; a copy of it here would be of some earlier day.
+            self.aside["INSERT of an external reference"] += 1
+            return
+        # Definitions of attributes are not drawn, only the attributes of the block reference.
+        entities = [entity for entity in block if entity.dxftype() != "ATTDEF"]
+        self._count(place, insert.mcount)
+        for one in insert.multi_insert() if insert.mcount > 1 else [insert]:
+            matrix = one.matrix44() @ place.matrix
+            yield from self.drawn(entities, _Insert(matrix, place.layer, place.depth))
+
+    def _count(self, place: _Insert, number: int = 1) -> None:
+        self.count += number
+        if self.count > _MOST_ENTITIES or place.depth > _DEEPEST:
+            raise unusable("blocks are in each other too often or too deeply")
+
+    def _is_hidden(self, entity: Any, layer: str) -> bool:
+        if _attribute(entity, "invisible", 0):
+            return True
+        if layer not in self.document.layers:
+            return False
+        found = self.document.layers.get(layer)
+        return bool(found.is_frozen() or (found.is_off() and entity.dxftype() != "INSERT"))
+
+
+def _attribute(entity: Any, name: str, default: Any) -> Any:
+    """Return an attribute; entities that ezdxf does not know have none."""
+    return entity.dxf.get(name, default) if entity.dxf.is_supported(name) else default

@@ -5,9 +5,9 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.errors import InputError
-from drystone.io.listed import short
-from drystone.io.outlines_in.model import Area, OutlinedStone, PlacedMask
+from drystone.io.file_errors import short, too_large
+from drystone.io.outlines_in.model import Area, OutlinedStone
+from drystone.io.patches import PlacedMask
 from drystone.kernels.polygons import Points
 
 _AT_ONCE_PX = 2**22
@@ -20,100 +20,73 @@ _MOST_STONES = 10_000
 
 
 def box_of(area: Area) -> tuple[int, int, int, int]:
-    """Return the rows and columns (first, end, first, end) that an area can fill."""
+    """Return the first row and column that an area can fill, and those after the last."""
     points = np.concatenate(area.rings)
-    (left, top), (right, bottom) = points.min(axis=0), points.max(axis=0)
-    return int(np.floor(top)), int(np.ceil(bottom)), int(np.floor(left)), int(np.ceil(right))
+    left, top = np.floor(points.min(axis=0)).astype(int).tolist()
+    right, bottom = np.ceil(points.max(axis=0)).astype(int).tolist()
+    return top, left, bottom, right
 
 
 class Room:
     """Pixels that the stones of a file may fill, boxes around them included, asked for before.
 
-    Parameters
-    ----------
-    where : str
-        Name of the file, for messages.
-    max_px : int
-        Of a picture; all stones together may have twice as many.
+    All stones together may have twice as many as a picture.
     """
 
-    def __init__(self, where: str, max_px: int) -> None:
-        self.where, self.max_px = where, max_px
+    def __init__(self, max_px: int) -> None:
+        self.max_px = max_px
         self.left = 2 * max_px
 
     def take(self, px: int) -> None:
         """Take some for one more mask; E110 when there is no room."""
         self.left -= px
         if self.left < 0:
-            raise InputError(
-                "E110",
+            raise too_large(
                 f"its stones fill more than {2 * self.max_px / 1e6:g} million px together.",
-                where=self.where,
-                cure="Reduce or crop its image, or give it a smaller resolution; only in Python "
-                "can the limit be raised (max_image_mpx).",
+                "Reduce or crop its image, or give it a smaller resolution; only in Python can "
+                "the limit be raised (max_image_mpx).",
             )
 
 
-def check_reach(stones: Iterable[OutlinedStone], where: str, max_px: int) -> None:
+def check_reach(stones: Iterable[OutlinedStone], max_px: int) -> None:
     """Refuse outlines, in px, that would fill the memory (E110), naming the stone."""
-    room = Room(where, max_px)
+    room = Room(max_px)
     for number, stone in enumerate(stones, start=1):
         if number > _MOST_STONES:
-            raise InputError(
-                "E110", f"there are more than {_MOST_STONES} stones in it.", where=where,
-                cure="Export those of one wall.",
-            )  # fmt: skip
-        boxes = [box_of(area) for area in stone.areas]
-        boxes += [_box_of_mask(placed) for placed in stone.masks]
+            what = f"there are more than {_MOST_STONES} stones in it."
+            raise too_large(what, "Export those of one wall.")
+        boxes = [box_of(area) for area in stone.areas] + [placed.sides for placed in stone.masks]
         if not boxes:
             continue
-        (top, left), (bottom, right) = np.min(boxes, axis=0)[::2], np.max(boxes, axis=0)[1::2]
-        width, height = int(right - left), int(bottom - top)
+        height, width = (np.max(boxes, axis=0)[2:] - np.min(boxes, axis=0)[:2]).tolist()
         # A mask of pixels may be that of the ground; an outline is drawn.
         most = max_px if stone.masks else max_px // 4
+        name = short(stone.name or stone.id)
         if width * height > most:
-            raise InputError(
-                "E110",
-                f"stone {short(stone.name or stone.id)} reaches over {width} x {height} px; the "
-                f"limit is {most / 1e6:g} million.",
-                where=where,
-                cure="Is a corner of it far away from the picture? Correct it; only in Python "
-                "can the limit be raised (max_image_mpx).",
+            raise too_large(
+                f"stone {name} reaches over {width} x {height} px; the limit is {most / 1e6:g} "
+                "million.",
+                "Is a corner of it far away from the picture? Correct it; only in Python can the "
+                "limit be raised (max_image_mpx).",
             )
         room.take(width * height)
-        crossed = sum(_rows_crossed(ring) for area in stone.areas for ring in area.rings)
+        heights = (np.ceil(ring[:, 1] - 0.5) for area in stone.areas for ring in area.rings)
+        crossed = sum(int(np.abs(np.diff(rows, append=rows[:1])).sum()) for rows in heights)
         if crossed > width * height + _FREE_ROWS:
-            raise InputError(
-                "E110",
-                f"the outline of stone {short(stone.name or stone.id)} goes up and down over "
-                f"{crossed} rows of pixels, and it has {width} x {height} px.",
-                where=where,
-                cure="Draw it with fewer corners.",
+            raise too_large(
+                f"the outline of stone {name} goes up and down over {crossed} rows of pixels, and "
+                f"it has {width} x {height} px.",
+                "Draw it with fewer corners.",
             )
-
-
-def _box_of_mask(placed: PlacedMask) -> tuple[int, int, int, int]:
-    height, width = placed.mask.shape
-    return placed.row, placed.row + height, placed.col, placed.col + width
 
 
 def filled_area(area: Area) -> PlacedMask | None:
-    """Return the pixels whose centres lie in an area; None when there are none.
+    """Return the pixels whose centres lie in an area in px, y down; None when there are none.
 
-    Parameters
-    ----------
-    area : Area
-        In px, y down; pixel (row, col) is the unit square from (x, y) = (col, row).  A centre on
-        a left or upper edge is inside, on a right or lower edge outside, so areas that meet share
-        no pixel.
-
-    Examples
-    --------
-    >>> square = np.array([[0, 0], [3, 0], [3, 2], [0, 2]], float)
-    >>> filled_area(Area((square,))).mask.shape
-    (2, 3)
+    Pixel (row, col) is the unit square from (x, y) = (col, row).  A centre on a left or upper edge
+    is inside, on a right or lower edge outside, so areas that meet share no pixel.
     """
-    top, bottom, left, right = box_of(area)
+    top, left, bottom, right = box_of(area)
     height, width = bottom - top, right - left
     if height < 1 or width < 1:
         return None
@@ -136,28 +109,28 @@ def trimmed(placed: PlacedMask) -> PlacedMask | None:
         return None
     cols = np.flatnonzero(placed.mask.any(axis=0))
     inside = placed.mask[rows[0] : rows[-1] + 1, cols[0] : cols[-1] + 1]
-    return PlacedMask(
-        np.ascontiguousarray(inside), placed.row + int(rows[0]), placed.col + int(cols[0])
-    )
+    row, col = placed.row + int(rows[0]), placed.col + int(cols[0])
+    return PlacedMask(np.ascontiguousarray(inside), row, col)
 
 
 def united(masks: list[PlacedMask]) -> PlacedMask | None:
     """Return the union of masks; None without any."""
     if len(masks) < 2:
         return masks[0] if masks else None
-    top, left = min(m.row for m in masks), min(m.col for m in masks)
-    bottom = max(m.row + m.mask.shape[0] for m in masks)
-    right = max(m.col + m.mask.shape[1] for m in masks)
-    whole = np.zeros((bottom - top, right - left), bool)
+    sides = [mask.sides for mask in masks]
+    top, left = np.min(sides, axis=0)[:2].tolist()
+    bottom, right = np.max(sides, axis=0)[2:].tolist()
+    whole = PlacedMask(np.zeros((bottom - top, right - left), bool), top, left)
     for one in masks:
-        height, width = one.mask.shape
-        row, col = one.row - top, one.col - left
-        whole[row : row + height, col : col + width] |= one.mask
-    return PlacedMask(whole, top, left)
+        within, mask = whole.shared(one)
+        within |= mask
+    return whole
 
 
-def _rows_crossed(ring: Points) -> int:
-    return int(np.abs(np.diff(np.ceil(ring[:, 1] - 0.5), append=np.ceil(ring[:1, 1] - 0.5))).sum())
+def pixels_of(stone: OutlinedStone) -> PlacedMask | None:
+    """Return the pixels of a stone whose outlines are in px, y down; None when it has none."""
+    filled = (filled_area(area) for area in stone.areas)
+    return united([*(mask for mask in filled if mask is not None), *stone.masks])
 
 
 def _add_crossings(turns: NDArray[np.int32], ring: Points, top: int, left: int) -> None:

@@ -4,34 +4,26 @@ import io
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib import import_module
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from drystone.errors import InputError, Notice, UsageError
-from drystone.io.foreign import foreign
-from drystone.io.listed import listed, short
-from drystone.io.outlines_in.model import (
-    METRES,
-    OutlinedStone,
-    OutlineFile,
-    damaged,
-    number_in,
-)
+from drystone.errors import InputError, Notice
+from drystone.io.file_errors import damaged, listed, short, unusable
+from drystone.io.foreign import extra, foreign
+from drystone.io.outlines_in.model import METRES, OutlinedStone, OutlineFile, number_in
 from drystone.io.outlines_in.silhouettes import shadow
 from drystone.io.read_settings import ReadSettings
 
-_PLANES = {0: (1, 2), 1: (0, 2), 2: (0, 1)}
-"""Axes to the right and up, when one looks along the third: along -X, +Y, or -Z."""
-_WORDS = {
-    0: "along X, with Y to the right and Z up",
-    1: "along Y, with X to the right and Z up",
-    2: "along Z, with X to the right and Y up",
+_VIEWS = {
+    0: ([1, 2], "along X, with Y to the right and Z up"),
+    1: ([0, 2], "along Y, with X to the right and Z up"),
+    2: ([0, 1], "along Z, with X to the right and Y up"),
 }
+"""Axes to the right and up, when one looks along the third: along -X, +Y, or -Z."""
 _OURS = (b"# drystone ", b"drystone, ")
 _HEAD = 400
 _STL_FACET = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -40,25 +32,14 @@ _PLY_FACES = re.compile(rb"^element\s+face\s+(\d{1,18})", re.MULTILINE)
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
-    """A body of a mesh.
+class MeshBody:
+    """A body of a mesh."""
 
-    Parameters
-    ----------
-    name : str
-        Empty when it has none.
-    vertices : (n, 3) float array
-        Of the whole file.
-    faces : sequence of integer arrays
-        Positions in `vertices`, three or more a face.
-    said : tuple of str
-        All that the file says of it after o or g, each once; only of an OBJ.
-    """
-
-    name: str
-    vertices: NDArray[np.float64]
-    faces: Sequence[NDArray[np.int64]]
+    name: str  # empty when it has none
+    vertices: NDArray[np.float64]  # (n, 3), of the whole file
+    faces: Sequence[NDArray[np.int64]]  # positions in `vertices`, three or more a face
     said: tuple[str, ...] = ()
+    """All that the file says of it after o or g, each once; only of an OBJ."""
 
 
 def mesh_kind(data: bytes, suffix: str) -> str | None:
@@ -75,112 +56,86 @@ def mesh_kind(data: bytes, suffix: str) -> str | None:
     return "obj" if suffix == ".obj" or is_obj else None
 
 
-def read_mesh(kind: str, data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
+def read_mesh(kind: str, data: bytes, settings: ReadSettings) -> OutlineFile:
     """Read the outlines of bodies.
 
     Named objects of an OBJ are a stone each; otherwise every connected body is one.  Meshes
     that drystone wrote are seen along Y with Z up, others along the axis in which all of it
     together is thinnest.  Their unit is taken as the metre unless the settings name another.
-
-    Raises
-    ------
-    InputError
-        E106 for a damaged file, E114 for a mesh without faces or with impossible ones.
-    UsageError
-        E305 when trimesh is not installed (PLY).
     """
-    bodies = _BODIES[kind](data, where)
+    bodies = _BODIES[kind](data)
     used = np.unique(np.concatenate([np.concatenate(list(b.faces)) for b in bodies]))
     vertices = bodies[0].vertices[used]
     if not np.isfinite(vertices).all() or np.abs(vertices).max() > 1e9:
-        raise damaged(where, "a vertex is not finite or beyond 1e9")
+        raise unusable("a vertex is not finite or beyond 1e9")
     ours = data.startswith(_OURS)
     axis = 1 if ours else int(np.argmin(np.ptp(vertices, axis=0)))
-    plane = _PLANES[axis]
-    with foreign(lambda why: damaged(where, f"its faces cannot be united ({why})")):
+    plane, view = _VIEWS[axis]
+    with foreign(lambda why: unusable(f"its faces cannot be united ({why})")):
         areas = [shadow([b.vertices[face][:, plane] for face in b.faces]) for b in bodies]
-    stones = tuple(
-        OutlinedStone(number_in(body.name), body.name, area)
-        for body, area in zip(bodies, areas, strict=True)
-    )
+    both = zip(bodies, areas, strict=True)
+    stones = [OutlinedStone(number_in(body.name), body.name, area) for body, area in both]
     why = "as drystone writes meshes" if ours else "in which the mesh is thinnest"
-    notices = [Notice("W119", f"{len(stones)} bodies, seen {_WORDS[axis]} ({why}).")]
+    notices = [Notice("W119", f"{len(stones)} bodies, seen {view} ({why}).")]
     notices += [_united(body) for body in bodies if len(body.said) > 1]
     if not settings.unit and not ours:
         text = f"{kind.upper()} has no unit: lengths were taken as metres."
         notices.append(Notice("W119", text, "Say --unit mm (or cm, in, ft) if they are not."))
     unit_m = METRES.get(settings.unit or "m")
-    return OutlineFile(stones, unit_m, y_up=True, notices=tuple(notices))
+    return OutlineFile(stones, unit_m, y_up=True, notices=notices)
 
 
-def _united(body: Body) -> Notice:
+def _united(body: MeshBody) -> Notice:
     shown = listed(map(short, body.said))
     why = "of the groups of a face the first counts, and what follows # is a comment"
     text = f"{why}, so {short(body.name)} is one stone of: {shown}."
     return Notice("W119", text, "Give every stone an object (o) of its own if they are several.")
 
 
-def load_trimesh() -> Any:
-    """Return trimesh; it is an extra, so it is loaded only when it is needed (E305)."""
-    try:
-        return import_module("trimesh")
-    except ImportError as error:
-        raise UsageError(
-            "E305", "trimesh is not installed, and it reads PLY.", where="mesh",
-            cure="Install it with `pip install drystone[mesh]`.",
-        ) from error  # fmt: skip
-
-
-def _stl_bodies(data: bytes, where: str) -> list[Body]:
+def _stl_bodies(data: bytes) -> list[MeshBody]:
     """Read triangles; equal corners are one vertex, so that bodies hang together."""
-    corners = _stl_text(data, where) if _is_text(data) else _stl_binary(data, where)
+    is_text = data.lstrip().startswith(b"solid") and b"facet" in data[:_HEAD]
+    corners = _stl_text(data) if is_text else _stl_binary(data)
     vertices, places = np.unique(corners, axis=0, return_inverse=True)
-    return _bodies("", vertices, list(places.reshape(-1, 3)), where)
+    return _bodies(vertices, list(places.reshape(-1, 3)))
 
 
-def _stl_text(data: bytes, where: str) -> NDArray[np.float64]:
+def _stl_text(data: bytes) -> NDArray[np.float64]:
     found = _STL_VERTEX.findall(data)
     if not found or len(found) != 3 * data.count(b"endfacet") or b"endsolid" not in data[-_HEAD:]:
-        raise _cut("its facets have no three corners, or endsolid is missing", where)
+        raise _cut("its facets have no three corners, or endsolid is missing")
     try:
         return np.array([[float(word) for word in corner] for corner in found])
     except ValueError as error:
-        raise _cut(str(error), where) from error
+        raise _cut(str(error)) from error
 
 
-def _stl_binary(data: bytes, where: str) -> NDArray[np.float64]:
+def _stl_binary(data: bytes) -> NDArray[np.float64]:
     number = int.from_bytes(data[80:84], "little")
     if number == 0 or len(data) < 84 + _STL_FACET.itemsize * number:
-        raise _cut(f"it has {len(data)} bytes, and says {number} triangles", where)
+        raise _cut(f"it has {len(data)} bytes, and says {number} triangles")
     corners = np.frombuffer(data, _STL_FACET, number, offset=84)["corners"].reshape(-1, 3)
     if not np.isfinite(corners).all():
-        raise damaged(where, "a vertex is not finite")
+        raise unusable("a vertex is not finite")
     return corners.astype(float)
 
 
-def _is_text(data: bytes) -> bool:
-    return data.lstrip().startswith(b"solid") and b"facet" in data[:_HEAD]
-
-
-def _ply_bodies(data: bytes, where: str) -> list[Body]:
-    trimesh = load_trimesh()
-    with foreign(lambda why: _cut(why, where)):
+def _ply_bodies(data: bytes) -> list[MeshBody]:
+    trimesh = extra("trimesh", "reads PLY", "mesh", "mesh")
+    with foreign(_cut):
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type="ply", process=True)
         vertices, faces = np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.int64)
     said = _PLY_FACES.search(data)
     if said and len(faces) < int(said[1]):
-        raise _cut(f"{len(faces)} of {int(said[1])} faces", where)
-    return _bodies("", vertices, list(faces), where)
+        raise _cut(f"{len(faces)} of {int(said[1])} faces")
+    return _bodies(vertices, list(faces))
 
 
-def _cut(why: str, where: str) -> InputError:
-    return InputError(
-        "E106", f"the mesh is damaged or cut short ({why}).", where=where,
-        cure="Copy or export it again.",
-    )  # fmt: skip
+def _cut(why: str) -> InputError:
+    return damaged(why, what="mesh")
 
 
-def _obj_bodies(data: bytes, where: str) -> list[Body]:
+def _obj_bodies(data: bytes) -> list[MeshBody]:
     """Read vertices, faces and object names of an OBJ; faces may have any number of corners.
 
     Where there are objects (o), groups (g) are their parts; otherwise they are the stones.
@@ -201,13 +156,13 @@ def _obj_bodies(data: bytes, where: str) -> list[Body]:
             elif words[:1] == ["o"] or (words[:1] == ["g"] and part.kind != "o"):
                 part, title = _part(line)
         except ValueError as error:
-            raise damaged(where, f"line {number} cannot be used ({error})") from error
+            raise unusable(f"line {number} cannot be used ({error})") from error
     if any(len(point) < 3 for point in points):
-        raise damaged(where, "a vertex has less than three coordinates")
+        raise unusable("a vertex has less than three coordinates")
     vertices = np.array(points, float).reshape(-1, 3)
     if not any(part.kind for part in parts):
-        return _bodies("", vertices, parts.get(nameless, []), where)
-    return [Body(part.name, vertices, parts[part], tuple(said[part])) for part in parts]
+        return _bodies(vertices, parts.get(nameless, []))
+    return [MeshBody(part.name, vertices, parts[part], tuple(said[part])) for part in parts]
 
 
 class _Part(NamedTuple):
@@ -242,12 +197,10 @@ def _face(words: list[str], count: int) -> NDArray[np.int64]:
     return corners
 
 
-def _bodies(
-    name: str, vertices: NDArray[np.float64], faces: list[NDArray[np.int64]], where: str
-) -> list[Body]:
+def _bodies(vertices: NDArray[np.float64], faces: list[NDArray[np.int64]]) -> list[MeshBody]:
     """Split faces into bodies that hang together, in the order of their first faces."""
     if not faces or not len(vertices):
-        raise damaged(where, "the mesh has no faces")
+        raise unusable("the mesh has no faces")
     first = np.array([face[0] for face in faces])
     pairs = np.concatenate([np.column_stack([face, np.roll(face, 1)]) for face in faces])
     links = coo_array((np.ones(len(pairs), bool), pairs.T), shape=(len(vertices),) * 2)
@@ -255,7 +208,7 @@ def _bodies(
     found: dict[int, list[NDArray[np.int64]]] = {}
     for label, face in zip(labels.tolist(), faces, strict=True):
         found.setdefault(label, []).append(face)
-    return [Body(name, vertices, part) for part in found.values()]
+    return [MeshBody("", vertices, part) for part in found.values()]
 
 
 _BODIES = {"obj": _obj_bodies, "ply": _ply_bodies, "stl": _stl_bodies}

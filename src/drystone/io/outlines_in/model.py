@@ -2,121 +2,63 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
 
-from drystone.errors import InputError, Notice
+from drystone.errors import Notice
+from drystone.io.file_errors import listed, short
 from drystone.io.labels import MAX_ID
-from drystone.io.listed import listed, short
+from drystone.io.patches import PlacedMask
 from drystone.kernels.polygons import Points
-from drystone.kernels.raster import Mask
 
 METRES = MappingProxyType({"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048})
 """Metres in each unit that a user may name."""
 
 _LARGEST = 10**9
-_LONGEST = 300
 _STONE_NAME = re.compile(r"(?:stones?[ _-]*)?0*([1-9][0-9]*)", re.IGNORECASE)
 _WEDGE_NAME = re.compile(r"wedge[ _-]*[0-9]+", re.IGNORECASE)
 
 
 @dataclass(frozen=True, eq=False)
 class Area:
-    """What rings enclose together.
-
-    Parameters
-    ----------
-    rings : tuple of (n, 2) float arrays
-        Not closed, in any sense of rotation, in the unit of the file.
-    rule : {"evenodd", "nonzero"}
-        Which points are inside: by the number of rings around them, or by the sum of their turns.
-    """
+    """What rings enclose together."""
 
     rings: tuple[Points, ...]
+    """(n, 2) each, not closed, in any sense of rotation, in the unit of the file."""
     rule: Literal["evenodd", "nonzero"] = "evenodd"
-
-
-@dataclass(frozen=True, eq=False)
-class PlacedMask:
-    """Pixels at a place of a picture.
-
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        Row 0 at the top.
-    row, col : int
-        Of its upper left pixel.
-    """
-
-    mask: Mask
-    row: int
-    col: int
+    """What is inside: by the number of rings around it, or by the sum of their turns."""
 
 
 @dataclass(frozen=True, eq=False)
 class OutlinedStone:
-    """A stone of a file: the union of areas and masks.
+    """A stone of a file: the union of areas and masks."""
 
-    Parameters
-    ----------
-    id : int or None
-        The file's own number, if it has one, be it one that no stone can have.
-    name : str
-        The file's own name.
-    areas : tuple of Area
-        Outlines.
-    masks : tuple of PlacedMask
-        Pixels; only in files in px.
-    """
-
-    id: int | None
-    name: str = ""
+    id: int | None  # the file's own number, be it one that no stone can have
+    name: str = ""  # the file's own name
     areas: tuple[Area, ...] = ()
-    masks: tuple[PlacedMask, ...] = ()
+    masks: tuple[PlacedMask, ...] = ()  # only in files in px
 
 
 @dataclass(frozen=True, eq=False)
 class OutlineFile:
-    """What a file of outlines holds.
+    """What a file of outlines holds."""
 
-    Parameters
-    ----------
-    stones : tuple of OutlinedStone
-        In the order of the file.
-    unit_m : float or None
-        Metres in a unit of the file; None when its unit is the px of an image.
-    y_up : bool
-        False when y runs down, as in images.
-    size_px : (int, int) or None
-        Width and height of the image of a file in px, if the file says so.
-    notices : tuple of Notice
-        What had to be decided.
-    names_images : bool
-        The file says of which image each stone is, so that one of them can be asked for.
-    """
-
-    stones: tuple[OutlinedStone, ...]
-    unit_m: float | None = None
-    y_up: bool = False
-    size_px: tuple[int, int] | None = None
-    notices: tuple[Notice, ...] = ()
-    names_images: bool = False
+    stones: Sequence[OutlinedStone]  # in the order of the file
+    unit_m: float | None = None  # metres in its unit; None when that is the px of an image
+    y_up: bool = False  # False when y runs down, as in images
+    size_px: tuple[int, int] | None = None  # width, height of the image of a file in px, if said
+    notices: Sequence[Notice] = ()
+    names_images: bool = False  # it says of which image each stone is, so one can be asked for
 
 
 def number_in(text: object) -> int | None:
     """Return the number that a label is, or that follows the word stone in it.
 
     Numbers are returned as they are, also those that no stone can have; labels only when one can.
-
-    Examples
-    --------
-    >>> number_in("stone_012"), number_in(0), number_in("0"), number_in("wall 3"), number_in(True)
-    (12, 0, None, None, None)
     """
     if isinstance(text, bool) or not isinstance(text, int | str):
         return None
@@ -127,23 +69,17 @@ def number_in(text: object) -> int | None:
     return number if 0 < number <= MAX_ID else None
 
 
-def numbered(stones: tuple[OutlinedStone, ...]) -> tuple[tuple[OutlinedStone, ...], list[Notice]]:
+def numbered(stones: Sequence[OutlinedStone]) -> tuple[Sequence[OutlinedStone], list[Notice]]:
     """Give every stone an id: the file's own when all differ, else 1, 2, 3 and so on.
 
     A file with any number of its own is not numbered anew without a notice (W119).
-
-    Examples
-    --------
-    >>> stones, notices = numbered((OutlinedStone(0), OutlinedStone(1)))
-    >>> print(notices[0].message)
-    0 cannot be the number of a stone: all are numbered in order (0 is now 1, 1 is now 2).
     """
     own = [stone.id for stone in stones if stone.id is not None]
     several = sorted(number for number, count in Counter(own).items() if count > 1)
     beyond = sorted({number for number in own if not 0 < number <= MAX_ID})
     if len(own) == len(stones) and not several and not beyond:
         return stones, []
-    result = tuple(replace(stone, id=i) for i, stone in enumerate(stones, start=1))
+    result = [replace(stone, id=i) for i, stone in enumerate(stones, start=1)]
     if not own:
         return result, []
     if several:
@@ -164,11 +100,9 @@ def numbered(stones: tuple[OutlinedStone, ...]) -> tuple[tuple[OutlinedStone, ..
     return result, [Notice("W119", text, cure)]
 
 
-def without_wedges(
-    stones: tuple[OutlinedStone, ...],
-) -> tuple[tuple[OutlinedStone, ...], list[Notice]]:
+def without_wedges(stones: Sequence[OutlinedStone]) -> tuple[list[OutlinedStone], list[Notice]]:
     """Leave out wedges of a planned wall, which nobody found."""
-    kept = tuple(stone for stone in stones if not _WEDGE_NAME.fullmatch(stone.name))
+    kept = [stone for stone in stones if not _WEDGE_NAME.fullmatch(stone.name)]
     left = len(stones) - len(kept)
     return kept, [Notice("W119", f"{left} wedges of a planned wall were left out.")] if left else []
 
@@ -191,13 +125,7 @@ def side_px(value: Any) -> int:
 
 
 def ring(points: Any) -> Points:
-    """Return a ring from numbers; ValueError when it is none.
-
-    Parameters
-    ----------
-    points : (n, 2) array_like
-        Closed or not; further columns (heights) are left out.
-    """
+    """Return a ring from numbers; ValueError when it is none."""
     corners = np.asarray(points, dtype=float)
     if corners.ndim != 2 or corners.shape[1] < 2:
         raise ValueError("points are pairs of numbers")
@@ -211,24 +139,3 @@ def ring(points: Any) -> Points:
     if np.abs(corners).max() > _LARGEST:
         raise ValueError("a coordinate is beyond 1e9")
     return corners
-
-
-@contextmanager
-def entry(where: str, what: str) -> Iterator[None]:
-    """Turn what fails in one entry of a file into an error that names it (E114)."""
-    try:
-        yield
-    except KeyError as error:
-        raise damaged(where, f"{what} has no {error}") from error
-    except (TypeError, ValueError, IndexError, AttributeError, ArithmeticError) as error:
-        raise damaged(where, f"{what} cannot be used ({error})") from error
-
-
-def damaged(where: str, what: str) -> InputError:
-    """Make the error for a file whose content is not what its format says (E114)."""
-    return InputError(
-        "E114",
-        f"{short(what, _LONGEST)}.",
-        where=where,
-        cure="Correct it, or export the file again.",
-    )

@@ -1,16 +1,15 @@
 """Which of many masks that lie in each other are stones."""
 
-from collections.abc import Callable, Container, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from drystone.errors import InputError, Notice
-from drystone.io.listed import MANY, listed
-from drystone.io.outlines_in.fill import filled_area, united
-from drystone.io.outlines_in.model import OutlinedStone, PlacedMask
-from drystone.io.patches import enclosed
+from drystone.errors import Notice
+from drystone.io.file_errors import MANY, listed, too_large
+from drystone.io.outlines_in.fill import pixels_of, united
+from drystone.io.outlines_in.model import OutlinedStone
+from drystone.io.patches import PlacedMask, enclosed
 
 INSIDE = 0.8
 """Share of a mask that lies in another one for it to count as its part."""
@@ -19,60 +18,28 @@ _MOST_PAIRS = 200_000
 _MOST_SHARED_PX = 300_000_000
 
 
-def pixels_of(stone: OutlinedStone) -> PlacedMask | None:
-    """Return the pixels of a stone whose outlines are in px, y down; None when it has none."""
-    filled = (filled_area(area) for area in stone.areas)
-    return united([*(mask for mask in filled if mask is not None), *stone.masks])
-
-
-def common_px(one: PlacedMask, other: PlacedMask) -> int:
-    """Return the number of pixels that two masks share."""
-    both = overlap(one, other)
-    return 0 if both is None else int(both.sum())
-
-
-def overlap(one: PlacedMask, other: PlacedMask) -> NDArray[np.bool_] | None:
-    """Return the shared pixels within the box that two masks share; None for no such box."""
-    top, left = max(one.row, other.row), max(one.col, other.col)
-    bottom = min(m.row + m.mask.shape[0] for m in (one, other))
-    right = min(m.col + m.mask.shape[1] for m in (one, other))
-    if bottom <= top or right <= left:
-        return None
-    first, second = (
-        m.mask[top - m.row : bottom - m.row, left - m.col : right - m.col] for m in (one, other)
-    )
-    return np.asarray(first & second)
-
-
-def meeting_boxes(masks: Sequence[PlacedMask], where: str) -> list[tuple[int, int]]:
+def meeting_boxes(masks: Sequence[PlacedMask]) -> list[tuple[int, int]]:
     """Return the pairs (i, j), i < j, of masks whose boxes overlap.
 
-    Raises
-    ------
-    InputError
-        E110 when there are more of them, or larger ones, than can be compared.
+    More of them, or larger ones, than can be compared are refused (E110).
     """
-    sides = [(m.row, m.col, m.row + m.mask.shape[0], m.col + m.mask.shape[1]) for m in masks]
-    top, left, bottom, right = np.array(sides, dtype=np.int64).reshape(-1, 4).T
+    sides = np.array([mask.sides for mask in masks], dtype=np.int64).reshape(-1, 4)
     pairs: list[tuple[int, int]] = []
     shared_px = 0
-    for i in range(len(masks)):
-        rest = slice(i + 1, None)
-        height = np.minimum(bottom[rest], bottom[i]) - np.maximum(top[rest], top[i])
-        width = np.minimum(right[rest], right[i]) - np.maximum(left[rest], left[i])
-        meet = (height > 0) & (width > 0)
+    for i, own in enumerate(sides):
+        rest = sides[i + 1 :]
+        shared = np.minimum(rest[:, 2:], own[2:]) - np.maximum(rest[:, :2], own[:2])
+        meet = (shared > 0).all(axis=1)
         pairs += [(i, i + 1 + int(j)) for j in np.flatnonzero(meet)]
-        shared_px += int((height * width)[meet].sum())
+        shared_px += int(shared[meet].prod(axis=1).sum())
         if len(pairs) > _MOST_PAIRS or shared_px > _MOST_SHARED_PX:
-            raise InputError(
-                "E110", "its stones lie over each other more often than can be compared.",
-                where=where, cure="Export every stone once.",
-            )  # fmt: skip
+            what = "its stones lie over each other more often than can be compared."
+            raise too_large(what, "Export every stone once.")
     return pairs
 
 
 def without_nested(
-    stones: list[OutlinedStone], where: str, skip: tuple[int, ...] = ()
+    stones: list[OutlinedStone], skip: tuple[int, ...] = ()
 ) -> tuple[list[OutlinedStone], list[Notice]]:
     """Leave out the ground, groups of stones, and parts of stones.
 
@@ -84,33 +51,20 @@ def without_nested(
     3. a mask of which `INSIDE` is covered by two or more smaller ones is a group of those;
     4. a mask of which `INSIDE` lies in a larger one that is kept is a part of it.
 
-    Parameters
-    ----------
-    stones : list of OutlinedStone
-        With ids.
-    where : str
-        Name of the file, for messages.
-    skip : tuple of int
-        Ids that do not count; naming parts there makes their group a stone.
-
-    Returns
-    -------
-    kept : list of OutlinedStone
-        Those with an id in `skip` included, as they are.
-    notices : list of Notice
-        Which were left out, and why.
+    Ids in `skip` do not count, and their stones are kept as they are; naming parts there makes
+    their group a stone.
     """
     placed = {i: pixels_of(stone) for i, stone in enumerate(stones) if stone.id not in skip}
     masks = {i: mask for i, mask in placed.items() if mask is not None}
     keys = list(masks)
-    meeting = [(keys[i], keys[j]) for i, j in meeting_boxes(list(masks.values()), where)]
+    meeting = [(keys[i], keys[j]) for i, j in meeting_boxes(list(masks.values()))]
     ground = _with_stones_in_holes(masks, meeting)
-    masks = {i: mask for i, mask in masks.items() if i not in ground}
-    shares = _shares(masks, meeting)
+    shares = _Shares({i: mask for i, mask in masks.items() if i not in ground}, meeting)
     again = shares.same()
-    shares = shares.without(again)
+    shares.leave(again)
     groups = shares.groups()
-    parts_of = shares.without(groups).wholes()
+    shares.leave(groups)
+    parts_of = shares.wholes()
     left = {*ground, *again, *groups, *parts_of}
     name = [stone.id for stone in stones]
     said = [f"{name[i]} (the ground: others lie in its holes)" for i in sorted(ground)]
@@ -118,17 +72,16 @@ def without_nested(
     for i, parts in sorted(groups.items()):
         said.append(f"{name[i]} (a group of {listed(name[part] for part in parts)})")
     said += [f"{name[i]} (a part of {name[whole]})" for i, whole in sorted(parts_of.items())]
-    kept = [_with_pixels(s, placed.get(i)) for i, s in enumerate(stones) if i not in left]
+    kept = [
+        stone if (mask := placed.get(i)) is None else replace(stone, areas=(), masks=(mask,))
+        for i, stone in enumerate(stones)
+        if i not in left
+    ]
     if not said:
         return kept, []
-    text = (
-        f"{len(said)} of {len(stones)} masks are no stones of their own: {listed(said, most=MANY)}."
-    )
+    found = f"{len(said)} of {len(stones)} masks are no stones of their own"
+    text = f"{found}: {listed(said, most=MANY)}."
     return kept, [Notice("W119", text, "Skip ids to decide otherwise.")]
-
-
-def _with_pixels(stone: OutlinedStone, mask: PlacedMask | None) -> OutlinedStone:
-    return stone if mask is None else replace(stone, areas=(), masks=(mask,))
 
 
 def _with_stones_in_holes(
@@ -143,67 +96,60 @@ def _with_stones_in_holes(
         i
         for pair in meeting
         for i, j in (pair, pair[::-1])
-        if i in holes and common_px(holes[i], masks[j]) >= INSIDE * masks[j].mask.sum()
+        if i in holes and holes[i].common_px(masks[j]) >= INSIDE * masks[j].mask.sum()
     }
 
 
-def _shares(masks: dict[int, PlacedMask], meeting: Iterable[tuple[int, int]]) -> "_Shares":
-    common: dict[int, dict[int, int]] = {i: {} for i in masks}
-    for i, j in meeting:
-        shared = common_px(masks[i], masks[j]) if i in masks and j in masks else 0
-        if shared:
-            common[i][j] = common[j][i] = shared
-    return _Shares(masks, {i: int(mask.mask.sum()) for i, mask in masks.items()}, common)
-
-
-@dataclass(frozen=True)
 class _Shares:
-    """How many pixels of which mask lie in which: ``common[i][j]``."""
+    """How much of which mask lies in which."""
 
-    masks: dict[int, PlacedMask]
-    areas: dict[int, int]
-    common: dict[int, dict[int, int]]
+    def __init__(self, masks: dict[int, PlacedMask], meeting: Iterable[tuple[int, int]]) -> None:
+        self._masks = masks
+        self._areas = {i: int(mask.mask.sum()) for i, mask in masks.items()}
+        self._common: dict[int, dict[int, int]] = {i: {} for i in masks}
+        for i, j in meeting:
+            common = masks[i].common_px(masks[j]) if i in masks and j in masks else 0
+            if common:
+                self._common[i][j] = self._common[j][i] = common
 
-    def without(self, left: Container[int]) -> "_Shares":
-        """Return the same of the masks that stay."""
-        common = {
-            i: {j: px for j, px in shared.items() if j not in left}
-            for i, shared in self.common.items()
-            if i not in left
-        }
-        return _Shares({i: self.masks[i] for i in common}, self.areas, common)
+    def leave(self, out: Iterable[int]) -> None:
+        """Forget masks that are no stones."""
+        for i in out:
+            del self._masks[i]
+            for j in self._common.pop(i):
+                del self._common[j][i]
 
     def _order(self, i: int) -> tuple[int, int]:
         """Larger first; of equal ones the earlier."""
-        return -self.areas[i], i
+        return -self._areas[i], i
 
     def same(self) -> dict[int, int]:
         """Return for each mask that repeats a larger one which that is."""
-        return self._within(lambda i, j, common: self.areas[i] + self.areas[j] - common)
+        return self._within(lambda i, j, common: self._areas[i] + self._areas[j] - common)
 
     def wholes(self) -> dict[int, int]:
         """Return for each mask that lies in a larger one which that is."""
-        return self._within(lambda i, _j, _common: self.areas[i])
+        return self._within(lambda i, _j, _common: self._areas[i])
 
     def groups(self) -> dict[int, list[int]]:
         """Return for each mask that smaller ones cover which those are."""
         found = {}
-        for i, mask in self.masks.items():
+        for i, mask in self._masks.items():
             parts = self._parts(i)
-            union = united([self.masks[j] for j in parts])
-            if union is not None and common_px(mask, union) >= INSIDE * self.areas[i]:
+            union = united([self._masks[j] for j in parts])
+            if union is not None and mask.common_px(union) >= INSIDE * self._areas[i]:
                 found[i] = parts
         return found
 
     def _parts(self, i: int) -> list[int]:
         """Return the smaller masks that lie in one, and in no other that lies in it."""
         inside = [
-            j for j, common in self.common[i].items()
-            if self._order(i) < self._order(j) and common >= INSIDE * self.areas[j]
+            j for j, common in self._common[i].items()
+            if self._order(i) < self._order(j) and common >= INSIDE * self._areas[j]
         ]  # fmt: skip
         parts: list[int] = []
         for j in sorted(inside, key=self._order):
-            if all(self.common[j].get(k, 0) < INSIDE * self.areas[j] for k in parts):
+            if all(self._common[j].get(k, 0) < INSIDE * self._areas[j] for k in parts):
                 parts.append(j)
         return sorted(parts) if len(parts) > 1 else []
 
@@ -211,8 +157,8 @@ class _Shares:
         """Return which masks share `INSIDE` of something with a larger one that is kept."""
         kept: list[int] = []
         found: dict[int, int] = {}
-        for i in sorted(self.masks, key=self._order):
-            common = self.common[i]
+        for i in sorted(self._masks, key=self._order):
+            common = self._common[i]
             around = [j for j in kept if j in common and common[j] >= INSIDE * of(i, j, common[j])]
             if around:
                 found[i] = around[0]

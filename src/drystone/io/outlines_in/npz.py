@@ -9,16 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from drystone.errors import InputError
+from drystone.io.file_errors import damaged, too_large, unusable
 from drystone.io.foreign import foreign
 from drystone.io.npy import array_of
 from drystone.io.outlines_in.fill import trimmed
-from drystone.io.outlines_in.model import (
-    OutlinedStone,
-    OutlineFile,
-    PlacedMask,
-    damaged,
-    number_in,
-)
+from drystone.io.outlines_in.model import OutlinedStone, OutlineFile, number_in
+from drystone.io.patches import PlacedMask
 
 _LABELS = "labels"
 _BYTES_PER_PX = 8
@@ -29,70 +25,58 @@ def is_npz(data: bytes) -> bool:
     return data.startswith(b"PK\x03\x04") and b".npy" in data[:200]
 
 
-def read_npz(data: bytes, where: str, max_px: int) -> NDArray[Any] | OutlineFile:
+def read_npz(data: bytes, max_px: int) -> NDArray[Any] | OutlineFile:
     """Read the arrays of an archive.
 
-    Returns
-    -------
-    array or OutlineFile
-        The only array, or that of the name labels, as it is; else a stone for every array.
-
-    Raises
-    ------
-    InputError
-        E106 for a damaged file, E110 for arrays that are too large, E114 for arrays that are no
-        masks of one picture.
+    The only array, or that of the name labels, is returned as it is; else each is a stone.
     """
     found = {
-        name.removesuffix(".npy"): array_of(member, where, max_px)
-        for name, member in _members(data, where, max_px).items()
+        name.removesuffix(".npy"): array_of(member, max_px)
+        for name, member in _members(data, max_px).items()
     }
     if _LABELS in found:
         return np.asarray(found[_LABELS])
     if len(found) == 1:
         return np.asarray(next(iter(found.values())))
-    return _masks(found, where)
+    return _masks(found)
 
 
-def _members(data: bytes, where: str, max_px: int) -> dict[str, bytes]:
+def _members(data: bytes, max_px: int) -> dict[str, bytes]:
     """Unpack the arrays of an archive, of which the sizes are added up first."""
-    with foreign(lambda why: _broken(why, where)):
+    with foreign(_broken):
         archive = zipfile.ZipFile(io.BytesIO(data))
         entries = archive.infolist()
     total, most = sum(entry.file_size for entry in entries), _BYTES_PER_PX * max_px
     if total > most:
-        raise InputError(
-            "E110", f"its arrays have {total / 1e6:.0f} MB; the limit is {most / 1e6:g} MB.",
-            where=where, cure="Give arrays of fewer or smaller values; only in Python can the "
-            "limit be raised (max_image_mpx).",
-        )  # fmt: skip
+        raise too_large(
+            f"its arrays have {total / 1e6:.0f} MB; the limit is {most / 1e6:g} MB.",
+            "Give arrays of fewer or smaller values; only in Python can the limit be raised "
+            "(max_image_mpx).",
+        )
     found = {}
     for entry in entries:
         # Of others zipfile unpacks all that there is, whatever size they name.
         if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-            raise _broken("it is packed as NumPy packs none", where)
-        with foreign(lambda why: _broken(why, where)), archive.open(entry) as member:
+            raise _broken("it is packed as NumPy packs none")
+        with foreign(_broken), archive.open(entry) as member:
             found[entry.filename] = member.read(entry.file_size)
     return found
 
 
-def _broken(why: str, where: str) -> InputError:
-    return InputError(
-        "E106", f"the file is damaged or cut short ({why}).", where=where,
-        cure="Export it again, without pickled objects.",
-    )  # fmt: skip
+def _broken(why: str) -> InputError:
+    return damaged(why, cure="Export it again, without pickled objects.")
 
 
-def _masks(found: Mapping[str, NDArray[Any]], where: str) -> OutlineFile:
+def _masks(found: Mapping[str, NDArray[Any]]) -> OutlineFile:
     stones = []
     shapes = {array.shape for array in found.values()}
     if len(shapes) != 1 or len(next(iter(shapes))) != 2:
-        raise damaged(where, f"its arrays are no masks of one picture: shapes {sorted(shapes)}")
+        raise unusable(f"its arrays are no masks of one picture: shapes {sorted(shapes)}")
     for name, array in found.items():
         values = np.unique(array)
         if len(values) > 2 or array.dtype.kind not in "biuf" or (len(values) == 2 and values[0]):
-            raise damaged(where, f"the array {name!r} is no mask (0 and one other value)")
+            raise unusable(f"the array {name!r} is no mask (0 and one other value)")
         mask = trimmed(PlacedMask(array.astype(bool), 0, 0))
         stones.append(OutlinedStone(number_in(name), name, masks=() if mask is None else (mask,)))
     height, width = next(iter(shapes))
-    return OutlineFile(tuple(stones), size_px=(width, height))
+    return OutlineFile(stones, size_px=(width, height))

@@ -1,124 +1,85 @@
 """Outlines of a file to patches of pixels, at the resolution of the file or of the settings."""
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from drystone.errors import InputError, LabelImageError, Notice
-from drystone.io.listed import listed, short
-from drystone.io.outlines_in.fill import check_reach, trimmed
-from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile, PlacedMask
-from drystone.io.outlines_in.nested import meeting_boxes, overlap, pixels_of
-from drystone.io.patches import Patch
+from drystone.errors import LabelImageError, Notice
+from drystone.io.file_errors import listed, short
+from drystone.io.outlines_in.fill import check_reach, pixels_of, trimmed
+from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile
+from drystone.io.outlines_in.nested import meeting_boxes
+from drystone.io.patches import PlacedMask, StonePatch
 from drystone.io.pictures import check_size
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
-from drystone.kernels.raster import Mask
+
+_TOO_FAR = (
+    "Is something drawn far away from the stones, or in another unit? Remove it, give a smaller "
+    "--px-per-m (px_per_m in Python), or raise max_image_mpx in Python."
+)
 
 USUAL_SIDE_PX = 160.0
 """Longer side of the median stone of a drawing without a resolution."""
 
 
-@dataclass(frozen=True, eq=False)
-class Rastered:
-    """Stones of a file as pixels.
+def rastered(
+    file: OutlineFile, settings: ReadSettings
+) -> tuple[list[StonePatch], tuple[int, int], float | None, list[Notice]]:
+    """Turn outlines of stones that have ids into patches, which may overlap.
 
-    Parameters
-    ----------
-    patches : list of Patch
-        In the order of the file; they may overlap.
-    width, height : int
-        Of the picture that they are in, px.
-    px_per_m : float or None
-        Its scale; None for a file in px.
-    notices : list of Notice
-        What was decided on the way.
-    """
-
-    patches: list[Patch]
-    width: int
-    height: int
-    px_per_m: float | None
-    notices: list[Notice]
-
-
-def rastered(file: OutlineFile, settings: ReadSettings, where: str) -> Rastered:
-    """Turn outlines into pixels.
+    Beside them stand the width and height of their picture, px, and its scale, px a metre, which
+    is None for a file in px.
 
     A file in px keeps its own px.  A drawing is drawn in the box around all its stones, whose
-    lower left corner becomes that of the picture.
-
-    Parameters
-    ----------
-    file : OutlineFile
-        Its stones have ids.
-    settings : ReadSettings
-        ``px_per_m`` for a drawing; None chooses one for which the longer side of the median
-        stone is about `USUAL_SIDE_PX`.
-    where : str
-        Name for messages.
-
-    Raises
-    ------
-    LabelImageError
-        E104 without stones, E110 for too large a picture.
+    lower left corner becomes that of the picture; without a resolution in the settings the longer
+    side of the median stone has about `USUAL_SIDE_PX`.
     """
     if not file.stones:
-        raise LabelImageError(
-            "E104", "there are no stones in it.", where=where,
-            cure="; ".join(notice.message for notice in file.notices) or "Draw outlines.",
-        )  # fmt: skip
+        cure = "; ".join(notice.message for notice in file.notices) or "Draw outlines."
+        raise LabelImageError("E104", "there are no stones in it.", cure=cure)
     notices: list[Notice] = []
     px_per_m = None
     if file.unit_m is not None:
         px_per_m = settings.px_per_m
         if px_per_m is None:
-            px_per_m, notice = _usual_scale(file, where)
+            px_per_m, notice = _usual_scale(file)
             notices.append(notice)
     stones, (width, height) = _in_picture(file, px_per_m)
-    try:
-        check_size(width, height, where, int(settings.max_image_mpx * 1e6))
-    except InputError as error:
-        cure = "Is something drawn far away from the stones, or in another unit? Remove it, give "
-        raise InputError(
-            error.code, error.what, where=error.where,
-            cure=f"{cure}a smaller --px-per-m (px_per_m in Python), or raise max_image_mpx in "
-            "Python.",
-        ) from None  # fmt: skip
-    check_reach(stones, where, int(settings.max_image_mpx * 1e6))
+    max_px = int(settings.max_image_mpx * 1e6)
+    check_size(width, height, max_px, _TOO_FAR)
+    check_reach(stones, max_px)
     patches, lost, empty = [], [], []
     for stone in stones:
         placed = pixels_of(stone)
         inside = None if placed is None else _within(placed, width, height)
-        name = f"{stone.id} ({short(stone.name)})" if stone.name else str(stone.id)
+        name = f"stone {stone.id} ({short(stone.name)})" if stone.name else f"stone {stone.id}"
         outside = 0 if placed is None else int(placed.mask.sum())
         outside -= 0 if inside is None else int(inside.mask.sum())
         if outside:
-            lost.append(f"stone {name}: {outside} px")
+            lost.append(f"{name}: {outside} px")
         if inside is None:
-            empty.append(f"stone {name}")
+            empty.append(name)
             continue
-        patches.append(
-            Patch(stone.id or 0, inside.mask, inside.row, inside.col, height, None, stone.name)
-        )
+        place = inside.mask, inside.row, inside.col
+        patches.append(StonePatch(*place, stone.id or 0, height, None, stone.name))
     if lost:
         notices.append(Notice("W119", f"outside the image, cut off: {listed(lost, '; ')}."))
     if empty:
         notices.append(Notice("W119", f"without a pixel, left out: {listed(empty, '; ')}."))
-    patches, overlaps = _beside_others(patches, where)
-    return Rastered(patches, width, height, px_per_m, notices + overlaps)
+    patches, overlaps = _beside_others(patches)
+    return patches, (width, height), px_per_m, notices + overlaps
 
 
-def _usual_scale(file: OutlineFile, where: str) -> tuple[float, Notice]:
+def _usual_scale(file: OutlineFile) -> tuple[float, Notice]:
     """Choose a scale of two digits for which the median stone has a usual size."""
     unit = file.unit_m or 1.0
     sides = [float(np.ptp(_corners(stone), axis=0).max()) * unit for stone in file.stones]
     side = float(np.median(sides))
     if not side > 0.0:
-        raise LabelImageError(
-            "E104", "the stones have no area.", where=where, cure="Draw closed outlines."
-        )
+        raise LabelImageError("E104", "the stones have no area.", cure="Draw closed outlines.")
     exact = USUAL_SIDE_PX / side
     step = 10.0 ** (math.floor(math.log10(exact)) - 1)
     px_per_m = float(f"{round(exact / step) * step:.2g}")
@@ -136,7 +97,7 @@ def _corners(stone: OutlinedStone) -> Points:
 
 def _in_picture(
     file: OutlineFile, px_per_m: float | None
-) -> tuple[tuple[OutlinedStone, ...], tuple[int, int]]:
+) -> tuple[Sequence[OutlinedStone], tuple[int, int]]:
     """Return stones in px with y down, and the size of the picture."""
     scale = 1.0 if px_per_m is None else px_per_m * (file.unit_m or 1.0)
     if px_per_m is None and not file.y_up:
@@ -162,7 +123,7 @@ def _in_picture(
     return stones, (width, height)
 
 
-def _reach(stones: tuple[OutlinedStone, ...]) -> tuple[int, int]:
+def _reach(stones: Sequence[OutlinedStone]) -> tuple[int, int]:
     """Return how far an image must reach from its corner to hold all stones."""
     ends = [(1.0, 1.0)]
     for stone in stones:
@@ -180,32 +141,24 @@ def _within(placed: PlacedMask, width: int, height: int) -> PlacedMask | None:
     return trimmed(PlacedMask(inside, placed.row + top, placed.col + left))
 
 
-def _beside_others(patches: list[Patch], where: str) -> tuple[list[Patch], list[Notice]]:
+def _beside_others(patches: list[StonePatch]) -> tuple[list[StonePatch], list[Notice]]:
     """Tell every patch which pixels of its box are others', and say which overlap."""
-    masks = [PlacedMask(patch.mask, patch.row, patch.col) for patch in patches]
-    others: dict[int, Mask] = {}
+    others: dict[int, PlacedMask] = {}
     overlaps = []
-    for i, j in meeting_boxes(masks, where):
+    for i, j in meeting_boxes(patches):
         for one, other in ((i, j), (j, i)):
-            _mark(others.setdefault(one, np.zeros_like(masks[one].mask)), masks[one], masks[other])
-        both = overlap(masks[i], masks[j])
-        if both is not None and both.any():
-            overlaps.append(f"{patches[i].id} and {patches[j].id} ({int(both.sum())} px)")
+            patch = patches[one]
+            if one not in others:
+                others[one] = PlacedMask(np.zeros_like(patch.mask), patch.row, patch.col)
+            here, there = others[one].shared(patches[other])
+            here |= there
+        if px := patches[i].common_px(patches[j]):
+            overlaps.append(f"{patches[i].id} and {patches[j].id} ({px} px)")
     result = [
-        replace(patch, others=others[i] & ~patch.mask if i in others else None)
+        replace(patch, others=others[i].mask & ~patch.mask if i in others else None)
         for i, patch in enumerate(patches)
     ]
     if not overlaps:
         return result, []
     text = f"stones overlap, and each keeps all its pixels: {listed(overlaps, '; ')}."
     return result, [Notice("W119", text, "Check their outlines.")]
-
-
-def _mark(others: Mask, one: PlacedMask, other: PlacedMask) -> None:
-    """Mark, in the box of one mask, the pixels of another."""
-    top, left = max(one.row, other.row), max(one.col, other.col)
-    bottom = min(m.row + m.mask.shape[0] for m in (one, other))
-    right = min(m.col + m.mask.shape[1] for m in (one, other))
-    others[top - one.row : bottom - one.row, left - one.col : right - one.col] |= other.mask[
-        top - other.row : bottom - other.row, left - other.col : right - other.col
-    ]

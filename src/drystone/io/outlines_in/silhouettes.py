@@ -25,23 +25,10 @@ def areas_of(shape: Any) -> tuple[Area, ...]:
 
 
 def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
-    """Make holes of rings that lie in others, as drawings for cutting mean them.
+    """Return outlines with the rings in them as holes, as drawings for cutting mean them.
 
-    Parameters
-    ----------
-    rings : sequence of (n, 2) arrays
-        Outlines and holes in any order.
-
-    Returns
-    -------
-    list of (int, Area)
-        Outlines with their holes, and the position of the outline; a ring in a hole is an
-        outline again.
-
-    Raises
-    ------
-    ValueError
-        When there are too many crossings, or rings in each other, to find out.
+    Each comes with its position; a ring in a hole is an outline again.  ValueError when there are
+    too many crossings, or rings in each other, to find out.
     """
     shapes = _valid(np.array([shapely.Polygon(ring) for ring in rings], dtype=object))
     tree = shapely.STRtree(shapes)
@@ -64,22 +51,15 @@ def with_holes(rings: Sequence[Points]) -> list[tuple[int, Area]]:
 
 
 def shadow(polygons: Sequence[Points]) -> tuple[Area, ...]:
-    """Return the union of the polygons of a body as it is seen.
+    """Return the union of a body's faces, (n, 2) each, in the plane of the picture.
 
-    Parameters
-    ----------
-    polygons : sequence of (n, 2) arrays
-        Its faces in the plane of the picture; those seen from the side have no area.
-
-    Raises
-    ------
-    ValueError
-        When faces cross themselves too often.
+    Faces that are seen from the side have no area.
     """
     # Edges of neighbours are the same numbers, so the union leaves no slits.
-    seen = shapely.polygons([np.asarray(p) for p in polygons]) if _alike(polygons) else [
-        shapely.Polygon(p) for p in polygons
-    ]  # fmt: skip
+    if len({len(polygon) for polygon in polygons}) == 1:
+        seen = shapely.polygons([np.asarray(polygon) for polygon in polygons])
+    else:
+        seen = [shapely.Polygon(polygon) for polygon in polygons]
     shapes = np.asarray(seen, dtype=object)
     shapes = shapes[shapely.area(shapes) > 0.0]
     return areas_of(shapely.union_all(_valid(shapes)))
@@ -106,7 +86,3 @@ def _crossings(ring: Points, most: int) -> int:
         if found > 2 * most:
             break
     return found // 2
-
-
-def _alike(polygons: Sequence[Points]) -> bool:
-    return len({len(polygon) for polygon in polygons}) == 1

@@ -8,26 +8,21 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from drystone.errors import InputError, Notice
+from drystone.io.file_errors import damaged, entry, too_large, unusable
 from drystone.io.foreign import foreign
-from drystone.io.outlines_in.model import (
-    Area,
-    OutlinedStone,
-    OutlineFile,
-    damaged,
-    entry,
-    left_aside,
-    number_in,
-)
-from drystone.io.outlines_in.svg_shapes import (
-    SHAPES,
+from drystone.io.outlines_in.model import Area, OutlinedStone, OutlineFile, left_aside, number_in
+from drystone.io.outlines_in.svg_shapes import SHAPES, lines_of
+from drystone.io.outlines_in.svg_style import Styles, tag
+from drystone.io.outlines_in.svg_view import (
     Matrix,
-    lines_of,
+    Page,
+    View,
+    inner_view,
     moved,
+    page_of,
     transform,
     user_units,
 )
-from drystone.io.outlines_in.svg_style import Styles, tag
-from drystone.io.outlines_in.svg_view import Page, View, inner_view, page_of
 from drystone.io.read_settings import ReadSettings
 from drystone.kernels.polygons import Points
 
@@ -60,8 +55,7 @@ class _Place:
     """Where in the tree an element is drawn."""
 
     matrix: Matrix
-    view: View | None = None
-    """What per cents are of."""
+    view: View | None = None  # what per cents are of
     rule: str = "nonzero"
     stones: bool = False
     name: str = ""
@@ -85,27 +79,22 @@ def is_svg(data: bytes, suffix: str) -> bool:
     return suffix == ".svg" or b"<svg" in data[:4096] or b":svg" in data[:4096]
 
 
-def read_svg(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
+def read_svg(data: bytes, settings: ReadSettings) -> OutlineFile:
     """Read every closed shape that is drawn as a stone; subpaths of one path are its holes.
 
     Where there is a group of the name stones, only what is in it counts.  Lines that are neither
     closed nor filled, text, what is hidden or has no paint, and a rectangle over the whole page
-    are left aside.  A width in mm (cm, in, pt …)
-    makes it a drawing to scale; otherwise its unit is px, or what the settings say.
-
-    Raises
-    ------
-    InputError
-        E106 for what is no XML, E114 naming the element that cannot be used.
+    are left aside.  A width in mm (cm, in, pt …) makes it a drawing to scale; otherwise its unit
+    is px, or what the settings say.
     """
     if data.count(b"<") > 2 * _MOST_ELEMENTS:
-        raise _too_large(f"more than {_MOST_ELEMENTS} elements", where)
-    with foreign(lambda why: _cut(why, where)):
+        raise _too_large(f"more than {_MOST_ELEMENTS} elements")
+    with foreign(lambda why: damaged(why, what="drawing")):
         root = ET.fromstring(data)  # noqa: S314 - expat bounds what entities expand to
     if tag(root) != "svg":
-        raise damaged(where, f"its root element is {tag(root)[:40]}, not svg")
-    with entry(where, "the element svg"):
-        walk = _Walk(root, where, _MOST_TEXT + 2 * len(data))
+        raise unusable(f"its root element is {tag(root)[:40]}, not svg")
+    with entry("the element svg"):
+        walk = _Walk(root, _MOST_TEXT + 2 * len(data))
         page = page_of(root.attrib, settings)
     shapes = list(walk.shapes(page))
     if any(shape.place.stones for shape in shapes):
@@ -126,14 +115,14 @@ def read_svg(data: bytes, where: str, settings: ReadSettings) -> OutlineFile:
     if _SHEET in data:
         text = "a style sheet in another file was not read, whatever it hides or moves."
         notices.append(Notice("W119", text, "Put it into the drawing, in an element style."))
-    return OutlineFile(tuple(stones), page.unit_m, size_px=size, notices=tuple(notices))
+    return OutlineFile(stones, page.unit_m, size_px=size, notices=notices)
 
 
 class _Walk:
     """Through all that is drawn."""
 
-    def __init__(self, root: ET.Element, where: str, most_text: int) -> None:
-        self.root, self.where = root, where
+    def __init__(self, root: ET.Element, most_text: int) -> None:
+        self.root = root
         self.styles = Styles(root)
         self.aside: Counter[str] = Counter()
         self.known = {e.get("id"): e for e in root.iter() if e.get("id")}
@@ -142,7 +131,7 @@ class _Walk:
 
     def shapes(self, page: Page) -> Iterator[_Shape]:
         """Yield the shapes in the order in which they are drawn."""
-        with entry(self.where, "the element svg"):
+        with entry("the element svg"):
             style = self.styles.of(self.root)
             place = self._within(self.root, _Place(page.matrix, page.view), style)
         for child in self.root:
@@ -152,63 +141,53 @@ class _Walk:
         self, element: ET.Element, place: _Place, use: ET.Element | None = None
     ) -> Iterator[_Shape]:
         """Draw an element; `use` is what shows it when it is not shown where it stands."""
-        kind = tag(element)
+        kind, name = tag(element), element.get("id")
         is_symbol = kind == "symbol" and use is not None
         if kind in _HIDDEN and not is_symbol:
             return
         self.count += 1
         if self.count > _MOST or place.depth > _DEEPEST:
-            raise damaged(self.where, "elements use each other too often or too deeply")
+            raise unusable("elements use each other too often or too deeply")
         self.left_text -= sum(map(len, element.attrib.values()))
         if self.left_text < 0:
-            raise _too_large("long paths that are used too often", self.where)
-        with entry(self.where, _what(element, kind)):
+            raise _too_large("long paths that are used too often")
+        what = f"the {kind} {name!r}" if name else f"a {kind}"
+        with entry(what):
             style = self.styles.of(element)
-        if _vanishes(element, style):
-            self.aside[_UNSEEN] += 1
-        elif kind in SHAPES:
-            with entry(self.where, _what(element, kind)):
+            if _vanishes(element, style):
+                self.aside[_UNSEEN] += 1
+            elif kind in SHAPES:
                 yield from self._shape(element, self._within(element, place, style))
-        elif kind in _GROUPS or is_symbol:
-            yield from self._group(element, self._viewport(element, place, style, use))
-        elif kind == "use":
-            with entry(self.where, _what(element, kind)):
-                here = self._within(element, place, style)
-                target = self._shown(element)
-            named = number_in(target.get("id", "")) is not None
-            name = target.get("id", "") if named else here.name
-            yield from self._draw(target, replace(here, name=name), element)
-        else:
-            self.aside[kind] += 1
+            elif kind in _GROUPS or is_symbol:
+                yield from self._group(element, self._within(element, place, style), use)
+            elif kind == "use":
+                here, target = self._within(element, place, style), self._shown(element, what)
+                own = target.get("id", "")
+                if number_in(own) is not None:
+                    here = replace(here, name=own)
+                yield from self._draw(target, here, element)
+            else:
+                self.aside[kind] += 1
 
-    def _group(self, element: ET.Element, place: _Place | None) -> Iterator[_Shape]:
-        if place is None:
-            self.aside[_UNSEEN] += 1
-            return
-        for child in element:
-            yield from self._draw(child, place)
-
-    def _shown(self, element: ET.Element) -> ET.Element:
+    def _shown(self, element: ET.Element, what: str) -> ET.Element:
         """Return what a use shows."""
         link = element.get("href") or element.get(_XLINK) or ""
         target = self.known.get(link.removeprefix("#")) if link.startswith("#") else None
         if target is None:
-            raise damaged(self.where, f"{_what(element, 'use')} is of {link!r}, which is not there")
+            raise unusable(f"{what} is of {link!r}, which is not there")
         return target
 
-    def _viewport(
-        self, element: ET.Element, place: _Place, style: Style, use: ET.Element | None
-    ) -> _Place | None:
-        """Return where the children of a group are drawn; None for a viewport of no size."""
-        kind = tag(element)
-        with entry(self.where, _what(element, kind)):
-            here = self._within(element, place, style)
-            if kind not in {"svg", "symbol"}:
-                return here
+    def _group(
+        self, element: ET.Element, place: _Place, use: ET.Element | None
+    ) -> Iterator[_Shape]:
+        if tag(element) in {"svg", "symbol"}:
             found = inner_view(element, use, place.view)
             if found is None:
-                return None
-            return replace(here, matrix=here.matrix @ found[0], view=found[1])
+                self.aside[_UNSEEN] += 1
+                return
+            place = replace(place, matrix=place.matrix @ found[0], view=found[1])
+        for child in element:
+            yield from self._draw(child, place)
 
     def _within(self, element: ET.Element, place: _Place, style: Style) -> _Place:
         turn = transform(element.get("transform", ""))
@@ -248,7 +227,7 @@ class _Walk:
             self.aside[f"open lines in {kind}"] += len(lines) - len(closed)
         self.left_corners -= sum(map(len, closed))
         if self.left_corners < 0:
-            raise _too_large(f"more than {_MOST_CORNERS} corners, those on curves", self.where)
+            raise _too_large(f"more than {_MOST_CORNERS} corners, those on curves")
         rings = tuple(moved(place.matrix, points) for points in closed)
         if not all(np.isfinite(ring).all() and np.abs(ring).max() < 1e9 for ring in rings):
             raise ValueError("a coordinate is not finite or beyond 1e9")
@@ -258,29 +237,15 @@ class _Walk:
             self.aside[f"{kind} without an area"] += 1
 
 
-def _cut(why: str, where: str) -> InputError:
-    return InputError(
-        "E106", f"the drawing is damaged or cut short ({why}).", where=where,
-        cure="Copy or export it again.",
-    )  # fmt: skip
-
-
-def _too_large(what: str, where: str) -> InputError:
-    return InputError(
-        "E110", f"the drawing has {what}.", where=where,
-        cure="Export the outlines of stones only, with fewer corners.",
-    )  # fmt: skip
+def _too_large(what: str) -> InputError:
+    cure = "Export the outlines of stones only, with fewer corners."
+    return too_large(f"the drawing has {what}.", cure)
 
 
 def _covers(shape: _Shape, page: tuple[float, float]) -> bool:
     ring = shape.rings[0]
     slack = 1e-3 * np.array(page)
     return bool((ring.min(axis=0) <= slack).all() and (ring.max(axis=0) >= page - slack).all())
-
-
-def _what(element: ET.Element, kind: str) -> str:
-    name = element.get("id")
-    return f"the {kind} {name!r}" if name else f"a {kind}"
 
 
 def _vanishes(element: ET.Element, style: Style) -> bool:

@@ -1,118 +1,195 @@
-"""Elements of SVG as path lines, and their transforms."""
+"""Shapes of SVG to corners: path data with lines, Béziers and elliptical arcs, and the others."""
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.io.outlines_in.svg_path import (
-    CORNERS_OF_CIRCLE,
-    NUMBER,
-    Subpath,
-    arc,
-    bounded,
-    subpaths,
-)
+from drystone.io.outlines_in.svg_view import NUMBER, View, bounded, numbers_in, user_units
 from drystone.kernels.polygons import Points
 
 SHAPES = frozenset({"path", "polygon", "polyline", "rect", "circle", "ellipse"})
+CORNERS_OF_CIRCLE = 256
+CORNERS_OF_CURVE = 128
+"""Chords of a full turn stay within 8e-5 of the radius."""
 
-Matrix = NDArray[np.float64]
+_MOST_CORNERS = 1_000_000
+"""Of a path; a stone has some hundred."""
 
-_TRANSFORM = re.compile(r"\s*+(?:,\s*+)?([a-zA-Z]++)\s*+\(([^)]*+)\)")
-_LENGTH = re.compile(rf"({NUMBER})\s*+([a-z%]*+)", re.IGNORECASE)
-UNITS_M = {
-    "mm": 0.001, "cm": 0.01, "q": 0.00025, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6,
-}  # fmt: skip
-"""Metres in a unit of length."""
-PX_M = 0.0254 / 96.0
-"""Metres in a px of CSS, which a user unit is."""
+_COMMAND = re.compile(r"([MmZzLlHhVvCcSsQqTtAa])")
+# Possessive: what was taken is not given back, so no text takes longer than it is long.
+_NUMBER = re.compile(rf"\s*+(?:,\s*+)?({NUMBER})")
+_FLAG = re.compile(r"\s*+(?:,\s*+)?([01])")
+_ARGUMENTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
 
-
-def length(text: str) -> tuple[float, str]:
-    """Split a length into number and unit; ValueError when it is none.
-
-    Examples
-    --------
-    >>> length("120.5mm"), length("30")
-    ((120.5, 'mm'), (30.0, ''))
-    """
-    found = _LENGTH.fullmatch(text.strip())
-    if found is None:
-        raise ValueError(f"{text[:30]!r} is no length")
-    return bounded(found[1]), found[2].lower()
+Corner = NDArray[np.float64]
 
 
-def transform(text: str) -> Matrix:
-    """Return the (3, 3) matrix of the attribute ``transform``.
+@dataclass(frozen=True, eq=False)
+class Subpath:
+    """A line of a path."""
 
-    Examples
-    --------
-    >>> transform("translate(10) scale(2, 3)").tolist()
-    [[2.0, 0.0, 10.0], [0.0, 3.0, 0.0], [0.0, 0.0, 1.0]]
-    """
-    matrix, place = np.eye(3), 0
-    text = "" if text.strip() == "none" else text.rstrip()
-    while place < len(text):
-        found = _TRANSFORM.match(text, place)
+    points: Points  # (n, 2), corners in order
+    closed: bool  # whether the path says so, or it ends where it began
+
+
+def subpaths(data: str) -> list[Subpath]:
+    """Return the lines of path data."""
+    pen = _Pen()
+    for command, numbers in _segments(data):
+        pen.draw(command, numbers)
+    pen.end(closed=False)
+    return pen.done
+
+
+def _segments(data: str) -> Iterator[tuple[str, list[float]]]:
+    """Yield commands with their numbers, repeated ones one by one."""
+    parts = _COMMAND.split(data)
+    if parts[0].strip():
+        raise ValueError(f"path data begins with {parts[0].strip()[:20]!r}")
+    for command, text in zip(parts[1::2], parts[2::2], strict=True):
+        count = _ARGUMENTS[command.upper()]
+        numbers = _numbers(text, arc=command in "Aa")
+        if count == 0:
+            if numbers:
+                raise ValueError("numbers after z")
+            yield command, []
+            continue
+        if not numbers or len(numbers) % count:
+            raise ValueError(f"{command} has {len(numbers)} numbers, not a multiple of {count}")
+        for start in range(0, len(numbers), count):
+            # What follows the first pair of a move is a line.
+            later = {"M": "L", "m": "l"}.get(command, command) if start else command
+            yield later, numbers[start : start + count]
+
+
+def _numbers(text: str, *, arc: bool) -> list[float]:
+    """Read numbers; the flags of arcs may stand together without a space."""
+    numbers: list[float] = []
+    place, end = 0, len(text.rstrip())
+    while place < end:
+        is_flag = arc and len(numbers) % 7 in (3, 4)
+        found = (_FLAG if is_flag else _NUMBER).match(text, place)
         if found is None:
-            raise ValueError(f"{text[place:][:30]!r} is no transform")
-        numbers = [bounded(word) for word in re.split(r"[\s,]+", found[2].strip()) if word]
-        matrix = matrix @ _matrix_of(found[1], numbers)
+            raise ValueError(f"{text[place:end].strip()[:20]!r} is no number")
+        numbers.append(bounded(found[1]))
         place = found.end()
-    return matrix
+    return numbers
 
 
-def _matrix_of(name: str, numbers: list[float]) -> Matrix:
-    """Return the matrix of one function of a transform; ValueError when it is none."""
-    matrix = np.eye(3)
-    count = len(numbers)
-    if name == "matrix" and count == 6:
-        matrix[:2] = np.reshape(numbers, (3, 2)).T
-    elif name == "translate" and count in (1, 2):
-        matrix[:2, 2] = numbers[0], numbers[1] if count == 2 else 0.0
-    elif name == "scale" and count in (1, 2):
-        matrix[0, 0], matrix[1, 1] = numbers[0], numbers[-1]
-    elif name == "rotate" and count in (1, 3):
-        angle = math.radians(numbers[0])
-        matrix[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
-        centre = np.array(numbers[1:] or (0.0, 0.0))
-        matrix[:2, 2] = centre - matrix[:2, :2] @ centre
-    elif name in {"skewX", "skewY"} and count == 1:
-        row = 0 if name == "skewX" else 1
-        matrix[row, 1 - row] = math.tan(math.radians(numbers[0]))
-    else:
-        raise ValueError(f"{name} of {count} numbers is no transform")
-    return matrix
+@dataclass
+class _Pen:
+    """Where a path has come to."""
+
+    done: list[Subpath] = field(default_factory=list)
+    line: list[Points] = field(default_factory=list)
+    corners: int = 0
+    at: Corner = field(default_factory=lambda: np.zeros(2))
+    begun: Corner = field(default_factory=lambda: np.zeros(2))
+    handle: Corner | None = None  # last control point, which smooth curves mirror
+    last: str = ""  # command
+
+    def draw(self, command: str, numbers: list[float]) -> None:
+        """Follow one command."""
+        kind = command.upper()
+        if not self.last and kind != "M":
+            raise ValueError(f"path data begins with {command}, not with a move")
+        base = self.at if command.islower() else np.zeros(2)
+        handle = None
+        if kind == "Z":
+            self.end(closed=True)
+            self.at = self.begun
+        elif kind == "M":
+            self.end(closed=False)
+            self.at = self.begun = base + numbers
+        elif kind == "L":
+            self._to((base + numbers)[None])
+        elif kind in "HV":
+            end, axis = self.at.copy(), "HV".index(kind)
+            end[axis] = base[axis] + numbers[0]
+            self._to(end[None])
+        elif kind == "A":
+            self._to(arc(self.at, numbers[:5], base + numbers[5:]))
+        else:
+            points = base + np.reshape(numbers, (-1, 2))
+            if kind in "ST":
+                # A smooth curve mirrors the last handle only after a curve of its own degree.
+                last = self.handle if self.last in ("CS" if kind == "S" else "QT") else None
+                first = self.at if last is None else 2.0 * self.at - last
+                points = np.concatenate([[first], points])
+            handle = points[-2]
+            self._to(bezier(np.concatenate([[self.at], points])))
+        self.handle, self.last = handle, kind
+
+    def _to(self, points: Points) -> None:
+        self.corners += len(points)
+        if self.corners > _MOST_CORNERS:
+            raise ValueError(f"a path has more than {_MOST_CORNERS} corners, those on curves")
+        if not self.line:
+            self.line = [self.at[None]]
+        self.line.append(points)
+        self.at = points[-1]
+
+    def end(self, *, closed: bool) -> None:
+        """End a line."""
+        if self.line:
+            points = np.concatenate(self.line)
+            returns = bool(np.allclose(points[0], points[-1], rtol=0.0, atol=1e-9))
+            points = points[:-1] if returns else points
+            self.done.append(Subpath(points, closed or returns))
+        self.line = []
 
 
-def moved(matrix: Matrix, points: Points) -> Points:
-    """Return points under a transform."""
-    return np.asarray(points @ matrix[:2, :2].T + matrix[:2, 2])
+def bezier(points: Points) -> Points:
+    """Return points on a Bézier curve of any degree, without its first."""
+    t = np.arange(1, CORNERS_OF_CURVE + 1) / CORNERS_OF_CURVE
+    degree = len(points) - 1
+    weights = [math.comb(degree, k) * t**k * (1.0 - t) ** (degree - k) for k in range(degree + 1)]
+    curve = np.column_stack(weights) @ points
+    curve[-1] = points[-1]
+    return np.asarray(curve)
 
 
-def lines_of(
-    kind: str, attributes: Mapping[str, str], view: tuple[float, float] | None = None
-) -> list[Subpath]:
-    """Return the lines of a shape in its own coordinates; ValueError when it cannot be used.
+def arc(start: Corner, shape: list[float], end: Corner) -> Points:
+    """Return points on an elliptical arc, without its first (SVG 1.1, F.6).
 
-    Parameters
-    ----------
-    kind : str
-        One of `SHAPES`.
-    attributes : mapping
-        Of its element.
-    view : (float, float), optional
-        Width and height that per cents are of, user units.
+    Its shape: both radii, turn of the x axis in degrees, large-arc flag, sweep flag.
     """
+    rx, ry = abs(shape[0]), abs(shape[1])
+    if rx == 0.0 or ry == 0.0 or (start == end).all():
+        return end[None]
+    angle = math.radians(shape[2])
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    half = turn.T @ ((start - end) / 2.0) / (rx, ry)
+    length = float(half @ half)
+    if length > 1.0:
+        # Radii that cannot reach grow until they do.
+        rx, ry = rx * math.sqrt(length), ry * math.sqrt(length)
+        half, length = half / math.sqrt(length), 1.0
+    side = -1.0 if bool(shape[3]) == bool(shape[4]) else 1.0
+    middle = side * math.sqrt(max(0.0, 1.0 / length - 1.0)) * np.array([half[1], -half[0]])
+    first = math.atan2(*(half - middle)[::-1])
+    sweep = (math.atan2(*(-half - middle)[::-1]) - first) % (2.0 * math.pi)
+    if not shape[4] and sweep > 0.0:
+        sweep -= 2.0 * math.pi
+    number = max(2, math.ceil(abs(sweep) / (2.0 * math.pi) * CORNERS_OF_CIRCLE))
+    angles = first + sweep * np.arange(1, number + 1) / number
+    circle = np.column_stack([np.cos(angles), np.sin(angles)]) + middle
+    points = (circle * (rx, ry)) @ turn.T + (start + end) / 2.0
+    points[-1] = end
+    return np.asarray(points)
+
+
+def lines_of(kind: str, attributes: Mapping[str, str], view: View | None = None) -> list[Subpath]:
+    """Return the lines of a shape in its own coordinates; ValueError when it cannot be used."""
     if kind == "path":
         data = attributes.get("d", "")
         return [] if data.strip() == "none" else subpaths(data)
     if kind in {"polygon", "polyline"}:
-        words = re.split(r"[\s,]+", attributes.get("points", "").strip())
-        points = np.reshape([bounded(word) for word in words if word], (-1, 2))
+        points = np.reshape(numbers_in(attributes.get("points", "")), (-1, 2))
         if not len(points):
             return []
         closed = kind == "polygon" or bool((points[0] == points[-1]).all())
@@ -129,7 +206,7 @@ def lines_of(
     return [Subpath(circle + middle, closed=True)]
 
 
-def _rectangle(attributes: Mapping[str, str], view: tuple[float, float] | None) -> Points:
+def _rectangle(attributes: Mapping[str, str], view: View | None) -> Points:
     names = ("x", "y", "width", "height")
     x, y, width, height = (user_units(attributes, name, view) for name in names)
     rx, ry = np.minimum(_radii(attributes, view), (width / 2, height / 2)).tolist()
@@ -147,19 +224,7 @@ def _rectangle(attributes: Mapping[str, str], view: tuple[float, float] | None) 
     return np.concatenate(corners)
 
 
-def _radii(attributes: Mapping[str, str], view: tuple[float, float] | None) -> tuple[float, float]:
+def _radii(attributes: Mapping[str, str], view: View | None) -> tuple[float, float]:
     """Return rx and ry, of which one counts for both."""
     given = [user_units(attributes, name, view) for name in ("rx", "ry") if name in attributes]
     return (given[0], given[-1]) if given else (0.0, 0.0)
-
-
-def user_units(attributes: Mapping[str, str], name: str, view: tuple[float, float] | None) -> float:
-    """Return an attribute that is a length, 0 when there is none; ValueError when it is none."""
-    value, unit = length(attributes.get(name, "0"))
-    if unit in UNITS_M:
-        return value * UNITS_M[unit] / PX_M
-    if unit == "%" and view is not None and name != "r":
-        return value / 100.0 * view[0 if name in {"x", "cx", "rx", "width"} else 1]
-    if unit not in {"", "px"}:
-        raise ValueError(f"{name} in {unit} is not read, only user units")
-    return value

@@ -22,16 +22,8 @@ _PLAIN = "Save it as plain SVG, with attributes instead of styles."
 class Styles:
     """Properties of elements by simple rules of style sheets, by `style`, and by attributes.
 
-    Parameters
-    ----------
-    root : Element
-        The drawing.
-
-    Raises
-    ------
-    ValueError
-        A rule that may hide, fill, move or shape has a selector that is more than a tag, a class
-        or an id, or stands under a condition.
+    ValueError where a rule that may hide, fill, move or shape has a selector that is more than a
+    tag, a class or an id, or stands under a condition.
     """
 
     def __init__(self, root: ET.Element) -> None:
@@ -72,13 +64,7 @@ class Styles:
 
 
 def declared(body: str) -> dict[str, str]:
-    """Return the properties of a declaration block.
-
-    Examples
-    --------
-    >>> declared("fill:none; stroke : red !important")
-    {'fill': 'none', 'stroke': 'red'}
-    """
+    """Return the properties of a declaration block."""
     pairs = (part.partition(":") for part in _COMMENT.sub("", body).split(";"))
     return {
         name.strip().lower().removeprefix("-webkit-"): value.partition("!")[0].strip()

@@ -1,57 +1,124 @@
-"""Viewports of SVG: what width, height, viewBox and preserveAspectRatio make of user units."""
+"""Lengths, transforms and viewports of SVG: what makes a drawing of user units."""
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree as ET
 
 import numpy as np
+from numpy.typing import NDArray
 
 from drystone.io.outlines_in.model import METRES
-from drystone.io.outlines_in.svg_path import bounded
-from drystone.io.outlines_in.svg_shapes import PX_M, UNITS_M, Matrix, length, user_units
 from drystone.io.read_settings import ReadSettings
+from drystone.kernels.polygons import Points
 
+Matrix = NDArray[np.float64]
 View = tuple[float, float]
 """Width and height that per cents are of, user units."""
 
+NUMBER = r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?"
+"""A number of SVG, as a regular expression."""
+
+_TRANSFORM = re.compile(r"\s*+(?:,\s*+)?([a-zA-Z]++)\s*+\(([^)]*+)\)")
+_LENGTH = re.compile(rf"({NUMBER})\s*+([a-z%]*+)", re.IGNORECASE)
+UNITS_M = {
+    "mm": 0.001, "cm": 0.01, "q": 0.00025, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6,
+}  # fmt: skip
+"""Metres in a unit of length."""
+PX_M = 0.0254 / 96.0
+"""Metres in a px of CSS, which a user unit is."""
 _RATIO = re.compile(r"(?:defer\s+)?(?:none|x(Min|Mid|Max)Y(Min|Mid|Max))(?:\s+(meet|slice))?")
 _SHARES = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
 """Of the free space before the box."""
 
 
+def bounded(text: str) -> float:
+    """Return a number; ValueError for one beyond 1e12, which no drawing has."""
+    value = float(text)
+    if not abs(value) < 1e12:
+        raise ValueError(f"{text[:20]} is too large")
+    return value
+
+
+def numbers_in(text: str) -> list[float]:
+    """Return the numbers between spaces and commas; ValueError when there is anything else."""
+    return [bounded(word) for word in re.split(r"[\s,]+", text.strip()) if word]
+
+
+def length(text: str) -> tuple[float, str]:
+    """Split a length into number and unit; ValueError when it is none."""
+    found = _LENGTH.fullmatch(text.strip())
+    if found is None:
+        raise ValueError(f"{text[:30]!r} is no length")
+    return bounded(found[1]), found[2].lower()
+
+
+def transform(text: str) -> Matrix:
+    """Return the (3, 3) matrix of the attribute ``transform``."""
+    matrix, place = np.eye(3), 0
+    text = "" if text.strip() == "none" else text.rstrip()
+    while place < len(text):
+        found = _TRANSFORM.match(text, place)
+        if found is None:
+            raise ValueError(f"{text[place:][:30]!r} is no transform")
+        matrix = matrix @ _matrix_of(found[1], numbers_in(found[2]))
+        place = found.end()
+    return matrix
+
+
+def _matrix_of(name: str, numbers: list[float]) -> Matrix:
+    """Return the matrix of one function of a transform; ValueError when it is none."""
+    matrix = np.eye(3)
+    count = len(numbers)
+    if name == "matrix" and count == 6:
+        matrix[:2] = np.reshape(numbers, (3, 2)).T
+    elif name == "translate" and count in (1, 2):
+        matrix[:2, 2] = numbers[0], numbers[1] if count == 2 else 0.0
+    elif name == "scale" and count in (1, 2):
+        matrix[0, 0], matrix[1, 1] = numbers[0], numbers[-1]
+    elif name == "rotate" and count in (1, 3):
+        angle = math.radians(numbers[0])
+        matrix[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
+        centre = np.array(numbers[1:] or (0.0, 0.0))
+        matrix[:2, 2] = centre - matrix[:2, :2] @ centre
+    elif name in {"skewX", "skewY"} and count == 1:
+        row = 0 if name == "skewX" else 1
+        matrix[row, 1 - row] = math.tan(math.radians(numbers[0]))
+    else:
+        raise ValueError(f"{name} of {count} numbers is no transform")
+    return matrix
+
+
+def moved(matrix: Matrix, points: Points) -> Points:
+    """Return points under a transform."""
+    return np.asarray(points @ matrix[:2, :2].T + matrix[:2, 2])
+
+
+def user_units(attributes: Mapping[str, str], name: str, view: View | None) -> float:
+    """Return an attribute that is a length, 0 when there is none; ValueError when it is none."""
+    value, unit = length(attributes.get(name, "0"))
+    if unit in UNITS_M:
+        return value * UNITS_M[unit] / PX_M
+    if unit == "%" and view is not None and name != "r":
+        return value / 100.0 * view[0 if name in {"x", "cx", "rx", "width"} else 1]
+    if unit not in {"", "px"}:
+        raise ValueError(f"{name} in {unit} is not read, only user units")
+    return value
+
+
 @dataclass(frozen=True, eq=False)
 class Page:
-    """What the root element says.
+    """What the root element says."""
 
-    Parameters
-    ----------
-    matrix : Matrix
-        From its user units to the page.
-    unit_m : float or None
-        Metres in a unit of the page; None for px.
-    size : (float, float) or None
-        Of the page, in its unit, if it is known.
-    view : (float, float) or None
-        What per cents are of.
-    """
-
-    matrix: Matrix
-    unit_m: float | None
-    size: tuple[float, float] | None
-    view: View | None
+    matrix: Matrix  # from its user units to the page
+    unit_m: float | None  # metres in a unit of the page; None for px
+    size: tuple[float, float] | None  # of the page, in its unit, if it is known
+    view: View | None  # what per cents are of
 
 
 def page_of(root: Mapping[str, str], settings: ReadSettings) -> Page:
-    """Read width, height and viewBox of the root; ValueError when they cannot be used.
-
-    Parameters
-    ----------
-    root : mapping
-        Its attributes.
-    settings : ReadSettings
-        Of which the unit counts.
-    """
+    """Read width, height and viewBox of the root; ValueError when they cannot be used."""
     sides = [length(root.get(name, "100%")) for name in ("width", "height")]
     physical = all(unit in UNITS_M for _, unit in sides)
     if not physical and any(unit not in {"", "px", "%"} for _, unit in sides):
@@ -85,19 +152,7 @@ def inner_view(
 ) -> tuple[Matrix, View | None] | None:
     """Return the way out of the viewport of an inner svg or a symbol, and what per cents are of.
 
-    Parameters
-    ----------
-    element : Element
-        The svg or symbol; ValueError when it cannot be used.
-    use : Element or None
-        What shows it; its width and height come first.
-    around : (float, float) or None
-        What per cents around it are of.
-
-    Returns
-    -------
-    (Matrix, (float, float) or None) or None
-        None when nothing of it can be seen.
+    The width and height of the `use` that shows it come first.  None when nothing can be seen.
     """
     said, box, size = dict(element.attrib), view_box(element.attrib), None
     for name in ("width", "height"):
@@ -119,29 +174,14 @@ def inner_view(
 def view_box(attributes: Mapping[str, str]) -> list[float]:
     """Return the four numbers of a viewBox; none when there is none, ValueError for others."""
     text = attributes.get("viewBox", "").strip()
-    box = [bounded(word) for word in re.split(r"[\s,]+", text) if word]
+    box = numbers_in(text)
     if box and (len(box) != 4 or not min(box[2:]) > 0.0):
         raise ValueError(f"its viewBox is {text!r}")
     return box
 
 
 def fitted(box: Sequence[float], size: Sequence[float], ratio: str = "") -> Matrix:
-    """Return the way from the units of a viewBox to a viewport with its origin at (0, 0).
-
-    Parameters
-    ----------
-    box : sequence of 4 floats
-        Its left and upper edge, width and height.
-    size : sequence of 2 floats
-        Width and height of the viewport.
-    ratio : str
-        preserveAspectRatio: all of the box in the middle, unless it says otherwise.
-
-    Examples
-    --------
-    >>> fitted((0, 0, 10, 10), (40, 20), "xMaxYMin").tolist()
-    [[2.0, 0.0, 20.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0]]
-    """
+    """Return the way from the units of a viewBox to a viewport with its origin at (0, 0)."""
     found = _RATIO.fullmatch(ratio.strip() or "xMidYMid")
     if found is None:
         raise ValueError(f"its preserveAspectRatio is {ratio!r}")
