@@ -23,113 +23,53 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Limit:
-    """Where a rule's number stops being good, and where it is broken.
+    """Where a rule's number stops being good, and where it is broken."""
 
-    Parameters
-    ----------
-    good, fair : float
-        Last values that are good, and fair; beyond `fair` the rule is broken.
-    """
-
-    good: float
+    good: float  # Last values that are good, and fair; beyond `fair` the rule is broken
     fair: float
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """One place where a rule is not kept.
+    """One place where a rule is not kept."""
 
-    Parameters
-    ----------
-    stones : tuple of int
-        Ids concerned.
-    value : float
-        How bad it is, in the unit of `words`.
-    words : str
-        What is wrong, after the names of the stones.
-    lines : tuple of (n, 2) float arrays
-        Joints, edges or slopes to draw.
-    at_fault : int
-        How many of the stones, the first ones, do not keep the rule; 0 when it is a joint
-        between them that does not.
-    """
-
-    stones: tuple[int, ...]
-    value: float
-    words: str
-    lines: tuple[Line, ...] = ()
+    stones: tuple[int, ...]  # Ids concerned
+    value: float  # How bad it is, in the unit of `words`
+    words: str  # What is wrong, after the names of the stones
+    lines: tuple[Line, ...] = ()  # (n, 2) Joints, edges or slopes to draw
+    # How many of the stones, the first ones, do not keep the rule; 0 when it is a joint between
+    # them that does not
     at_fault: int = 1
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What there is in a wall, before a limit judges it.
+    """What there is in a wall, before a limit judges it."""
 
-    Parameters
-    ----------
-    number : float or None
-        See :attr:`Rule.meaning`; None when there is nothing to judge.
-    cases : sequence of Case
-        Worst first.  A good wall may have some.
-    figures : mapping of str to float or None
-        Other numbers that go with it.
-    note : str
-        Why nothing was judged, or what the number does not say.
-    broken : bool
-        The rule is broken whatever the number is.
-    """
-
-    number: float | None
-    cases: tuple[Case, ...] = ()
+    number: float | None  # See `Rule.meaning`; None when there is nothing to judge
+    cases: tuple[Case, ...] = ()  # Worst first.  A good wall may have some.
+    # Other numbers that go with it
     figures: Mapping[str, float | None] = field(default_factory=dict)
-    note: str = ""
-    broken: bool = False
+    note: str = ""  # Why nothing was judged, or what the number does not say
+    broken: bool = False  # The rule is broken whatever the number is
 
 
 @dataclass(frozen=True)
 class Rule:
-    """A mason's rule as a check.
+    """A mason's rule as a check."""
 
-    Parameters
-    ----------
-    name : str
-        For options and JSON.
-    title : str
-        For tables and pictures.
-    sentence : str
-        The rule as a mason says it.
-    source : str
-        Who says it; "Own definition" for what is ours.
-    meaning : str
-        What the number is.
-    higher_is_better : bool
-        Direction of the number.
-    limit : Limit
-        Usual limits; ours, unless the source says otherwise.
-    measure : callable
-        Gives the number of a wall and its cases.
-    unit : str
-        Of the number, empty for shares and counts.
-    """
-
-    name: str
-    title: str
-    sentence: str
-    source: str
-    meaning: str
-    higher_is_better: bool
-    limit: Limit
-    measure: Callable[["Masonry", Limit], Found]
-    unit: str = ""
+    name: str  # For options and JSON
+    title: str  # For tables and pictures
+    sentence: str  # The rule as a mason says it
+    source: str  # Who says it; "Own definition" for what is ours
+    meaning: str  # What the number is
+    higher_is_better: bool  # Direction of the number
+    limit: Limit  # Usual limits; ours, unless the source says otherwise
+    measure: Callable[["Masonry", Limit], Found]  # Gives the number of a wall and its cases
+    unit: str = ""  # Of the number, empty for shares and counts
 
     def find(self, masonry: "Masonry", limit: Limit | None = None) -> "Finding":
-        """Judge a wall, by limits of its own unless others are given.
-
-        Raises
-        ------
-        UsageError
-            E190 for limits that are the wrong way round.
-        """
+        """Judge a wall, by limits of its own unless others are given."""
         limit = limit or self.limit
         sign = 1.0 if self.higher_is_better else -1.0
         if not (
@@ -159,21 +99,11 @@ class Rule:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Finding(Found):
-    """What a rule finds: what there is, judged.
+    """What a rule finds: what there is, judged."""
 
-    Parameters
-    ----------
-    rule : Rule
-        Which one.
-    limit : Limit
-        Limits that were used.
-    verdict : {"good", "fair", "broken", "not judged"}
-        By the limits.
-    """
-
-    rule: Rule
-    limit: Limit
-    verdict: Verdict
+    rule: Rule  # Which one
+    limit: Limit  # Limits that were used
+    verdict: Verdict  # By the limits
 
     @property
     def amount(self) -> str:
@@ -186,13 +116,7 @@ class Finding(Found):
         return f"{self.number:.3g}{unit if unit in ('', '°') else f' {unit}'}"
 
     def report(self, steps: Mapping[int, int]) -> dict[str, Any]:
-        """Return it for JSON.
-
-        Parameters
-        ----------
-        steps : mapping of int to int
-            Step of the plan by id; empty for what is no plan.
-        """
+        """Return it for JSON."""
         return {
             "title": self.rule.title,
             "rule": self.rule.sentence,

@@ -20,60 +20,26 @@ STEEPEST = 1.0
 
 @dataclass(frozen=True)
 class Run:
-    """A piece of a line inside a stone or wedge.
+    """A piece of a line inside a stone or wedge."""
 
-    Parameters
-    ----------
-    id : int
-        Of the stone or wedge.
-    begin, end : float
-        Along the line, ascending.
-    """
-
-    id: int
-    begin: float
+    id: int  # Of the stone or wedge
+    begin: float  # Along the line, ascending
     end: float
 
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """Parallel lines through a wall.
+    """Parallel lines through a wall."""
 
-    Parameters
-    ----------
-    spacing : float
-        Distance of the lines.
-    places : (n,) float array
-        Where they are: heights of rows, or x of columns; as far from one end of the wall's box
-        as from the other, so that a mirrored wall is cut in the same places.
-    runs : tuple of tuple of Run
-        For each line, in order along it.
-    """
-
-    spacing: float
+    spacing: float  # Distance of the lines
+    # (n,) Where they are: heights of rows, or x of columns; as far from one end of the wall's
+    # box as from the other, so that a mirrored wall is cut in the same places
     places: NDArray[np.float64]
-    runs: tuple[tuple[Run, ...], ...]
+    runs: tuple[tuple[Run, ...], ...]  # For each line, in order along it
 
 
 def scan(outlines: Mapping[int, Points], axis: int, spacing: float) -> Scan:
-    """Cut outlines by parallel lines.
-
-    Parameters
-    ----------
-    outlines : mapping of int to (n, 2) float array
-        Corners in order, not closed.
-    axis : {0, 1}
-        0 for rows, which run along x; 1 for columns, which run up.
-    spacing : float
-        About how far apart, above 0.
-
-    Examples
-    --------
-    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
-    >>> rows = scan({7: square, 8: square + [3, 0]}, 0, 1.0)
-    >>> rows.runs
-    ((Run(id=7, begin=0.0, end=2.0), Run(id=8, begin=3.0, end=5.0)),)
-    """
+    """Cut outlines by parallel lines."""
     if not outlines:
         return Scan(spacing, np.empty(0), ())
     across = 1 - axis
@@ -111,22 +77,12 @@ def _crossings(
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """A piece of joint between two stones.
+    """A piece of joint between two stones."""
 
-    Parameters
-    ----------
-    first, second : int
-        Stones to the left and right of a head joint, below and above a bed joint.
-    points : (n, 2) float array
-        Middle of the gap, bottom to top or left to right.
-    spacing : float
-        Length that a point stands for.
-    """
-
-    first: int
+    first: int  # Stones to the left and right of a head joint, below and above a bed joint
     second: int
-    points: Points
-    spacing: float
+    points: Points  # (n, 2) Middle of the gap, bottom to top or left to right
+    spacing: float  # Length that a point stands for
 
     @property
     def length(self) -> float:
@@ -157,25 +113,7 @@ class Joint:
 
 
 def joints(scanned: Scan, axis: int, widest: float, wedges: frozenset[int]) -> tuple[Joint, ...]:
-    """Find the joints that lines of a scan cross.
-
-    Parameters
-    ----------
-    scanned : Scan
-        Rows for head joints, columns for bed joints.
-    axis : {0, 1}
-        Of the scan.
-    widest : float
-        Widest gap between neighbours; the thickness of wedges between them does not count.
-    wedges : frozenset of int
-        Ids of wedges, which are no neighbours.
-
-    Returns
-    -------
-    tuple of Joint
-        Sorted by their first points.  Two stones have several where their joint changes between
-        rising and running, or is interrupted.
-    """
+    """Find the joints that lines of a scan cross."""
     sampled: dict[tuple[int, int], list[tuple[int, float]]] = {}
     for line, runs in enumerate(scanned.runs):
         for pair, middle, gap in _neighbours(runs, wedges):
@@ -221,15 +159,9 @@ def _pieces(samples: list[tuple[int, float]], spacing: float) -> Iterator[list[t
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """Head joints that form one joint, from the lowest to the highest.
+    """Head joints that form one joint, from the lowest to the highest."""
 
-    Parameters
-    ----------
-    joints : tuple of Joint
-        At least one.
-    """
-
-    joints: tuple[Joint, ...]
+    joints: tuple[Joint, ...]  # At least one
 
     @property
     def left(self) -> tuple[int, ...]:
@@ -265,16 +197,6 @@ def chains(masonry: "Masonry") -> tuple[Chain, ...]:
     A joint goes on when the next one begins no farther to the side than the offset of the
     settings and no farther above than a hole, and no stone lies between them.  Where several
     could go on, the one straight above does.
-
-    Parameters
-    ----------
-    masonry : Masonry
-        Any wall.
-
-    Returns
-    -------
-    tuple of Chain
-        Every head joint is in one; from left to right by their lower ends.
     """
     heads = masonry.heads
     above: dict[int, int] = {}

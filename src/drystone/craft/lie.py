@@ -83,27 +83,13 @@ def big_low(masonry: Masonry, _: object = None) -> Found:
 
 @dataclass(frozen=True, eq=False)
 class Edge:
-    """The upper or lower edge of a stone, as a straight line fitted to it.
+    """The upper or lower edge of a stone, as a straight line fitted to it."""
 
-    Parameters
-    ----------
-    stone : int
-        Id.
-    side : {"lower", "upper"}
-        Which.
-    slope : float
-        Rise to the right over run.
-    width : float
-        Of the part that was fitted.
-    line : (2, 2) float array
-        Its ends.
-    """
-
-    stone: int
-    side: Literal["lower", "upper"]
-    slope: float
-    width: float
-    line: Line
+    stone: int  # Id
+    side: Literal["lower", "upper"]  # Which
+    slope: float  # Rise to the right over run
+    width: float  # Of the part that was fitted
+    line: Line  # (2, 2) Its ends
 
     @property
     def angle_deg(self) -> float:
@@ -223,20 +209,7 @@ def level_top(masonry: Masonry, _: object = None) -> Found:
 
 
 def without_slots(profile: Line, widest: float) -> Line:
-    """Fill the slots of a profile that are no wider than a joint to their lower brink.
-
-    Parameters
-    ----------
-    profile : (n,) float array
-        Heights.
-    widest : float
-        Width of a slot, in steps of the profile.
-
-    Examples
-    --------
-    >>> without_slots(np.array([3.0, 3.0, 0.0, 2.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0]), 1.2).tolist()
-    [3.0, 3.0, 2.0, 2.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0]
-    """
+    """Fill the slots of a profile that are no wider than a joint to their lower brink."""
     size = int(widest) + 1
     if size < 2 or profile.size < 2:
         return profile

@@ -158,18 +158,10 @@ RULES: Mapping[str, Rule] = MappingProxyType({rule.name: rule for rule in _ALL})
 
 @dataclass(frozen=True, eq=False)
 class CraftReport:
-    """What the rules find in a wall.
+    """What the rules find in a wall."""
 
-    Parameters
-    ----------
-    masonry : Masonry
-        The wall.
-    findings : mapping of str to Finding
-        By name of the rule, in the order of :data:`RULES`.
-    """
-
-    masonry: Masonry
-    findings: Mapping[str, Finding]
+    masonry: Masonry  # The wall
+    findings: Mapping[str, Finding]  # By name of the rule, in the order of `RULES`
 
     @property
     def broken(self) -> tuple[str, ...]:

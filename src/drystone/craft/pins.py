@@ -31,13 +31,6 @@ def pins(masonry: Masonry, limit: Limit) -> Found:
     Wedges are known in plans; in a label image or block model they have to be named.  The rule is
     broken when a wedge sticks out, or is none that a mason would cut where wedges shall be cut to
     their outlines.
-
-    Parameters
-    ----------
-    masonry : Masonry
-        Any wall.
-    limit : Limit
-        Wedges that carry more than its good number are named.
     """
     wedges = sorted(set(masonry.wedge_ids))
     if not wedges:
@@ -161,28 +154,6 @@ def least_wedge_loads(
     The forces between dry stones are not known from their weights alone.  For each wedge the
     state of equilibrium within friction is found in which that wedge carries least; so 0 means
     that the wall would stand without leaning on it.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Of the whole wall.
-    wedge_ids : frozenset of int
-        Blocks that are wedges.
-
-    Returns
-    -------
-    mapping of int to float, or LimitStatus
-        By id, the vertical force from what lies on the wedge, in weights of the model; UNSTABLE
-        when the wall does not stand by its own weight, FAILED when the solver gave up.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> pier, slab = [0, 0, 1, 1], [0, 1, 4, 1]
-    >>> found = least_wedge_loads(model_from_json({"blocks_xywh": [pier, slab, [3, 0, 1, 1]]}),
-    ...                           frozenset({3}))
-    >>> round(found[3], 6)
-    1.333333
     """
     if all(block.fixed for block in model.blocks):
         return dict.fromkeys(sorted(wedge_ids), 0.0)

@@ -93,20 +93,7 @@ class RubbleSettings:
 
 
 def course_sizes(settings: RubbleSettings, rng: Generator) -> NDArray[np.float64]:
-    """Draw the boxes of the stones: courses that fill the wall's height, each as long as the wall.
-
-    Parameters
-    ----------
-    settings : RubbleSettings
-        Size of the wall, number and spread of its courses.
-    rng : Generator
-        Source of the widths and of how much lower than its course a stone is.
-
-    Returns
-    -------
-    sizes : (count, 2) float array
-        Width and height, px, course by course from the highest.
-    """
+    """Draw the boxes of the stones: courses that fill the wall's height, each as long as the wall."""
     share = np.linspace(1 + settings.spread / 2, 1 - settings.spread / 2, settings.courses)
     heights = share * settings.height_px / settings.courses
     # High courses have fewer, wider stones, so that all have about the same proportions.
@@ -125,22 +112,7 @@ def course_sizes(settings: RubbleSettings, rng: Generator) -> NDArray[np.float64
 def rubble_outline(
     width_px: float, height_px: float, settings: RubbleSettings, rng: Generator
 ) -> Outline:
-    """Draw one stone about a box: four or five corners moved a little, then cut off twice.
-
-    Parameters
-    ----------
-    width_px, height_px : float
-        The box.
-    settings : RubbleSettings
-        Roughness, share of pentagons, rounding.
-    rng : Generator
-        Source of the corners.
-
-    Returns
-    -------
-    outline : (16 or 20, 2) float array
-        Counter-clockwise, convex or nearly so.
-    """
+    """Draw one stone about a box: four or five corners moved a little, then cut off twice."""
     inwards = rng.uniform(-0.5, 1.0, (4, 2)) * settings.roughness * height_px
     x = np.array([0.0, width_px, width_px, 0.0]) + inwards[:, 0] * [1, -1, -1, 1]
     y = np.array([0.0, 0.0, height_px, height_px]) + inwards[:, 1] * [1, 1, -1, -1]

@@ -31,18 +31,12 @@ STARTS = 10
 
 @dataclass(frozen=True)
 class SecondArrangement:
-    """Interlocking and straightness by the second definition.
+    """Interlocking and straightness by the second definition."""
 
-    Parameters
-    ----------
-    F_AV : float or None
-        By how much paths between the top and the foot of the wall are longer than straight,
-        percent; higher is better.  None where a stone from end to end leaves no path.
-    F_AH : float or None
-        The same between its ends; lower is better.  None where a stone is as high as the wall.
-    """
-
+    # By how much paths between the top and the foot of the wall are longer than straight,
+    # percent; higher is better.  None where a stone from end to end leaves no path.
     F_AV: float | None
+    # The same between its ends; lower is better.  None where a stone is as high as the wall.
     F_AH: float | None
 
 
@@ -54,24 +48,6 @@ def second_arrangement(labels: Labels) -> SecondArrangement:
     pass by the wall.  :data:`STARTS` paths start evenly spread on each of two sides that face each
     other, and end anywhere on the other one: 100 (v - s) / s, with v their length and s that of a
     straight one, is averaged over all of them.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        The wall at :data:`FINER` times the working resolution, of :func:`finer_labels` or
-        :func:`outlined_labels`; wedges count as stones.  It is cut to its stones: where a wall is
-        a little shorter than planned, paths must not run through the slit at its end.
-
-    Raises
-    ------
-    LabelImageError
-        E104 when there is no stone in the image.
-
-    Examples
-    --------
-    >>> bed_joint = np.repeat(np.array([[1], [2]], np.uint32), 30, axis=0).repeat(200, axis=1)
-    >>> second_arrangement(bed_joint).F_AV is None, second_arrangement(bed_joint.T).F_AH is None
-    (True, True)
     """
     joint = joint_mask(frame_wall(labels).labels)
     rows, cols = slice(PAD_TOP, -PAD_BOTTOM), slice(PAD_LEFT, -PAD_RIGHT)
@@ -82,31 +58,12 @@ def second_arrangement(labels: Labels) -> SecondArrangement:
 
 
 def finer_labels(labels: Labels) -> Labels:
-    """Repeat every pixel of a wall that is known at the working resolution only.
-
-    Examples
-    --------
-    >>> finer_labels(np.array([[1, 2]], np.uint32)).tolist()
-    [[1, 1, 1, 2, 2, 2], [1, 1, 1, 2, 2, 2], [1, 1, 1, 2, 2, 2]]
-    """
+    """Repeat every pixel of a wall that is known at the working resolution only."""
     return labels.repeat(FINER, axis=0).repeat(FINER, axis=1)
 
 
 def outlined_labels(blocks: Sequence[Outlined], site: Site) -> Labels:
-    """Draw outlines at the resolution of the second definition.
-
-    Parameters
-    ----------
-    blocks : sequence of (int, (n, 2) float array)
-        Ids and corners of stones and wedges in the wall frame, source px.
-    site : Site
-        Of the wall, at the working resolution.
-
-    Returns
-    -------
-    labels : (h, w) uint32 array
-        As of :class:`drystone.model.wall.Wall`, on finer px.
-    """
+    """Draw outlines at the resolution of the second definition."""
     scale = FINER * site.scale
     finer = Site(FINER * site.width_px, FINER * site.height_px, scale)
     return Outlines.empty(finer).added(blocks, scale).shares.labels

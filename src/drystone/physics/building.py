@@ -25,93 +25,50 @@ stone by .1 L).  For stones of 50 px it is .15 px, about the contact tolerance.
 
 @dataclass(frozen=True)
 class BuildSettings:
-    """How a wall is built up; lengths in mean block sizes L, times in sqrt(L / g).
+    """How a wall is built up; lengths in mean block sizes L, times in sqrt(L / g)."""
 
-    Parameters
-    ----------
-    engine : EngineSettings
-        How the engine is driven.
-    moved_share : float
-        A block has fallen when a point of it has moved by more than this share of its size, the
-        square root of its area; a wedge, when by more than this share of its stone's size.
-    turned_deg : float
-        Or when it has turned by more than this.
-    resting_move, resting_time : float
-        The blocks rest when no point of any has moved by more than this for so long.
-    longest_rest : float
-        Time after every stone.  When blocks still move then the next one comes.
-    look_every : float
-        Time between two looks at the blocks.
-    """
-
-    engine: EngineSettings = field(default_factory=lambda: ROUNDED)
+    engine: EngineSettings = field(default_factory=lambda: ROUNDED)  # How the engine is driven
+    # A block has fallen when a point of it has moved by more than this share of its size, the
+    # square root of its area; a wedge, when by more than this share of its stone's size
     moved_share: float = 0.1
-    turned_deg: float = 10.0
+    turned_deg: float = 10.0  # Or when it has turned by more than this
+    # The blocks rest when no point of any has moved by more than this for so long
     resting_move: float = 3e-4
     resting_time: float = 1.0
+    # Time after every stone.  When blocks still move then the next one comes.
     longest_rest: float = 10.0
-    look_every: float = 0.25
+    look_every: float = 0.25  # Time between two looks at the blocks
 
 
 @dataclass(frozen=True)
 class BlockMove:
-    """What became of one block.
+    """What became of one block."""
 
-    Parameters
-    ----------
-    id : int
-        Of the block.
-    group : int
-        Number of its group, from 1.
-    move_px : float
-        Largest distance of any point of it from where it was planned, over its whole life.
-    share : float
-        The same over the size (square root of the area) of the stone of its group.
-    turn_deg : float
-        Largest turn over its whole life, either way.
-    overlap_px : float
-        How deep it lay in others, or in the ground, when it was put where it was planned.
-    fell : bool
-        It moved or turned by more than the settings allow.
-    """
-
-    id: int
-    group: int
+    id: int  # Of the block
+    group: int  # Number of its group, from 1
+    # Largest distance of any point of it from where it was planned, over its whole life
     move_px: float
-    share: float
-    turn_deg: float
+    share: float  # The same over the size (square root of the area) of the stone of its group
+    turn_deg: float  # Largest turn over its whole life, either way
+    # How deep it lay in others, or in the ground, when it was put where it was planned
     overlap_px: float
-    fell: bool
+    fell: bool  # It moved or turned by more than the settings allow
 
 
 @dataclass(frozen=True, eq=False)
 class BuildUp:
-    """A wall as it stands, or lies, when its last stone has come to rest.
+    """A wall as it stands, or lies, when its last stone has come to rest."""
 
-    Parameters
-    ----------
-    moves : tuple of BlockMove
-        In the order of placement.
-    planned, outlines : dict of int to (n, 2) float array
-        Corners of every block where it was planned and where it ended, source px, wall frame,
-        counter-clockwise, not closed.
-    found_moved_px : tuple of float
-        By group: how far a block at most was from its planned place when the group came.
-    restless : tuple of int
-        Numbers of the groups after which the engine did not come to rest.
-    first_fall : int or None
-        Number of the group after which the first block had fallen.
-    mu : float
-        Coefficient of friction.
-    """
-
-    moves: tuple[BlockMove, ...]
+    moves: tuple[BlockMove, ...]  # In the order of placement
+    # (n, 2) Corners of every block where it was planned and where it ended, source px, wall
+    # frame, counter-clockwise, not closed
     planned: dict[int, Points]
     outlines: dict[int, Points]
+    # By group: how far a block at most was from its planned place when the group came
     found_moved_px: tuple[float, ...]
-    restless: tuple[int, ...]
-    first_fall: int | None
-    mu: float
+    restless: tuple[int, ...]  # Numbers of the groups after which the engine did not come to rest
+    first_fall: int | None  # Number of the group after which the first block had fallen
+    mu: float  # Coefficient of friction
 
     @property
     def fallen(self) -> tuple[int, ...]:
@@ -140,37 +97,6 @@ def build_up(
 
     Every block comes where it was planned, whatever those before it have done since.  Where it
     overlaps them the engine pushes both apart, slowly and without giving them speed.
-
-    Parameters
-    ----------
-    groups : sequence of sequence of (int, (n, 2) float array)
-        Stones with their wedges in the order of placement, the stone first: ids and corners.
-    mu : float
-        Coefficient of friction.
-    settings : BuildSettings, optional
-        How the engine is driven, when blocks rest, and when they have fallen.
-    on_group : callable, optional
-        Told the number of groups that stand, after each.
-
-    Returns
-    -------
-    BuildUp
-        Same input, same result.
-
-    Raises
-    ------
-    InputError
-        E302 for mu, E303 for an outline that is none.
-    UsageError
-        E305 when pymunk is not installed.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> block = np.array([[0, 0], [40, 0], [40, 20], [0, 20]])
-    >>> built = build_up([[(1, block)], [(2, block + [0, 20])], [(3, block + [30, 40])]])
-    >>> built.fallen, built.first_fall
-    ((3,), 3)
     """
     settings = settings or BuildSettings()
     if not any(groups):
@@ -212,22 +138,7 @@ come to rest, in half its time; fewer iterations or shorter holds were off by .1
 def tilt_of(
     built: BuildUp, variations: Sequence[Variation] = (QUICK,), seed: int = 0
 ) -> tuple[TiltResult, TiltResult] | None:
-    """Tilt a finished wall from where it came to rest, to the left and to the right.
-
-    Parameters
-    ----------
-    built : BuildUp
-        The wall.
-    variations : sequence of Variation
-        Each is one test; with several their scatter is known.
-    seed : int
-        Of the order and noise of variations.
-
-    Returns
-    -------
-    (TiltResult, TiltResult) or None
-        To the left and to the right; None for a wall that fell, moves on, or is empty.
-    """
+    """Tilt a finished wall from where it came to rest, to the left and to the right."""
     if not (built.stands and built.rests and built.outlines):
         return None
     scene = Scene(built.outlines, built.mu)

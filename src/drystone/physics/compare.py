@@ -15,18 +15,10 @@ Predict = Callable[[RigidBlockModel, Direction], float | None]
 
 @dataclass(frozen=True)
 class TiltComparison:
-    """One direction of one wall.
+    """One direction of one wall."""
 
-    Parameters
-    ----------
-    simulated : TiltResult
-        The tilt tests.
-    associative, nonassociative : float or None
-        Predicted load multipliers; None when there is none.
-    """
-
-    simulated: TiltResult
-    associative: float | None
+    simulated: TiltResult  # The tilt tests
+    associative: float | None  # Predicted load multipliers; None when there is none
     nonassociative: float | None
 
     @property
@@ -39,19 +31,6 @@ class TiltComparison:
 
         Limit analysis is about the first motion of the blocks as they lie.  A block that has moved
         may find a better rest, so that the wall falls later than any analysis of it says.
-
-        Parameters
-        ----------
-        predicted : float or None
-            Load multiplier.
-        event : {"fall", "first motion"}
-            What it predicts.
-
-        Returns
-        -------
-        bool or None
-            None when there is no prediction, it never happened, or some trial fell on the level
-            table: its scatter is then as wide as one likes.
         """
         interval = self.simulated.interval(event)
         if predicted is None or interval is None or self.simulated.fell_at_rest:
@@ -68,35 +47,7 @@ def compare_with_tilt(
     variations: Sequence[Variation] | None = None,
     directions: Sequence[Direction] = ("left", "right"),
 ) -> tuple[TiltComparison, ...]:
-    """Tilt a wall in the engine and predict its load multipliers.
-
-    Parameters
-    ----------
-    scene : Scene
-        The wall in the engine.
-    model : RigidBlockModel
-        The same wall for the limit analysis; best of the same outlines
-        (:func:`drystone.contacts.outlines.model_from_outlines`).
-    rng : numpy.random.Generator
-        Of order and noise.
-    nonassociative : callable or mapping, optional
-        What predicts the load multiplier without dilatancy, from model and direction, or the
-        numbers themselves.
-    variations : sequence of Variation, optional
-        :func:`drystone.physics.scatter.usual_variations` unless given.
-    directions : sequence of {"left", "right"}
-        Which ones.
-
-    Returns
-    -------
-    tuple of TiltComparison
-        One a direction.
-
-    Raises
-    ------
-    UsageError
-        E305 when pymunk is not installed.
-    """
+    """Tilt a wall in the engine and predict its load multipliers."""
     predicted = lateral_resistance(model)
     found = []
     for direction in directions:

@@ -18,26 +18,13 @@ Event = Literal["fall", "first motion"]
 
 @dataclass(frozen=True)
 class Variation:
-    """One way to run the same test.
+    """One way to run the same test."""
 
-    Parameters
-    ----------
-    name : str
-        What differs.
-    engine : EngineSettings
-        How the engine is driven.
-    tilt : TiltSettings
-        How the table is tilted.
-    shuffled : bool
-        Blocks are given to the engine in a random order.
-    placement_noise, outline_noise : float
-        Greatest shift of every block, and of every corner, along either axis, in mean block sizes.
-    """
-
-    name: str
-    engine: EngineSettings
-    tilt: TiltSettings
-    shuffled: bool = False
+    name: str  # What differs
+    engine: EngineSettings  # How the engine is driven
+    tilt: TiltSettings  # How the table is tilted
+    shuffled: bool = False  # Blocks are given to the engine in a random order
+    # Greatest shift of every block, and of every corner, along either axis, in mean block sizes
     placement_noise: float = 0.0
     outline_noise: float = 0.0
 
@@ -70,11 +57,6 @@ def usual_variations(
     """Return the variations of a tilt test: none, of the engine, of the scene, of the tilting.
 
     Noise stays at the depth to which blocks may overlap, far below a contact tolerance.
-
-    Examples
-    --------
-    >>> [variation.name for variation in usual_variations()][:3]
-    ['as given', 'another order', 'three times the iterations']
     """
     engine, tilt = engine or EngineSettings(), tilt or TiltSettings()
     thorough = replace(engine, iterations=3 * engine.iterations)
@@ -93,21 +75,11 @@ def usual_variations(
 
 @dataclass(frozen=True)
 class TiltResult:
-    """Outcome of repeated tilt tests in one direction.
+    """Outcome of repeated tilt tests in one direction."""
 
-    Parameters
-    ----------
-    direction : {"left", "right"}
-        Where gravity turns to.
-    trials : tuple of TiltTrial
-        In the order of `names`.
-    names : tuple of str
-        What differed.
-    """
-
-    direction: Direction
-    trials: tuple[TiltTrial, ...]
-    names: tuple[str, ...]
+    direction: Direction  # Where gravity turns to
+    trials: tuple[TiltTrial, ...]  # In the order of `names`
+    names: tuple[str, ...]  # What differed
 
     @property
     def alphas(self) -> tuple[float, ...]:
@@ -164,29 +136,7 @@ def tilt_test(
     rng: np.random.Generator,
     variations: Sequence[Variation] | None = None,
 ) -> TiltResult:
-    """Tilt a wall again and again, with variations that should not matter.
-
-    Parameters
-    ----------
-    scene : Scene
-        The wall.
-    direction : {"left", "right"}
-        The horizontal share of gravity points to -x for "left".
-    rng : numpy.random.Generator
-        Of order and noise.
-    variations : sequence of Variation, optional
-        :func:`usual_variations` unless given.
-
-    Returns
-    -------
-    TiltResult
-        One trial a variation.
-
-    Raises
-    ------
-    UsageError
-        E305 when pymunk is not installed.
-    """
+    """Tilt a wall again and again, with variations that should not matter."""
     variations = usual_variations() if variations is None else variations
     trials = tuple(
         tilt_once(variation.of(scene, rng), direction, variation.engine, variation.tilt)

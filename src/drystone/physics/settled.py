@@ -20,27 +20,6 @@ def settled(
 
     The limit analysis of the settled blocks sees the contacts that the engine sees.  That of
     blocks which have moved on a tilted table and come to rest again says why they stand.
-
-    Parameters
-    ----------
-    scene : Scene
-        The wall.
-    alpha : float
-        Tangent of a tilt that the blocks are then brought to, positive towards +x.
-    engine : EngineSettings, optional
-        How the engine is driven; neighbours overlap by up to its slop afterwards.
-    settings : TiltSettings, optional
-        When blocks rest, and when they have fallen.
-
-    Returns
-    -------
-    Scene or None
-        None when blocks fall or do not come to rest.
-
-    Raises
-    ------
-    UsageError
-        E305 when pymunk is not installed.
     """
     settings = settings or TiltSettings()
     table = TiltingTable(scene, engine or EngineSettings())

@@ -23,57 +23,31 @@ LOOKS = 8
 
 @dataclass(frozen=True)
 class ShakeSettings:
-    """How the table is shaken; lengths in mean block sizes L, times in sqrt(L / g).
+    """How the table is shaken; lengths in mean block sizes L, times in sqrt(L / g)."""
 
-    Parameters
-    ----------
-    period : float
-        Of the sinusoidal motion: 7 is a second for stones of .2 m.
-    cycles : int
-        At every amplitude.
-    coarse, fine : float
-        Steps of the amplitude, in g.  When blocks move by the limit they are set back by a step,
-        and it is halved until it is at most the fine one.
-    greatest : float
-        Largest amplitude that is tried, g.
-    limit : float
-        A block that has come so far since the wall stood at rest has moved.
-    pause : float
-        Time at rest after the cycles of an amplitude.
-    level : TiltSettings
-        How the wall settles before, and when it has fallen then.
-    """
-
-    period: float = 7.0
-    cycles: int = 2
+    period: float = 7.0  # Of the sinusoidal motion: 7 is a second for stones of .2 m
+    cycles: int = 2  # At every amplitude
+    # Steps of the amplitude, in g.  When blocks move by the limit they are set back by a step,
+    # and it is halved until it is at most the fine one.
     coarse: float = 0.1
     fine: float = 0.0125
-    greatest: float = 1.5
-    limit: float = 0.1
-    pause: float = 1.0
+    greatest: float = 1.5  # Largest amplitude that is tried, g
+    limit: float = 0.1  # A block that has come so far since the wall stood at rest has moved
+    pause: float = 1.0  # Time at rest after the cycles of an amplitude
+    # How the wall settles before, and when it has fallen then
     level: TiltSettings = field(default_factory=lambda: TiltSettings(longest_hold=20.0))
 
 
 @dataclass(frozen=True)
 class ShakeTrial:
-    """Outcome of a test.
+    """Outcome of a test."""
 
-    Parameters
-    ----------
-    pga_g : float or None
-        Peak acceleration of the ground, in g, that the blocks stood: the largest amplitude at
-        which none moved by the limit.  None when they do not stand at rest.
-    resolution_g : float
-        At `pga_g` plus it, some did; 0 when none did up to the largest amplitude.
-    moved : tuple of int
-        Blocks that moved by the limit then, those that moved most first.
-    settled_shift : float
-        Largest way of any point of a block while the wall settled, unit of the scene.
-    """
-
+    # Peak acceleration of the ground, in g, that the blocks stood: the largest amplitude at
+    # which none moved by the limit.  None when they do not stand at rest.
     pga_g: float | None
-    resolution_g: float
-    moved: tuple[int, ...]
+    resolution_g: float  # At `pga_g` plus it, some did; 0 when none did up to the largest amplitude
+    moved: tuple[int, ...]  # Blocks that moved by the limit then, those that moved most first
+    # Largest way of any point of a block while the wall settled, unit of the scene
     settled_shift: float
 
 
@@ -86,29 +60,6 @@ def shake_once(
 ) -> ShakeTrial:
     """Shake the ground under a wall, step by step, each from the state before.
 
-    Parameters
-    ----------
-    scene : Scene
-        The wall.
-    engine : EngineSettings, optional
-        How the engine is driven.
-    settings : ShakeSettings, optional
-        How the table is shaken.
-    watched : collection of int, optional
-        Blocks whose movement counts; all unless given.
-
-    Returns
-    -------
-    ShakeTrial
-        Same input, same result.
-
-    Raises
-    ------
-    UsageError
-        E305 when pymunk is not installed.
-
-    Notes
-    -----
     A rigid block on the ground slides when the acceleration exceeds mu g and rocks when it exceeds
     b/h g, for its width b and height h.  By how much it must for a movement of the limit depends
     on the period: the shorter, the more.
@@ -164,22 +115,7 @@ class _Test:
 
 
 def sinusoid(amplitude_g: float, settings: ShakeSettings, time_step: float) -> Floats:
-    """Return the accelerations of the ground at an amplitude, a time step apart, in g.
-
-    Parameters
-    ----------
-    amplitude_g : float
-        Peak acceleration.
-    settings : ShakeSettings
-        Period and number of cycles.
-    time_step : float
-        Of the engine.
-
-    Examples
-    --------
-    >>> sinusoid(0.5, ShakeSettings(period=4.0, cycles=1), 1.0).round(3).tolist()
-    [0.354, 0.354, -0.354, -0.354]
-    """
+    """Return the accelerations of the ground at an amplitude, a time step apart, in g."""
     steps = round(settings.cycles * settings.period / time_step)
     times = (np.arange(steps) + 0.5) * time_step
     return np.asarray(amplitude_g * np.sin(2 * np.pi * times / settings.period))

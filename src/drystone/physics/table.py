@@ -23,20 +23,6 @@ class TiltingTable:
     """Blocks on a table; lengths in mean block sizes L, times in sqrt(L / g).
 
     Turning gravity is the same as turning the table, seen from the table.
-
-    Parameters
-    ----------
-    scene : Scene
-        The blocks; their order is that of the engine.
-    settings : EngineSettings
-        How the engine is driven.
-    placed : iterable of int, optional
-        Blocks that stand on it from the beginning; all of them unless given.
-
-    Raises
-    ------
-    UsageError
-        E305 when pymunk is not installed.
     """
 
     def __init__(
@@ -54,20 +40,7 @@ class TiltingTable:
         self._add_ground(scene)
 
     def place(self, scene: Scene, block: int) -> float:
-        """Put a block where its scene has it, whatever the others have done since.
-
-        Parameters
-        ----------
-        scene : Scene
-            That of the table.
-        block : int
-            Its id.
-
-        Returns
-        -------
-        float
-            How deep it lies in others, or in the ground, before the engine pushes them apart.
-        """
+        """Put a block where its scene has it, whatever the others have done since."""
         engine = load_engine()
         shape = scene.shapes[block]
         centre = np.array(shape.centroid.coords[0])
@@ -173,13 +146,7 @@ def _outline(part: shapely.Polygon) -> Points:
 
 
 def load_engine() -> Any:
-    """Return pymunk; it is an extra, so it is loaded only when it is needed.
-
-    Raises
-    ------
-    UsageError
-        E305 when it is not installed.
-    """
+    """Return pymunk; it is an extra, so it is loaded only when it is needed."""
     try:
         return import_module("pymunk")
     except ImportError as error:

@@ -14,69 +14,41 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class TiltSettings:
-    """How the table is tilted; lengths in mean block sizes L, times in sqrt(L / g).
+    """How the table is tilted; lengths in mean block sizes L, times in sqrt(L / g)."""
 
-    Parameters
-    ----------
-    coarse, fine : float
-        Steps of alpha.  When blocks come down, or first move, they are set back by a step, and it
-        is halved until it is at most the fine one.
-    greatest : float
-        Largest alpha that is tried.
-    fallen : float
-        A block that has come so far since the wall stood at rest has fallen.
-    noticeable : float
-        A block that has come so far has moved.
-    resting_speed : float
-        The blocks rest when no point of any is faster.
-    from_level : bool
-        Every tilt is reached at once from the settled wall instead of from the tilt before.
-    shortest_hold, longest_hold : float
-        Time at every tilt.  Blocks that still move after the longest count as fallen.
-    """
-
+    # Steps of alpha.  When blocks come down, or first move, they are set back by a step, and it
+    # is halved until it is at most the fine one.
     coarse: float = 0.032
     fine: float = 0.002
-    greatest: float = 1.5
-    fallen: float = 0.5
-    noticeable: float = 0.02
-    resting_speed: float = 1e-4
+    greatest: float = 1.5  # Largest alpha that is tried
+    fallen: float = 0.5  # A block that has come so far since the wall stood at rest has fallen
+    noticeable: float = 0.02  # A block that has come so far has moved
+    resting_speed: float = 1e-4  # The blocks rest when no point of any is faster
+    # Time at every tilt.  Blocks that still move after the longest count as fallen.
     shortest_hold: float = 1.0
     longest_hold: float = 40.0
+    # Every tilt is reached at once from the settled wall instead of from the tilt before
     from_level: bool = False
 
 
 @dataclass(frozen=True)
 class TiltTrial:
-    """Outcome of one tilt test.
+    """Outcome of one tilt test."""
 
-    Parameters
-    ----------
-    direction : {"left", "right"}
-        Where gravity turns to.
-    alpha : float or None
-        Tangent of the angle at which blocks come down; None when they fell at rest or never.
-    first_motion : float or None
-        Alpha at which some block first moved noticeably, even if it came to rest again.
-    moved : tuple of int
-        Blocks that moved noticeably at the last tilt, those that moved most first.
-    settled_shift : float
-        Largest way of any point of a block while the wall settled on the level table, in the
-        unit of the scene.
-    resolution : float
-        Of `alpha` and `first_motion`: the blocks stood at `alpha` minus it and fell at `alpha` plus
-        it.  Half a fine step or less.
-    fell_at_rest : bool
-        Blocks came down on the level table.
-    """
-
-    direction: Direction
+    direction: Direction  # Where gravity turns to
+    # Tangent of the angle at which blocks come down; None when they fell at rest or never
     alpha: float | None
+    # Alpha at which some block first moved noticeably, even if it came to rest again
     first_motion: float | None
+    # Blocks that moved noticeably at the last tilt, those that moved most first
     moved: tuple[int, ...]
+    # Largest way of any point of a block while the wall settled on the level table, in the unit
+    # of the scene
     settled_shift: float
+    # Of `alpha` and `first_motion`: the blocks stood at `alpha` minus it and fell at `alpha`
+    # plus it.  Half a fine step or less.
     resolution: float
-    fell_at_rest: bool = False
+    fell_at_rest: bool = False  # Blocks came down on the level table
 
 
 def tilt_once(
@@ -85,29 +57,7 @@ def tilt_once(
     engine: EngineSettings | None = None,
     settings: TiltSettings | None = None,
 ) -> TiltTrial:
-    """Tilt the table under a wall, step by step, each from the state before.
-
-    Parameters
-    ----------
-    scene : Scene
-        The wall.
-    direction : {"left", "right"}
-        The horizontal share of gravity points to -x for "left".
-    engine : EngineSettings, optional
-        How the engine is driven.
-    settings : TiltSettings, optional
-        How the table is tilted.
-
-    Returns
-    -------
-    TiltTrial
-        Same input, same result.
-
-    Raises
-    ------
-    UsageError
-        E305 when pymunk is not installed.
-    """
+    """Tilt the table under a wall, step by step, each from the state before."""
     settings = settings or TiltSettings()
     table = TiltingTable(scene, engine or EngineSettings())
     given = table.poses()
@@ -156,24 +106,7 @@ def _raised(level: TiltingTable, sign: float, settings: TiltSettings) -> _Fall:
 
 
 def hold(table: TiltingTable, alpha: float, settled: Floats, settings: TiltSettings) -> bool:
-    """Hold a tilt until the blocks rest or have fallen.
-
-    Parameters
-    ----------
-    table : TiltingTable
-        Changed: it is left in the state reached.
-    alpha : float
-        Tangent of the tilt, positive when gravity turns towards +x.
-    settled : (n, 3) float array
-        Poses that falling is measured from.
-    settings : TiltSettings
-        When blocks rest, and when they have fallen.
-
-    Returns
-    -------
-    bool
-        Whether they rest.
-    """
+    """Hold a tilt until the blocks rest or have fallen."""
     table.tilt(alpha)
     chunk, held = settings.shortest_hold / 4, 0.0
     while held < settings.longest_hold:

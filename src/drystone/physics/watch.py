@@ -8,13 +8,7 @@ from drystone.physics.table import Floats, TiltingTable
 
 
 class Watch:
-    """Keeps the largest movement and turn of every block on a table.
-
-    Parameters
-    ----------
-    scene : Scene
-        Where the blocks were planned; its free blocks may come onto the table in any order.
-    """
+    """Keeps the largest movement and turn of every block on a table."""
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
@@ -27,14 +21,7 @@ class Watch:
         self._turns = dict.fromkeys(scene.shapes, 0.0)
 
     def look(self, table: TiltingTable) -> float:
-        """Take note of where the blocks are.
-
-        Returns
-        -------
-        float
-            Distance of the block that is now furthest from its planned place, unit of the scene;
-            0 when the table is empty.
-        """
+        """Take note of where the blocks are."""
         furthest = 0.0
         for block, corners, turn in self._now(table):
             way = corners - self._arms[block] - self._centres[block]

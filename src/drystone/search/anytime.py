@@ -46,30 +46,7 @@ def searching(
     until: Deadline = NEVER,
     executor: Executor | None = None,
 ) -> Iterator[Progress]:
-    """Look for better walls than a first one.
-
-    Parameters
-    ----------
-    start : Found or Standing
-        The wall of the seed itself, or where the search was cut off.
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        All parameters; those of the search say how many walls are built at most.
-    seed : int
-        Of everything that is drawn.
-    until : Deadline
-        Ends the search, as far as the budget does not end it before.  A wall that is not whole by
-        then is none.
-    executor : concurrent.futures.Executor, optional
-        Processes that build walls side by side; the walls do not depend on it.
-
-    Yields
-    ------
-    Progress
-        After the first wall, and whenever walls have been added.  Of a search that goes on, first
-        what it had come to.
-    """
+    """Look for better walls than a first one."""
     tools = pickle.dumps((workshop.stones, workshop.site, settings))
     job = Job(tools, seed, until)
     if isinstance(start, Standing):
@@ -100,21 +77,11 @@ def searching(
 
 @dataclass(frozen=True, eq=False)
 class _Round:
-    """First walls and chains until they find nothing better: what all of it goes by.
+    """First walls and chains until they find nothing better: what all of it goes by."""
 
-    Parameters
-    ----------
-    number : int
-        Of the round, from 0.
-    before : Reached or None
-        What the rounds before it came to.
-    job, settings, executor
-        See :func:`searching`.
-    """
-
-    number: int
-    before: Reached | None
-    job: Job
+    number: int  # Of the round, from 0
+    before: Reached | None  # What the rounds before it came to
+    job: Job  # See `searching`
     settings: PlannerSettings
     executor: Executor | None
 

@@ -17,16 +17,6 @@ def archived(kept: Iterable[Packed], more: Iterable[Packed]) -> tuple[Packed, ..
 
     A wall is beaten by one of at least its merit that is at least as good in every figure, rounded
     to :data:`STEPS`; one that lacks pinned stones is, by any of more merit that lacks fewer.
-
-    Parameters
-    ----------
-    kept, more : iterable of Packed
-        Those so far, and new ones; of equal ones the first is kept.
-
-    Returns
-    -------
-    tuple of Packed
-        At most :data:`MOST`, those of most merit, the best first.
     """
     scored = [(wall, score_of(wall.figures)) for wall in (*kept, *more) if wall.figures is not None]
     # None is beaten by one after it.

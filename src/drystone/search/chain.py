@@ -32,32 +32,15 @@ from drystone.search.wedging import wedged_up
 
 @dataclass(frozen=True, eq=False)
 class Link:
-    """Where a chain is.
+    """Where a chain is."""
 
-    Parameters
-    ----------
-    number : int
-        Of the chain.
-    done : int
-        How many walls it has built.
-    now : Found
-        The wall that it goes on from.
-    best : Packed
-        The best that it found.
-    solves : Solves
-        What trouble there was with all of them.
-    kept : tuple of Packed
-        Those of the last ones that none of them beats in every figure.
-    known, learnt : Credits
-        Which changes have helped in all chains, and in this one since then.
-    """
-
-    number: int
-    done: int
-    now: Found
-    best: Packed
-    solves: Solves
-    kept: tuple[Packed, ...] = ()
+    number: int  # Of the chain
+    done: int  # How many walls it has built
+    now: Found  # The wall that it goes on from
+    best: Packed  # The best that it found
+    solves: Solves  # What trouble there was with all of them
+    kept: tuple[Packed, ...] = ()  # Those of the last ones that none of them beats in every figure
+    # Which changes have helped in all chains, and in this one since then
     known: Credits = field(default_factory=Credits)
     learnt: Credits = field(default_factory=Credits)
 
@@ -70,34 +53,7 @@ def lengthened(
     settings: PlannerSettings,
     until: Deadline = NEVER,
 ) -> Iterator[Link]:
-    """Build some more walls of a chain.
-
-    Parameters
-    ----------
-    link : Link
-        Where it is.
-    count : int
-        How many walls.
-    seed : int
-        Of the search; what is drawn for a wall depends on it, on the chain and on the number of
-        the wall.
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        All parameters.
-    until : Deadline
-        Looked at inside every wall.
-
-    Yields
-    ------
-    Link
-        Where it is after each of them.
-
-    Raises
-    ------
-    TimeIsUp
-        The time limit struck before all of them were built.
-    """
+    """Build some more walls of a chain."""
     search = settings.search
     for _ in range(count):
         until.look()
@@ -178,13 +134,7 @@ def wedged(
 
 
 def in_cycle(done: int, first: int) -> tuple[int, int]:
-    """Return the position in a cycle of annealing, and its length; each is twice the one before.
-
-    Examples
-    --------
-    >>> [in_cycle(done, 2) for done in range(7)]
-    [(0, 2), (1, 2), (0, 4), (1, 4), (2, 4), (3, 4), (0, 8)]
-    """
+    """Return the position in a cycle of annealing, and its length; each is twice the one before."""
     length = first
     while done >= length:
         done -= length
@@ -205,21 +155,7 @@ def recreated(
     rng: Generator,
     until: Deadline = NEVER,
 ) -> Found:
-    """Take a part of a wall down and build it up again.
-
-    Parameters
-    ----------
-    found : Found
-        The wall.
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        All parameters.
-    rng : numpy.random.Generator
-        Draws what is taken down, and the weights with which it is built up.
-    until : Deadline
-        Looked at for every wall that is judged: :class:`TimeIsUp` when it has struck.
-    """
+    """Take a part of a wall down and build it up again."""
     solves = Solves()
     if found.figures is None:
         build = found.build

@@ -28,15 +28,7 @@ def taken(task: Task) -> int:
 
 
 def choosing(task: Task, pinned: Collection[int]) -> Task:
-    """Return a task for annealing that chooses stones.
-
-    Parameters
-    ----------
-    task : Task
-        A wall to be planned, as if its stones were about enough for it.
-    pinned : collection of int
-        Ids of stones that cost ten times as much when they are left out.
-    """
+    """Return a task for annealing that chooses stones."""
     return _with_pinned(_of_plenty(task), pinned)
 
 

@@ -17,24 +17,14 @@ from drystone.poses import PoseBook
 
 @dataclass(frozen=True, eq=False)
 class Quarters:
-    """Stones in their quarter turns.
+    """Stones in their quarter turns."""
 
-    Parameters
-    ----------
-    stones : tuple of Stone
-        By their numbers.
-    angles_deg : tuple of tuple of float
-        Four of each: those at which it fits into the wall, over and over.
-    corners : tuple of (n, 2) float array
-        Turned outlines, relative to the centroid, source px; four of each stone.
-    poses : Poses
-        As the kernels see them.
-    """
-
-    stones: tuple[Stone, ...]
+    stones: tuple[Stone, ...]  # By their numbers
+    # Four of each: those at which it fits into the wall, over and over
     angles_deg: tuple[tuple[float, ...], ...]
+    # (n, 2) Turned outlines, relative to the centroid, source px; four of each stone
     corners: tuple[Points, ...]
-    poses: Poses
+    poses: Poses  # As the kernels see them
 
 
 def quarters_of(
@@ -44,21 +34,7 @@ def quarters_of(
     tolerance_px: float,
     book: PoseBook,
 ) -> Quarters | None:
-    """Turn stones by quarters; None when none fits into the wall.
-
-    Parameters
-    ----------
-    stones : collection of Stone
-        Those that fit in no pose are left out.
-    size_px : (float, float)
-        Width and height of the wall, source px.
-    column_px : float
-        Width of a column of the profiles, source px.
-    tolerance_px : float
-        Of outlines.
-    book : PoseBook
-        Knows the initial angles.
-    """
+    """Turn stones by quarters; None when none fits into the wall."""
     fitting: list[Stone] = []
     angles: list[tuple[float, ...]] = []
     corners: list[Points] = []
@@ -84,17 +60,7 @@ def fits(corners: Points, size_px: tuple[float, float]) -> bool:
 
 
 def poses_of(corners: Collection[Points], areas_px: NDArray[np.float64], column_px: float) -> Poses:
-    """Return outlines in the units of the kernels.
-
-    Parameters
-    ----------
-    corners : collection of (n, 2) float array
-        Four for each stone, relative to its centroid.
-    areas_px : (stones,) float array
-        Of the stones.
-    column_px : float
-        Width of a column.
-    """
+    """Return outlines in the units of the kernels."""
     unit_px = column_px / COLUMN_UNITS
     beside = [hanging(points, column_px) for points in corners]
     above = [hanging(points[:, ::-1], column_px) for points in corners]

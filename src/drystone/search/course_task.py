@@ -23,24 +23,12 @@ from drystone.search.laid_courses import LaidCourses, ground_of
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """A wall to be planned, in the whole numbers of the kernels.
+    """A wall to be planned, in the whole numbers of the kernels."""
 
-    Parameters
-    ----------
-    quarters : Quarters
-        The stones.
-    ground : Ground
-        What they are laid on.
-    rules : Rules
-        How.
-    unit_px : float
-        A unit in source px.
-    """
-
-    quarters: Quarters
-    ground: Ground
-    rules: Rules
-    unit_px: float
+    quarters: Quarters  # The stones
+    ground: Ground  # What they are laid on
+    rules: Rules  # How
+    unit_px: float  # A unit in source px
 
 
 def task_of(

@@ -49,41 +49,7 @@ def plan_courses(  # noqa: PLR0913 - the wall, its stones and how
     pinned: Collection[int] = (),
     until: Deadline = NEVER,
 ) -> CoursePlan | None:
-    """Plan a wall course by course.
-
-    Parameters
-    ----------
-    stones : collection of Stone
-        To build with.
-    width_px, height_px : float
-        Of the wall, source px.
-    cell_px : float
-        A working px in source px; profiles have columns half as wide.
-    tolerance_px : float
-        Of the outlines.
-    settings : CourseSettings
-        What a plan costs, and how long it is looked for.
-    seed : int
-        Equal seeds give equal plans.
-    laid : LaidCourses, optional
-        What the courses are laid on; the bare ground when left out.
-    book : PoseBook, optional
-        Remembers the initial angles of stones.
-    pinned : collection of int
-        Ids of stones that cost ten times as much when they are left out.
-    until : Deadline
-        Looked at while stones are annealed.
-
-    Returns
-    -------
-    plan : CoursePlan or None
-        None when no stone fits into the wall.
-
-    Raises
-    ------
-    TimeIsUp
-        The time limit struck.
-    """
+    """Plan a wall course by course."""
     size = (width_px, height_px)
     task = task_of(stones, size, cell_px, tolerance_px, settings, laid=laid, book=book)
     return None if task is None else planned_anew(task, settings, seed, pinned, until)
@@ -105,27 +71,7 @@ def replan_courses(  # noqa: PLR0913 - as above
     pinned: Collection[int] = (),
     until: Deadline = NEVER,
 ) -> CoursePlan | None:
-    """Plan the upper courses of a plan again, for what was really laid below.
-
-    Parameters
-    ----------
-    plan : CoursePlan
-        Its upper courses are where annealing starts, at `settings.again` of the temperature.
-    keep : int
-        So many of its courses stay as they are.
-    stones : collection of Stone
-        Those that are not laid yet.
-    width_px, height_px, cell_px, tolerance_px, settings, seed, book, pinned, until
-        As for :func:`plan_courses`.
-    laid : LaidCourses
-        What is there.
-
-    Returns
-    -------
-    plan : CoursePlan or None
-        With the lower courses as they were; its cost is that of the upper ones.  None when no
-        stone fits.
-    """
+    """Plan the upper courses of a plan again, for what was really laid below."""
     size = (width_px, height_px)
     task = task_of(stones, size, cell_px, tolerance_px, settings, laid=laid, book=book)
     if task is None:

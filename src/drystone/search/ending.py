@@ -29,22 +29,6 @@ def surest(
     """Return the best of some walls once their load without dilatancy is looked for thoroughly.
 
     A wall that falls when it is let go after some step is taken only where all do.
-
-    Parameters
-    ----------
-    planner : Planner
-        Of the first wall.
-    walls : iterable of Packed
-        From a search, the best first; of none there is no best.
-    until : Deadline
-        Ends it with the best of those that were looked at, and the first where none was.
-
-    Returns
-    -------
-    best : Packed or None
-        One of the walls.
-    cut : bool
-        Not all were looked at.
     """
     workshop, settings = planner.workshop, planner.settings
     sound: list[Packed] = []
@@ -79,17 +63,7 @@ def _best(walls: Sequence[Packed]) -> Packed:
 
 
 def as_found(planner: Planner, wall: Packed, until: Deadline = NEVER) -> tuple[Planner, Stopped]:
-    """Return a planner with a wall as a search has found it, and why nothing is added.
-
-    Parameters
-    ----------
-    planner : Planner
-        Of the first wall.
-    wall : Packed
-        From the search.
-    until : Deadline
-        Looked at for every step: :class:`TimeIsUp` when it has struck.
-    """
+    """Return a planner with a wall as a search has found it, and why nothing is added."""
     last = _planner_of(planner, wall, until)
     return last, last.finished or _FOUND
 
@@ -101,24 +75,6 @@ def with_the_rest(
 
     The passes of a search have weights of their own: a stone that found no place by those may
     find one by the weights of the first wall.  As many stay as make the wall best.
-
-    Parameters
-    ----------
-    planner : Planner
-        Of the first wall.
-    best : Packed
-        From the search.
-    until : Deadline
-        Ends it.
-
-    Returns
-    -------
-    planner : Planner
-        With the wall.
-    stopped : Stopped
-        Why no more.
-    cut : bool
-        Not all was tried.
     """
     last = _planner_of(planner, best, NEVER)
     build, merit, cut = last.build, best.merit, False

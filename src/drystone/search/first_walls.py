@@ -22,33 +22,12 @@ PROMISE = 0.6
 
 
 def promised(wall: Packed, share: float = 1.0) -> float:
-    """Return what a wall is worth as a start.
-
-    Parameters
-    ----------
-    wall : Packed
-        One that is found.
-    share : float
-        Of what a planned wall promises beyond its merit that is still to come.
-    """
+    """Return what a wall is worth as a start."""
     return wall.merit + (0.0 if wall.courses is None else share * PROMISE)
 
 
 def next_batch(found: Sequence[Packed], search: SearchSettings) -> tuple[range, float] | None:
-    """Return the numbers of the next first walls, and which share of them is planned.
-
-    Parameters
-    ----------
-    found : sequence of Packed
-        All first walls so far, of this round.
-    search : SearchSettings
-        How many there are at most.
-
-    Returns
-    -------
-    (range, float) or None
-        None when there are enough, and it is time to improve the best of them.
-    """
+    """Return the numbers of the next first walls, and which share of them is planned."""
     done = len(found)
     # Of a batch that is begun all is as when it began; the very first wall is of the first batch.
     before = found[: done - done % BATCH]
@@ -71,16 +50,6 @@ def planned_share(found: Sequence[Packed]) -> float:
     """Return the share of the next walls that are planned: that of the better half so far.
 
     On stones of masons plans win; stones with many corners are laid too unlike their plans.
-
-    Parameters
-    ----------
-    found : sequence of Packed
-        All first walls so far.
-
-    Returns
-    -------
-    float
-        In (0, 1).
     """
     order = sorted(range(len(found)), key=lambda k: (-promised(found[k]), k))
     better = [found[k] for k in order[: (len(found) + 1) // 2]] if len(found) > 1 else []

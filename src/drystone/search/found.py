@@ -24,43 +24,21 @@ QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
 
 @dataclass(frozen=True)
 class Courses:
-    """How a wall was laid course by course.
+    """How a wall was laid course by course."""
 
-    Parameters
-    ----------
-    plan : CoursePlan
-        What was planned.
-    ends : tuple of int
-        How many stones the wall had before the first course, and after each.
-    """
-
-    plan: CoursePlan
-    ends: tuple[int, ...]
+    plan: CoursePlan  # What was planned
+    ends: tuple[int, ...]  # How many stones the wall had before the first course, and after each
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """A finished wall and what it is worth.
+    """A finished wall and what it is worth."""
 
-    Parameters
-    ----------
-    build : Build
-        The wall.
-    figures : Figures or None
-        Its figures of merit; None when it is empty.
-    merit : float
-        Their weighted sum; no less than that of the same wall once it is :meth:`judged`.
-    solves : Solves
-        What trouble there was with it.
-    courses : Courses or None
-        How it was laid; None for a wall that was not planned before.
-    """
-
-    build: Build
-    figures: Figures | None
-    merit: float
-    solves: Solves = field(default_factory=Solves)
-    courses: Courses | None = None
+    build: Build  # The wall
+    figures: Figures | None  # Its figures of merit; None when it is empty
+    merit: float  # Their weighted sum; no less than that of the same wall once it is `judged`
+    solves: Solves = field(default_factory=Solves)  # What trouble there was with it
+    courses: Courses | None = None  # How it was laid; None for a wall that was not planned before
 
     @classmethod
     def of(
@@ -91,17 +69,7 @@ class Found:
         flow: NonassociativeSettings | None = None,
         until: Deadline = NEVER,
     ) -> "Found":
-        """Return the same wall with what it carries without dilatancy, unless that is known.
-
-        Parameters
-        ----------
-        workshop, settings
-            As for :meth:`measured`.
-        flow : NonassociativeSettings, optional
-            How hard it is looked for; asked again when given.
-        until : Deadline
-            Looked at while it is looked for: :class:`TimeIsUp` when it has struck.
-        """
+        """Return the same wall with what it carries without dilatancy, unless that is known."""
         figures = self.figures
         if figures is None or self.build.wall.outlines is None:
             return self

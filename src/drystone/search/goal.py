@@ -26,32 +26,20 @@ SCANNED = CraftSettings(sample=0.07)
 
 @dataclass(frozen=True)
 class Figures:
-    """Figures of merit of a finished wall.
+    """Figures of merit of a finished wall."""
 
-    Parameters
-    ----------
-    stones : int
-        How many it has.
-    F_SF, F_LR, F_AV, F_AH, T_LEVEL, E_FLUSH : float
-        As :class:`drystone.metrics.measure.WallMetrics`; 0 where a figure is not defined.
-    missing : int
-        How many pinned stones it lacks.
-    bond : float
-        Faults of its bond (:func:`drystone.craft.bond.bond_faults`); 0 for a wall of pixels.
-    F_LR_coulomb : float or None
-        F_LR without dilatancy, 0 where the wall can fall by itself; None where it was not asked
-        for (:func:`with_coulomb`).
-    """
-
-    stones: int
-    F_SF: float
+    stones: int  # How many it has
+    F_SF: float  # As `drystone.metrics.measure.WallMetrics`; 0 where a figure is not defined
     F_LR: float
     F_AV: float
     F_AH: float
     T_LEVEL: float
     E_FLUSH: float
-    missing: int = 0
+    missing: int = 0  # How many pinned stones it lacks
+    # Faults of its bond (`drystone.craft.bond.bond_faults`); 0 for a wall of pixels
     bond: float = 0.0
+    # F_LR without dilatancy, 0 where the wall can fall by itself; None where it was not asked
+    # for (`with_coulomb`)
     F_LR_coulomb: float | None = None
 
     @property
@@ -121,22 +109,7 @@ def possible_filling(workshop: Workshop) -> float:
 
 
 def merit_of(figures: Figures | None, possible: float, goal: GoalSettings) -> float:
-    """Weigh the figures of a wall.
-
-    Parameters
-    ----------
-    figures : Figures or None
-        None for an empty wall, the worst of all.
-    possible : float
-        Largest F_SF that the stones allow.
-    goal : GoalSettings
-        Weights and aims.
-
-    Returns
-    -------
-    float
-        Higher is better.
-    """
+    """Weigh the figures of a wall."""
     if figures is None:
         return -math.inf
     return math.fsum(

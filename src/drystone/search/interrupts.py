@@ -18,11 +18,6 @@ def terminable() -> Iterator[Callable[[], bool]]:
     """Let SIGTERM raise :class:`Terminated`, as Ctrl-C raises an interrupt.
 
     Only the main thread may set handlers; in others nothing changes.
-
-    Yields
-    ------
-    callable
-        Says whether the signal has come.
     """
     came: list[int] = []
 

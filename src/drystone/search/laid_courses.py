@@ -20,35 +20,18 @@ def columns_of(width_px: float, column_px: float) -> int:
 
 @dataclass(frozen=True, eq=False)
 class LaidCourses:
-    """What is there already, as height profiles see it.
+    """What is there already, as height profiles see it."""
 
-    Parameters
-    ----------
-    tops_px : (columns,) float array
-        Its height over columns of half a working px, source px.
-    courses : tuple of tuple of (n, 2) float array
-        Outlines of the stones of each course in the wall frame, the lowest first; an empty
-        course is none.
-    """
-
-    tops_px: Points
+    tops_px: Points  # (columns,) Its height over columns of half a working px, source px
+    # (n, 2) Outlines of the stones of each course in the wall frame, the lowest first; an empty
+    # course is none
     courses: tuple[tuple[Points, ...], ...] = field(default=())
 
     @classmethod
     def of(
         cls, courses: Sequence[Sequence[Points]], width_px: float, cell_px: float
     ) -> "LaidCourses":
-        """Return what laid stones leave for the next course.
-
-        Parameters
-        ----------
-        courses : sequence of sequence of (n, 2) float array
-            Outlines of the stones of each course in the wall frame, the lowest first.
-        width_px : float
-            Of the wall, source px.
-        cell_px : float
-            A working px in source px.
-        """
+        """Return what laid stones leave for the next course."""
         column_px = 0.5 * cell_px
         profile = bare(columns_of(width_px, column_px))
         outlines = [corners for course in courses for corners in course]
@@ -58,22 +41,7 @@ class LaidCourses:
 
 
 def ground_of(laid: LaidCourses | None, size_px: tuple[float, float], column_px: float) -> Ground:
-    """Return what kernels see of what is laid, or of the bare ground.
-
-    Parameters
-    ----------
-    laid : LaidCourses or None
-        What is there.
-    size_px : (float, float)
-        Width and height of the wall, source px.
-    column_px : float
-        Width of a column, source px.
-
-    Raises
-    ------
-    ValueError
-        When it has another number of columns.
-    """
+    """Return what kernels see of what is laid, or of the bare ground."""
     unit_px = column_px / COLUMN_UNITS
     columns = columns_of(size_px[0], column_px)
     width, height = (math.floor(side / unit_px + 1e-6) for side in size_px)

@@ -20,17 +20,10 @@ from drystone.search.mason import LAID, Mason, Outcome
 
 @dataclass(frozen=True, eq=False)
 class Laid:
-    """A course plan, laid.
+    """A course plan, laid."""
 
-    Parameters
-    ----------
-    states : tuple of Build
-        Before the first course, and after each.
-    courses : tuple of tuple of Outcome
-        Of the stones of each course, in the order of the plan.
-    """
-
-    states: tuple[Build, ...]
+    states: tuple[Build, ...]  # Before the first course, and after each
+    # Of the stones of each course, in the order of the plan
     courses: tuple[tuple[Outcome, ...], ...]
 
     @property
@@ -65,28 +58,7 @@ def lay(
     laying: LayingSettings | None = None,
     until: Deadline = NEVER,
 ) -> Laid:
-    """Lay a course plan.
-
-    Parameters
-    ----------
-    plan : CoursePlan
-        Of the workshop's stones; those that are in the wall already are passed over.
-    build : Build
-        To go on from.
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        How stones settle and are judged.
-    laying : LayingSettings, optional
-        How the plan is laid.
-    until : Deadline
-        Looked at for every wall that is judged.
-
-    Raises
-    ------
-    TimeIsUp
-        The time limit struck.
-    """
+    """Lay a course plan."""
     mason = Mason.of(workshop, settings, laying or settings.laying, until)
     views = mason.views()
     states: list[Build] = [build]

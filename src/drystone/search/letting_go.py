@@ -29,86 +29,35 @@ SAME_PX, SAME_DEG = 1.0, 0.05
 
 @dataclass(frozen=True)
 class Aim:
-    """Where a stone shall come to rest, as the view of its side sees it; source px.
+    """Where a stone shall come to rest, as the view of its side sees it; source px."""
 
-    Parameters
-    ----------
-    left_px : float or None
-        Its left end; None for anywhere along the wall.
-    top_px : float
-        Its top.
-    angle_deg : float
-        Its turn in the wall frame.
-    highest_px : float
-        Above this no stone may be.
-    unit_px : float
-        Mean stone height: unit of the costs.
-    """
-
-    left_px: float | None
-    top_px: float
-    angle_deg: float
-    highest_px: float
-    unit_px: float
+    left_px: float | None  # Its left end; None for anywhere along the wall
+    top_px: float  # Its top
+    angle_deg: float  # Its turn in the wall frame
+    highest_px: float  # Above this no stone may be
+    unit_px: float  # Mean stone height: unit of the costs
 
 
 @dataclass(frozen=True, eq=False)
 class Resting:
-    """Where a stone came to rest, and what that costs.
+    """Where a stone came to rest, and what that costs."""
 
-    Parameters
-    ----------
-    repose : Repose
-        Where.
-    wedge : (n, 2) float array or None
-        Corners of the wedge that holds it, in the wall frame.
-    cost : float
-        Lower is better.
-    """
-
-    repose: Repose
-    wedge: Points | None
-    cost: float
+    repose: Repose  # Where
+    wedge: Points | None  # (n, 2) Corners of the wedge that holds it, in the wall frame
+    cost: float  # Lower is better
 
 
 @dataclass(frozen=True, eq=False)
 class Hand:
-    """Lets stones go.
+    """Lets stones go."""
 
-    Parameters
-    ----------
-    settings : LayingSettings
-        From where, and what it costs to rest elsewhere than planned.
-    settle : SettleSettings
-        How stones settle.
-    limits : WedgeLimits
-        Of wedges.
-    method : {"both", "rotation", "wedge", "none"}
-        What is tried with a stone that does not rest.
-    """
-
-    settings: LayingSettings
-    settle: SettleSettings
-    limits: WedgeLimits
-    method: Method
+    settings: LayingSettings  # From where, and what it costs to rest elsewhere than planned
+    settle: SettleSettings  # How stones settle
+    limits: WedgeLimits  # Of wedges
+    method: Method  # What is tried with a stone that does not rest
 
     def starts(self, stone: Turned, view: View, aim: Aim) -> list[Place]:
-        """Return from where a stone is let go: where it first touches, the cheapest place first.
-
-        Parameters
-        ----------
-        stone : Turned
-            As the view sees it.
-        view : View
-            What is there.
-        aim : Aim
-            Where the stone shall go.
-
-        Returns
-        -------
-        starts : list of (float, float)
-            Of its centroid, in the view.
-        """
+        """Return from where a stone is let go: where it first touches, the cheapest place first."""
         settings, column_px = self.settings, view.column_px
         profile = hanging(stone.corners, column_px)
         first, last = self._columns(profile, stone.size_px, view, aim)
@@ -159,13 +108,6 @@ class Hand:
         """Let a stone go, and return where it rests near its place, the cheapest first.
 
         Where it rests nowhere, it is wedged.
-
-        Parameters
-        ----------
-        stone, view, aim
-            As for :meth:`starts`.
-        starts : sequence of (float, float)
-            From where.
         """
         turns = self.method in ("both", "rotation")
         settled = (

@@ -45,56 +45,28 @@ SIDES: tuple[Side, ...] = ("left", "right")
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a planned stone.
+    """What became of a planned stone."""
 
-    Parameters
-    ----------
-    stone : PlannedStone
-        As it was planned.
-    status : str
-        One of :data:`Status`.
-    solves : Solves
-        What trouble the solver had with its places.
-    """
-
-    stone: PlannedStone
-    status: Status
-    solves: Solves = field(default_factory=Solves)
+    stone: PlannedStone  # As it was planned
+    status: Status  # One of `Status`
+    solves: Solves = field(default_factory=Solves)  # What trouble the solver had with its places
 
 
 @dataclass(frozen=True, eq=False)
 class _Chosen:
-    """How a stone is laid; without an action why it is not.
+    """How a stone is laid; without an action why it is not."""
 
-    Parameters
-    ----------
-    status : str
-        One of :data:`Status`.
-    action : Candidate or None
-        What is to be done.
-    solves : Solves
-        What trouble the solver had with its places.
-    """
-
-    status: Status
-    action: Candidate | None = None
-    solves: Solves = field(default_factory=Solves)
+    status: Status  # One of `Status`
+    action: Candidate | None = None  # What is to be done
+    solves: Solves = field(default_factory=Solves)  # What trouble the solver had with its places
 
 
 @dataclass(frozen=True)
 class _Front:
-    """How far the stones of a side of a course have come, in the view of that side.
+    """How far the stones of a side of a course have come, in the view of that side."""
 
-    Parameters
-    ----------
-    planned : float
-        Planned right end of the stone that was planned last.
-    reached : float
-        Right end of the one that was laid last.
-    """
-
-    planned: float = 0.0
-    reached: float = 0.0
+    planned: float = 0.0  # Planned right end of the stone that was planned last
+    reached: float = 0.0  # Right end of the one that was laid last
 
     def aim(self, left: float) -> float:
         """Return where the left end of a stone shall be that is planned at a place.
@@ -106,52 +78,24 @@ class _Front:
 
 @dataclass(frozen=True, eq=False)
 class _Rated:
-    """A place of a stone, and what the wall carries with the stone there.
+    """A place of a stone, and what the wall carries with the stone there."""
 
-    Parameters
-    ----------
-    place : Resting
-        The place.
-    spot : int
-        Which of the pose's, the cheapest first.
-    blocks : list of (int, (n, 2) float array)
-        Ids and outlines of the stone and its wedge.
-    loaded : Loaded
-        The wall with them.
-    cost : float
-        Of the place, less the bonus for LLC; infinite where the wall does not stand.
-    """
-
-    place: Resting
-    spot: int
-    blocks: list[Outlined]
-    loaded: Loaded
-    cost: float
+    place: Resting  # The place
+    spot: int  # Which of the pose's, the cheapest first
+    blocks: list[Outlined]  # (n, 2) Ids and outlines of the stone and its wedge
+    loaded: Loaded  # The wall with them
+    cost: float  # Of the place, less the bonus for LLC; infinite where the wall does not stand
 
 
 @dataclass(frozen=True, eq=False)
 class Mason:
-    """Lays courses.
+    """Lays courses."""
 
-    Parameters
-    ----------
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        How stones settle and are judged.
-    laying : LayingSettings
-        How a plan is laid.
-    hand : Hand
-        Lets stones go.
-    evaluator : Evaluator
-        Judges walls.
-    """
-
-    workshop: Workshop
-    settings: PlannerSettings
-    laying: LayingSettings
-    hand: Hand
-    evaluator: Evaluator
+    workshop: Workshop  # Stones and site
+    settings: PlannerSettings  # How stones settle and are judged
+    laying: LayingSettings  # How a plan is laid
+    hand: Hand  # Lets stones go
+    evaluator: Evaluator  # Judges walls
 
     @classmethod
     def of(
@@ -175,24 +119,7 @@ class Mason:
     def course(
         self, build: Build, course: Sequence[PlannedStone], views: Views
     ) -> tuple[Build, tuple[Outcome, ...]]:
-        """Lay a course.
-
-        Parameters
-        ----------
-        build : Build
-            What is there.
-        course : sequence of PlannedStone
-            In the order of laying.
-        views : dict
-            Of an earlier state of the same wall; those that are looked at are brought up to date.
-
-        Returns
-        -------
-        build : Build
-            The wall with the course.
-        outcomes : tuple of Outcome
-            Of its stones, in their order.
-        """
+        """Lay a course."""
         width_px = self.workshop.site.extent_px[0]
         fronts: dict[Side, _Front] = {side: _Front() for side in SIDES}
         outcomes: list[Outcome] = []

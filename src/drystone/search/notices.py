@@ -23,25 +23,7 @@ def planning_notices(
     cut_after: int | None = None,
     stopped: Stopped | None = None,
 ) -> tuple[Notice, ...]:
-    """Return the notices of a plan.
-
-    Parameters
-    ----------
-    asked : Planner
-        Counted the trouble with the solver.
-    built : Planner
-        Built the wall.
-    left_out : sequence of int
-        Stones of the wall that was begun with that were not used.
-    lost : bool
-        A process of the search died.
-    fallen : sequence of int
-        Stones after which the wall to begin with does not stand.
-    cut_after : int, optional
-        So many walls a search had built after which what follows it took too long.
-    stopped : Stopped, optional
-        Why the construction of the wall ended.
-    """
+    """Return the notices of a plan."""
     missing = _missing(missing_stones(built))
     cut = (*_cut(cut_after), *_cut_short(built, cut_short=stopped == OUT_OF_TIME))
     begun = (*_left_out(left_out), *_fallen(fallen))

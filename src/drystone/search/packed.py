@@ -32,58 +32,26 @@ PackedWedge = tuple[tuple[float, float], ...]
 
 @dataclass(frozen=True)
 class PackedGroup:
-    """One step of construction.
+    """One step of construction."""
 
-    Parameters
-    ----------
-    stone_id : int
-        Of the stone.
-    angle_deg : float
-        Its pose.
-    place : (float, float)
-        Where its centroid lies, source px.
-    side : {"left", "right"}
-        From which end it was placed.
-    rotation_moves : int
-        See :class:`drystone.model.placement.Placement`.
-    wedges : tuple of PackedWedge
-        Under it.
-    course_height_px : float or None
-        See :class:`drystone.planner.build.Candidate`.
-    """
-
-    stone_id: int
-    angle_deg: float
-    place: tuple[float, float]
-    side: Side
-    rotation_moves: int
-    wedges: tuple[PackedWedge, ...]
-    course_height_px: float | None
+    stone_id: int  # Of the stone
+    angle_deg: float  # Its pose
+    place: tuple[float, float]  # Where its centroid lies, source px
+    side: Side  # From which end it was placed
+    rotation_moves: int  # See `drystone.model.placement.Placement`
+    wedges: tuple[PackedWedge, ...]  # Under it
+    course_height_px: float | None  # See `drystone.planner.build.Candidate`
 
 
 @dataclass(frozen=True, eq=False)
 class Packed:
-    """A finished wall and what it is worth, in few bytes.
+    """A finished wall and what it is worth, in few bytes."""
 
-    Parameters
-    ----------
-    groups : tuple of PackedGroup
-        The steps of its construction.
-    figures : Figures or None
-        See :class:`drystone.search.found.Found`.
-    merit : float
-        Likewise.
-    solves : Solves
-        Likewise.
-    courses : Courses or None
-        Likewise.
-    """
-
-    groups: tuple[PackedGroup, ...]
-    figures: Figures | None
-    merit: float
-    solves: Solves
-    courses: Courses | None
+    groups: tuple[PackedGroup, ...]  # The steps of its construction
+    figures: Figures | None  # See `drystone.search.found.Found`
+    merit: float  # Likewise
+    solves: Solves  # Likewise
+    courses: Courses | None  # Likewise
 
     @classmethod
     def of(cls, found: Found) -> "Packed":
@@ -114,15 +82,7 @@ def _packed_group(group: Group, heights: dict[int, float]) -> PackedGroup:
 def found_again(
     one: Packed, workshop: Workshop, settings: PlannerSettings, until: Deadline = NEVER
 ) -> Found:
-    """Build a wall again.
-
-    Raises
-    ------
-    ValueError
-        When it does not stand, as another wall than the one that was packed may.
-    TimeIsUp
-        The time limit struck.
-    """
+    """Build a wall again."""
     start = Planner(workshop.stones, workshop.site, settings=settings, workshop=workshop).build
     groups = one.groups
     heights = {g.stone_id: g.course_height_px for g in groups if g.course_height_px is not None}

@@ -199,17 +199,6 @@ def other_resistances(
 
     Without dilatancy it is looked for in walls of up to :data:`MOST_WITHOUT_DILATANCY` blocks,
     where the wall stands, and where there is time.
-
-    Parameters
-    ----------
-    build : Build
-        The wall.
-    resistance : LateralResistance
-        Of it.
-    settings : PlannerSettings
-        Friction, contact tolerance and set-back.
-    until : Deadline
-        For what is looked for.
     """
     found: dict[str, float | None] = {}
     if resistance.stable and 0 < len(build.model.blocks) <= MOST_WITHOUT_DILATANCY:

@@ -234,27 +234,13 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
 
 @dataclass(frozen=True, eq=False)
 class _Asked:
-    """What a plan says of how it was made.
+    """What a plan says of how it was made."""
 
-    Parameters
-    ----------
-    frame : Frame
-        Of the wall.
-    settings : PlannerSettings
-        All of them.
-    method : str
-        Their name.
-    seed : int
-        Of the random choices.
-    started, took : float
-        By the clock of performance; seconds to the last step.
-    """
-
-    frame: Frame
-    settings: PlannerSettings
-    method: str
-    seed: int
-    started: float
+    frame: Frame  # Of the wall
+    settings: PlannerSettings  # All of them
+    method: str  # Their name
+    seed: int  # Of the random choices
+    started: float  # By the clock of performance; seconds to the last step
     took: float = 0.0
 
     def after(self, now: float) -> "_Asked":

@@ -27,71 +27,34 @@ class PackedLink:
 
 @dataclass(frozen=True, eq=False)
 class Reached:
-    """What a search has come to.
+    """What a search has come to."""
 
-    Parameters
-    ----------
-    walls : int
-        How many walls it has built that count: the budget that repeats it.
-    best : Packed
-        The best of them.
-    solves : Solves
-        What trouble there was with all of them.
-    kept : tuple of Packed
-        Those that none beats in every figure of merit (:mod:`drystone.search.archive`).
-    """
-
-    walls: int
-    best: Packed
-    solves: Solves
+    walls: int  # How many walls it has built that count: the budget that repeats it
+    best: Packed  # The best of them
+    solves: Solves  # What trouble there was with all of them
+    # Those that none beats in every figure of merit (:mod:`drystone.search.archive`)
     kept: tuple[Packed, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class Chains:
-    """Where the chains of a round are.
+    """Where the chains of a round are."""
 
-    Parameters
-    ----------
-    reached : Reached
-        By the round.
-    links : tuple of PackedLink
-        Of every chain.
-    turn : int
-        How many of them have built their share since they last shared their best.
-    better : int
-        Walls of the round after which the best was last notably better.
-    goal : float
-        The merit that is so next.
-    """
-
-    reached: Reached
-    links: tuple[PackedLink, ...]
-    turn: int
-    better: int
-    goal: float
+    reached: Reached  # By the round
+    links: tuple[PackedLink, ...]  # Of every chain
+    turn: int  # How many of them have built their share since they last shared their best
+    better: int  # Walls of the round after which the best was last notably better
+    goal: float  # The merit that is so next
 
 
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """Where a search stands.
+    """Where a search stands."""
 
-    Parameters
-    ----------
-    number : int
-        Of the round, from 0.
-    before : Reached or None
-        By the rounds before it.
-    found : tuple of Packed
-        Its first walls, as long as there are no chains.
-    chains : Chains or None
-        What they have become.
-    """
-
-    number: int
-    before: Reached | None
-    found: tuple[Packed, ...]
-    chains: Chains | None = None
+    number: int  # Of the round, from 0
+    before: Reached | None  # By the rounds before it
+    found: tuple[Packed, ...]  # Its first walls, as long as there are no chains
+    chains: Chains | None = None  # What they have become
 
     @property
     def walls(self) -> int:
@@ -102,13 +65,8 @@ class Standing:
 
 @dataclass(frozen=True, eq=False)
 class Progress(Reached):
-    """What a search has come to, and where it stands.
+    """What a search has come to, and where it stands."""
 
-    Parameters
-    ----------
-    standing : Standing or None
-        From where it goes on to the walls that it would find itself; None where the clock or the
-        budget has cut a chain short, and before there is more than the first wall.
-    """
-
+    # From where it goes on to the walls that it would find itself; None where the clock or the
+    # budget has cut a chain short, and before there is more than the first wall
     standing: Standing | None = None

@@ -12,37 +12,15 @@ from drystone.settle.rest import Scene
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """What is built and how high it is, seen so that the building side is on the left.
+    """What is built and how high it is, seen so that the building side is on the left."""
 
-    Parameters
-    ----------
-    scene : Scene
-        What is there.
-    profile : HeightProfile
-        How high it is.
-    column_px : float
-        Width of the profile's columns, source px.
-    """
-
-    scene: Scene
-    profile: HeightProfile
-    column_px: float
+    scene: Scene  # What is there
+    profile: HeightProfile  # How high it is
+    column_px: float  # Width of the profile's columns, source px
 
     @classmethod
     def bare(cls, width_px: float, side: Side, mu: float, column_px: float) -> "View":
-        """Look at the bare ground.
-
-        Parameters
-        ----------
-        width_px : float
-            Of the wall, source px.
-        side : {"left", "right"}
-            Building side.
-        mu : float
-            Coefficient of friction.
-        column_px : float
-            Width of the profile's columns, source px.
-        """
+        """Look at the bare ground."""
         scene = Scene(no_polygons(), width_px, side, mu)
         return cls(scene, bare(math.ceil(width_px / column_px)), column_px)
 

@@ -22,22 +22,6 @@ def begin_with(
     """Let a planner begin with a wall, as far as its stones may be used and stand.
 
     Without its wedges that are none by these settings.
-
-    Parameters
-    ----------
-    planner : Planner
-        Has built nothing yet; of the same stones, size and resolution as the wall.
-    wall : Wall
-        Any wall of these stones.
-    course_heights_px : mapping of int to float
-        For stones that began a course: the height that Eq. 8 compared with.
-
-    Returns
-    -------
-    left_out : tuple of int
-        Ids of the stones of the wall that were taken out: banned, out of their turn in a given
-        order, standing out of the wall by more than `settle.beyond_px` allows now, or not standing
-        with these settings, as when what carried them is left out.
     """
     workshop, settings = planner.workshop, planner.settings
     limits = wedge_limits(settings, workshop.stock, workshop.site)

@@ -28,32 +28,16 @@ PROP_MU = 100.0
 
 @dataclass(frozen=True, eq=False)
 class Draft:
-    """A finished wall with more wedges, and with wedges that do nothing.
+    """A finished wall with more wedges, and with wedges that do nothing."""
 
-    Parameters
-    ----------
-    analysis : IncrementalAnalysis
-        Of the wall; wedges that were added are its last blocks.
-    placed : PlacedPolygons
-        All blocks, in the order of construction.
-    counts : tuple of int
-        Wedges under the stone of each step.
-    width : float
-        Of the wall, source px.
-    limits : WedgeLimits
-        What wedges may be.
-    known : tuple
-        For each step the places under its stone, once they were asked for; None before.
-    added : tuple of (int, WedgePlace)
-        Ids of the wedges that were added, and where they are.
-    """
-
-    analysis: IncrementalAnalysis
-    placed: PlacedPolygons
-    counts: tuple[int, ...]
-    width: float
-    limits: WedgeLimits
+    analysis: IncrementalAnalysis  # Of the wall; wedges that were added are its last blocks
+    placed: PlacedPolygons  # All blocks, in the order of construction
+    counts: tuple[int, ...]  # Wedges under the stone of each step
+    width: float  # Of the wall, source px
+    limits: WedgeLimits  # What wedges may be
+    # For each step the places under its stone, once they were asked for; None before
     known: tuple[tuple[WedgePlace, ...] | None, ...]
+    # (int, WedgePlace) Ids of the wedges that were added, and where they are
     added: tuple[tuple[int, WedgePlace], ...] = ()
 
     @classmethod

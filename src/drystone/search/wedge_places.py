@@ -30,24 +30,13 @@ SLOW = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class WedgePlace:
-    """A wedge that has room in a finished wall, and what it would touch.
+    """A wedge that has room in a finished wall, and what it would touch."""
 
-    Parameters
-    ----------
-    step : int
-        Which step places the stone that would lie on it.
-    corners : (n, 2) float array
-        Its outline in the wall frame, counter-clockwise, source px.
-    others : (m,) int array
-        At each contact point, the id of the block that it touches; GROUND for the ground.
-    points, normals : (m, 2) float arrays
-        The contact points, and unit vectors into the wedge.
-    """
-
-    step: int
-    corners: Points
+    step: int  # Which step places the stone that would lie on it
+    corners: Points  # (n, 2) Its outline in the wall frame, counter-clockwise, source px
+    # (m,) At each contact point, the id of the block that it touches; GROUND for the ground
     others: Ids
-    points: Points
+    points: Points  # (m, 2) The contact points, and unit vectors into the wedge
     normals: Points
 
     @classmethod
@@ -84,19 +73,6 @@ def wedge_places(
 
     They overlap nothing that is there, rest on what was there before the stone, and have something
     beside them at both sides.
-
-    Parameters
-    ----------
-    placed : PlacedPolygons
-        All blocks of the wall, in the order of construction.
-    step : int
-        Which step places the stone.
-    first : int
-        Which of the blocks is the stone.
-    width : float
-        Of the wall.
-    limits : WedgeLimits
-        What a wedge may be.
     """
     before = placed.polygons.leading(first)
     for corners in wedges_below(placed.polygons, first, limits):
@@ -106,18 +82,10 @@ def wedge_places(
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """How the blocks of a wall move in a mechanism.
+    """How the blocks of a wall move in a mechanism."""
 
-    Parameters
-    ----------
-    twists : mapping of int to (float, float, float)
-        Of all blocks, by id, and of the ground.
-    mu : float
-        Coefficient of friction.
-    """
-
-    twists: Mapping[int, Twist]
-    mu: float
+    twists: Mapping[int, Twist]  # Of all blocks, by id, and of the ground
+    mu: float  # Coefficient of friction
 
     @classmethod
     def of(
@@ -138,19 +106,7 @@ class Motion:
         return all(max(map(abs, self.twists[block])) <= SLOW for block in blocks)
 
     def resisted_by(self, places: Sequence[WedgePlace]) -> NDArray[np.float64]:
-        """Return how fast the mechanism violates the contacts of wedges.
-
-        Parameters
-        ----------
-        places : sequence of WedgePlace
-            The wedges.
-
-        Returns
-        -------
-        rates : (k,) float array
-            Of each at the point where it is violated most, when the wedge moves along with the
-            one of its neighbours with which it is violated least.  0: the wall fails as it did.
-        """
+        """Return how fast the mechanism violates the contacts of wedges."""
         rates = np.zeros(len(places))
         touching = [k for k, place in enumerate(places) if len(place.others)]
         if not touching:

@@ -45,21 +45,11 @@ Barred = frozenset[tuple[int, bytes]]
 
 @dataclass(frozen=True, eq=False)
 class _Change:
-    """A wedge more or less.
+    """A wedge more or less."""
 
-    Parameters
-    ----------
-    step : int
-        Which step places the stone on it.
-    corners : (n, 2) float array
-        Its outline; that of the very wedge of the wall if it is dropped.
-    dropped : bool
-        Whether it is dropped, not added.
-    """
-
-    step: int
-    corners: Points
-    dropped: bool = False
+    step: int  # Which step places the stone on it
+    corners: Points  # (n, 2) Its outline; that of the very wedge of the wall if it is dropped
+    dropped: bool = False  # Whether it is dropped, not added
 
     def of(self, group: Group) -> Group:
         """Return the step with the change."""
@@ -110,18 +100,10 @@ class _Yard:
 
 
 class WedgedUp(NamedTuple):
-    """A wall with other wedges.
+    """A wall with other wedges."""
 
-    Parameters
-    ----------
-    build : Build
-        The wall.
-    solves : Solves
-        What trouble the solver had with steps that were taken again.
-    """
-
-    build: Build
-    solves: Solves
+    build: Build  # The wall
+    solves: Solves  # What trouble the solver had with steps that were taken again
 
 
 def wedged_up(
@@ -136,32 +118,6 @@ def wedged_up(
 
     No stone moves.  A wedge is placed with the stone that lies on it, and the wall stands after
     every step, in both models.
-
-    Parameters
-    ----------
-    build : Build
-        A wall of outlines.
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        With which it was built.
-    limits : WedgeLimits
-        What wedges may be (:func:`drystone.planner.dropping.wedge_limits`).
-    most : int
-        So many are added.
-    until : Deadline
-        Looked at for every wedge that is tried, and every step that is taken again.
-
-    Returns
-    -------
-    wedged : WedgedUp
-        Its build has all its states; it is the same one when nothing changes, or when its own steps
-        cannot be taken again.
-
-    Raises
-    ------
-    TimeIsUp
-        The time limit struck.
     """
     if build.wall.outlines is None:
         raise ValueError("only walls of outlines are wedged up")

@@ -23,31 +23,19 @@ from drystone.search.work import forget
 
 
 class Ended(NamedTuple):
-    """How a search ended.
+    """How a search ended."""
 
-    Parameters
-    ----------
-    planner : Planner
-        The one that built the best wall.
-    stopped : Stopped
-        Why its construction ended; :data:`~drystone.planner.events.INTERRUPTED` where somebody had
-        enough.
-    walls : int
-        How many walls were built: the budget that repeats it.
-    kept : tuple of Packed
-        Walls that none beats in every figure of merit, the best first; none of a single pass.
-    lost, cut : bool
-        A process of the search died, and it ended there; what follows the search took too long.
-    fallen : tuple of int
-        Stones after which the wall to begin with does not stand, so that nothing was looked for.
-    """
-
-    planner: Planner
+    planner: Planner  # The one that built the best wall
+    # Why its construction ended; `~drystone.planner.events.INTERRUPTED` where somebody had
+    # enough
     stopped: Stopped
-    walls: int
+    walls: int  # How many walls were built: the budget that repeats it
+    # Walls that none beats in every figure of merit, the best first; none of a single pass
     kept: tuple[Packed, ...]
+    # A process of the search died, and it ended there; what follows the search took too long
     lost: bool = False
     cut: bool = False
+    # Stones after which the wall to begin with does not stand, so that nothing was looked for
     fallen: tuple[int, ...] = ()
 
 
@@ -64,33 +52,6 @@ def run_to_end(
     """Build a first wall, and look for better ones; an interrupt keeps the best so far.
 
     So does the time limit; a first wall that either cuts short is what is built of it.
-
-    Parameters
-    ----------
-    planner : Planner
-        Of the first wall.
-    start : Standing, optional
-        Where the search was cut off; there is no first wall to build then.
-    until : Deadline
-        Ends the search, or the first wall.
-    grace_s : float
-        So long may take what follows the search.
-    first_whole : bool
-        Whether the first wall is built to its end whatever the clock says.
-    executor : concurrent.futures.Executor, optional
-        Processes for the search.
-    told : callable
-        Told of every progress of the search; before it, with None, of stones of the first wall.
-
-    Returns
-    -------
-    ended : Ended
-        With the best wall.
-
-    Raises
-    ------
-    PlanError
-        E207: a wall of `start` cannot be built again.
     """
     stopped = INTERRUPTED
     if start is None:
@@ -157,15 +118,7 @@ def _improved(
 
 
 def cut_off(planner: Planner, progress: Progress | None) -> Ended:
-    """Return what there is so far, as the end of a search that somebody has had enough of.
-
-    Parameters
-    ----------
-    planner : Planner
-        Of the first wall.
-    progress : Progress or None
-        Of the search; None while the first wall is built.
-    """
+    """Return what there is so far, as the end of a search that somebody has had enough of."""
     if progress is None:
         return Ended(planner, INTERRUPTED, 1, ())
     last = planner if progress.walls == 1 else as_found(planner, progress.best)[0]

@@ -19,35 +19,15 @@ from drystone.search.standing import PackedLink
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """What all tasks of a search share.
+    """What all tasks of a search share."""
 
-    Parameters
-    ----------
-    tools : bytes
-        Stones, site and settings, pickled.
-    seed : int
-        Of the search.
-    until : Deadline
-        Looked at inside every wall.
-    """
-
-    tools: bytes
-    seed: int
-    until: Deadline
+    tools: bytes  # Stones, site and settings, pickled
+    seed: int  # Of the search
+    until: Deadline  # Looked at inside every wall
 
 
 def one_pass(job: Job, number: int, planned_share: float) -> Packed | None:
-    """Build a first wall from its seed; None when time is up before it is whole.
-
-    Parameters
-    ----------
-    job : Job
-        What is searched.
-    number : int
-        Of the wall.
-    planned_share : float
-        Probability that it is planned course by course, where walls may be.
-    """
+    """Build a first wall from its seed; None when time is up before it is whole."""
     try:
         found = _first_wall(job, number, planned_share)
     except TimeIsUp:
