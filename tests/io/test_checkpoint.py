@@ -16,10 +16,11 @@ from drystone.model.stone import StoneSet
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.search.anytime import searching
-from drystone.search.found import Found
-from drystone.search.packed import Packed
+from drystone.search.goal import FoundWall
+from drystone.search.packed import PackedWall
 from drystone.search.standing import Chains, Progress, Standing
 from drystone.search.whole_search import run_to_end
+from drystone.search.yard import Yard
 from tests.planner.scenes import RUBBLE_SITE, WITH_WEDGES, few_stones, finish, greedy, rubble
 
 SMALL = {"budget": 13, "passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
@@ -30,9 +31,9 @@ CASES: dict[str, tuple[StoneSet, Site, dict[str, Any]]] = {
 }
 
 
-def searched(planner: Planner, start: Found | Standing | None = None) -> list[Progress]:
-    begin = start or Found.of(planner)
-    return list(searching(begin, planner.workshop, planner.settings, planner.seed))
+def searched(planner: Planner, start: FoundWall | Standing | None = None) -> list[Progress]:
+    begin = start or FoundWall.of(planner)
+    return list(searching(begin, Yard.of(planner), planner.seed))
 
 
 def planner_of(case: str) -> Planner:
@@ -56,7 +57,7 @@ def again(standing: Standing, folder: Path, planner: Planner) -> Standing:
     return read.standing
 
 
-def wedges(walls: tuple[Packed, ...]) -> int:
+def wedges(walls: tuple[PackedWall, ...]) -> int:
     return sum(len(group.wedges) for wall in walls for group in wall.groups)
 
 

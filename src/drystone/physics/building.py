@@ -4,12 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import shapely
 
+from drystone.kernels.polygons import Points
 from drystone.physics.scatter import TiltResult, Variation, tilt_test
-from drystone.physics.scene import EngineSettings, Points, Scene
-from drystone.physics.table import TiltingTable
+from drystone.physics.scene import EngineScene, EngineSettings
+from drystone.physics.table import Floats, TiltingTable
 from drystone.physics.tilt import TiltSettings
-from drystone.physics.watch import Watch
 
 Group = Sequence[tuple[int, Points]]
 """A stone and its wedges, which come together: ids and corners in the wall frame, source px."""
@@ -101,7 +102,7 @@ def build_up(
     settings = settings or BuildSettings()
     if not any(groups):
         return BuildUp((), {}, {}, (0.0,) * len(groups), (), None, mu)
-    scene = Scene({block: corners for group in groups for block, corners in group}, mu)
+    scene = EngineScene({block: corners for group in groups for block, corners in group}, mu)
     table = TiltingTable(scene, settings.engine, placed=())
     table.tilt(0.0)
     watch = Watch(scene)
@@ -130,6 +131,57 @@ def build_up(
     )
 
 
+class Watch:
+    """Keeps the largest movement and turn of every block on a table from where it was planned.
+
+    Its free blocks may come onto the table in any order.
+    """
+
+    def __init__(self, scene: EngineScene) -> None:
+        self._scene = scene
+        self._arms: dict[int, Points] = {}
+        self._centres: dict[int, Points] = {}
+        for block, shape in scene.shapes.items():
+            self._centres[block] = np.array(shape.centroid.coords[0])
+            self._arms[block] = shapely.get_coordinates(shape)[:-1] - self._centres[block]
+        self._moves = dict.fromkeys(scene.shapes, 0.0)
+        self._turns = dict.fromkeys(scene.shapes, 0.0)
+
+    def look(self, table: TiltingTable) -> float:
+        """Take note of where the blocks are."""
+        furthest = 0.0
+        for block, corners, turn in self._now(table):
+            way = corners - self._arms[block] - self._centres[block]
+            # Of all points of a rigid body a corner moves furthest.
+            move = float(np.hypot(*way.T).max())
+            self._moves[block] = max(self._moves[block], move)
+            self._turns[block] = max(self._turns[block], float(abs(np.degrees(turn))))
+            furthest = max(furthest, move)
+        return furthest
+
+    def outlines(self, table: TiltingTable) -> dict[int, Points]:
+        """Return the corners of every block on the table where it is now."""
+        return {block: corners for block, corners, _ in self._now(table)}
+
+    def planned(self) -> dict[int, Points]:
+        """Return the corners of every block where it was planned."""
+        return {block: self._arms[block] + centre for block, centre in self._centres.items()}
+
+    def largest(self, block: int) -> tuple[float, float]:
+        """Return the largest movement of any point (unit of the scene) and turn (degrees)."""
+        return self._moves[block], self._turns[block]
+
+    def _now(self, table: TiltingTable) -> list[tuple[int, Points, float]]:
+        found = []
+        poses: Floats = table.poses()
+        for block, (x, y, turn) in zip(table.ids, poses.tolist(), strict=True):
+            cos, sin = np.cos(turn), np.sin(turn)
+            turned = self._arms[block] @ np.array([[cos, sin], [-sin, cos]])
+            centre = np.array([x, y]) * self._scene.length + (0.0, self._scene.ground_y)
+            found.append((block, turned + centre, turn))
+        return found
+
+
 QUICK = Variation("quick", ROUNDED, TiltSettings(coarse=0.064, fine=0.004, longest_hold=20.0))
 """One tilt test for a check: within .01 of one with a quarter of the steps and twice the time to
 come to rest, in half its time; fewer iterations or shorter holds were off by .1 (measured)."""
@@ -141,7 +193,7 @@ def tilt_of(
     """Tilt a finished wall from where it came to rest, to the left and to the right."""
     if not (built.stands and built.rests and built.outlines):
         return None
-    scene = Scene(built.outlines, built.mu)
+    scene = EngineScene(built.outlines, built.mu)
     left = tilt_test(scene, "left", np.random.default_rng(seed), variations)
     right = tilt_test(scene, "right", np.random.default_rng(seed), variations)
     return left, right
@@ -163,7 +215,7 @@ def _rest(table: TiltingTable, watch: Watch, settings: BuildSettings) -> bool:
 def _moves(
     groups: Sequence[Group],
     watch: Watch,
-    scene: Scene,
+    scene: EngineScene,
     overlaps: dict[int, float],
     settings: BuildSettings,
 ) -> list[BlockMove]:

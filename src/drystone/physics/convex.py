@@ -4,9 +4,9 @@ from math import dist
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-Points = NDArray[np.float64]
+from drystone.kernels.polygons import Points
+
 _Corner = tuple[float, float]
 _Side = tuple[_Corner, _Corner]
 

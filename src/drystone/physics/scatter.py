@@ -8,9 +8,12 @@ from typing import Literal
 import numpy as np
 import shapely
 
-from drystone.physics.scene import EngineSettings, Points, Scene
+from drystone.kernels.polygons import Points
+from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.tilt import TiltSettings, TiltTrial, tilt_once
-from drystone.statics.model import Direction
+from drystone.statics.flow.nonassociative import nonassociative_load
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import Direction, RigidBlockModel
 
 Event = Literal["fall", "first motion"]
 """Blocks come down; or some block moves noticeably, which often finds a new rest."""
@@ -28,7 +31,7 @@ class Variation:
     placement_noise: float = 0.0
     outline_noise: float = 0.0
 
-    def of(self, scene: Scene, rng: np.random.Generator) -> Scene:
+    def of(self, scene: EngineScene, rng: np.random.Generator) -> EngineScene:
         """Return the scene with this variation's order and noise."""
         blocks = list(scene.outlines)
         if self.shuffled:
@@ -78,8 +81,7 @@ class TiltResult:
     """Outcome of repeated tilt tests in one direction."""
 
     direction: Direction  # Where gravity turns to
-    trials: tuple[TiltTrial, ...]  # In the order of `names`
-    names: tuple[str, ...]  # What differed
+    trials: tuple[TiltTrial, ...]
 
     @property
     def alphas(self) -> tuple[float, ...]:
@@ -87,19 +89,9 @@ class TiltResult:
         return tuple(trial.alpha for trial in self.trials if trial.alpha is not None)
 
     @property
-    def first_motions(self) -> tuple[float, ...]:
-        """Alphas at which some block first moved noticeably."""
-        return tuple(t.first_motion for t in self.trials if t.first_motion is not None)
-
-    @property
     def alpha(self) -> float | None:
         """Median; None when no trial has one."""
         return median(self.alphas) if self.alphas else None
-
-    @property
-    def low(self) -> float | None:
-        """Greatest tilt that the weakest trial with an alpha stood; None when none has one."""
-        return None if (found := self.interval("fall")) is None else found[0]
 
     @property
     def high(self) -> float | None:
@@ -108,16 +100,14 @@ class TiltResult:
 
     def interval(self, event: Event) -> tuple[float, float] | None:
         """Return the scatter of an event, resolution included; None when it never happened."""
-        alphas = self.alphas if event == "fall" else self.first_motions
+        alphas = self.alphas
+        if event == "first motion":
+            motions = (trial.first_motion for trial in self.trials)
+            alphas = tuple(alpha for alpha in motions if alpha is not None)
         if not alphas:
             return None
         resolution = max(trial.resolution for trial in self.trials)
         return min(alphas) - resolution, max(alphas) + resolution
-
-    @property
-    def moved(self) -> tuple[int, ...]:
-        """Blocks that moved in the fall of the first trial."""
-        return self.trials[0].moved
 
     @property
     def settled_shift(self) -> float:
@@ -131,7 +121,7 @@ class TiltResult:
 
 
 def tilt_test(
-    scene: Scene,
+    scene: EngineScene,
     direction: Direction,
     rng: np.random.Generator,
     variations: Sequence[Variation] | None = None,
@@ -142,4 +132,41 @@ def tilt_test(
         tilt_once(variation.of(scene, rng), direction, variation.engine, variation.tilt)
         for variation in variations
     )
-    return TiltResult(direction, trials, tuple(variation.name for variation in variations))
+    return TiltResult(direction, trials)
+
+
+@dataclass(frozen=True)
+class TiltComparison:
+    """One direction of one wall.
+
+    Limit analysis is about the first motion of the blocks as they lie.  A block that has moved may
+    find a better rest, so that the wall falls later than any analysis of it says.
+    """
+
+    simulated: TiltResult  # The tilt tests
+    associative: float | None  # Predicted load multipliers; None when there is none
+    nonassociative: float | None
+
+    @property
+    def direction(self) -> Direction:
+        """Where gravity turns to."""
+        return self.simulated.direction
+
+
+def compare_with_tilt(
+    scene: EngineScene,
+    model: RigidBlockModel,
+    rng: np.random.Generator,
+    variations: Sequence[Variation] | None = None,
+    directions: Sequence[Direction] = ("left", "right"),
+) -> tuple[TiltComparison, ...]:
+    """Tilt a wall and predict its load multipliers, best by a model of the same outlines."""
+    predicted = lateral_resistance(model)
+    return tuple(
+        TiltComparison(
+            tilt_test(scene, direction, rng, variations),
+            (predicted.left if direction == "left" else predicted.right).alpha,
+            nonassociative_load(model, direction).alpha,
+        )
+        for direction in directions
+    )

@@ -7,16 +7,14 @@ from math import isfinite
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from drystone.contacts.blocks import check_mu
 from drystone.errors import InputError
-
-Points = NDArray[np.float64]
+from drystone.kernels.polygons import Points
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class EngineScene:
     """Blocks that stand on a level ground, without gaps or overlaps worth speaking of."""
 
     # (n, 2) By id: corners in the wall frame, y up, either way round, closed or not; any unit

@@ -7,13 +7,12 @@ from typing import Any, Self
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from drystone.errors import UsageError
-from drystone.physics.convex import Points, convex_parts, without_straight_corners
-from drystone.physics.scene import EngineSettings, Scene
-
-Floats = NDArray[np.float64]
+from drystone.kernels.polygons import Points
+from drystone.kernels.profiles import Floats
+from drystone.physics.convex import convex_parts, without_straight_corners
+from drystone.physics.scene import EngineScene, EngineSettings
 
 GROUND_THICKNESS = 2.0
 """In mean block sizes; thick enough that nothing gets through."""
@@ -26,7 +25,7 @@ class TiltingTable:
     """
 
     def __init__(
-        self, scene: Scene, settings: EngineSettings, placed: Iterable[int] | None = None
+        self, scene: EngineScene, settings: EngineSettings, placed: Iterable[int] | None = None
     ) -> None:
         self.ids: tuple[int, ...] = ()
         self._settings = settings
@@ -39,7 +38,7 @@ class TiltingTable:
             self.place(scene, block)
         self._add_ground(scene)
 
-    def place(self, scene: Scene, block: int) -> float:
+    def place(self, scene: EngineScene, block: int) -> float:
         """Put a block where its scene has it, whatever the others have done since."""
         engine = load_engine()
         shape = scene.shapes[block]
@@ -84,7 +83,7 @@ class TiltingTable:
         shape.elasticity = 0.0
         self._space.add(shape)
 
-    def _add_ground(self, scene: Scene) -> None:
+    def _add_ground(self, scene: EngineScene) -> None:
         left, _, right, _ = shapely.GeometryCollection(list(scene.shapes.values())).bounds
         left, right = (2 * left - right) / scene.length, (2 * right - left) / scene.length
         ground = np.array(
@@ -134,6 +133,11 @@ class TiltingTable:
         change = self.poses() - before
         turns = np.minimum(np.abs(change[:, 2]), np.pi)
         return np.asarray(np.hypot(change[:, 0], change[:, 1]) + turns * self._reaches)
+
+    def beyond(self, shifts: Floats, limit: float) -> tuple[int, ...]:
+        """Return which free blocks have come further than a limit, those that moved most first."""
+        order = np.argsort(-shifts, kind="stable")
+        return tuple(self.ids[i] for i in order.tolist() if shifts[i] > limit)
 
     def _free(self) -> list[Any]:
         dynamic = load_engine().Body.DYNAMIC

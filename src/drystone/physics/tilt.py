@@ -2,14 +2,9 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-from drystone.physics.scene import EngineSettings, Scene
-from drystone.physics.table import TiltingTable
+from drystone.physics.scene import EngineScene, EngineSettings
+from drystone.physics.table import Floats, TiltingTable
 from drystone.statics.model import Direction
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -35,7 +30,7 @@ class TiltSettings:
 class TiltTrial:
     """Outcome of one tilt test."""
 
-    direction: Direction  # Where gravity turns to
+    direction: Direction  # gravity turns there
     # Tangent of the angle at which blocks come down; None when they fell at rest or never
     alpha: float | None
     # Alpha at which some block first moved noticeably, even if it came to rest again
@@ -52,12 +47,15 @@ class TiltTrial:
 
 
 def tilt_once(
-    scene: Scene,
+    scene: EngineScene,
     direction: Direction,
     engine: EngineSettings | None = None,
     settings: TiltSettings | None = None,
 ) -> TiltTrial:
-    """Tilt the table under a wall, step by step, each from the state before."""
+    """Tilt the table under a wall, step by step, each from the state before.
+
+    The horizontal share of gravity points to -x for "left".
+    """
     settings = settings or TiltSettings()
     table = TiltingTable(scene, engine or EngineSettings())
     given = table.poses()
@@ -65,25 +63,17 @@ def tilt_once(
     shifts = table.shifts(given)
     settled_shift = float(shifts.max()) * scene.length
     if not stands:
-        fallen = _moved(table.ids, shifts, settings)
-        return TiltTrial(direction, None, None, fallen, settled_shift, 0.0, fell_at_rest=True)
-    fall = _raised(table, -1.0 if direction == "left" else 1.0, settings)
-    return TiltTrial(
-        direction, fall.alpha, fall.first_motion, fall.moved, settled_shift, fall.step / 2
-    )
+        moved = table.beyond(shifts, settings.noticeable)
+        return TiltTrial(direction, None, None, moved, settled_shift, 0.0, fell_at_rest=True)
+    return _raised(table, direction, settings, settled_shift)
 
 
-@dataclass(frozen=True)
-class _Fall:
-    alpha: float | None
-    first_motion: float | None
-    moved: tuple[int, ...]
-    step: float
-
-
-def _raised(level: TiltingTable, sign: float, settings: TiltSettings) -> _Fall:
+def _raised(
+    level: TiltingTable, direction: Direction, settings: TiltSettings, settled_shift: float
+) -> TiltTrial:
     """Raise the table until blocks come down."""
     settled, standing = level.poses(), level
+    sign = -1.0 if direction == "left" else 1.0
     low, step, suspect = 0.0, settings.coarse, 0.0
     first_motion: float | None = None
     while low < settings.greatest:
@@ -97,16 +87,22 @@ def _raised(level: TiltingTable, sign: float, settings: TiltSettings) -> _Fall:
         if first:
             first_motion = low + step / 2
         if not stands:
-            moved = _moved(table.ids, table.shifts(standing.poses()), settings)
-            return _Fall(low + step / 2, first_motion, moved, step)
+            moved = table.beyond(table.shifts(standing.poses()), settings.noticeable)
+            alpha = low + step / 2
+            return TiltTrial(direction, alpha, first_motion, moved, settled_shift, step / 2)
         low, standing = low + step, table
         # Smaller steps may have led past what a larger one set off.
         step = settings.coarse if first or low >= suspect else step
-    return _Fall(None, first_motion, (), min(step, settings.fine))
+    resolution = min(step, settings.fine) / 2
+    return TiltTrial(direction, None, first_motion, (), settled_shift, resolution)
 
 
 def hold(table: TiltingTable, alpha: float, settled: Floats, settings: TiltSettings) -> bool:
-    """Hold a tilt until the blocks rest or have fallen."""
+    """Hold a tilt until the blocks rest or have fallen, and say whether they rest.
+
+    `alpha` is the tangent of the tilt, positive when gravity turns towards +x; falling is measured
+    from the settled poses, (n, 3).  The table is left in the state reached.
+    """
     table.tilt(alpha)
     chunk, held = settings.shortest_hold / 4, 0.0
     while held < settings.longest_hold:
@@ -117,8 +113,3 @@ def hold(table: TiltingTable, alpha: float, settled: Floats, settings: TiltSetti
         if held >= settings.shortest_hold and table.speeds().max() <= settings.resting_speed:
             return True
     return False
-
-
-def _moved(ids: tuple[int, ...], shifts: Floats, settings: TiltSettings) -> tuple[int, ...]:
-    order = np.argsort(-shifts, kind="stable")
-    return tuple(ids[i] for i in order.tolist() if shifts[i] > settings.noticeable)
