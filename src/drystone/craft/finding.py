@@ -43,7 +43,7 @@ class Case:
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class Evidence:
     """What there is in a wall, before a limit judges it."""
 
     number: float | None  # See `Rule.meaning`; None when there is nothing to judge
@@ -58,15 +58,17 @@ class Found:
 class Rule:
     """A mason's rule as a check."""
 
-    name: str  # For options and JSON
-    title: str  # For tables and pictures
-    sentence: str  # The rule as a mason says it
-    source: str  # Who says it; "Own definition" for what is ours
-    meaning: str  # What the number is
-    higher_is_better: bool  # Direction of the number
-    limit: Limit  # Usual limits; ours, unless the source says otherwise
-    measure: Callable[["Masonry", Limit], Found]  # Gives the number of a wall and its cases
-    unit: str = ""  # Of the number, empty for shares and counts
+    name: str  # for options and JSON
+    title: str  # for tables and pictures
+    sentence: str  # the rule as a mason says it
+    source: str  # who says it; "Own definition" for what is ours
+    meaning: str  # what the number is
+    limit: Limit  # usual limits; ours, unless the source says otherwise
+    # Gives the number of a wall, a Masonry, and its cases; with `by_limit` it is told the limit.
+    measure: Callable[..., Evidence]
+    unit: str = ""  # empty for shares and counts
+    higher_is_better: bool = False
+    by_limit: bool = False
 
     def find(self, masonry: "Masonry", limit: Limit | None = None) -> "Finding":
         """Judge a wall, by limits of its own unless others are given."""
@@ -84,7 +86,7 @@ class Rule:
                 cure=f"Give the last good and the last fair value, such as {self.limit.good:g}:"
                 f"{self.limit.fair:g}.",
             )
-        found = self.measure(masonry, limit)
+        found = self.measure(masonry, limit) if self.by_limit else self.measure(masonry)
         verdict: Verdict
         if found.broken:
             verdict = "broken"
@@ -98,7 +100,7 @@ class Rule:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Finding(Found):
+class Finding(Evidence):
     """What a rule finds: what there is, judged."""
 
     rule: Rule  # Which one

@@ -9,10 +9,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from drystone.kernels.polygons import Points
+
 if TYPE_CHECKING:
     from drystone.craft.masonry import Masonry
-
-Points = NDArray[np.float64]
 
 STEEPEST = 1.0
 """A joint that rises more than it runs is a head joint, else a bed joint: 45 degrees."""
@@ -39,7 +39,10 @@ class Scan:
 
 
 def scan(outlines: Mapping[int, Points], axis: int, spacing: float) -> Scan:
-    """Cut outlines by parallel lines."""
+    """Cut outlines, (n, 2) and not closed, by parallel lines about a spacing apart.
+
+    Along axis 0 they are rows, which run along x; along axis 1 columns, which run up.
+    """
     if not outlines:
         return Scan(spacing, np.empty(0), ())
     across = 1 - axis
@@ -113,7 +116,11 @@ class Joint:
 
 
 def joints(scanned: Scan, axis: int, widest: float, wedges: frozenset[int]) -> tuple[Joint, ...]:
-    """Find the joints that lines of a scan cross."""
+    """Find the joints that lines of a scan cross: head joints by rows, bed joints by columns.
+
+    Gaps are `widest` at most, but for the thickness of wedges, which are no neighbours.  Two stones
+    have several joints where theirs changes between rising and running, or is interrupted.
+    """
     sampled: dict[tuple[int, int], list[tuple[int, float]]] = {}
     for line, runs in enumerate(scanned.runs):
         for pair, middle, gap in _neighbours(runs, wedges):
