@@ -109,7 +109,11 @@ def _log2_descriptors(settings: FourierSettings) -> NDArray[np.float64]:
 
 
 def fourier_contour(radius_px: float, settings: FourierSettings, rng: Generator) -> Outline | None:
-    """Draw one contour (Eq. 30a-c): descriptors as given, phases at random in [-pi, pi)."""
+    """Draw one contour (Eq. 30a-c): descriptors as given, phases at random in [-pi, pi).
+
+    (points, 2) about its pole, counter-clockwise, the first point on the x axis; None when the
+    radius is not positive everywhere, so that the contour would cross itself.
+    """
     amplitude = radius_px * fourier_descriptors(settings)
     phase = rng.uniform(-math.pi, math.pi, amplitude.size)
     theta, cos, sin = settings.waves

@@ -27,7 +27,12 @@ def polygon_area(outline: Outline) -> float:
 
 
 def outline_mask(outline: Outline) -> Mask:
-    """Rasterise a polygon: the pixels whose centre is inside, by the even-odd rule."""
+    """Rasterise a polygon: the pixels whose centre is inside, by the even-odd rule.
+
+    Cropped to its pixels, row 0 at the top; of shape (0, 0) when no centre is inside.  A centre on
+    the outline is inside when the polygon lies to its right or above it, so polygons that share a
+    side share no pixel.
+    """
     return rasterise_polygon(outline)[0]
 
 
@@ -40,7 +45,10 @@ def is_whole(mask: Mask) -> bool:
 
 
 def draw_stone(draws: Iterable[Outline | None], what: str) -> Mask:
-    """Take outlines until one gives the mask of a whole stone."""
+    """Take outlines, None for those to be rejected, until one gives the mask of a whole stone.
+
+    E130 when a thousand draws in a row are rejected.
+    """
     for outline in islice(draws, ATTEMPTS):
         if outline is not None and is_whole(mask := outline_mask(outline)):
             return mask

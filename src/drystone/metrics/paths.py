@@ -23,9 +23,11 @@ SHORTEST = 5
 def vertical_arrangement(joint: Mask) -> float | None:
     """Return F_AV in percent, by how much vertical paths are longer than straight (Eq. 27).
 
-    Higher is better: head joints are interrupted.
+    100 (v - (H - 1)) / (H - 1) with H the height of the joint image, (H, W), and v the length of a
+    path of :func:`vertical_paths`, averaged over the five shortest, or over all when there are
+    fewer; None when there is none.  Higher is better: head joints are interrupted.
     """
-    return mean_excess(vertical_lengths(joint), joint.shape[0] - 1)
+    return horizontal_arrangement(joint.T)
 
 
 def horizontal_arrangement(joint: Mask) -> float | None:
@@ -34,15 +36,14 @@ def horizontal_arrangement(joint: Mask) -> float | None:
     Lower is better: courses are straight.  As :func:`vertical_arrangement`, with W and
     :func:`horizontal_paths`.
     """
-    return mean_excess(horizontal_lengths(joint), joint.shape[1] - 1)
+    return mean_excess(horizontal_lengths(joint)[:SHORTEST], joint.shape[1] - 1)
 
 
 def mean_excess(lengths_px: Sequence[float], straight_px: int) -> float | None:
-    """Return by how much the shortest of some paths are longer than straight, in percent."""
-    shortest = lengths_px[:SHORTEST]
-    if not shortest:
+    """Return by how much paths are longer than a straight line, in percent; None without any."""
+    if not lengths_px:
         return None
-    return 100.0 * math.fsum(length / straight_px - 1.0 for length in shortest) / len(shortest)
+    return 100.0 * math.fsum(length / straight_px - 1.0 for length in lengths_px) / len(lengths_px)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,11 +60,6 @@ class JointPath:
         return length_px(int((steps == 1).sum()), int((steps == 2).sum()))
 
 
-def vertical_lengths(joint: Mask) -> tuple[float, ...]:
-    """Return the lengths of :func:`vertical_paths`, px, the shortest first."""
-    return horizontal_lengths(joint.T)
-
-
 def horizontal_lengths(joint: Mask) -> tuple[float, ...]:
     """Return the lengths of :func:`horizontal_paths`, px, the shortest first."""
     lengths = row_lengths(joint, _starts(joint.shape[0])).tolist()
@@ -74,7 +70,8 @@ def vertical_paths(joint: Mask) -> tuple[JointPath, ...]:
     """Find the shortest paths from the top row to the same column of the last row (Fig. 17b).
 
     Starts are at columns 10, 10 + floor(W / 10), ... < W - 10, with W the width of the joint
-    image, its padding included.
+    image (:func:`drystone.metrics.joints.joint_mask`), its padding included.  The shortest comes
+    first, of equal ones the left one; starts without a path are left out.
     """
     return tuple(JointPath(path.pixels[:, ::-1]) for path in horizontal_paths(joint.T))
 

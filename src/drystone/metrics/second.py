@@ -6,7 +6,6 @@ start, that they end where they like and cannot pass by the wall; that all of th
 the shortest alone.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -17,7 +16,7 @@ from drystone.kernels.paths import row_lengths, step_counts
 from drystone.kernels.raster import Mask
 from drystone.metrics.frame import frame_wall
 from drystone.metrics.joints import PAD_BOTTOM, PAD_LEFT, PAD_RIGHT, PAD_TOP, joint_mask
-from drystone.metrics.paths import length_px
+from drystone.metrics.paths import length_px, mean_excess
 from drystone.model.outlines import Outlined, Outlines
 from drystone.model.site import Site
 from drystone.model.wall import Labels
@@ -47,7 +46,9 @@ def second_arrangement(labels: Labels) -> SecondArrangement:
     there is open joint only along the sides where paths start and end, one px of it: paths cannot
     pass by the wall.  :data:`STARTS` paths start evenly spread on each of two sides that face each
     other, and end anywhere on the other one: 100 (v - s) / s, with v their length and s that of a
-    straight one, is averaged over all of them.
+    straight one, is averaged over all of them.  The wall is at :data:`FINER` times the working
+    resolution, and cut to its stones: where it is a little shorter than planned, paths must not
+    run through the slit at its end.
     """
     joint = joint_mask(frame_wall(labels).labels)
     rows, cols = slice(PAD_TOP, -PAD_BOTTOM), slice(PAD_LEFT, -PAD_RIGHT)
@@ -80,9 +81,7 @@ def _mean_excess(joint: Mask) -> float | None:
     first = (2 * np.arange(STARTS // 2) + 1) * side // (2 * STARTS)
     starts = np.concatenate([first, side - 1 - first[::-1]])
     lengths = [*_lengths_across(joint, starts), *_lengths_across(joint[:, ::-1], starts)]
-    if not lengths:
-        return None
-    return 100.0 * math.fsum(length / straight - 1.0 for length in lengths) / len(lengths)
+    return mean_excess(lengths, straight)
 
 
 def _lengths_across(joint: Mask, rows: NDArray[np.intp]) -> list[float]:

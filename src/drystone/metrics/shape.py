@@ -46,7 +46,10 @@ def stone_sizes(labels: Labels, wedge_ids: Collection[int] = frozenset()) -> Sto
 
 
 def top_profile(labels: Labels) -> NDArray[np.intp]:
-    """Return the height of the highest stone pixel over the last row, per column."""
+    """Return the height of the highest stone or wedge pixel over the last row, per column.
+
+    0 where there is none, be it a joint from top to bottom or an end that the wall does not reach.
+    """
     filled = labels > 0
     return np.where(filled.any(axis=0), labels.shape[0] - filled.argmax(axis=0), 0)
 
