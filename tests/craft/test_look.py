@@ -170,12 +170,7 @@ def comb(teeth: int) -> np.ndarray:
 
 @pytest.mark.parametrize(
     "last",
-    [
-        box(1e9, 0, 2, 1),
-        box(0, 1e9, 2, 1),
-        box(4, 0, 1e5, 1),
-        np.add(comb(20_000), (4.0, 0.0)),
-    ],
+    [box(1e9, 0, 2, 1), box(0, 1e9, 2, 1), box(4, 0, 1e5, 1), np.add(comb(20_000), (4.0, 0.0))],
     ids=["far aside", "far up", "wide", "comb"],
 )
 def test_a_wall_that_reaches_too_far_is_refused(last):

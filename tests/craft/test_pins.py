@@ -86,10 +86,7 @@ def named(masonry):
         (box(1, 1, 0.3, 0.33), "1.1 times as high as wide, at most 1"),
         (box(1, 1, 0.7, 0.62), "0.31 high, at most 0.3"),
         (box(1, 1, 1.2, 0.59), "0.177 in area, at most 0.144"),
-        (
-            [[1, 1.1], [1.5, 1], [1.5, 1.4], [1, 1.19]],
-            "34.1° between its faces, at most 30.1°",
-        ),
+        ([[1, 1.1], [1.5, 1], [1.5, 1.4], [1, 1.19]], "34.1° between its faces, at most 30.1°"),
     ],
 )
 def test_wedges_that_no_mason_would_cut_are_named_in_stone_sizes(wedge, words, factor):

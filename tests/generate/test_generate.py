@@ -19,12 +19,7 @@ from drystone.generate.fourier import (
 )
 from drystone.generate.layout import GAP_PX, check_room, lay_out, stones_of
 from drystone.generate.polygon import PolygonSettings, noisy_polygon, polygon_stones
-from drystone.generate.rubble import (
-    RubbleSettings,
-    course_sizes,
-    rubble_outline,
-    rubble_stones,
-)
+from drystone.generate.rubble import RubbleSettings, course_sizes, rubble_outline, rubble_stones
 from drystone.model.stone import Stone, StoneSet
 from tests.strategies import repeatable
 

@@ -8,13 +8,7 @@ import pytest
 
 from drystone.errors import InputError, UsageError
 from drystone.kernels.polygons import Points
-from drystone.physics.building import (
-    ROUNDED,
-    BuildSettings,
-    Watch,
-    build_up,
-    tilt_of,
-)
+from drystone.physics.building import ROUNDED, BuildSettings, Watch, build_up, tilt_of
 from drystone.physics.scatter import Variation
 from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.table import TiltingTable

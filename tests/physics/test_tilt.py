@@ -4,12 +4,7 @@ import numpy as np
 import pytest
 
 from drystone.errors import InputError
-from drystone.physics.scatter import (
-    TiltResult,
-    Variation,
-    compare_with_tilt,
-    tilt_test,
-)
+from drystone.physics.scatter import TiltResult, Variation, compare_with_tilt, tilt_test
 from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.table import TiltingTable
 from drystone.physics.tilt import TiltSettings, TiltTrial, tilt_once

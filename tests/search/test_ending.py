@@ -158,9 +158,7 @@ def test_an_interrupt_while_others_are_finished_keeps_the_best(
     assert result.choice == ()
 
 
-def test_what_the_solver_gave_up_on_at_the_end_is_counted(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_what_the_solver_gave_up_on_at_the_end_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def with_trouble(
         first: Planner, best: PackedWall, until: Deadline

@@ -11,10 +11,7 @@ import numpy as np
 import pytest
 import shapely
 
-from drystone.contacts.settled import (
-    PlacedPolygons,
-    model_of_outlines,
-)
+from drystone.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.io.plan_json import plan_from_json, plan_to_json
 from drystone.kernels.polygons import Points, on_grid
 from drystone.kernels.raster import Mask
@@ -376,8 +373,7 @@ def test_what_cannot_be_dropped_stays(monkeypatch: pytest.MonkeyPatch) -> None:
     made = built((2, 30.0, 0.01), (5, 55.0, 0.01), wedges=two)
     assert wedged(made, 0).wall.wedges == ()
     refusing(
-        monkeypatch,
-        lambda groups: len(groups) == 2 and not any(group.wedges for group in groups),
+        monkeypatch, lambda groups: len(groups) == 2 and not any(group.wedges for group in groups)
     )
     assert [one.tolist() for one in outlines_of(wedged(made, 0))] == [on_grid(two[2][1]).tolist()]
 

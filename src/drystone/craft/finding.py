@@ -25,7 +25,7 @@ ROUNDING = 1e-9
 class Limit:
     """Where a rule's number stops being good, and where it is broken."""
 
-    good: float  # Last values that are good, and fair; beyond `fair` the rule is broken
+    good: float  # last values that are good, and fair; beyond `fair` the rule is broken
     fair: float
 
 
@@ -33,12 +33,12 @@ class Limit:
 class Case:
     """One place where a rule is not kept."""
 
-    stones: tuple[int, ...]  # Ids concerned
-    value: float  # How bad it is, in the unit of `words`
-    words: str  # What is wrong, after the names of the stones
-    lines: tuple[Line, ...] = ()  # (n, 2) Joints, edges or slopes to draw
+    stones: tuple[int, ...]
+    value: float  # how bad it is, in the unit of `words`
+    words: str  # what is wrong, after the names of the stones
+    lines: tuple[Line, ...] = ()  # (n, 2), joints, edges or slopes to draw
     # How many of the stones, the first ones, do not keep the rule; 0 when it is a joint between
-    # them that does not
+    # them that does not.
     at_fault: int = 1
 
 
@@ -46,12 +46,12 @@ class Case:
 class Evidence:
     """What there is in a wall, before a limit judges it."""
 
-    number: float | None  # See `Rule.meaning`; None when there is nothing to judge
-    cases: tuple[Case, ...] = ()  # Worst first.  A good wall may have some.
-    # Other numbers that go with it
+    number: float | None  # see `Rule.meaning`; None when there is nothing to judge
+    cases: tuple[Case, ...] = ()  # worst first.  A good wall may have some.
+    # Other numbers that go with it.
     figures: Mapping[str, float | None] = field(default_factory=dict)
-    note: str = ""  # Why nothing was judged, or what the number does not say
-    broken: bool = False  # The rule is broken whatever the number is
+    note: str = ""  # why nothing was judged, or what the number does not say
+    broken: bool = False  # the rule is broken whatever the number is
 
 
 @dataclass(frozen=True)
@@ -103,9 +103,9 @@ class Rule:
 class Finding(Evidence):
     """What a rule finds: what there is, judged."""
 
-    rule: Rule  # Which one
-    limit: Limit  # Limits that were used
-    verdict: Verdict  # By the limits
+    rule: Rule
+    limit: Limit
+    verdict: Verdict
 
     @property
     def amount(self) -> str:

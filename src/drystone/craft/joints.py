@@ -22,8 +22,8 @@ STEEPEST = 1.0
 class Run:
     """A piece of a line inside a stone or wedge."""
 
-    id: int  # Of the stone or wedge
-    begin: float  # Along the line, ascending
+    id: int  # of the stone or wedge
+    begin: float  # along the line, ascending
     end: float
 
 
@@ -31,11 +31,11 @@ class Run:
 class Scan:
     """Parallel lines through a wall."""
 
-    spacing: float  # Distance of the lines
-    # (n,) Where they are: heights of rows, or x of columns; as far from one end of the wall's
-    # box as from the other, so that a mirrored wall is cut in the same places
+    spacing: float  # distance of the lines
+    # (n,), where they are: heights of rows, or x of columns; as far from one end of the wall's
+    # box as from the other, so that a mirrored wall is cut in the same places.
     places: NDArray[np.float64]
-    runs: tuple[tuple[Run, ...], ...]  # For each line, in order along it
+    runs: tuple[tuple[Run, ...], ...]  # for each line, in order along it
 
 
 def scan(outlines: Mapping[int, Points], axis: int, spacing: float) -> Scan:
@@ -82,10 +82,10 @@ def _crossings(
 class Joint:
     """A piece of joint between two stones."""
 
-    first: int  # Stones to the left and right of a head joint, below and above a bed joint
+    first: int  # stones to the left and right of a head joint, below and above a bed joint
     second: int
-    points: Points  # (n, 2) Middle of the gap, bottom to top or left to right
-    spacing: float  # Length that a point stands for
+    points: Points  # (n, 2), middle of the gap, bottom to top or left to right
+    spacing: float  # length that a point stands for
 
     @property
     def length(self) -> float:
@@ -168,7 +168,7 @@ def _pieces(samples: list[tuple[int, float]], spacing: float) -> Iterator[list[t
 class Chain:
     """Head joints that form one joint, from the lowest to the highest."""
 
-    joints: tuple[Joint, ...]  # At least one
+    joints: tuple[Joint, ...]
 
     @property
     def left(self) -> tuple[int, ...]:

@@ -85,11 +85,11 @@ def big_low(masonry: Masonry) -> Evidence:
 class Edge:
     """The upper or lower edge of a stone, as a straight line fitted to it."""
 
-    stone: int  # Id
-    side: Literal["lower", "upper"]  # Which
-    slope: float  # Rise to the right over run
-    width: float  # Of the part that was fitted
-    line: Line  # (2, 2) Its ends
+    stone: int
+    side: Literal["lower", "upper"]
+    slope: float  # rise to the right over run
+    width: float  # of the part that was fitted
+    line: Line  # (2, 2), its ends
 
     @property
     def angle_deg(self) -> float:

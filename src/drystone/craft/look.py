@@ -124,8 +124,8 @@ RULES: Mapping[str, Rule] = MappingProxyType({rule.name: rule for rule in _ALL})
 class CraftReport:
     """What the rules find in a wall."""
 
-    masonry: Masonry  # The wall
-    findings: Mapping[str, Finding]  # By name of the rule, in the order of `RULES`
+    masonry: Masonry
+    findings: Mapping[str, Finding]  # by name of the rule, in the order of `RULES`
 
     @property
     def broken(self) -> tuple[str, ...]:

@@ -8,13 +8,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from drystone.generate.layout import check_room, stones_of
-from drystone.generate.outlines import (
-    Outline,
-    check_setting,
-    is_whole,
-    outline_mask,
-    polygon_area,
-)
+from drystone.generate.outlines import Outline, check_setting, is_whole, outline_mask, polygon_area
 from drystone.kernels.raster import turn
 from drystone.model.stone import StoneSet
 

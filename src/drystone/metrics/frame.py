@@ -13,9 +13,9 @@ from drystone.model.wall import Labels
 class WallFrame:
     """A wall cut out of its image, and where it should end."""
 
-    # (h, w) First row: the highest stone pixel; last row: the lowest, on which the wall stands
+    # (h, w), first row: the highest stone pixel; last row: the lowest, on which the wall stands.
     labels: Labels
-    # The two end lines of the wall, as columns of `labels` measured from its left edge
+    # The two end lines of the wall, as columns of `labels` measured from its left edge.
     left_px: float
     right_px: float
 

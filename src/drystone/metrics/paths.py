@@ -50,7 +50,7 @@ def mean_excess(lengths_px: Sequence[float], straight_px: int) -> float | None:
 class JointPath:
     """One shortest path along the joints."""
 
-    # (n, 2) Row and column of its pixels in the joint image, from start to end
+    # (n, 2), row and column of its pixels in the joint image, from start to end.
     pixels: NDArray[np.intp]
 
     @property

@@ -17,9 +17,9 @@ from drystone.model.wall import Labels
 class StoneSizes:
     """What the stones of a wall measure, wedges left out."""
 
-    count: int  # Number of stones
-    area_px: int  # Pixels of all stones together
-    mean_height_px: float  # Of their upright bounding boxes
+    count: int  # number of stones
+    area_px: int  # pixels of all stones together
+    mean_height_px: float  # of their upright bounding boxes
     mean_width_px: float
 
 

@@ -7,9 +7,10 @@ import numpy as np
 import shapely
 
 from drystone.kernels.polygons import Points
+from drystone.kernels.profiles import Floats
 from drystone.physics.scatter import TiltResult, Variation, tilt_test
 from drystone.physics.scene import EngineScene, EngineSettings
-from drystone.physics.table import Floats, TiltingTable
+from drystone.physics.table import TiltingTable
 from drystone.physics.tilt import TiltSettings
 
 Group = Sequence[tuple[int, Points]]
@@ -28,48 +29,48 @@ stone by .1 L).  For stones of 50 px it is .15 px, about the contact tolerance.
 class BuildSettings:
     """How a wall is built up; lengths in mean block sizes L, times in sqrt(L / g)."""
 
-    engine: EngineSettings = field(default_factory=lambda: ROUNDED)  # How the engine is driven
+    engine: EngineSettings = field(default_factory=lambda: ROUNDED)  # how the engine is driven
     # A block has fallen when a point of it has moved by more than this share of its size, the
-    # square root of its area; a wedge, when by more than this share of its stone's size
+    # square root of its area; a wedge, when by more than this share of its stone's size.
     moved_share: float = 0.1
-    turned_deg: float = 10.0  # Or when it has turned by more than this
-    # The blocks rest when no point of any has moved by more than this for so long
+    turned_deg: float = 10.0  # or when it has turned by more than this
+    # The blocks rest when no point of any has moved by more than this for so long.
     resting_move: float = 3e-4
     resting_time: float = 1.0
     # Time after every stone.  When blocks still move then the next one comes.
     longest_rest: float = 10.0
-    look_every: float = 0.25  # Time between two looks at the blocks
+    look_every: float = 0.25  # time between two looks at the blocks
 
 
 @dataclass(frozen=True)
 class BlockMove:
     """What became of one block."""
 
-    id: int  # Of the block
-    group: int  # Number of its group, from 1
-    # Largest distance of any point of it from where it was planned, over its whole life
+    id: int
+    group: int  # number of its group, from 1
+    # Largest distance of any point of it from where it was planned, over its whole life.
     move_px: float
-    share: float  # The same over the size (square root of the area) of the stone of its group
-    turn_deg: float  # Largest turn over its whole life, either way
-    # How deep it lay in others, or in the ground, when it was put where it was planned
+    share: float  # the same over the size (square root of the area) of the stone of its group
+    turn_deg: float  # largest turn over its whole life, either way
+    # How deep it lay in others, or in the ground, when it was put where it was planned.
     overlap_px: float
-    fell: bool  # It moved or turned by more than the settings allow
+    fell: bool  # it moved or turned by more than the settings allow
 
 
 @dataclass(frozen=True, eq=False)
 class BuildUp:
     """A wall as it stands, or lies, when its last stone has come to rest."""
 
-    moves: tuple[BlockMove, ...]  # In the order of placement
-    # (n, 2) Corners of every block where it was planned and where it ended, source px, wall
-    # frame, counter-clockwise, not closed
+    moves: tuple[BlockMove, ...]  # in the order of placement
+    # (n, 2), corners of every block where it was planned and where it ended, source px, wall
+    # frame, counter-clockwise, not closed.
     planned: dict[int, Points]
     outlines: dict[int, Points]
-    # By group: how far a block at most was from its planned place when the group came
+    # By group: how far a block at most was from its planned place when the group came.
     found_moved_px: tuple[float, ...]
-    restless: tuple[int, ...]  # Numbers of the groups after which the engine did not come to rest
-    first_fall: int | None  # Number of the group after which the first block had fallen
-    mu: float  # Coefficient of friction
+    restless: tuple[int, ...]  # numbers of the groups after which the engine did not come to rest
+    first_fall: int | None  # number of the group after which the first block had fallen
+    mu: float
 
     @property
     def fallen(self) -> tuple[int, ...]:
@@ -97,7 +98,9 @@ def build_up(
     """Put stones on a level ground one after the other and let each come to rest.
 
     Every block comes where it was planned, whatever those before it have done since.  Where it
-    overlaps them the engine pushes both apart, slowly and without giving them speed.
+    overlaps them the engine pushes both apart, slowly and without giving them speed.  Groups come
+    in the order of placement, the stone of each first; `on_group` is told the number of those that
+    stand.
     """
     settings = settings or BuildSettings()
     if not any(groups):
@@ -148,7 +151,7 @@ class Watch:
         self._turns = dict.fromkeys(scene.shapes, 0.0)
 
     def look(self, table: TiltingTable) -> float:
-        """Take note of where the blocks are."""
+        """Take note of where the blocks are; return how far the furthest is from its place, or 0."""
         furthest = 0.0
         for block, corners, turn in self._now(table):
             way = corners - self._arms[block] - self._centres[block]
@@ -188,15 +191,17 @@ come to rest, in half its time; fewer iterations or shorter holds were off by .1
 
 
 def tilt_of(
-    built: BuildUp, variations: Sequence[Variation] = (QUICK,), seed: int = 0
+    built: BuildUp, variations: Sequence[Variation] = (QUICK,)
 ) -> tuple[TiltResult, TiltResult] | None:
-    """Tilt a finished wall from where it came to rest, to the left and to the right."""
+    """Tilt a finished wall from where it came to rest, to the left and to the right.
+
+    None for a wall that fell, moves on, or is empty.
+    """
     if not (built.stands and built.rests and built.outlines):
         return None
     scene = EngineScene(built.outlines, built.mu)
-    left = tilt_test(scene, "left", np.random.default_rng(seed), variations)
-    right = tilt_test(scene, "right", np.random.default_rng(seed), variations)
-    return left, right
+    left = tilt_test(scene, "left", np.random.default_rng(0), variations)
+    return left, tilt_test(scene, "right", np.random.default_rng(0), variations)
 
 
 def _rest(table: TiltingTable, watch: Watch, settings: BuildSettings) -> bool:

@@ -29,7 +29,8 @@ def convex_parts(outline: Points) -> tuple[Points, ...]:
     neighbour that touches this corner would be held by it (measured: stones hooked to their
     neighbours, and tilt angles above the proven bound).  Stones of a wall touch at corners
     everywhere.  So parts reach over their seams, between their own faces, and end elsewhere.
-    Inside the stone, where nothing gets to, holes may be left.
+    Inside the stone, where nothing gets to, holes may be left.  Outline and parts, (n, 2), turn
+    counter-clockwise and are not closed; a convex outline stays as it is.
     """
     ring = _corners(outline)
     whole = shapely.Polygon(ring)
@@ -58,10 +59,7 @@ def without_straight_corners(part: Points) -> Points:
 
 
 def _slabs(
-    ring: list[_Corner],
-    whole: shapely.Polygon,
-    faces: set[_Side],
-    cell: list[_Corner],
+    ring: list[_Corner], whole: shapely.Polygon, faces: set[_Side], cell: list[_Corner]
 ) -> list[list[_Corner]]:
     """Cover the faces of a cell one by one; a cell without faces needs nothing."""
     slabs = []

@@ -23,11 +23,11 @@ Event = Literal["fall", "first motion"]
 class Variation:
     """One way to run the same test."""
 
-    name: str  # What differs
-    engine: EngineSettings  # How the engine is driven
-    tilt: TiltSettings  # How the table is tilted
-    shuffled: bool = False  # Blocks are given to the engine in a random order
-    # Greatest shift of every block, and of every corner, along either axis, in mean block sizes
+    name: str  # what differs
+    engine: EngineSettings  # how the engine is driven
+    tilt: TiltSettings  # how the table is tilted
+    shuffled: bool = False  # blocks are given to the engine in a random order
+    # Greatest shift of every block, and of every corner, along either axis, in mean block sizes.
     placement_noise: float = 0.0
     outline_noise: float = 0.0
 
@@ -54,14 +54,12 @@ def _moved(corners: Points, moves: Points) -> Points:
     return corners
 
 
-def usual_variations(
-    engine: EngineSettings | None = None, tilt: TiltSettings | None = None
-) -> tuple[Variation, ...]:
+def usual_variations() -> tuple[Variation, ...]:
     """Return the variations of a tilt test: none, of the engine, of the scene, of the tilting.
 
     Noise stays at the depth to which blocks may overlap, far below a contact tolerance.
     """
-    engine, tilt = engine or EngineSettings(), tilt or TiltSettings()
+    engine, tilt = EngineSettings(), TiltSettings()
     thorough = replace(engine, iterations=3 * engine.iterations)
     return (
         Variation("as given", engine, tilt),
@@ -80,7 +78,7 @@ def usual_variations(
 class TiltResult:
     """Outcome of repeated tilt tests in one direction."""
 
-    direction: Direction  # Where gravity turns to
+    direction: Direction  # where gravity turns to
     trials: tuple[TiltTrial, ...]
 
     @property
@@ -143,8 +141,8 @@ class TiltComparison:
     find a better rest, so that the wall falls later than any analysis of it says.
     """
 
-    simulated: TiltResult  # The tilt tests
-    associative: float | None  # Predicted load multipliers; None when there is none
+    simulated: TiltResult
+    associative: float | None  # predicted load multipliers; None when there is none
     nonassociative: float | None
 
     @property

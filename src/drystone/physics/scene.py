@@ -17,14 +17,14 @@ from drystone.kernels.polygons import Points
 class EngineScene:
     """Blocks that stand on a level ground, without gaps or overlaps worth speaking of."""
 
-    # (n, 2) By id: corners in the wall frame, y up, either way round, closed or not; any unit
+    # (n, 2), by id: corners in the wall frame, y up, either way round, closed or not; any unit
     # of length.  Concave stones are welcome.
     outlines: Mapping[int, Points]
-    mu: float = 0.58  # Coefficient of friction of every pair, and of the ground
-    # Weight of a unit of area where it is not 1
+    mu: float = 0.58  # coefficient of friction of every pair, and of the ground
+    # Weight of a unit of area where it is not 1.
     densities: Mapping[int, float] = field(default_factory=dict)
-    fixed: frozenset[int] = frozenset()  # Blocks that are part of the ground
-    ground_y: float = 0.0  # Where the ground is
+    fixed: frozenset[int] = frozenset()  # blocks that are part of the ground
+    ground_y: float = 0.0  # where the ground is
 
     def __post_init__(self) -> None:
         check_mu(self.mu)
@@ -67,8 +67,8 @@ class EngineScene:
 class EngineSettings:
     """How the engine is driven; lengths in mean block sizes L, times in sqrt(L / g)."""
 
-    time_step: float = 0.01  # Of the engine
-    iterations: int = 100  # Passes over all contacts in a step
-    slop: float = 1e-3  # Depth to which blocks may overlap, so that contacts do not flicker
-    overlap_left: float = 1.8e-3  # Share of deeper overlap that is left after a unit of time
-    corner_radius: float = 0.0  # Corners of blocks are rounded by this, faces stay where they are
+    time_step: float = 0.01  # of the engine
+    iterations: int = 100  # passes over all contacts in a step
+    slop: float = 1e-3  # depth to which blocks may overlap, so that contacts do not flicker
+    overlap_left: float = 1.8e-3  # share of deeper overlap that is left after a unit of time
+    corner_radius: float = 0.0  # corners of blocks are rounded by this, faces stay where they are

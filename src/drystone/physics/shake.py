@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from drystone.kernels.profiles import Floats
 from drystone.physics.scene import EngineScene, EngineSettings
-from drystone.physics.table import Floats, TiltingTable
+from drystone.physics.table import TiltingTable
 from drystone.physics.tilt import TiltSettings, hold
 
 LOOKS = 8
@@ -22,16 +23,16 @@ LOOKS = 8
 class ShakeSettings:
     """How the table is shaken; lengths in mean block sizes L, times in sqrt(L / g)."""
 
-    period: float = 7.0  # Of the sinusoidal motion: 7 is a second for stones of .2 m
-    cycles: int = 2  # At every amplitude
+    period: float = 7.0  # of the sinusoidal motion: 7 is a second for stones of .2 m
+    cycles: int = 2  # at every amplitude
     # Steps of the amplitude, in g.  When blocks move by the limit they are set back by a step,
     # and it is halved until it is at most the fine one.
     coarse: float = 0.1
     fine: float = 0.0125
-    greatest: float = 1.5  # Largest amplitude that is tried, g
-    limit: float = 0.1  # A block that has come so far since the wall stood at rest has moved
-    pause: float = 1.0  # Time at rest after the cycles of an amplitude
-    # How the wall settles before, and when it has fallen then
+    greatest: float = 1.5  # largest amplitude that is tried, g
+    limit: float = 0.1  # a block that has come so far since the wall stood at rest has moved
+    pause: float = 1.0  # time at rest after the cycles of an amplitude
+    # How the wall settles before, and when it has fallen then.
     level: TiltSettings = field(default_factory=lambda: TiltSettings(longest_hold=20.0))
 
 
@@ -42,9 +43,9 @@ class ShakeTrial:
     # Peak acceleration of the ground, in g, that the blocks stood: the largest amplitude at
     # which none moved by the limit.  None when they do not stand at rest.
     pga_g: float | None
-    resolution_g: float  # At `pga_g` plus it, some did; 0 when none did up to the largest amplitude
-    moved: tuple[int, ...]  # Blocks that moved by the limit then, those that moved most first
-    # Largest way of any point of a block while the wall settled, unit of the scene
+    resolution_g: float  # at `pga_g` plus it, some did; 0 when none did up to the largest amplitude
+    moved: tuple[int, ...]  # blocks that moved by the limit then, those that moved most first
+    # Largest way of any point of a block while the wall settled, unit of the scene.
     settled_shift: float
 
 

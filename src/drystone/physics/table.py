@@ -21,7 +21,8 @@ GROUND_THICKNESS = 2.0
 class TiltingTable:
     """Blocks on a table; lengths in mean block sizes L, times in sqrt(L / g).
 
-    Turning gravity is the same as turning the table, seen from the table.
+    Turning gravity is the same as turning the table, seen from the table.  The engine has the
+    blocks in the order of the scene; all of them stand on it unless some are given as `placed`.
     """
 
     def __init__(
@@ -39,7 +40,10 @@ class TiltingTable:
         self._add_ground(scene)
 
     def place(self, scene: EngineScene, block: int) -> float:
-        """Put a block where its scene has it, whatever the others have done since."""
+        """Put a block where its scene has it, whatever the others have done since.
+
+        Returns how deep it lies in others, or in the ground, before the engine pushes them apart.
+        """
         engine = load_engine()
         shape = scene.shapes[block]
         centre = np.array(shape.centroid.coords[0])

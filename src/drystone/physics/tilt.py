@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 
+from drystone.kernels.profiles import Floats
 from drystone.physics.scene import EngineScene, EngineSettings
-from drystone.physics.table import Floats, TiltingTable
+from drystone.physics.table import TiltingTable
 from drystone.statics.model import Direction
 
 
@@ -15,14 +16,14 @@ class TiltSettings:
     # is halved until it is at most the fine one.
     coarse: float = 0.032
     fine: float = 0.002
-    greatest: float = 1.5  # Largest alpha that is tried
-    fallen: float = 0.5  # A block that has come so far since the wall stood at rest has fallen
-    noticeable: float = 0.02  # A block that has come so far has moved
-    resting_speed: float = 1e-4  # The blocks rest when no point of any is faster
+    greatest: float = 1.5  # largest alpha that is tried
+    fallen: float = 0.5  # a block that has come so far since the wall stood at rest has fallen
+    noticeable: float = 0.02  # a block that has come so far has moved
+    resting_speed: float = 1e-4  # the blocks rest when no point of any is faster
     # Time at every tilt.  Blocks that still move after the longest count as fallen.
     shortest_hold: float = 1.0
     longest_hold: float = 40.0
-    # Every tilt is reached at once from the settled wall instead of from the tilt before
+    # Every tilt is reached at once from the settled wall instead of from the tilt before.
     from_level: bool = False
 
 
@@ -31,19 +32,19 @@ class TiltTrial:
     """Outcome of one tilt test."""
 
     direction: Direction  # gravity turns there
-    # Tangent of the angle at which blocks come down; None when they fell at rest or never
+    # Tangent of the angle at which blocks come down; None when they fell at rest or never.
     alpha: float | None
-    # Alpha at which some block first moved noticeably, even if it came to rest again
+    # Alpha at which some block first moved noticeably, even if it came to rest again.
     first_motion: float | None
-    # Blocks that moved noticeably at the last tilt, those that moved most first
+    # Blocks that moved noticeably at the last tilt, those that moved most first.
     moved: tuple[int, ...]
     # Largest way of any point of a block while the wall settled on the level table, in the unit
-    # of the scene
+    # of the scene.
     settled_shift: float
     # Of `alpha` and `first_motion`: the blocks stood at `alpha` minus it and fell at `alpha`
     # plus it.  Half a fine step or less.
     resolution: float
-    fell_at_rest: bool = False  # Blocks came down on the level table
+    fell_at_rest: bool = False  # blocks came down on the level table
 
 
 def tilt_once(

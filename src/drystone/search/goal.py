@@ -65,9 +65,7 @@ def figures_of(build: Build, pinned: Collection[int] = ()) -> WallFigures | None
     if outlines is not None:
         bond = bond_faults(Masonry(dict(outlines.blocks), None, wedges, settings=SCANNED))
     measured = measure_labels(
-        build.wall.labels,
-        wedge_ids=wedges,
-        wall_px=(site.width_px, site.height_px),
+        build.wall.labels, wedge_ids=wedges, wall_px=(site.width_px, site.height_px)
     )
     return WallFigures(
         stones=len(build.actions),

@@ -8,14 +8,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from drystone.kernels.polygons import Points, mirrored_polygon, no_polygons
-from drystone.kernels.profiles import (
-    Floats,
-    HeightProfile,
-    StoneProfile,
-    bare,
-    hanging,
-    raised,
-)
+from drystone.kernels.profiles import Floats, HeightProfile, StoneProfile, bare, hanging, raised
 from drystone.model.outlines import Outlines
 from drystone.model.placement import Side
 from drystone.planner.laying_settings import LayingSettings
@@ -39,9 +32,9 @@ SAME_PX, SAME_DEG = 1.0, 0.05
 class SideView:
     """What is built and how high it is, seen so that the building side is on the left."""
 
-    scene: Scene  # What is there
-    profile: HeightProfile  # How high it is
-    column_px: float  # Width of the profile's columns, source px
+    scene: Scene
+    profile: HeightProfile
+    column_px: float  # width of the profile's columns, source px
 
     @classmethod
     def bare(cls, width_px: float, side: Side, mu: float, column_px: float) -> "SideView":
@@ -70,33 +63,36 @@ class SideView:
 class Aim:
     """Where a stone shall come to rest, as the view of its side sees it; source px."""
 
-    left_px: float | None  # Its left end; None for anywhere along the wall
-    top_px: float  # Its top
-    angle_deg: float  # Its turn in the wall frame
-    highest_px: float  # Above this no stone may be
-    unit_px: float  # Mean stone height: unit of the costs
+    left_px: float | None  # its left end; None for anywhere along the wall
+    top_px: float
+    angle_deg: float  # its turn in the wall frame
+    highest_px: float  # above this no stone may be
+    unit_px: float  # mean stone height: unit of the costs
 
 
 @dataclass(frozen=True, eq=False)
 class Resting:
     """Where a stone came to rest, and what that costs."""
 
-    repose: Repose  # Where
-    wedge: Points | None  # (n, 2) Corners of the wedge that holds it, in the wall frame
-    cost: float  # Lower is better
+    repose: Repose
+    wedge: Points | None  # (n, 2), corners of the wedge that holds it, in the wall frame
+    cost: float
 
 
 @dataclass(frozen=True, eq=False)
 class Hand:
     """Lets stones go."""
 
-    settings: LayingSettings  # From where, and what it costs to rest elsewhere than planned
-    settle: SettleSettings  # How stones settle
-    limits: WedgeLimits  # Of wedges
-    method: Method  # What is tried with a stone that does not rest
+    settings: LayingSettings  # from where, and what it costs to rest elsewhere than planned
+    settle: SettleSettings
+    limits: WedgeLimits
+    method: Method  # what is tried with a stone that does not rest
 
     def starts(self, stone: Turned, view: SideView, aim: Aim) -> list[Place]:
-        """Return from where a stone is let go: where it first touches, the cheapest place first."""
+        """Return from where a stone is let go: where it first touches, the cheapest place first.
+
+        Places are those of its centroid, in the view.
+        """
         settings, column_px = self.settings, view.column_px
         profile = hanging(stone.corners, column_px)
         first, last = self._columns(profile, stone.size_px, view, aim)

@@ -201,8 +201,17 @@ class Mason:
                     solves += _solves(sturdy, _solves(one.loaded))
                 if sturdy is not None and not sturdy.grown.resistance.stable:
                     continue
-                action = self._action(build, stone, angle_deg, side, one, sturdy)
-                if action is not None and action.sturdy:
+                place = one.place
+                stabilised = settled_in(
+                    build.wall, stone, side, place.repose, place.wedge,
+                    wedge_id=self.yard.workshop.next_wedge(build),
+                )  # fmt: skip
+                if stabilised is None:  # it fills no pixel there
+                    continue
+                proposal = Proposal(stabilised, angle_deg, cost=place.cost, spot=one.spot)
+                landscape = Landscape.of(build.wall, side)
+                action = self.evaluator.candidate(landscape, proposal, one.loaded, sturdy)
+                if action.sturdy:
                     return action, solves
         return None, solves
 
@@ -225,24 +234,6 @@ class Mason:
             rated.append(_RatedPlace(place, spot, blocks, loaded, cost))
             best, standing = min(best, cost), standing + (llc > 0.0)
         return rated
-
-    def _action(
-        self,
-        build: Build,
-        stone: Stone,
-        angle_deg: float,
-        side: Side,
-        rated: _RatedPlace,
-        sturdy: Loaded | None,
-    ) -> Candidate | None:
-        """Return the action that lays a stone at a place; None when it fills no pixel there."""
-        place, number = rated.place, self.yard.workshop.next_wedge(build)
-        stabilised = settled_in(build.wall, stone, side, place.repose, place.wedge, wedge_id=number)
-        if stabilised is None:
-            return None
-        proposal = Proposal(stabilised, angle_deg, cost=place.cost, spot=rated.spot)
-        landscape = Landscape.of(build.wall, side)
-        return self.evaluator.candidate(landscape, proposal, rated.loaded, sturdy)
 
 
 def _solves(loaded: Loaded, known: Solves | None = None) -> Solves:

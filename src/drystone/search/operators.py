@@ -32,7 +32,7 @@ def shares(planned: bool, polish: float) -> tuple[float, ...]:
 class Credits:
     """How often operators were used, and how often a wall was better than the one it came from."""
 
-    uses: tuple[int, ...] = (0,) * len(OPERATORS)  # In the order of `OPERATORS`
+    uses: tuple[int, ...] = (0,) * len(OPERATORS)  # in the order of `OPERATORS`
     helped: tuple[int, ...] = (0,) * len(OPERATORS)
 
     def __add__(self, other: "Credits") -> "Credits":

@@ -199,10 +199,7 @@ def _shortfall(planner: Planner, metrics: PlanMetrics) -> str:
 
 
 def other_resistances(
-    build: Build,
-    resistance: LateralResistance,
-    settings: PlannerSettings,
-    until: Deadline = NEVER,
+    build: Build, resistance: LateralResistance, settings: PlannerSettings, until: Deadline = NEVER
 ) -> dict[str, float | None]:
     """Return F_LR by other rules, and load multipliers, by the names of a plan's metrics.
 

@@ -2,27 +2,26 @@
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from drystone.errors import UsageError
+from drystone.errors import Notice, UsageError
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame
 from drystone.planner.deadline import Deadline, TimeIsUp
-from drystone.planner.events import INTERRUPTED, Callbacks
+from drystone.planner.events import INTERRUPTED, OUT_OF_TIME, Callbacks
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.planner.solves import Solves
 from drystone.search.interrupts import held
-from drystone.search.notices import planning_notices
-from drystone.search.plan_result import PlanResult, finish, provenance_of
+from drystone.search.plan_result import PlanResult, finish, missing_stones, provenance_of
 from drystone.search.processes import processes, threads
 from drystone.search.standing import Progress, Standing
 from drystone.search.warm_start import begin_with
@@ -266,7 +265,7 @@ class _PlanOrigin:
         cut = ended.cut or len(plans) < len(to_choose)
         return replace(
             plans[0],
-            notices=tuple(planning_notices(first, ended, left_out, cut=cut)),
+            notices=tuple(_notices(first, ended, left_out, cut=cut)),
             solves=Solves(first.failed_solves, first.cold_solves),
             choice=tuple(plans) if to_choose else (),
         )
@@ -278,3 +277,63 @@ def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> 
     if budget is None and (single or not math.isfinite(seconds)):
         return settings
     return settings.updated({"search": {"budget": UNLIMITED if budget is None else budget}})
+
+
+def _notices(
+    first: Planner, ended: SearchEnd, left_out: Sequence[int], *, cut: bool
+) -> Iterator[Notice]:
+    """List the notices of a plan.
+
+    `left_out` are stones of the wall that was begun with; `cut` says that there was no time for
+    all that follows a search.
+    """
+    if left_out:
+        yield Notice(
+            "W121",
+            f"stones {_listed(left_out)} of the plan to begin with were taken out: "
+            "banned, out of their turn, or not standing without the others or with these settings.",
+        )
+    if ended.fallen:
+        yield Notice(
+            "W126",
+            "the wall that is built already does not stand after stones "
+            f"{_listed(ended.fallen)}; no better wall was looked for.",
+            "Take down the first of them and what rests on it, and plan again.",
+        )
+    if missing := missing_stones(ended.planner):
+        yield Notice(
+            "W120",
+            f"pinned stones found no place in the wall: {_listed(missing)}.",
+            "Look for longer (--time), or pin fewer stones.",
+        )
+    if ended.lost:
+        yield Notice(
+            "W122",
+            "a process of the search died, and the search ended there with the best wall so far.",
+            "Give less --jobs if memory ran out.",
+        )
+    if cut:
+        yield Notice(
+            "W125",
+            f"what follows a search was cut short after {ended.walls} walls; this is the best of "
+            "them.",
+            "To look for a better one from here, give this plan to --from.",
+        )
+    if ended.stopped == OUT_OF_TIME:
+        placed, fitting = len(ended.planner.build.actions), len(first.workshop.fitting)
+        yield Notice(
+            "W128",
+            f"the time limit struck after {placed} of {fitting} stones of the first wall; the plan "
+            "is what is built of it.",
+            "Give the same command again with --resume to go on with it, or more --time.",
+        )
+    if first.failed_solves:
+        yield Notice(
+            "W303",
+            f"the solver gave up on {first.failed_solves} candidates, which were passed over.",
+            "Please report this with the stones and the settings.",
+        )
+
+
+def _listed(stone_ids: Sequence[int]) -> str:
+    return ", ".join(map(str, stone_ids))

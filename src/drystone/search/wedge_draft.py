@@ -47,11 +47,11 @@ PROP_MU = 100.0
 class WedgePlace:
     """A wedge that has room in a finished wall, and what it would touch."""
 
-    step: int  # Which step places the stone that would lie on it
-    corners: Points  # (n, 2) Its outline in the wall frame, counter-clockwise, source px
-    # (m,) At each contact point, the id of the block that it touches; GROUND for the ground
+    step: int  # which step places the stone that would lie on it
+    corners: Points  # (n, 2), its outline in the wall frame, counter-clockwise, source px
+    # (m,), at each contact point, the id of the block that it touches; GROUND for the ground.
     others: Ids
-    points: Points  # (m, 2) The contact points, and unit vectors into the wedge
+    points: Points  # (m, 2), the contact points, and unit vectors into the wedge
     normals: Points
 
     @classmethod
@@ -99,8 +99,8 @@ def wedge_places(
 class Motion:
     """How the blocks of a wall move in a mechanism."""
 
-    twists: Mapping[int, Twist]  # Of all blocks, by id, and of the ground
-    mu: float  # Coefficient of friction
+    twists: Mapping[int, Twist]  # of all blocks, by id, and of the ground
+    mu: float
 
     @classmethod
     def of(
@@ -121,7 +121,11 @@ class Motion:
         return all(max(map(abs, self.twists[block])) <= SLOW for block in blocks)
 
     def resisted_by(self, places: Sequence[WedgePlace]) -> NDArray[np.float64]:
-        """Return how fast the mechanism violates the contacts of wedges."""
+        """Return how fast the mechanism violates the contacts of wedges, (k,).
+
+        Of each at the point where it is violated most, when the wedge moves along with the one of
+        its neighbours with which it is violated least.  0: the wall fails as it did.
+        """
         rates = np.zeros(len(places))
         touching = [k for k, place in enumerate(places) if len(place.others)]
         if not touching:
@@ -152,14 +156,14 @@ class Motion:
 class WedgeDraft:
     """A finished wall with more wedges, and with wedges that do nothing."""
 
-    analysis: IncrementalAnalysis  # Of the wall; wedges that were added are its last blocks
-    placed: PlacedPolygons  # All blocks, in the order of construction
-    counts: tuple[int, ...]  # Wedges under the stone of each step
-    width: float  # Of the wall, source px
-    limits: WedgeLimits  # What wedges may be
-    # For each step the places under its stone, once they were asked for; None before
+    analysis: IncrementalAnalysis  # of the wall; wedges that were added are its last blocks
+    placed: PlacedPolygons  # all blocks, in the order of construction
+    counts: tuple[int, ...]  # wedges under the stone of each step
+    width: float  # of the wall, source px
+    limits: WedgeLimits  # what wedges may be
+    # For each step the places under its stone, once they were asked for; None before.
     known: tuple[tuple[WedgePlace, ...] | None, ...]
-    # (int, WedgePlace) Ids of the wedges that were added, and where they are
+    # Ids of the wedges that were added, and where they are.
     added: tuple[tuple[int, WedgePlace], ...] = ()
 
     @classmethod

@@ -42,9 +42,9 @@ Barred = frozenset[tuple[int, bytes]]
 class _Change:
     """A wedge more or less."""
 
-    step: int  # Which step places the stone on it
-    corners: Points  # (n, 2) Its outline; that of the very wedge of the wall if it is dropped
-    dropped: bool = False  # Whether it is dropped, not added
+    step: int  # which step places the stone on it
+    corners: Points  # (n, 2), its outline; that of the very wedge of the wall if it is dropped
+    dropped: bool = False  # whether it is dropped, not added
 
     def of(self, group: Group) -> Group:
         """Return the step with the change."""
