@@ -245,13 +245,8 @@ def test_the_rate_is_that_of_the_worst_point_and_the_best_neighbour(
 ) -> None:
     rates = motion(*velocity).resisted_by([wedge(LOW), wedge(LOW, HIGH), wedge()])
     assert rates.tolist() == pytest.approx([0.0, rate, 0.0])
-
-
-def test_what_touches_one_side_only_moves_along() -> None:
     falling = motion(0.0, -1.0, 0.0)
-    assert falling.resisted_by([wedge(HIGH)]).tolist() == [0.0]
-    assert falling.resisted_by([wedge()]).tolist() == [0.0]
-    assert falling.resisted_by([]).tolist() == []
+    assert [falling.resisted_by(some).tolist() for some in ([wedge(HIGH)], [])] == [[0.0], []]
 
 
 def test_blocks_stand_still_that_do_not_move() -> None:

@@ -247,15 +247,6 @@ def test_a_wedge_that_is_needed_only_while_the_wall_grows_stays() -> None:
     assert wedged(made, 0) is made.build
 
 
-def test_a_wall_without_its_states_is_the_same_wall_when_nothing_changes() -> None:
-    made = built((5, 12.0, 0.01), (2, 50.0, 0.01))
-    groups = made.build.wall.groups
-    start = made.build.states()[0]
-    made.build, _, _ = replayed(start, groups, {}, made.workshop, made.settings, keep=False)
-    assert made.build.states() == (made.build,)
-    assert wedged(made, 0) is made.build
-
-
 def test_wedges_keep_clear_of_what_comes_later_and_do_not_rest_on_it() -> None:
     made = built((12, 30.0, 0.01), (3, 44.9, 0.01), wedges={12: [box(38.1, 0.01, 39.6, 5.0)]})
     places = all_places(
@@ -316,20 +307,6 @@ def test_the_first_wedge_is_the_best_one(wall: int) -> None:
     assert value(after) >= max(gained) - 1e-2
     if value(after) > gained[0] + 1e-6:
         assert len(after.wall.wedges) <= len(made.build.wall.wedges) + 1
-
-
-@pytest.mark.parametrize("wall", range(2))
-def test_no_wedge_is_left_that_does_not_matter(wall: int) -> None:
-    _, made = WALLS[wall]
-    after = wedged(made, 3)
-    for step, group in enumerate(after.wall.groups):
-        for wedge in group.wedges:
-            less = Group(group.placement, tuple(w for w in group.wedges if w is not wedge))
-            steps = [less, *after.wall.groups[step + 1 :]]
-            build, left_out, _ = replayed(
-                after.states()[step], steps, {}, made.workshop, made.settings
-            )
-            assert left_out or value(build) < value(after)
 
 
 def test_a_wall_of_pixels_is_refused() -> None:

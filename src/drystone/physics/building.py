@@ -151,7 +151,7 @@ class Watch:
         self._turns = dict.fromkeys(scene.shapes, 0.0)
 
     def look(self, table: TiltingTable) -> float:
-        """Take note of where the blocks are; return how far the furthest is from its place, or 0."""
+        """Take note of where the blocks are; return how far any is from its place at most."""
         furthest = 0.0
         for block, corners, turn in self._now(table):
             way = corners - self._arms[block] - self._centres[block]
