@@ -230,7 +230,10 @@ def test_processes_change_nothing() -> None:
     assert same(again.best, timed.best)
 
 
-def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls() -> None:
+def test_the_clock_ends_a_search_and_the_plan_says_after_how_many_walls(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("drystone.search.plan_wall.GRACE", 1e6)
     settings = greedy({"search": {"budget": 1, **SMALL}})
     # On a busy machine that may be the first wall alone.
     timed = plan_wall(
