@@ -11,9 +11,9 @@ from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.search.anytime import searching
 from drystone.search.chain import wedged
-from drystone.search.found import Found
-from drystone.search.goal import possible_filling
+from drystone.search.goal import FoundWall, possible_filling
 from drystone.search.packed import found_again
+from drystone.search.yard import Yard
 from drystone_lab.runs.spec import Changes, nested
 from drystone_lab.walls import Target
 
@@ -39,7 +39,7 @@ class State:
     """
 
     walls: int
-    best: Callable[[], Found]
+    best: Callable[[], FoundWall]
 
 
 States = Callable[[Planner, float, Clock], Iterator[State]]
@@ -68,7 +68,7 @@ class Looked:
 
     Parameters
     ----------
-    found : Found
+    found : FoundWall
         Its best wall.
     walls : int
         How many walls it built; the last may have been finished after the end.
@@ -78,7 +78,7 @@ class Looked:
         How long it took.
     """
 
-    found: Found
+    found: FoundWall
     walls: int
     possible: float
     seconds: float
@@ -89,20 +89,22 @@ def _restarts(first: Planner, _end: float, _clock: Clock) -> Iterator[State]:
 
 
 def _restarts_with_wedges(first: Planner, _end: float, _clock: Clock) -> Iterator[State]:
-    settings = first.settings
+    yard = Yard.of(first)
 
-    def finished(found: Found, best: Found) -> Found:
+    def finished(found: FoundWall, best: FoundWall) -> FoundWall:
         # As a chain of the search does it: the others are not worth the time.
-        if found.merit <= best.merit - settings.search.wedge_below:
+        if found.merit <= best.merit - yard.settings.search.wedge_below:
             return found
-        return wedged(found, first.workshop, settings)
+        return wedged(found, yard)
 
     return _passes(first, finished)
 
 
-def _passes(first: Planner, finished: Callable[[Found, Found], Found]) -> Iterator[State]:
+def _passes(
+    first: Planner, finished: Callable[[FoundWall, FoundWall], FoundWall]
+) -> Iterator[State]:
     """Build wall after wall from other seeds, and keep the best."""
-    start = Found.of(first)
+    start = FoundWall.of(first)
     best, walls = finished(start, start), 1
     while True:
         yield State(walls, lambda best=best: best)  # type: ignore[misc]
@@ -115,7 +117,7 @@ def _passes(first: Planner, finished: Callable[[Found, Found], Found]) -> Iterat
         )
         for _ in planner.steps():
             pass
-        found = finished(Found.of(planner), best)
+        found = finished(FoundWall.of(planner), best)
         best, walls = max(best, found, key=lambda one: one.merit), walls + 1
 
 
@@ -133,13 +135,12 @@ def _without_courses(first: Planner, end: float, clock: Clock) -> Iterator[State
 def _searched(
     first: Planner, settings: PlannerSettings, end: float, clock: Clock
 ) -> Iterator[State]:
-    workshop = first.workshop
-    until = Deadline(end, clock)
-    for progress in searching(Found.of(first), workshop, settings, first.seed, until=until):
+    yard = Yard(first.workshop, settings, Deadline(end, clock))
+    for progress in searching(FoundWall.of(first), yard, first.seed):
         packed = progress.best
         yield State(
             progress.walls,
-            lambda packed=packed: found_again(packed, workshop, settings),  # type: ignore[misc]
+            lambda packed=packed: found_again(packed, Yard(first.workshop, settings)),  # type: ignore[misc]
         )
 
 

@@ -3,11 +3,8 @@
 import numpy as np
 
 from drystone.contacts.outlines import model_from_outlines, outlines_of_labels
-from drystone.physics.compare import TiltComparison, compare_with_tilt
-from drystone.physics.scatter import usual_variations
-from drystone.physics.scene import Scene
-from drystone.statics.flow.nonassociative import nonassociative_load
-from drystone.statics.model import Direction, RigidBlockModel
+from drystone.physics.scatter import TiltComparison, compare_with_tilt, usual_variations
+from drystone.physics.scene import EngineScene
 from drystone_lab.planned_walls import PlannedWall, missing_data, planned_walls
 from drystone_lab.table import BenchSettings, Cell, Table
 
@@ -46,17 +43,12 @@ def _rows(wall: PlannedWall, settings: BenchSettings) -> list[tuple[Cell, ...]]:
     outlines = outlines_of_labels(wall.stages[-1])
     variations = usual_variations()
     compared = compare_with_tilt(
-        Scene(outlines, wall.mu),
+        EngineScene(outlines, wall.mu),
         model_from_outlines(outlines, wall.mu),
         np.random.default_rng(settings.seed),
-        nonassociative=_without_dilatancy,
         variations=variations[:1] if settings.quick else variations,
     )
     return [_row(wall.name, one) for one in compared]
-
-
-def _without_dilatancy(model: RigidBlockModel, direction: Direction) -> float | None:
-    return nonassociative_load(model, direction).alpha
 
 
 def _row(name: str, one: TiltComparison) -> tuple[Cell, ...]:

@@ -143,8 +143,7 @@ def test_a_claim_that_the_engine_contradicts_fails(
     pytest.importorskip("pymunk", reason=NO_ENGINE)
 
     weak = tuple(
-        TiltResult(side, (TiltTrial(side, 0.3, None, (), 0.0, 0.01),), ("quick",))
-        for side in ("left", "right")
+        TiltResult(side, (TiltTrial(side, 0.3, None, (), 0.0, 0.01),)) for side in ("left", "right")
     )
     monkeypatch.setattr(check_command, "tilt_of", lambda _: weak)
     assert run("check", plan_copy).code == 0

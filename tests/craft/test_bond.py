@@ -62,17 +62,6 @@ def test_a_running_bond_keeps_every_rule_of_bond(wall):
     assert bond_faults(wall) == bond_faults(Masonry({})) == 0.0
 
 
-@given(st.floats(0.02, 0.5))
-@settings(max_examples=25)
-def test_faults_of_a_bond_fall_as_laps_grow(lap):
-    """Three courses of four bricks, the middle one moved aside by a share of their width."""
-    wall = {4 * y + x: box(4 * x + 4 * lap * (y % 2), y, 4, 1) for y in range(3) for x in range(4)}
-    longer = {4 * y + x: box(4 * x + 2 * (y % 2), y, 4, 1) for y in range(3) for x in range(4)}
-    faults = bond_faults(Masonry(wall))
-    assert faults >= bond_faults(Masonry(longer)) - 1e-9
-    assert (faults < 0.05) == (lap >= 0.25 - 1e-9) or 0.2 < lap < 0.25
-
-
 def test_one_brick_cut_over_a_joint_makes_one_running_joint():
     # Course 2: the brick over the joint at x = 4 is cut in two, and course 3 has its joint there.
     widths = [[2.0] * 4, [1.0, 2.0, 1.0, 1.0, 2.0, 1.0], [2.0] * 4, [1.0, 2.0, 2.0, 2.0, 1.0]]
@@ -108,7 +97,7 @@ def test_a_joint_with_a_step_smaller_than_the_offset_runs_on():
     assert find("running_joints", Masonry(near, settings=strict)).number == 1.0
 
 
-@pytest.mark.parametrize("thickness", [0.08, 0.1, 0.2, 0.3, 1.0])
+@pytest.mark.parametrize("thickness", [0.08, 0.3, 1.0])
 def test_a_slab_across_a_joint_ends_it(thickness):
     top = 1.0 + thickness
     loops = {1: box(0, 0, 2, 1), 2: box(2, 0, 2, 1), 3: box(0, 1, 4, thickness)}
@@ -151,7 +140,7 @@ def test_a_wedge_is_part_of_the_bed():
     assert set(wall.stones) == {1, 2, 3}
 
 
-@settings(max_examples=15)
+@settings(max_examples=12)
 @given(st.lists(COURSE, min_size=2, max_size=4))
 def test_coursed_walls_against_sums_of_widths(widths):
     """Joints by exact positions, laps by intervals: no lines, no outlines."""
@@ -165,6 +154,12 @@ def test_coursed_walls_against_sums_of_widths(widths):
         runs = {x: runs.get(x, 0) + 1 for x in upper}
         longest = max(longest, *runs.values())
     wall = Masonry(loops)
+    for rule in BOND:
+        one, other = find(rule, wall), find(rule, Masonry(mirrored(loops)))
+        assert one.number == pytest.approx(other.number)
+        assert {frozenset(case.stones) for case in one.cases} == {
+            frozenset(case.stones) for case in other.cases
+        }
     assert find("running_joints", wall).number == longest
     assert len(find("cross_joints", wall).cases) == crosses
     expected = {}
@@ -181,15 +176,3 @@ def test_coursed_walls_against_sums_of_widths(widths):
     clearly = {key for key, lap in expected.items() if lap < 0.23}
     assert clearly <= set(short) <= {key for key, lap in expected.items() if lap < 0.27}
     assert all(value == pytest.approx(expected[key], abs=0.03) for key, value in short.items())
-
-
-@settings(max_examples=6)
-@given(st.lists(COURSE, min_size=2, max_size=4))
-def test_a_mirrored_wall_has_mirrored_joints(widths):
-    loops = courses(widths)
-    for rule in BOND:
-        one, other = find(rule, Masonry(loops)), find(rule, Masonry(mirrored(loops)))
-        assert one.number == pytest.approx(other.number)
-        assert {frozenset(case.stones) for case in one.cases} == {
-            frozenset(case.stones) for case in other.cases
-        }

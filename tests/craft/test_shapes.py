@@ -61,7 +61,7 @@ def test_a_big_stone_above_mid_height_is_named():
     assert turned.cases == ()
 
 
-@pytest.mark.parametrize("angle", [0.0, 5.0, 20.0, -20.0])
+@pytest.mark.parametrize("angle", [5.0, 20.0, -20.0])
 def test_the_slope_of_a_bed_is_its_angle(angle):
     rise = 2.0 * np.tan(np.radians(angle))
     lower = np.array([[2, 0], [4, 0], [4, 1 + rise], [2, 1]])

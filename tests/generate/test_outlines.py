@@ -49,12 +49,6 @@ def test_turning_direction_does_not_matter(outline):
     assert area == pytest.approx(shapely.Polygon(outline).area)
 
 
-def test_a_rectangle_on_the_grid_is_exact():
-    rectangle = np.array([[2.0, 3.0], [7.0, 3.0], [7.0, 5.0], [2.0, 5.0]])
-    assert outline_mask(rectangle).shape == (2, 5)
-    assert outline_mask(rectangle).all()
-
-
 def test_polygons_that_share_a_side_through_pixel_centres_share_no_pixel():
     def rectangle(left, right, bottom, top):
         return np.array([[left, bottom], [right, bottom], [right, top], [left, top]], float)
@@ -63,13 +57,6 @@ def test_polygons_that_share_a_side_through_pixel_centres_share_no_pixel():
     assert outline_mask(rectangle(0, 4, 1.5, 4)).shape == (3, 4)
     assert outline_mask(rectangle(0, 1.5, 0, 4)).shape == (4, 1)
     assert outline_mask(rectangle(1.5, 4, 0, 4)).shape == (4, 3)
-
-
-def test_y_points_up():
-    corner_below_left = np.array([[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]])
-    mask = outline_mask(corner_below_left)
-    assert mask[-1, 0]
-    assert not mask[0, -1]
 
 
 @pytest.mark.parametrize(

@@ -13,17 +13,19 @@ from drystone.model.site import Site
 from drystone.planner.planner import Planner
 from drystone.planner.settings import PlannerSettings
 from drystone.search.anytime import searching
-from drystone.search.found import Found
+from drystone.search.goal import FoundWall
+from drystone.search.packed import PackedWall
 from drystone.search.standing import Chains, Progress, Standing
 from drystone.search.whole_search import run_to_end
+from drystone.search.yard import Yard
 from tests.planner.scenes import RUBBLE_SITE, WITH_WEDGES, few_stones, finish, greedy, rubble
 
 SMALL = {"budget": 13, "passes": 3, "chains": 2, "share_every": 2, "cycle": 3}
 
 
-def searched(planner: Planner, start: Found | Standing | None = None) -> list[Progress]:
-    begin = start or Found.of(planner)
-    return list(searching(begin, planner.workshop, planner.settings, planner.seed))
+def searched(planner: Planner, start: FoundWall | Standing | None = None) -> list[Progress]:
+    begin = start or FoundWall.of(planner)
+    return list(searching(begin, Yard.of(planner), planner.seed))
 
 
 def standings(found: list[Progress]) -> list[Standing]:
@@ -40,6 +42,10 @@ def again(standing: Standing, folder: Path, planner: Planner) -> Standing:
     assert read.made_of == made_of
     assert read.standing is not None
     return read.standing
+
+
+def wedges(walls: tuple[PackedWall, ...]) -> int:
+    return sum(len(group.wedges) for wall in walls for group in wall.groups)
 
 
 def test_a_search_goes_on_from_a_file_to_the_same_walls(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from drystone.kernels.raster import turn
 from drystone.metrics import joints as metric_joints
 from drystone.metrics import measure, paths
 from drystone.model.wall import Labels
-from drystone.search.course_poses import poses_of
+from drystone.search.course_task import poses_of
 
 RULES = Rules(Weights(*[1.0] * 16), 32, 0.0, 0, 0, 9, 1000.0)
 COLUMN_PX = 0.5

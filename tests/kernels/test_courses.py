@@ -24,7 +24,7 @@ from drystone.kernels.course_types import (
 from drystone.kernels.courses import anneal, evaluate, ways_up
 from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.raster import turn
-from drystone.search.course_poses import poses_of
+from drystone.search.course_task import poses_of
 from tests.naive.courses import all_terms, annealed
 from tests.polygons import random_polygon
 from tests.strategies import repeatable

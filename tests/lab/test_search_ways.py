@@ -108,7 +108,7 @@ def worth(monkeypatch):
         values = iter(merits)
         Fake.seeds = []
         found = SimpleNamespace(of=lambda _: SimpleNamespace(merit=next(values)))
-        monkeypatch.setattr(search_ways, "Found", found)
+        monkeypatch.setattr(search_ways, "FoundWall", found)
         monkeypatch.setattr(search_ways, "Planner", Fake)
         return SimpleNamespace(
             seed=3,

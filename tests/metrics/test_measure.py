@@ -36,13 +36,10 @@ def test_a_full_wall():
     assert (metrics.T_LEVEL, metrics.E_FLUSH) == (0.0, 0.0)
     better_known = measure_labels(bricks(4, 5, 12, 30), stone_area_px=7000.0)
     assert abs(better_known.F_SF - 7000 / 7200) < 1e-12
-
-
-def test_a_wall_size_changes_what_filling_refers_to():
-    metrics = measure_labels(bricks(4, 5, 12, 30), wall_px=(200.0, 60.0))
-    assert abs(metrics.F_SF - 150 * 48 / (200 * 60)) < 1e-12
-    assert (metrics.width, metrics.height) == (200.0, 60.0)
-    assert abs(metrics.E_FLUSH - 25 / np.mean([30] * 18 + [15] * 4)) < 1e-12
+    planned = measure_labels(bricks(4, 5, 12, 30), wall_px=(200.0, 60.0))
+    assert abs(planned.F_SF - 150 * 48 / (200 * 60)) < 1e-12
+    assert (planned.width, planned.height) == (200.0, 60.0)
+    assert abs(planned.E_FLUSH - 25 / np.mean([30] * 18 + [15] * 4)) < 1e-12
 
 
 def test_wedges_are_no_stones_but_joints_run_around_them():

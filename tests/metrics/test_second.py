@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 
-from drystone.errors import LabelImageError
 from drystone.io.wall_image import read_wall_image
 from drystone.metrics.reduce import reduce_labels
 from drystone.metrics.second import finer_labels, outlined_labels, second_arrangement
@@ -74,20 +73,6 @@ def test_a_slit_at_the_end_is_no_way():
     assert both(np.pad(wall, ((5, 0), (1, 2)))) == both(wall)
 
 
-def test_a_stack_bond_and_stepped_courses_are_worse():
-    straight = bricks(6, 6, 24, 60)
-    assert both(stack(6, 6, 24, 60))[0] < both(straight)[0]
-    stepped = straight.copy()
-    for left in range(0, 360, 120):
-        stepped[:, left : left + 60] = np.roll(straight[:, left : left + 60], 9, axis=0)
-    assert both(straight)[1] < both(stepped)[1]
-
-
-def test_an_image_without_stones():
-    with pytest.raises(LabelImageError, match="E104"):
-        second_arrangement(np.zeros((4, 4), np.uint32))
-
-
 def test_outlines_are_drawn_three_times_as_fine():
     left, bottom, right, top = 4.0, 2.0, 20.0, 10.0
     corners = np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
@@ -97,13 +82,6 @@ def test_outlines_are_drawn_three_times_as_fine():
     expected[24 - 15 : 24 - 3, 6:30] = 7
     expected[24 - 12 : 24, 30:54] = 9
     np.testing.assert_array_equal(labels, expected)
-
-
-def test_outlines_show_more_than_pixels_do():
-    """A gap of half a working px is one px wide here, as is what is left at the end."""
-    corners = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 6.0], [0.0, 6.0]])
-    labels = outlined_labels([(1, corners), (2, corners + np.array([10.5, 0.0]))], Site(21, 6))
-    assert np.flatnonzero((labels == 0).all(axis=0)).tolist() == [30, 62]
 
 
 @pytest.mark.parametrize(

@@ -1,20 +1,16 @@
 """Walls built up stone by stone: piles stand or fall, and what falls is named."""
 
 import sys
-from itertools import pairwise
+from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
 
 from drystone.errors import InputError, UsageError
-from drystone.physics.building import (
-    ROUNDED,
-    BuildSettings,
-    build_up,
-    tilt_of,
-)
+from drystone.kernels.polygons import Points
+from drystone.physics.building import ROUNDED, BuildSettings, Watch, build_up, tilt_of
 from drystone.physics.scatter import Variation
-from drystone.physics.scene import EngineSettings, Points, Scene
+from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.table import TiltingTable
 from drystone.physics.tilt import TiltSettings
 
@@ -41,7 +37,9 @@ COURSES = single(
 
 
 def test_a_pile_stands_and_stays_where_it_is() -> None:
-    built = build_up(COURSES)
+    told: list[int] = []
+    built = build_up(COURSES, on_group=told.append)
+    assert told == [1, 2, 3, 4, 5, 6]
     assert built.stands
     assert built.rests
     assert (built.fallen, built.first_fall, built.restless) == ((), None, ())
@@ -58,7 +56,8 @@ def test_a_pile_stands_and_stays_where_it_is() -> None:
 
 def test_an_overhanging_stone_falls_and_is_named() -> None:
     groups = single((0, 0, 40, 20), (50, 0, 40, 20), (22, 20, 40, 20), (60, 40, 40, 20))
-    built = build_up(groups)
+    built, again = build_up(groups), build_up(groups)
+    assert built.moves == again.moves
     assert built.fallen == (4,)
     assert built.first_fall == 4
     top = built.moves[-1]
@@ -88,14 +87,6 @@ def test_the_order_of_placement_matters() -> None:
     assert together.stands
 
 
-def test_a_wall_built_from_the_right_stands_too() -> None:
-    mirrored = [
-        [(block, (corners * [-1, 1] + [120, 0])[::-1]) for block, corners in group]
-        for group in COURSES
-    ]
-    assert build_up(mirrored).stands
-
-
 def test_a_wedge_keeps_its_stone() -> None:
     pillars = single((0, 0, 20, 20), (60, 0, 20, 14))
     slab, wedge = (3, rectangle(2, 20, 76, 12)), (9, rectangle(66, 14, 10, 6))
@@ -107,13 +98,6 @@ def test_a_wedge_keeps_its_stone() -> None:
     assert held.moves[-1].group == 3
     # A wedge is judged by the size of its stone.
     assert held.moves[-1].share == pytest.approx(held.moves[-1].move_px / np.sqrt(76 * 12))
-
-
-def test_gaps_close() -> None:
-    built = build_up(single((0, 0.01, 40, 20), (0, 20.11, 40, 20)))
-    assert built.stands
-    assert built.moves[1].move_px == pytest.approx(0.11, abs=0.06)
-    assert built.outlines[2][:, 1].min() == pytest.approx(20.0, abs=0.06)
 
 
 def test_an_overlap_is_pushed_apart_and_nothing_is_thrown() -> None:
@@ -135,9 +119,7 @@ def test_what_came_before_may_have_moved() -> None:
     assert built.found_moved_px[1] == pytest.approx(3.0, abs=0.06)
     # It lands at some speed, and sinks in for a moment.
     assert built.moves[1].move_px == pytest.approx(3.0, abs=0.25)
-
-
-def test_a_movement_alone_is_a_fall() -> None:
+    # A movement alone is a fall.
     groups = single((0, 3, 40, 20))
     assert build_up(groups, settings=BuildSettings(moved_share=0.05)).fallen == (1,)
     assert build_up(groups, settings=BuildSettings(moved_share=0.2)).stands
@@ -167,62 +149,15 @@ def test_faces_that_touch_exactly_are_not_found_to_be_deep_in_each_other() -> No
     right = [(675, 0), (895, 0), (895, 80), (880, 80), (690, 80), face]
     outlines = {1: np.array(left, float), 2: np.array(right, float)}
     for size in np.linspace(20, 300, 40):
-        scene = Scene({**outlines, 3: rectangle(1000, 0, size, size)}, 0.58)
+        scene = EngineScene({**outlines, 3: rectangle(1000, 0, size, size)}, 0.58)
         table = TiltingTable(scene, ROUNDED, placed=(1,))
         assert table.place(scene, 2) < 1e-6
-
-
-def test_same_input_same_result() -> None:
-    groups = single((0, 0, 40, 20), (50, 0, 40, 20), (22, 20, 40, 20), (60, 40, 40, 20))
-    first, second = build_up(groups), build_up(groups)
-    assert first.moves == second.moves
-    for block, corners in first.outlines.items():
-        assert (corners == second.outlines[block]).all()
-
-
-def test_each_group_is_told() -> None:
-    told: list[int] = []
-    build_up(COURSES[:3], on_group=told.append)
-    assert told == [1, 2, 3]
-
-
-def test_nothing_to_build() -> None:
-    built = build_up([])
-    assert built.stands
-    assert built.moves == ()
-    assert tilt_of(built) is None
 
 
 def test_what_is_no_outline_is_refused() -> None:
     with pytest.raises(InputError) as caught:
         build_up([[(1, np.array([[0.0, 0.0], [1.0, 0.0]]))]])
     assert caught.value.code == "E303"
-
-
-def test_the_tilt_of_a_pile() -> None:
-    """A column two wide and four high topples at 1/2; to both sides."""
-    built = build_up(single((0, 0, 20, 20), (0, 20, 20, 20)), 0.7)
-    tilts = tilt_of(built)
-    assert tilts is not None
-    left, right = tilts
-    assert (left.direction, right.direction) == ("left", "right")
-    for tilt in tilts:
-        assert tilt.alpha == pytest.approx(0.5, abs=0.01)
-
-
-def test_the_tilt_knows_the_friction() -> None:
-    """A flat block slides at its coefficient of friction."""
-    tilts = tilt_of(build_up(single((0, 0, 40, 10)), 0.3))
-    assert tilts is not None
-    assert tilts[0].alpha == pytest.approx(0.3, abs=0.01)
-
-
-def test_what_stands_but_moves_is_not_tilted() -> None:
-    settings = BuildSettings(longest_rest=0.5, resting_time=1.0)
-    built = build_up(single((0, 0, 40, 10)), settings=settings)
-    assert built.stands
-    assert not built.rests
-    assert tilt_of(built) is None
 
 
 def test_the_tilt_starts_where_the_wall_came_to_rest() -> None:
@@ -232,20 +167,10 @@ def test_the_tilt_starts_where_the_wall_came_to_rest() -> None:
     assert tilts is not None
     for tilt in tilts:
         (trial,) = tilt.trials
+        assert trial.direction == tilt.direction
         assert trial.settled_shift < 0.1
         assert trial.alpha == pytest.approx(0.5, abs=0.06)
         assert trial.resolution <= 0.025
-
-
-def test_a_table_gets_its_blocks_one_by_one() -> None:
-    corners = {n: rectangle(0, 20.0 * n, 40, 20) for n in range(3)}
-    table = TiltingTable(Scene(corners, 0.6), EngineSettings(), placed=())
-    assert table.ids == ()
-    for number in (0, 2):
-        assert table.place(Scene(corners, 0.6), number) == pytest.approx(0.0, abs=1e-9)
-    assert table.ids == (0, 2)
-    heights = table.poses()[:, 1]
-    assert [b - a for a, b in pairwise(heights)] == pytest.approx([40 / np.sqrt(800)])
 
 
 def test_without_the_engine_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -255,7 +180,7 @@ def test_without_the_engine_it_says_what_to_install(monkeypatch: pytest.MonkeyPa
     assert caught.value.code == "E305"
 
 
-@pytest.mark.parametrize("seed", [2, 4, 7])
+@pytest.mark.parametrize("seed", [2, 4])
 @pytest.mark.parametrize("engine", [EngineSettings(), ROUNDED], ids=["sharp", "rounded"])
 def test_corners_on_a_line_do_not_move_contacts(seed: int, engine: EngineSettings) -> None:
     """A slab on a slope lies still however its faces are divided; engines take edges for faces."""
@@ -274,3 +199,75 @@ def test_corners_on_a_line_do_not_move_contacts(seed: int, engine: EngineSetting
     slab = divided([(left, low), (right, high), (right, high + 20), (left, low + 20)])
     built = build_up([[(1, ramp)], [(2, slab)]], 0.58, BuildSettings(engine=engine))
     assert max(move.move_px for move in built.moves) < 0.02
+
+
+def test_a_flat_block_slides_at_its_friction_to_both_sides() -> None:
+    tilts = tilt_of(build_up(single((0, 0, 40, 10)), 0.3))
+    assert tilts is not None
+    assert [tilt.direction for tilt in tilts] == ["left", "right"]
+    assert [tilt.alpha for tilt in tilts] == pytest.approx([0.3, 0.3], abs=0.01)
+    assert tilt_of(build_up([])) is None
+
+
+SQUARE = np.array([[0, 0], [2, 0], [2, 2], [0, 2]], float)
+SCENE = EngineScene({3: SQUARE * 2, 5: SQUARE * 2 + [10, 0]}, ground_y=-1.0)
+"""Two squares of 4 x 4; the unit of length of the engine is 4."""
+
+
+@dataclass
+class Table:
+    """Blocks where a test puts them: x, y of the centroid above the ground in units of 4, turn."""
+
+    places: dict[int, tuple[float, float, float]] = field(default_factory=dict)
+
+    @property
+    def ids(self) -> tuple[int, ...]:
+        return tuple(self.places)
+
+    def poses(self) -> np.ndarray:
+        return np.array(list(self.places.values()))
+
+
+PLANNED = (0.5, 0.75, 0.0)
+
+
+def test_the_largest_way_counts_and_not_the_last() -> None:
+    watch = Watch(SCENE)
+    table = Table()
+    ways = []
+    for x in (0.5, 1.5, 0.75):
+        table.places[3] = (x, 0.75, 0.0)
+        ways.append(watch.look(table))
+    assert ways == pytest.approx([0.0, 4.0, 1.0])
+    assert watch.largest(3) == pytest.approx((4.0, 0.0))
+    # The other one has not come yet.
+    assert watch.largest(5) == (0.0, 0.0)
+
+
+def test_of_a_turning_block_the_furthest_corner_counts() -> None:
+    watch = Watch(SCENE)
+    assert watch.look(Table({3: (0.5, 0.75, np.pi / 2)})) == pytest.approx(4.0)
+    watch.look(Table({3: (0.5, 0.75, -np.pi / 6)}))
+    assert watch.largest(3) == pytest.approx((4.0, 90.0))
+    watch.look(Table({3: (0.5, 0.75, -2 * np.pi)}))
+    assert watch.largest(3)[1] == pytest.approx(360.0)
+
+
+def test_a_push_and_a_turn_add_up_where_they_point_the_same_way() -> None:
+    watch = Watch(SCENE)
+    angle = 0.1
+    found = watch.look(Table({3: (0.5 + 1.0, 0.75, angle)}))
+    ends = [4.0 + (np.exp(1j * angle) - 1) * (x + 1j * y) for x in (-2, 2) for y in (-2, 2)]
+    assert found == pytest.approx(max(map(abs, ends)))
+
+
+def test_outlines_are_where_blocks_are() -> None:
+    watch = Watch(SCENE)
+    planned = watch.planned()
+    assert np.abs(planned[3] - SQUARE * 2).max() < 1e-12
+    assert np.abs(planned[5] - (SQUARE * 2 + [10, 0])).max() < 1e-12
+    there = watch.outlines(Table({3: PLANNED}))
+    assert list(there) == [3]
+    assert np.abs(there[3] - planned[3]).max() < 1e-12
+    turned = watch.outlines(Table({3: (1.5, 0.75, np.pi / 2)}))[3]
+    assert np.abs(turned[0] - (8.0, 0.0)).max() < 1e-12

@@ -1,5 +1,6 @@
-"""Walls that are planned course by course, and laid."""
+"""Walls that are planned course by course and laid, and what is changed of them and others."""
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial, partialmethod
@@ -9,60 +10,61 @@ import numpy as np
 import pytest
 from numpy.random import Generator
 
+from drystone.model.site import Site
 from drystone.planner.assemble import Frame
 from drystone.planner.build import Build
 from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.events import Stopped
-from drystone.planner.planner import Planner
-from drystone.planner.settings import PlannerSettings
+from drystone.planner.search_settings import SearchSettings
 from drystone.planner.workshop import Workshop
 from drystone.search.by_courses import newly_planned, relaid, replanned
-from drystone.search.chain import recreated
-from drystone.search.course_plan import CoursePlan
-from drystone.search.found import Found
-from drystone.search.laying import Laid, lay
-from drystone.search.packed import Packed, found_again
+from drystone.search.chain import recreated, without
+from drystone.search.courses import CoursePlan
+from drystone.search.goal import FoundWall
+from drystone.search.mason import CourseLaying, lay
+from drystone.search.operators import NEW, OPERATORS, RECREATED, RELAID, REPLANNED, Credits, shares
+from drystone.search.packed import PackedWall, found_again
 from drystone.search.plan_result import finish
+from drystone.search.ruin import RUINS, Ruin, joint, taken_down, with_all_above
+from drystone.search.yard import Yard
 from drystone.statics.incremental import IncrementalResult
 from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 from drystone.verify.check import check_plan
 from tests.planner import scenes
-from tests.planner.scenes import RUBBLE_SITE, greedy, rubble
+from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
 
-Change = Callable[[Found, Workshop, PlannerSettings, Generator], Found | None]
+Change = Callable[[FoundWall, Yard, Generator], FoundWall | None]
+
+
+def rng(seed: int) -> Generator:
+    return np.random.default_rng(seed)
+
+
+def yard_of(site: Site = RUBBLE_SITE, **changes: Any) -> Yard:
+    settings = greedy({"search": {"budget": 2}, **changes})
+    return Yard(Workshop.prepare(rubble(), site, settings), settings)
 
 
 @pytest.fixture(scope="module")
-def settings() -> PlannerSettings:
-    return greedy({"search": {"budget": 2}})
+def yard() -> Yard:
+    return yard_of()
 
 
 @pytest.fixture(scope="module")
-def workshop(settings: PlannerSettings) -> Workshop:
-    return Workshop.prepare(rubble(), RUBBLE_SITE, settings)
-
-
-@pytest.fixture(scope="module")
-def planned(workshop: Workshop, settings: PlannerSettings) -> Found:
+def planned(yard: Yard) -> FoundWall:
     # Not the cheapest plan of all, which would only be found again.
-    found = newly_planned(workshop, settings, np.random.default_rng(14))
+    found = newly_planned(yard, rng(14))
     assert found is not None
     return found
 
 
-def poses(found: Found) -> list[tuple[int, float, object]]:
-    """Stones, angles and corners or places in the order of placement."""
-    return [
-        (
-            p.stone_id,
-            p.posed.angle_deg,
-            p.settled.corners.tobytes() if p.settled else (p.row, p.col),
-        )
-        for p in found.build.wall.placements
-    ]
+def poses(found: FoundWall) -> list[tuple[int, float, bytes]]:
+    """Stones, angles and corners in the order of placement."""
+    placed = [(p, p.settled) for p in found.build.wall.placements if p.settled]
+    return [(p.stone_id, p.posed.angle_deg, at.corners.tobytes()) for p, at in placed]
 
 
-def check(found: Found, workshop: Workshop, settings: PlannerSettings) -> None:
+def check(found: FoundWall, yard: Yard) -> None:
     """The wall stands at every step, and the ends of its courses are those of its steps."""
     courses, build = found.courses, found.build
     assert courses is not None
@@ -76,97 +78,82 @@ def check(found: Found, workshop: Workshop, settings: PlannerSettings) -> None:
     assert all(a.sturdy and a.resistance.stable for a in build.actions)
     placed = [p.stone_id for p in build.wall.placements]
     assert len(set(placed)) == len(placed)
-    measured = Found.measured(build, workshop, settings)
+    measured = FoundWall.measured(build, yard)
     assert (measured.figures, measured.merit) == (found.figures, found.merit)
 
 
-def test_a_plan_is_laid_and_the_rest_goes_on_top(
-    planned: Found, workshop: Workshop, settings: PlannerSettings
-) -> None:
-    check(planned, workshop, settings)
+def test_a_plan_is_laid_and_the_rest_goes_on_top(planned: FoundWall, yard: Yard) -> None:
+    check(planned, yard)
     assert planned.figures is not None
     assert planned.figures.stones >= 6
-    again = newly_planned(workshop, settings, np.random.default_rng(14))
+    again, *others = (newly_planned(yard, rng(seed)) for seed in (14, 3, 4))
     assert again is not None
     assert poses(again) == poses(planned)
-    others = [newly_planned(workshop, settings, np.random.default_rng(k)) for k in (3, 4)]
     assert any(other is not None and poses(other) != poses(planned) for other in others)
+    site = yard.workshop.site
+    begun = yard.planner()
+    begun.build = planned.build
+    provenance = {"version": "0", "method": "best", "seed": 0, "settings": yard.settings.as_dict()}
+    stopped = Stopped("stones", "no stones are left")
+    result = finish(begun, Frame(*site.extent_px, site), stopped, provenance, 0.0)
+    assert check_plan(result.plan, yard.workshop.stones).problems == ()
 
 
 @pytest.mark.parametrize("change", [replanned, relaid])
 def test_lower_courses_stay(
-    change: Change,
-    planned: Found,
-    workshop: Workshop,
-    settings: PlannerSettings,
-    monkeypatch: pytest.MonkeyPatch,
+    change: Change, planned: FoundWall, yard: Yard, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     begun: list[int] = []
 
-    def spied(plan: CoursePlan, start: Build, *rest: Any) -> Laid:
+    def spied(plan: CoursePlan, start: Build, *rest: Any) -> CourseLaying:
         begun.append(len(start.actions))
         return lay(plan, start, *rest)
 
     monkeypatch.setattr("drystone.search.by_courses.lay", spied)
     assert planned.courses is not None
     ends, changed = planned.courses.ends, set[int]()
-    for seed in range(12):
-        new = change(planned, workshop, settings, np.random.default_rng(seed))
+    for seed in range(8):
+        new = change(planned, yard, rng(seed))
         assert new is not None
-        check(new, workshop, settings)
+        check(new, yard)
         same = [a == b for a, b in zip(poses(new), poses(planned), strict=False)]
         count = same.index(False) if False in same else len(same)
         # How many stay is what is drawn first.
-        kept = int(np.random.default_rng(seed).integers(len(ends) - 1))
+        kept = int(rng(seed).integers(len(ends) - 1))
         assert begun.pop() == ends[kept] <= count
         if poses(new) != poses(planned):
             changed.add(kept)
     assert changed - {0}
 
 
-def test_changes_can_follow_each_other(
-    planned: Found, workshop: Workshop, settings: PlannerSettings
-) -> None:
-    found, rng = planned, np.random.default_rng(0)
+def test_changes_can_follow_each_other(planned: FoundWall, yard: Yard) -> None:
+    found, draws = planned, rng(0)
     for change in (replanned, relaid, replanned, replanned):
-        new = change(found, workshop, settings, rng)
-        if new is not None:
-            found = new
-        check(found, workshop, settings)
+        found = change(found, yard, draws) or found
+        check(found, yard)
 
 
-def test_it_goes_through_a_message(
-    planned: Found, workshop: Workshop, settings: PlannerSettings
-) -> None:
-    again = found_again(Packed.of(planned), workshop, settings)
+def test_it_goes_through_a_message(planned: FoundWall, yard: Yard) -> None:
+    packed = PackedWall.of(planned)
+    again = found_again(packed, yard)
     assert poses(again) == poses(planned)
-    assert again.courses == planned.courses
-    assert again.merit == planned.merit
-
-
-@pytest.mark.parametrize("settings", ["exact"], indirect=True)  # pixels stand without friction
-def test_another_wall_is_not_taken_for_it(planned: Found, settings: PlannerSettings) -> None:
-    """What does not stand as it stood is an error, not another wall."""
-    lower = settings.updated({"mu": 0.01})
-    workshop = Workshop.prepare(rubble(), RUBBLE_SITE, lower)
+    assert (again.courses, again.merit) == (planned.courses, planned.merit)
+    # What does not stand as it stood is an error, not another wall.
     with pytest.raises(ValueError, match="do not stand"):
-        found_again(Packed.of(planned), workshop, lower)
+        found_again(packed, yard_of(mu=0.01))
 
 
-def test_nothing_can_be_planned_without_stones(settings: PlannerSettings) -> None:
-    settings = settings.updated({"skip_too_large": True})
-    small = type(RUBBLE_SITE)(6, 6)
-    workshop = Workshop.prepare(rubble(), small, settings)
-    assert newly_planned(workshop, settings, np.random.default_rng(0)) is None
-    assert scenes.finish(Planner(rubble(), small, settings=settings)).build.actions == ()
+def test_nothing_can_be_planned_without_stones() -> None:
+    small = yard_of(Site(6, 6), skip_too_large=True)
+    assert newly_planned(small, rng(0)) is None
+    assert scenes.finish(small.planner()).build.actions == ()
 
 
 @pytest.mark.parametrize("change", [newly_planned, relaid, recreated])
 def test_every_solve_that_failed_is_counted(
-    change: Callable[..., Found | None],
-    planned: Found,
-    workshop: Workshop,
-    settings: PlannerSettings,
+    change: Callable[..., FoundWall | None],
+    planned: FoundWall,
+    yard: Yard,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """While a plan is laid, while steps are taken again, and while stones are added."""
@@ -180,22 +167,95 @@ def test_every_solve_that_failed_is_counted(
         nothing = IncrementalResult(LateralResistance(given_up, given_up, loaded.model.mu))
         return replace(loaded, grown=nothing) if failed else loaded
 
-    for name in ("loaded", "_of_pixels"):
-        fails = partial(gives_up, getattr(Evaluator, name))
-        monkeypatch.setattr(Evaluator, name, partialmethod(fails))
+    fails = partial(gives_up, Evaluator.loaded)
+    monkeypatch.setattr(Evaluator, "loaded", partialmethod(fails))
     known = () if change is newly_planned else (planned,)
-    found = change(*known, workshop, settings, np.random.default_rng(5))
+    found = change(*known, yard, rng(5))
     assert found is not None
     assert found.solves.failed == sum(solved) > 0
 
 
-def test_what_was_planned_passes_the_check_of_plans(
-    planned: Found, workshop: Workshop, settings: PlannerSettings
-) -> None:
-    site = workshop.site
-    begun = Planner(workshop.stones, site, settings=settings, workshop=workshop)
-    begun.build = planned.build
-    frame = Frame(*site.extent_px, site)
-    provenance = {"version": "0", "method": "best", "seed": 0, "settings": settings.as_dict()}
-    result = finish(begun, frame, Stopped("stones", "no stones are left"), provenance, 0.0)
-    assert check_plan(result.plan, workshop.stones).problems == ()
+@pytest.fixture(scope="module")
+def free(yard: Yard) -> Build:
+    """A wall that was not planned."""
+    return scenes.finish(yard.planner(1)).build
+
+
+@pytest.mark.parametrize("ruin", RUINS)
+def test_what_rests_on_what_is_taken_down_goes_too(ruin: Ruin, free: Build) -> None:
+    settings, sizes = SearchSettings(largest=0.5), set()
+    placed = {p.stone_id for p in free.wall.placements}
+    resting = [
+        (one.other, one.block) if one.normal[1] > 0 else (one.block, one.other)
+        for one in free.model.interfaces
+        if {one.block, one.other} <= placed and abs(one.normal[1]) > 0.5
+    ]
+    for seed in range(12):
+        gone = taken_down(free, ruin, settings, rng(seed))
+        sizes.add(len(gone))
+        assert gone
+        assert gone <= placed
+        assert all(high in gone for low, high in resting if low in gone)
+        assert taken_down(free, ruin, settings, rng(seed)) == gone
+    assert len(sizes) > 1
+
+
+def test_joint_paths_are_those_of_the_wall_not_of_the_air_above_it() -> None:
+    stones = blocks(dict.fromkeys(range(1, 6), (20, 10)))
+    pile = scenes.finish(scenes.Planner(stones, Site(20, 300), settings=greedy())).build
+    *lower, highest = (p.stone_id for p in pile.wall.placements)
+    draws = [joint(pile, 1, rng(seed)) for seed in range(40)]
+    assert set().union(*draws) == {*lower, highest}
+    assert draws.count(frozenset({highest})) < 20
+    low = scenes.finish(scenes.Planner(stones, Site(20, 30), settings=greedy())).build
+    first, second, third = (p.stone_id for p in low.wall.placements)
+    assert with_all_above(low, frozenset({first})) == {first, second, third}
+    assert with_all_above(low, frozenset({second})) == {second, third}
+
+
+def test_what_stays_is_where_it_was(free: Build, yard: Yard) -> None:
+    first = free.wall.placements[0].stone_id
+    gone = with_all_above(free, frozenset({first}))
+    left = without(free, gone, yard).build
+    before = {p.stone_id: p for p in free.wall.placements}
+    assert gone.isdisjoint(p.stone_id for p in left.wall.placements)
+    for p in left.wall.placements:
+        was = before[p.stone_id]
+        assert p.posed.angle_deg == was.posed.angle_deg
+        assert p.settled is not None
+        assert was.settled is not None
+        assert (p.settled.corners == was.settled.corners).all()
+    assert all(a.resistance.stable and a.sturdy for a in left.actions)
+    assert without(free, frozenset(), yard).build is free
+
+
+OF_PLANNED, OF_OTHERS = shares(planned=True, polish=0.2), shares(planned=False, polish=0.2)
+
+
+def drawn(known: Credits, usual: tuple[float, ...], count: int = 2000) -> Counter[str]:
+    draws = rng(0)
+    return Counter(known.drawn(usual, draws) for _ in range(count))
+
+
+def used(operator: str, times: int, helped: int) -> Credits:
+    known = Credits()
+    for k in range(times):
+        known = known.after(operator, helped=k < helped)
+    return known
+
+
+def test_what_has_helped_is_drawn_more_often_and_nothing_is_given_up() -> None:
+    known = used(RELAID, 30, 12) + used(RECREATED, 30, 0)
+    assert dict(zip(OPERATORS, known.uses, strict=True)) == {
+        RECREATED: 30, RELAID: 30, REPLANNED: 0, NEW: 0,
+    }  # fmt: skip
+    assert known.helped[OPERATORS.index(RELAID)] == sum(known.helped) == 12
+    counts, before = drawn(known, OF_PLANNED), drawn(Credits(), OF_PLANNED)
+    # Before anything is known they are drawn by their shares.
+    for operator, share in zip(OPERATORS, OF_PLANNED, strict=True):
+        assert abs(before[operator] / 2000 - share / sum(OF_PLANNED)) < 0.04
+    assert counts[RELAID] > 1.5 * before[RELAID]
+    assert 0 < counts[RECREATED] < 0.3 * before[RECREATED]
+    assert min(counts[REPLANNED], counts[NEW]) > 0
+    # A wall without a plan is only built up again.
+    assert set(drawn(used(RECREATED, 50, 0), OF_OTHERS)) == {RECREATED}

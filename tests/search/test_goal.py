@@ -1,44 +1,52 @@
-"""What a wall is worth."""
+"""What a wall is worth, and which walls of a search are kept."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
-from drystone.search.found import Found
-from drystone.search.goal import MISSING, Figures, figures_of, merit_of, possible_filling
+from drystone.planner.solves import Solves
+from drystone.search.goal import FoundWall, WallFigures, figures_of, merit_of, possible_filling
+from drystone.search.packed import MOST, STEPS, PackedWall, archived, score_of
+from drystone.search.yard import Yard
 from tests.planner.scenes import RUBBLE_SITE, finish, greedy, rubble
+from tests.strategies import repeatable
 
-WALL = Figures(stones=8, F_SF=0.8, F_LR=0.5, F_AV=20.0, F_AH=2.0, T_LEVEL=0.2, E_FLUSH=0.1)
+WALL = WallFigures(stones=8, F_SF=0.8, F_LR=0.5, F_AV=20.0, F_AH=2.0, T_LEVEL=0.2, E_FLUSH=0.1)
 GOAL = GoalSettings()
-EXACT = {"geometry": "exact"}
 
 
-def test_merit_rises_with_what_is_good_and_falls_with_what_is_bad() -> None:
-    def gain(**changes: float) -> float:
-        return merit_of(replace(WALL, **changes), 0.9, GOAL) - merit_of(WALL, 0.9, GOAL)
-
-    assert gain(F_SF=0.89) == pytest.approx(0.1 * GOAL.filling)
-    assert gain(F_LR=0.7) == pytest.approx(0.2 * GOAL.resistance)
-    assert gain(F_LR=1.7) == pytest.approx(0.5 * GOAL.resistance)
-    assert gain(F_AV=30.0) == pytest.approx(10 * GOAL.vertical)
-    assert gain(F_AH=3.0) == pytest.approx(-GOAL.horizontal)
-    assert gain(T_LEVEL=0.3) == pytest.approx(-0.1 * GOAL.level)
-    assert gain(E_FLUSH=0.3) == pytest.approx(-0.2 * GOAL.flush)
-    assert gain(bond=0.5) == pytest.approx(-0.5 * GOAL.bond)
-
-
-def test_of_both_flow_rules_the_smaller_counts() -> None:
-    def gain(without: float) -> float:
-        return merit_of(replace(WALL, F_LR_coulomb=without), 0.9, GOAL) - merit_of(WALL, 0.9, GOAL)
-
-    assert gain(0.2) == pytest.approx(-0.3 * GOAL.resistance)
-    assert gain(0.9) == gain(0.5) == 0.0
+@pytest.mark.parametrize(
+    ("changes", "gain"),
+    [
+        ({"F_SF": 0.89}, 0.1 * GOAL.filling),
+        ({"F_LR": 0.7}, 0.2 * GOAL.resistance),
+        ({"F_LR": 1.7}, 0.5 * GOAL.resistance),
+        ({"F_AV": 30.0}, 10 * GOAL.vertical),
+        ({"F_AH": 3.0}, -GOAL.horizontal),
+        ({"T_LEVEL": 0.3}, -0.1 * GOAL.level),
+        ({"E_FLUSH": 0.3}, -0.2 * GOAL.flush),
+        ({"bond": 0.5}, -0.5 * GOAL.bond),
+        # Of both flow rules the smaller counts.
+        ({"F_LR_coulomb": 0.2}, -0.3 * GOAL.resistance),
+        ({"F_LR_coulomb": 0.9}, 0.0),
+        ({"missing": 2}, -20.0),
+    ],
+)
+def test_merit_rises_with_what_is_good_and_falls_with_what_is_bad(
+    changes: dict[str, float], gain: float
+) -> None:
+    changed = replace(WALL, **changes)  # type: ignore[arg-type]
+    assert merit_of(changed, 0.9, GOAL) - merit_of(WALL, 0.9, GOAL) == pytest.approx(gain)
+    assert merit_of(None, 0.9, GOAL) == -math.inf
 
 
 def test_a_stack_bond_costs_more_than_the_bricks_that_a_bond_leaves_out() -> None:
@@ -53,16 +61,16 @@ def test_a_stack_bond_costs_more_than_the_bricks_that_a_bond_leaves_out() -> Non
 @pytest.mark.parametrize("seed", [0, 3])
 def test_what_is_judged_carries_no_more(seed: int) -> None:
     """Without dilatancy a wall carries at most what it carries with it, and it is asked once."""
-    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=greedy(EXACT)))
-    found = Found.of(planner)
-    judged = found.judged(planner.workshop, planner.settings)
+    planner = finish(Planner(rubble(), RUBBLE_SITE, seed=seed, settings=greedy()))
+    found = FoundWall.of(planner)
+    judged = found.judged(Yard.of(planner))
     assert found.figures is not None
     assert judged.figures is not None
     assert found.figures.F_LR_coulomb is None
     assert judged.figures.F_LR_coulomb is not None
     assert 0.0 <= judged.figures.F_LR_coulomb <= judged.figures.F_LR
     assert judged.merit <= found.merit
-    assert judged.judged(planner.workshop, planner.settings) is judged
+    assert judged.judged(Yard.of(planner)) is judged
 
 
 @pytest.mark.parametrize(
@@ -78,39 +86,29 @@ def test_nothing_is_gained_beyond_an_aim(
     figure: str, short: float, aim: float, beyond: float, weight: float
 ) -> None:
     goal = replace(GOAL, **{figure: aim})
-
-    def merit(value: float) -> float:
-        return merit_of(replace(WALL, **{figure: value}), 1.0, goal)
-
-    assert merit(beyond) == merit(aim)
-    assert merit(aim) - merit(short) == pytest.approx(goal.urgent * weight * (aim - short))
-    assert merit(aim) > merit(short)
-
-
-def test_an_empty_wall_is_the_worst() -> None:
-    assert merit_of(None, 0.9, GOAL) == -math.inf
+    merits = [
+        merit_of(replace(WALL, **{figure: value}), 1.0, goal)  # type: ignore[arg-type]
+        for value in (short, aim, beyond)
+    ]
+    assert merits[0] < merits[1] == merits[2]
+    assert merits[1] - merits[0] == pytest.approx(goal.urgent * weight * (aim - short))
 
 
 def test_figures_are_those_of_the_wall() -> None:
     planner = finish(Planner(rubble(), RUBBLE_SITE, settings=greedy()))
-    figures = figures_of(planner.build)
+    placed = [action.stone_id for action in planner.build.actions]
+    figures = figures_of(planner.build, [*placed[:2], 98, 99])
     assert figures is not None
-    assert figures.stones == len(planner.build.actions)
+    assert (figures.stones, figures.missing) == (len(placed), 2)
     assert figures.F_SF == planner.build.wall.filling
     assert figures.F_LR == planner.build.actions[-1].resistance.value
     assert figures.F_SF <= possible_filling(planner.workshop) <= 1.0
-    empty = Planner(rubble(), RUBBLE_SITE, settings=greedy())
-    assert figures_of(empty.build) is None
-
-
-def test_a_pinned_stone_that_is_missing_counts_heavily() -> None:
-    lacking = replace(WALL, missing=2)
-    assert merit_of(WALL, 0.9, GOAL) - merit_of(lacking, 0.9, GOAL) == pytest.approx(2 * MISSING)
-    planner = finish(Planner(rubble(), RUBBLE_SITE, settings=greedy()))
-    placed = [action.stone_id for action in planner.build.actions]
-    found = figures_of(planner.build, [*placed[:2], 98, 99])
-    assert found is not None
-    assert found.missing == 2
+    ban = [stone.id for stone in rubble()][:2]
+    without = Planner(rubble(), RUBBLE_SITE, settings=greedy({"ban": ban}))
+    assert figures_of(without.build) is None
+    lost = sum(rubble().by_id(stone_id).area_px for stone_id in ban) / 3600
+    filling = [possible_filling(one.workshop) for one in (planner, without)]
+    assert filling[0] - filling[1] == pytest.approx(lost)
 
 
 @pytest.mark.parametrize("missing", [1, 2])
@@ -121,11 +119,71 @@ def test_nothing_else_makes_up_for_a_pinned_stone(missing: int) -> None:
     assert merit_of(lacking, 1.0, GOAL) < merit_of(WALL, 1.0, GOAL)
 
 
-def test_banned_stones_can_fill_nothing() -> None:
-    ban = [stone.id for stone in rubble()][:2]
-    free = Planner(rubble(), RUBBLE_SITE, settings=greedy())
-    without = Planner(rubble(), RUBBLE_SITE, settings=greedy({"ban": ban}))
-    lost = sum(rubble().by_id(stone_id).area_px for stone_id in ban) / 3600
-    assert possible_filling(free.workshop) - possible_filling(without.workshop) == pytest.approx(
-        lost
+def wall(merit: float = 1.0, **changes: float) -> PackedWall:
+    return PackedWall((), replace(WALL, **changes), merit, Solves(), None)  # type: ignore[arg-type]
+
+
+def test_a_wall_that_is_beaten_in_every_figure_goes() -> None:
+    good, bad = wall(), wall(F_SF=0.7, F_LR=0.4, F_AV=10.0, F_AH=3.0)
+    assert archived((), [good, bad]) == archived((bad,), [good]) == (good,)
+    assert archived((), [PackedWall((), None, 1.0, Solves(), None)]) == ()  # it is empty
+    # Of alike walls the one of more merit stays, then the first.
+    first, second, better = wall(), wall(), wall(2.0)
+    assert archived((first,), [second])[0] is first
+    assert archived((first,), [better]) == (better,)
+    # One that lacks pinned stones is beaten by any that does not.
+    lacking, whole = wall(-9.0, missing=1), wall(0.5, F_SF=0.1, F_LR=0.0, F_AV=0.0, F_AH=9.0)
+    assert archived((lacking,), [whole]) == (whole,)
+    assert archived((), [lacking]) == (lacking,)
+
+
+@pytest.mark.parametrize("figure", STEPS)
+def test_one_better_figure_keeps_a_wall_as_far_as_it_counts(figure: str) -> None:
+    name, step = "F_LR" if figure == "carried" else figure, STEPS[figure]
+    better, alike, worse = (
+        wall(0.5, **{name: getattr(WALL, name) + share * step}) for share in (1.0, 0.3, -1.0)
     )
+    plain = wall()
+    assert archived((plain,), [better, alike, worse]) == (plain, better)
+    # One of more merit that is better in no figure beats neither.
+    assert archived((better,), [plain]) == (plain, better)
+
+
+some_walls = st.lists(
+    st.builds(
+        lambda merit, sf, lr, av, ah: wall(merit, F_SF=sf, F_LR=lr, F_AV=av, F_AH=ah),
+        st.floats(0, 20), st.floats(0, 1), st.floats(0, 2), st.floats(0, 60), st.floats(0, 9),
+    ),
+    max_size=30,
+)  # fmt: skip
+
+
+def rank(wall: PackedWall) -> tuple[float, tuple[int, ...]]:
+    assert wall.figures is not None
+    return wall.merit, score_of(wall.figures)
+
+
+def beaten(one: PackedWall, by: PackedWall) -> bool:
+    (mine, scores), (yours, others) = rank(one), rank(by)
+    return yours >= mine and all(a >= b for a, b in zip(others, scores, strict=True))
+
+
+def naive(walls: Sequence[PackedWall]) -> list[PackedWall]:
+    """Those that none beats; of those that beat each other the first."""
+    kept = [
+        wall
+        for k, wall in enumerate(walls)
+        if not any(
+            beaten(wall, other) and (j < k or not beaten(other, wall))
+            for j, other in enumerate(walls)
+        )
+    ]
+    return sorted(kept, key=rank, reverse=True)[:MOST]
+
+
+@repeatable(60)
+@given(some_walls)
+def test_those_that_none_beats_are_kept_and_no_others(walls: list[PackedWall]) -> None:
+    kept = archived((), walls)
+    assert list(kept) == naive(walls)
+    assert archived(kept, []) == kept

@@ -9,10 +9,9 @@ from drystone.generate import PolygonSettings, RubbleSettings, polygon_stones, r
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.build import Build
-from drystone.planner.dropping import wedge_limits
 from drystone.planner.planner import Planner
-from drystone.search.wedge_draft import MOST_UNDER_ONE
-from drystone.search.wedge_places import WedgePlace, wedge_places
+from drystone.search.wedge_draft import MOST_UNDER_ONE, WedgePlace, wedge_places
+from drystone.search.yard import Yard
 from drystone.settle.wedge import WedgeLimits
 from tests.planner.scenes import finish, greedy
 
@@ -21,7 +20,7 @@ LARGE = greedy({"wedge": {"thickness": 0.04, "height": 0.5, "area": 0.3}, "searc
 
 
 def limits_of(made: Planner) -> WedgeLimits:
-    return wedge_limits(made.settings, made.workshop.stock, made.workshop.site)
+    return Yard.of(made).limits
 
 
 def all_places(build: Build, limits: WedgeLimits) -> list[WedgePlace]:

@@ -11,32 +11,27 @@ from drystone.kernels.raster import turn
 from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
-from drystone.planner.build import Build
 from drystone.planner.laying_settings import LayingSettings
-from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
-from drystone.search.course_plan import CoursePlan, PlannedStone
-from drystone.search.laying import Laid, lay
+from drystone.search.courses import CoursePlan, PlannedStone
+from drystone.search.mason import CourseLaying, lay
+from drystone.search.yard import Yard
 from tests.planner.scenes import greedy
 
 
-class Yard:
-    """Stones, a site, and plans for them."""
+class Plot:
+    """A yard, and plans for it."""
 
     def __init__(
         self, stones: StoneSet, site: Site, changes: Mapping[str, Any] | None = None
     ) -> None:
         self.stones, self.site = stones, site
-        self.settings: PlannerSettings = greedy(changes)
-        self.workshop = Workshop.prepare(stones, site, self.settings)
-
-    def empty(self) -> Build:
-        area_px = self.workshop.stock.mean_area_px
-        return Build.empty(self.site, self.settings.mu, area_px, exact=True)
+        settings = greedy(changes)
+        self.yard = Yard(Workshop.prepare(stones, site, settings), settings)
 
     def corners(self, stone_id: int, angle_deg: float = 0.0) -> Points:
         stone = self.stones.by_id(stone_id)
-        return turn(self.workshop.outlines.outline(stone), angle_deg)
+        return turn(self.yard.workshop.outlines.outline(stone), angle_deg)
 
     def planned(
         self, stone_id: int, left: float, bottom: float, side: Side = "left", angle: float = 0.0,
@@ -50,13 +45,16 @@ class Yard:
             y + high[1] if top is None else top,
         )  # fmt: skip
 
-    def lay(self, *courses: Sequence[PlannedStone], laying: LayingSettings | None = None) -> Laid:
-        return lay(plan_of(*courses), self.empty(), self.workshop, self.settings, laying)
+    def lay(
+        self, *courses: Sequence[PlannedStone], laying: LayingSettings | None = None
+    ) -> CourseLaying:
+        plan = CoursePlan(tuple(map(tuple, courses)), 0.0)
+        return lay(plan, self.yard.planner().build, self.yard, laying)
 
-    def rows(self, count: int) -> CoursePlan:
+    def rows(self, count: int) -> list[list[PlannedStone]]:
         """Fill courses with stones as they come, from both sides."""
         width, profile, ids = self.site.width_px, bare(self.site.width_px), 0
-        courses: list[tuple[PlannedStone, ...]] = []
+        courses: list[list[PlannedStone]] = []
         stones = iter(self.stones)
         stone = next(stones, None)
         while stone is not None and len(courses) < count:
@@ -76,9 +74,5 @@ class Yard:
                 ends[side] = left + columns if side == "left" else left
                 side = "right" if side == "left" else "left"
                 stone = next(stones, None)
-            courses.append(tuple(course))
-        return plan_of(*courses)
-
-
-def plan_of(*courses: Sequence[PlannedStone]) -> CoursePlan:
-    return CoursePlan(tuple(map(tuple, courses)), 0.0)
+            courses.append(course)
+        return courses

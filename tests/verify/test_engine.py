@@ -38,9 +38,7 @@ def built(*fallen: int, first_fall: int | None = None) -> BuildUp:
 def tilts(left: float | None, right: float | None, **trial: Any) -> tuple[TiltResult, TiltResult]:
     def result(direction: Direction, alpha: float | None) -> TiltResult:
         fields = {"resolution": 0.001, **trial}
-        return TiltResult(
-            direction, (TiltTrial(direction, alpha, None, (), 0.0, **fields),), ("quick",)
-        )
+        return TiltResult(direction, (TiltTrial(direction, alpha, None, (), 0.0, **fields),))
 
     return result("left", left), result("right", right)
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from drystone.craft.finding import Case, Found
+from drystone.craft.finding import Case, Evidence
 from drystone.craft.joints import Chain
 from drystone.craft.masonry import Masonry
 from drystone.statics.joints import is_head_joint, loose_blocks
@@ -15,32 +15,12 @@ from drystone.statics.model import GROUND
 def bond_faults(masonry: Masonry) -> float:
     """Count the faults against the four rules of bond, for each stone of a wall.
 
-    Parameters
-    ----------
-    masonry : Masonry
-        Any wall.
+    0 for a sound bond, about 2 for a stack bond.  The sum, over the number of stones, of
 
-    Returns
-    -------
-    float
-        0 for a sound bond, about 2 for a stack bond.  The sum, over the number of stones, of
-
-        * the courses that upright joints go through beyond the first (running joints),
-        * the points at which four stones meet (cross joints),
-        * the stones above the foot and between the ends that rest on one stone only (one over
-          two),
-        * what laps over joints fall short of a quarter of the stone's width, over this quarter.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> brick = np.array([[0, 0], [2, 0], [2, 1], [0, 1]])
-    >>> stack = {3 * y + x: brick + [2 * x, y] for x in range(3) for y in range(3)}
-    >>> round(bond_faults(Masonry(stack)), 2)
-    1.11
-    >>> bond = [brick, brick + [2, 0], brick + [1, 1]]
-    >>> bond_faults(Masonry(dict(enumerate(bond))))
-    0.0
+    * the courses that upright joints go through beyond the first (running joints),
+    * the points at which four stones meet (cross joints),
+    * the stones above the foot and between the ends that rest on one stone only (one over two),
+    * what laps over joints fall short of a quarter of the stone's width, over this quarter.
     """
     stones = len(masonry.stones)
     if not stones:
@@ -52,11 +32,11 @@ def bond_faults(masonry: Masonry) -> float:
     return (running + crosses + single + short) / stones
 
 
-def running_joints(masonry: Masonry, _: object = None) -> Found:
+def running_joints(masonry: Masonry) -> Evidence:
     """Find the joints that go through two courses or more."""
     every = masonry.chains
     if not every:
-        return Found(None, note="There are no upright joints.")
+        return Evidence(None, note="There are no upright joints.")
     height = masonry.mean_height
     running = [chain for chain in every if chain.courses > 1]
     running.sort(key=lambda one: (-one.courses, -round(one.height / height, 6), one.line[0, 0]))
@@ -78,17 +58,17 @@ def running_joints(masonry: Masonry, _: object = None) -> Found:
         )
         for chain in running
     )
-    return Found(float(max(chain.courses for chain in every)), cases, figures)
+    return Evidence(float(max(chain.courses for chain in every)), cases, figures)
 
 
-def cross_joints(masonry: Masonry, _: object = None) -> Found:
+def cross_joints(masonry: Masonry) -> Evidence:
     """Find points at which an upright joint crosses a bed joint, a plus instead of a T."""
     if not masonry.heads:
-        return Found(None, note="There are no upright joints.")
+        return Evidence(None, note="There are no upright joints.")
     cases = [case for chain in masonry.chains for case in _crosses(masonry, chain)]
     cases.sort(key=lambda case: case.value)
     number = 10.0 * len(cases) / len(masonry.stones)
-    return Found(number, tuple(cases), {"points": float(len(cases))})
+    return Evidence(number, tuple(cases), {"points": float(len(cases))})
 
 
 def _crosses(masonry: Masonry, chain: Chain) -> Iterator[Case]:
@@ -123,7 +103,7 @@ def _other_sides(chain: Chain, begin: int, reach: float) -> int | None:
     return None
 
 
-def one_over_two(masonry: Masonry, _: object = None) -> Found:
+def one_over_two(masonry: Masonry) -> Evidence:
     """Find stones that rest on one stone only.
 
     Stones of the foot rest on the ground and are left out, and so are those at the ends of the
@@ -133,7 +113,7 @@ def one_over_two(masonry: Masonry, _: object = None) -> Found:
     inner = [i for i in masonry.stones if i not in left | right]
     judged = [i for i in inner if i not in masonry.on_ground]
     if not judged:
-        return Found(None, note="There is no stone above the foot and between the ends.")
+        return Evidence(None, note="There is no stone above the foot and between the ends.")
     below = {i: tuple(one[0] for one in masonry.supports[i]) for i in masonry.stones}
     carried = [sum(i in under for under in below.values()) for i in inner]
     carrying = [count for count in carried if count]
@@ -150,7 +130,7 @@ def one_over_two(masonry: Masonry, _: object = None) -> Found:
             words = "the first rests on the second only" if below[i] else "rests on no stone"
             cases.append(Case((i, *below[i]), float(len(below[i])), words))
     cases.sort(key=lambda case: (case.value, case.stones))
-    return Found(1.0 - len(cases) / len(judged), tuple(cases), figures)
+    return Evidence(1.0 - len(cases) / len(judged), tuple(cases), figures)
 
 
 def _by_contact(masonry: Masonry, judged: list[int]) -> float | None:
@@ -177,7 +157,7 @@ def _by_contact(masonry: Masonry, judged: list[int]) -> float | None:
     return float(np.mean([len(below.get(i, set()) - ignored) > 1 for i in judged]))
 
 
-def laps(masonry: Masonry, _: object = None) -> Found:
+def laps(masonry: Masonry) -> Evidence:
     """Find short laps.
 
     The lap is the distance from the joint between two stones that a stone rests on to the nearer
@@ -193,7 +173,7 @@ def laps(masonry: Masonry, _: object = None) -> Found:
             words = f"the first laps the joint of the others by {100 * lap:.0f} % of its width"
             every.append(Case((stone, left[0], right[0]), lap, words, (line,)))
     if not every:
-        return Found(None, note="No stone covers a joint.")
+        return Evidence(None, note="No stone covers a joint.")
     values = np.array([lap.value for lap in every])
     least = masonry.settings.lap - 1e-9
     figures = {
@@ -202,4 +182,4 @@ def laps(masonry: Masonry, _: object = None) -> Found:
         "share of at least a third": float(np.mean(values >= 1.0 / 3.0 - 1e-9)),
     }
     cases = sorted((lap for lap in every if lap.value < least), key=lambda one: one.value)
-    return Found(float(np.mean(values < least)), tuple(cases), figures)
+    return Evidence(float(np.mean(values < least)), tuple(cases), figures)

@@ -23,113 +23,55 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Limit:
-    """Where a rule's number stops being good, and where it is broken.
+    """Where a rule's number stops being good, and where it is broken."""
 
-    Parameters
-    ----------
-    good, fair : float
-        Last values that are good, and fair; beyond `fair` the rule is broken.
-    """
-
-    good: float
+    good: float  # last values that are good, and fair; beyond `fair` the rule is broken
     fair: float
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """One place where a rule is not kept.
-
-    Parameters
-    ----------
-    stones : tuple of int
-        Ids concerned.
-    value : float
-        How bad it is, in the unit of `words`.
-    words : str
-        What is wrong, after the names of the stones.
-    lines : tuple of (n, 2) float arrays
-        Joints, edges or slopes to draw.
-    at_fault : int
-        How many of the stones, the first ones, do not keep the rule; 0 when it is a joint
-        between them that does not.
-    """
+    """One place where a rule is not kept."""
 
     stones: tuple[int, ...]
-    value: float
-    words: str
-    lines: tuple[Line, ...] = ()
+    value: float  # how bad it is, in the unit of `words`
+    words: str  # what is wrong, after the names of the stones
+    lines: tuple[Line, ...] = ()  # (n, 2), joints, edges or slopes to draw
+    # How many of the stones, the first ones, do not keep the rule; 0 when it is a joint between
+    # them that does not.
     at_fault: int = 1
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
-    """What there is in a wall, before a limit judges it.
+class Evidence:
+    """What there is in a wall, before a limit judges it."""
 
-    Parameters
-    ----------
-    number : float or None
-        See :attr:`Rule.meaning`; None when there is nothing to judge.
-    cases : sequence of Case
-        Worst first.  A good wall may have some.
-    figures : mapping of str to float or None
-        Other numbers that go with it.
-    note : str
-        Why nothing was judged, or what the number does not say.
-    broken : bool
-        The rule is broken whatever the number is.
-    """
-
-    number: float | None
-    cases: tuple[Case, ...] = ()
+    number: float | None  # see `Rule.meaning`; None when there is nothing to judge
+    cases: tuple[Case, ...] = ()  # worst first.  A good wall may have some.
+    # Other numbers that go with it.
     figures: Mapping[str, float | None] = field(default_factory=dict)
-    note: str = ""
-    broken: bool = False
+    note: str = ""  # why nothing was judged, or what the number does not say
+    broken: bool = False  # the rule is broken whatever the number is
 
 
 @dataclass(frozen=True)
 class Rule:
-    """A mason's rule as a check.
+    """A mason's rule as a check."""
 
-    Parameters
-    ----------
-    name : str
-        For options and JSON.
-    title : str
-        For tables and pictures.
-    sentence : str
-        The rule as a mason says it.
-    source : str
-        Who says it; "Own definition" for what is ours.
-    meaning : str
-        What the number is.
-    higher_is_better : bool
-        Direction of the number.
-    limit : Limit
-        Usual limits; ours, unless the source says otherwise.
-    measure : callable
-        Gives the number of a wall and its cases.
-    unit : str
-        Of the number, empty for shares and counts.
-    """
-
-    name: str
-    title: str
-    sentence: str
-    source: str
-    meaning: str
-    higher_is_better: bool
-    limit: Limit
-    measure: Callable[["Masonry", Limit], Found]
-    unit: str = ""
+    name: str  # for options and JSON
+    title: str  # for tables and pictures
+    sentence: str  # the rule as a mason says it
+    source: str  # who says it; "Own definition" for what is ours
+    meaning: str  # what the number is
+    limit: Limit  # usual limits; ours, unless the source says otherwise
+    # Gives the number of a wall, a Masonry, and its cases; with `by_limit` it is told the limit.
+    measure: Callable[..., Evidence]
+    unit: str = ""  # empty for shares and counts
+    higher_is_better: bool = False
+    by_limit: bool = False
 
     def find(self, masonry: "Masonry", limit: Limit | None = None) -> "Finding":
-        """Judge a wall, by limits of its own unless others are given.
-
-        Raises
-        ------
-        UsageError
-            E190 for limits that are the wrong way round.
-        """
+        """Judge a wall, by limits of its own unless others are given."""
         limit = limit or self.limit
         sign = 1.0 if self.higher_is_better else -1.0
         if not (
@@ -144,7 +86,7 @@ class Rule:
                 cure=f"Give the last good and the last fair value, such as {self.limit.good:g}:"
                 f"{self.limit.fair:g}.",
             )
-        found = self.measure(masonry, limit)
+        found = self.measure(masonry, limit) if self.by_limit else self.measure(masonry)
         verdict: Verdict
         if found.broken:
             verdict = "broken"
@@ -158,18 +100,8 @@ class Rule:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Finding(Found):
-    """What a rule finds: what there is, judged.
-
-    Parameters
-    ----------
-    rule : Rule
-        Which one.
-    limit : Limit
-        Limits that were used.
-    verdict : {"good", "fair", "broken", "not judged"}
-        By the limits.
-    """
+class Finding(Evidence):
+    """What a rule finds: what there is, judged."""
 
     rule: Rule
     limit: Limit
@@ -186,13 +118,7 @@ class Finding(Found):
         return f"{self.number:.3g}{unit if unit in ('', '°') else f' {unit}'}"
 
     def report(self, steps: Mapping[int, int]) -> dict[str, Any]:
-        """Return it for JSON.
-
-        Parameters
-        ----------
-        steps : mapping of int to int
-            Step of the plan by id; empty for what is no plan.
-        """
+        """Return it for JSON."""
         return {
             "title": self.rule.title,
             "rule": self.rule.sentence,

@@ -9,10 +9,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from drystone.kernels.polygons import Points
+
 if TYPE_CHECKING:
     from drystone.craft.masonry import Masonry
-
-Points = NDArray[np.float64]
 
 STEEPEST = 1.0
 """A joint that rises more than it runs is a head joint, else a bed joint: 45 degrees."""
@@ -20,59 +20,28 @@ STEEPEST = 1.0
 
 @dataclass(frozen=True)
 class Run:
-    """A piece of a line inside a stone or wedge.
+    """A piece of a line inside a stone or wedge."""
 
-    Parameters
-    ----------
-    id : int
-        Of the stone or wedge.
-    begin, end : float
-        Along the line, ascending.
-    """
-
-    id: int
-    begin: float
+    id: int  # of the stone or wedge
+    begin: float  # along the line, ascending
     end: float
 
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """Parallel lines through a wall.
+    """Parallel lines through a wall."""
 
-    Parameters
-    ----------
-    spacing : float
-        Distance of the lines.
-    places : (n,) float array
-        Where they are: heights of rows, or x of columns; as far from one end of the wall's box
-        as from the other, so that a mirrored wall is cut in the same places.
-    runs : tuple of tuple of Run
-        For each line, in order along it.
-    """
-
-    spacing: float
+    spacing: float  # distance of the lines
+    # (n,), where they are: heights of rows, or x of columns; as far from one end of the wall's
+    # box as from the other, so that a mirrored wall is cut in the same places.
     places: NDArray[np.float64]
-    runs: tuple[tuple[Run, ...], ...]
+    runs: tuple[tuple[Run, ...], ...]  # for each line, in order along it
 
 
 def scan(outlines: Mapping[int, Points], axis: int, spacing: float) -> Scan:
-    """Cut outlines by parallel lines.
+    """Cut outlines, (n, 2) and not closed, by parallel lines about a spacing apart.
 
-    Parameters
-    ----------
-    outlines : mapping of int to (n, 2) float array
-        Corners in order, not closed.
-    axis : {0, 1}
-        0 for rows, which run along x; 1 for columns, which run up.
-    spacing : float
-        About how far apart, above 0.
-
-    Examples
-    --------
-    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
-    >>> rows = scan({7: square, 8: square + [3, 0]}, 0, 1.0)
-    >>> rows.runs
-    ((Run(id=7, begin=0.0, end=2.0), Run(id=8, begin=3.0, end=5.0)),)
+    Along axis 0 they are rows, which run along x; along axis 1 columns, which run up.
     """
     if not outlines:
         return Scan(spacing, np.empty(0), ())
@@ -111,22 +80,12 @@ def _crossings(
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """A piece of joint between two stones.
+    """A piece of joint between two stones."""
 
-    Parameters
-    ----------
-    first, second : int
-        Stones to the left and right of a head joint, below and above a bed joint.
-    points : (n, 2) float array
-        Middle of the gap, bottom to top or left to right.
-    spacing : float
-        Length that a point stands for.
-    """
-
-    first: int
+    first: int  # stones to the left and right of a head joint, below and above a bed joint
     second: int
-    points: Points
-    spacing: float
+    points: Points  # (n, 2), middle of the gap, bottom to top or left to right
+    spacing: float  # length that a point stands for
 
     @property
     def length(self) -> float:
@@ -157,24 +116,10 @@ class Joint:
 
 
 def joints(scanned: Scan, axis: int, widest: float, wedges: frozenset[int]) -> tuple[Joint, ...]:
-    """Find the joints that lines of a scan cross.
+    """Find the joints that lines of a scan cross: head joints by rows, bed joints by columns.
 
-    Parameters
-    ----------
-    scanned : Scan
-        Rows for head joints, columns for bed joints.
-    axis : {0, 1}
-        Of the scan.
-    widest : float
-        Widest gap between neighbours; the thickness of wedges between them does not count.
-    wedges : frozenset of int
-        Ids of wedges, which are no neighbours.
-
-    Returns
-    -------
-    tuple of Joint
-        Sorted by their first points.  Two stones have several where their joint changes between
-        rising and running, or is interrupted.
+    Gaps are `widest` at most, but for the thickness of wedges, which are no neighbours.  Two stones
+    have several joints where theirs changes between rising and running, or is interrupted.
     """
     sampled: dict[tuple[int, int], list[tuple[int, float]]] = {}
     for line, runs in enumerate(scanned.runs):
@@ -221,13 +166,7 @@ def _pieces(samples: list[tuple[int, float]], spacing: float) -> Iterator[list[t
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """Head joints that form one joint, from the lowest to the highest.
-
-    Parameters
-    ----------
-    joints : tuple of Joint
-        At least one.
-    """
+    """Head joints that form one joint, from the lowest to the highest."""
 
     joints: tuple[Joint, ...]
 
@@ -265,16 +204,6 @@ def chains(masonry: "Masonry") -> tuple[Chain, ...]:
     A joint goes on when the next one begins no farther to the side than the offset of the
     settings and no farther above than a hole, and no stone lies between them.  Where several
     could go on, the one straight above does.
-
-    Parameters
-    ----------
-    masonry : Masonry
-        Any wall.
-
-    Returns
-    -------
-    tuple of Chain
-        Every head joint is in one; from left to right by their lower ends.
     """
     heads = masonry.heads
     above: dict[int, int] = {}

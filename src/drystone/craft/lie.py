@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 from scipy import ndimage
 
-from drystone.craft.finding import Case, Found, Line
+from drystone.craft.finding import Case, Evidence, Line
 from drystone.craft.masonry import Masonry
 from drystone.model.overlap import common_parts
 
@@ -21,7 +21,7 @@ SHORT = 0.25
 """From which gap beside a stone at an end it is named, mean stone widths."""
 
 
-def on_end(masonry: Masonry, _: object = None) -> Found:
+def on_end(masonry: Masonry) -> Evidence:
     """Find stones that stand on end: the longer side of the face upright.
 
     Length and breadth are those of the smallest rectangle around the face.  A stone that is laid
@@ -29,7 +29,7 @@ def on_end(masonry: Masonry, _: object = None) -> Found:
     of its rock upright (face-bedded), cannot be told from the face.
     """
     if not masonry.stones:
-        return Found(None, note="There are no stones.")
+        return Evidence(None, note="There are no stones.")
     cases = []
     longer = 0
     for stone, loop in masonry.stones.items():
@@ -49,13 +49,13 @@ def on_end(masonry: Masonry, _: object = None) -> Found:
             cases.append(Case((stone,), round(elongation, 6), words, (axis,)))
     cases.sort(key=lambda case: -case.value)
     number = len(cases) / len(masonry.stones)
-    return Found(number, tuple(cases), {"stones with a longer side": float(longer)})
+    return Evidence(number, tuple(cases), {"stones with a longer side": float(longer)})
 
 
-def big_low(masonry: Masonry, _: object = None) -> Found:
+def big_low(masonry: Masonry) -> Evidence:
     """Compare the sizes of stones below and above mid-height and name big ones above."""
     if len(masonry.stones) < 2:
-        return Found(None, note="There are no two stones to compare.")
+        return Evidence(None, note="There are no two stones to compare.")
     x0, y0, x1, y1 = masonry.box
     lower = shapely.box(x0, y0, x1, 0.5 * (y0 + y1))
     areas = np.array([masonry.areas[i] for i in masonry.stones])
@@ -65,7 +65,7 @@ def big_low(masonry: Masonry, _: object = None) -> Found:
     below = np.clip(np.array(lying) / areas, 0.0, 1.0)
     above = 1.0 - below
     if min(below.sum(), above.sum()) < 1e-9:
-        return Found(None, note="One half of the wall has no stone.")
+        return Evidence(None, note="One half of the wall has no stone.")
     low, high = float(areas @ below / below.sum()), float(areas @ above / above.sum())
     mean = float(areas.mean())
     big = [
@@ -78,32 +78,18 @@ def big_low(masonry: Masonry, _: object = None) -> Found:
         for times, stone in sorted(big, key=lambda one: (-one[0], one[1]))
     )
     figures = {"mean area below over mean": low / mean, "mean area above over mean": high / mean}
-    return Found(high / low, cases, figures)
+    return Evidence(high / low, cases, figures)
 
 
 @dataclass(frozen=True, eq=False)
 class Edge:
-    """The upper or lower edge of a stone, as a straight line fitted to it.
-
-    Parameters
-    ----------
-    stone : int
-        Id.
-    side : {"lower", "upper"}
-        Which.
-    slope : float
-        Rise to the right over run.
-    width : float
-        Of the part that was fitted.
-    line : (2, 2) float array
-        Its ends.
-    """
+    """The upper or lower edge of a stone, as a straight line fitted to it."""
 
     stone: int
     side: Literal["lower", "upper"]
-    slope: float
-    width: float
-    line: Line
+    slope: float  # rise to the right over run
+    width: float  # of the part that was fitted
+    line: Line  # (2, 2), its ends
 
     @property
     def angle_deg(self) -> float:
@@ -145,11 +131,11 @@ def _fitted(stone: int, side: Literal["lower", "upper"], points: Line) -> Edge:
     return Edge(stone, side, slope, float(np.ptp(x)), line)
 
 
-def level_beds(masonry: Masonry, _: object = None) -> Found:
+def level_beds(masonry: Masonry) -> Evidence:
     """Find beds that slope."""
     found = edges(masonry)
     if not found:
-        return Found(None, note="No stone is wide enough.")
+        return Evidence(None, note="No stone is wide enough.")
     slopes = np.array([abs(edge.angle_deg) for edge in found])
     widths = np.array([edge.width for edge in found])
     steep = [edge for edge in found if abs(edge.angle_deg) > masonry.settings.steep_deg + 1e-9]
@@ -163,17 +149,17 @@ def level_beds(masonry: Masonry, _: object = None) -> Found:
         "steepest": float(slopes.max()),
         "share of the edges that are too steep": len(steep) / len(found),
     }
-    return Found(round(float(slopes @ widths / widths.sum()), 9), tuple(cases), figures)
+    return Evidence(round(float(slopes @ widths / widths.sum()), 9), tuple(cases), figures)
 
 
-def inward_edges(masonry: Masonry, _: object = None) -> Found:
+def inward_edges(masonry: Masonry) -> Evidence:
     """Find end stones whose upper edge falls outwards."""
     left, right = masonry.ends
     # A stone from end to end has no inward side.
     sides = dict.fromkeys(right - left, 1.0) | dict.fromkeys(left - right, -1.0)
     ends = [edge for edge in edges(masonry) if edge.side == "upper" and edge.stone in sides]
     if not ends:
-        return Found(None, note="The wall has no two ends.")
+        return Evidence(None, note="The wall has no two ends.")
     inward = {edge.stone: sides[edge.stone] * edge.slope for edge in ends}
     cases = [
         Case(
@@ -192,13 +178,13 @@ def inward_edges(masonry: Masonry, _: object = None) -> Found:
         "end stones": float(len(inward)),
     }
     least = round(min(inward.values()), 9) + 0.0  # never -0
-    return Found(least, tuple(cases), figures)
+    return Evidence(least, tuple(cases), figures)
 
 
-def level_top(masonry: Masonry, _: object = None) -> Found:
+def level_top(masonry: Masonry) -> Evidence:
     """Measure how level the top is, and name stones that stand out or lie low."""
     if not masonry.stones:
-        return Found(None, note="There are no stones.")
+        return Evidence(None, note="There are no stones.")
     columns, height = masonry.columns, masonry.mean_height
     tops = np.full(len(columns.places), masonry.box[1])
     owner = np.zeros(len(tops), np.int64)
@@ -219,23 +205,13 @@ def level_top(masonry: Masonry, _: object = None) -> Found:
             line = np.column_stack([columns.places[mine], tops[mine]])[[0, -1]]
             cases.append(Case((stone,), round(abs(off), 6), words, (line,)))
     cases.sort(key=lambda case: -case.value)
-    return Found(round(float(np.abs(tops - tops.mean()).mean()) / height, 9), tuple(cases))
+    return Evidence(round(float(np.abs(tops - tops.mean()).mean()) / height, 9), tuple(cases))
 
 
 def without_slots(profile: Line, widest: float) -> Line:
-    """Fill the slots of a profile that are no wider than a joint to their lower brink.
+    """Fill the slots of a profile, (n,), that are no wider than a joint to their lower brink.
 
-    Parameters
-    ----------
-    profile : (n,) float array
-        Heights.
-    widest : float
-        Width of a slot, in steps of the profile.
-
-    Examples
-    --------
-    >>> without_slots(np.array([3.0, 3.0, 0.0, 2.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0]), 1.2).tolist()
-    [3.0, 3.0, 2.0, 2.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0]
+    The width is in steps of the profile.
     """
     size = int(widest) + 1
     if size < 2 or profile.size < 2:
@@ -248,10 +224,10 @@ def without_slots(profile: Line, widest: float) -> Line:
     return np.asarray(closed[size:-size])
 
 
-def flush_ends(masonry: Masonry, _: object = None) -> Found:
+def flush_ends(masonry: Masonry) -> Evidence:
     """Measure how far the ends keep from upright lines through the outermost stones."""
     if not masonry.stones:
-        return Found(None, note="There are no stones.")
+        return Evidence(None, note="There are no stones.")
     x0, _, x1, _ = masonry.box
     beside: dict[tuple[int, int], list[tuple[float, float]]] = {}
     for y, runs in zip(masonry.rows.places.tolist(), masonry.rows.runs, strict=True):
@@ -263,7 +239,7 @@ def flush_ends(masonry: Masonry, _: object = None) -> Found:
                 if run.id in masonry.ends[side]:
                     beside.setdefault((run.id, side), []).append((y, gap))
     if not beside:
-        return Found(None, note="The wall has no ends.")
+        return Evidence(None, note="The wall has no ends.")
     width = masonry.mean_width
     cases = []
     for (stone, side), rows in beside.items():
@@ -275,4 +251,4 @@ def flush_ends(masonry: Masonry, _: object = None) -> Found:
             cases.append(Case((stone,), round(mean, 6), words, (line,)))
     cases.sort(key=lambda case: (-case.value, case.stones))
     gaps = [gap for rows in beside.values() for _, gap in rows]
-    return Found(round(float(np.mean(gaps)) / width, 9), tuple(cases))
+    return Evidence(round(float(np.mean(gaps)) / width, 9), tuple(cases))

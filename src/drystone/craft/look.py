@@ -19,104 +19,76 @@ UNSEEN = (
 
 _ALL = (
     Rule(
-        "running_joints",
-        "running joints",
+        "running_joints", "running joints",
         "Cross every upright joint with the next stone; no joint runs up through several courses.",
         "Adcock 1994, principle 1 (cover all joints; a joint of two stones only once in a blue "
         "moon); Bowland Dry Stone Walling 2024 (no seam of more than two stones or courses); the "
         "paper, section 2 (offset vertical joints)",
         "courses that the longest joint goes through: the lesser number of stones on its two sides",
-        higher_is_better=False,
-        limit=Limit(1, 2),
-        measure=running_joints,
-        unit="courses",
+        Limit(1, 2), running_joints, unit="courses",
     ),
     Rule(
-        "cross_joints",
-        "cross joints",
+        "cross_joints", "cross joints",
         "Joints meet as a T, never as a plus: no four stones at one point.",
         "Corcoran 2018, rule 8 (no cross joints in the built wall); Kemmler, guide to setting a "
         "dry wall (no Kreuzfugen)",
         "points at which four stones meet, per ten stones",
-        higher_is_better=False,
-        limit=Limit(0.0, 1.0),
-        measure=cross_joints,
-        unit="per 10 stones",
+        Limit(0.0, 1.0), cross_joints, unit="per 10 stones",
     ),
     Rule(
-        "one_over_two",
-        "one over two",
+        "one_over_two", "one over two",
         "One stone on two, and two stones on one.",
         "Adcock 1994, principle 1; the paper, section 2 (each block in contact with several "
         "others)",
         "share of the stones between the ends and above the foot that rest on two or more",
-        higher_is_better=True,
-        limit=Limit(0.8, 0.6),
-        measure=one_over_two,
+        Limit(0.8, 0.6), one_over_two, higher_is_better=True,
     ),
     Rule(
-        "laps",
-        "laps over joints",
+        "laps", "laps over joints",
         "A stone laps well over the joint below it, by a third of its length or at least a "
         "quarter.",
         "The idea: the paper, section 3.5, Eq. 9 (offset of joints by the width of a stone); "
         "Corcoran 2018, rule 7 (half bond where possible); trockenmauerkurs.de, building rule 3 "
         "(lap of at least 10 cm). The quarter and the third: own definition",
         "share of the joints that a stone covers that it laps by less than a quarter of its width",
-        higher_is_better=False,
-        limit=Limit(0.1, 0.3),
-        measure=laps,
+        Limit(0.1, 0.3), laps,
     ),
     Rule(
-        "on_end",
-        "stones on end",
+        "on_end", "stones on end",
         "Lay a stone on its bed: no stone stands higher than it is long.",
         "Corcoran 2018, rule 4 (no stone higher than long); Bayer Stone, laying random ashlar (no "
         "stone on its end). From which elongation it counts: own definition",
         "share of the stones whose longer side stands steeper than 45 degrees",
-        higher_is_better=False,
-        limit=Limit(0.05, 0.15),
-        measure=on_end,
+        Limit(0.05, 0.15), on_end,
     ),
     Rule(
-        "big_low",
-        "big stones low",
+        "big_low", "big stones low",
         "Big stones go into the lower part of the wall, smaller ones above.",
         "Adcock 1994, principle 5; Delaware Quarries, rule 6. The number: own definition",
         "mean size of the stones above mid-height over that of those below; a stone across "
         "mid-height counts in both, by its shares",
-        higher_is_better=False,
-        limit=Limit(1.05, 1.3),
-        measure=big_low,
+        Limit(1.05, 1.3), big_low,
     ),
     Rule(
-        "level_beds",
-        "level beds",
+        "level_beds", "level beds",
         "Lay stones level: beds that slope make stones slide.",
         "Welch and Post, The Stone Trust, rule 1 (stones and courses level); Corcoran 2018, rule "
         "10; the paper, section 2 (courses straight and level). The limits: own definition",
         "mean slope of the lower and upper edges of the stones, by their widths",
-        higher_is_better=False,
-        limit=Limit(5.0, 10.0),
-        measure=level_beds,
-        unit="°",
+        Limit(5.0, 10.0), level_beds, unit="°",
     ),
     Rule(
-        "inward_edges",
-        "inward edges",
+        "inward_edges", "inward edges",
         "At the ends of the wall the upper edges fall inwards, so that nothing slides out.",
         "The paper, section 3.5, Eq. 10 (IS, inward slope of stones at the boundary); Delaware "
         "Quarries, rule 5, says it of slopes across the wall. A fitted line instead of two highest "
         "points, and the limits: own definition",
         "least inward slope (rise over run) of the upper edges at both ends; below 0 it is "
         "outwards",
-        higher_is_better=True,
-        limit=Limit(-0.1, -0.25),
-        measure=inward_edges,
+        Limit(-0.1, -0.25), inward_edges, higher_is_better=True,
     ),
     Rule(
-        "pins",
-        "pins and wedges",
+        "pins", "pins and wedges",
         "Wedges fill gaps and stop rocking; the load goes beside them, none sticks out, and each "
         "is a flat piece that one can cut and that stays in its place.",
         "The paper, section 2 (shards fill openings or prevent rocking); rockinwalls.com, Pinning "
@@ -124,33 +96,25 @@ _ALL = (
         "rule 10 (fill cracks after the wall is complete). The number: own definition",
         "greatest load that a wedge cannot help carrying under the wall's own weight, with open "
         "upright joints, over the weight of the stones that lie on it",
-        higher_is_better=False,
-        limit=Limit(0.1, 0.5),
-        measure=pins,
+        Limit(0.1, 0.5), pins, by_limit=True,
     ),
     Rule(
-        "level_top",
-        "level top",
+        "level_top", "level top",
         "Keep the wall at an even height along its length.",
         "Adcock 1994, principle 6; the number is T_LEVEL of `drystone measure` with joints that "
         "are open at the top bridged. The limits: own definition",
         "mean deviation of the top from its mean height, in mean stone heights",
-        higher_is_better=False,
-        limit=Limit(0.15, 0.3),
-        measure=level_top,
+        Limit(0.15, 0.3), level_top,
     ),
     Rule(
-        "flush_ends",
-        "flush ends",
+        "flush_ends", "flush ends",
         "The ends of the wall are upright and in line.",
         "Own definition, like E_FLUSH of `drystone measure` but of the stones at the ends alone: a "
         "bed that is open from end to end, or an uneven top, is no ragged end",
         "mean gap between the ends of the wall and its end lines, in mean stone widths",
-        higher_is_better=False,
-        limit=Limit(0.1, 0.2),
-        measure=flush_ends,
+        Limit(0.1, 0.2), flush_ends,
     ),
-)
+)  # fmt: skip
 
 RULES: Mapping[str, Rule] = MappingProxyType({rule.name: rule for rule in _ALL})
 """All rules by name."""
@@ -158,18 +122,10 @@ RULES: Mapping[str, Rule] = MappingProxyType({rule.name: rule for rule in _ALL})
 
 @dataclass(frozen=True, eq=False)
 class CraftReport:
-    """What the rules find in a wall.
-
-    Parameters
-    ----------
-    masonry : Masonry
-        The wall.
-    findings : mapping of str to Finding
-        By name of the rule, in the order of :data:`RULES`.
-    """
+    """What the rules find in a wall."""
 
     masonry: Masonry
-    findings: Mapping[str, Finding]
+    findings: Mapping[str, Finding]  # by name of the rule, in the order of `RULES`
 
     @property
     def broken(self) -> tuple[str, ...]:

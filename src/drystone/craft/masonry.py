@@ -9,10 +9,10 @@ import shapely
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.outlines import outlines_of_labels
-from drystone.craft.joints import Chain, Joint, Points, Scan, chains, joints, scan
+from drystone.craft.joints import Chain, Joint, Scan, chains, joints, scan
 from drystone.craft.settings import CraftSettings
 from drystone.errors import InputError, UsageError
-from drystone.kernels.polygons import Polygons, area_and_centroid, no_polygons
+from drystone.kernels.polygons import Points, Polygons, area_and_centroid, no_polygons
 from drystone.model.wall import Labels
 from drystone.statics.model import RigidBlockModel
 
@@ -162,14 +162,16 @@ class Masonry:
     @cached_property
     def mean_height(self) -> float:
         """Of the upright boxes of the stones; 1 when there are none."""
-        heights = [self.boxes[i][3] - self.boxes[i][1] for i in self.stones]
-        return float(np.mean(heights)) if heights else 1.0
+        return self._mean_side(1)
 
     @cached_property
     def mean_width(self) -> float:
         """Of the upright boxes of the stones; 1 when there are none."""
-        widths = [self.boxes[i][2] - self.boxes[i][0] for i in self.stones]
-        return float(np.mean(widths)) if widths else 1.0
+        return self._mean_side(0)
+
+    def _mean_side(self, axis: int) -> float:
+        sides = [self.boxes[i][2 + axis] - self.boxes[i][axis] for i in self.stones]
+        return float(np.mean(sides)) if sides else 1.0
 
     @cached_property
     def rows(self) -> Scan:
@@ -197,22 +199,24 @@ class Masonry:
                 )
         return scan(self.loops, axis, self.settings.sample * self.mean_height)
 
+    def _joints(self, scanned: Scan, axis: int) -> tuple[Joint, ...]:
+        widest = self.settings.joint * self.mean_height
+        return joints(scanned, axis, widest, frozenset(self.wedge_ids))
+
     @cached_property
     def heads(self) -> tuple[Joint, ...]:
         """Head joints: between a stone and the one to the right of it."""
-        widest = self.settings.joint * self.mean_height
-        return joints(self.rows, 0, widest, frozenset(self.wedge_ids))
+        return self._joints(self.rows, 0)
+
+    @cached_property
+    def beds(self) -> tuple[Joint, ...]:
+        """Bed joints: between a stone and the one above it."""
+        return self._joints(self.columns, 1)
 
     @cached_property
     def chains(self) -> tuple[Chain, ...]:
         """The head joints, those that go on above each other joined to one."""
         return chains(self)
-
-    @cached_property
-    def beds(self) -> tuple[Joint, ...]:
-        """Bed joints: between a stone and the one above it."""
-        widest = self.settings.joint * self.mean_height
-        return joints(self.columns, 1, widest, frozenset(self.wedge_ids))
 
     @cached_property
     def supports(self) -> Mapping[int, tuple[tuple[int, float, float], ...]]:

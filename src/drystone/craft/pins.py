@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import csr_array, hstack
 
-from drystone.craft.finding import Case, Found, Limit, Line
+from drystone.craft.finding import Case, Evidence, Limit, Line
 from drystone.craft.masonry import Masonry
 from drystone.model.wedge_shape import WedgeRule, WedgeSettings, WedgeShape, open_sides
 from drystone.statics.joints import is_head_joint, loose_blocks
@@ -25,23 +25,16 @@ INFEASIBLE = 2
 """Status of scipy's linprog when there are no forces in equilibrium."""
 
 
-def pins(masonry: Masonry, limit: Limit) -> Found:
+def pins(masonry: Masonry, limit: Limit) -> Evidence:
     """Find wedges that carry, that stick out, and that no mason would cut.
 
     Wedges are known in plans; in a label image or block model they have to be named.  The rule is
     broken when a wedge sticks out, or is none that a mason would cut where wedges shall be cut to
     their outlines.
-
-    Parameters
-    ----------
-    masonry : Masonry
-        Any wall.
-    limit : Limit
-        Wedges that carry more than its good number are named.
     """
     wedges = sorted(set(masonry.wedge_ids))
     if not wedges:
-        return Found(None, note="No wedges are known.")
+        return Evidence(None, note="No wedges are known.")
     resting = {wedge: _resting(masonry, wedge) for wedge in wedges}
     outside = [case for wedge in wedges for case in _outside(masonry, wedge, resting[wedge])]
     unfit = [case for wedge in wedges for case in _unfit(masonry, wedge, resting[wedge])]
@@ -53,7 +46,7 @@ def pins(masonry: Masonry, limit: Limit) -> Found:
     bad = (*outside, *unfit)
     loads, note = _loads(masonry, frozenset(wedges))
     if masonry.model is None or loads is None:
-        return Found(None, bad, figures, note, broken=bool(bad))
+        return Evidence(None, bad, figures, note, broken=bool(bad))
     weights = {block.id: block.weight for block in masonry.model.blocks}
     shares, carrying = [], []
     for wedge in wedges:
@@ -67,7 +60,7 @@ def pins(masonry: Masonry, limit: Limit) -> Found:
     carrying.sort(key=lambda case: -case.value)
     figures["wedges that carry"] = float(len(carrying))
     figures["mean load"] = float(np.mean(shares))
-    return Found(round(max(shares), 9), (*bad, *carrying), figures, note, broken=bool(bad))
+    return Evidence(round(max(shares), 9), (*bad, *carrying), figures, note, broken=bool(bad))
 
 
 def _loads(masonry: Masonry, wedges: frozenset[int]) -> tuple[Mapping[int, float] | None, str]:
@@ -161,28 +154,6 @@ def least_wedge_loads(
     The forces between dry stones are not known from their weights alone.  For each wedge the
     state of equilibrium within friction is found in which that wedge carries least; so 0 means
     that the wall would stand without leaning on it.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Of the whole wall.
-    wedge_ids : frozenset of int
-        Blocks that are wedges.
-
-    Returns
-    -------
-    mapping of int to float, or LimitStatus
-        By id, the vertical force from what lies on the wedge, in weights of the model; UNSTABLE
-        when the wall does not stand by its own weight, FAILED when the solver gave up.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> pier, slab = [0, 0, 1, 1], [0, 1, 4, 1]
-    >>> found = least_wedge_loads(model_from_json({"blocks_xywh": [pier, slab, [3, 0, 1, 1]]}),
-    ...                           frozenset({3}))
-    >>> round(found[3], 6)
-    1.333333
     """
     if all(block.fixed for block in model.blocks):
         return dict.fromkeys(sorted(wedge_ids), 0.0)

@@ -95,16 +95,6 @@ def fourier_descriptors(settings: FourierSettings) -> NDArray[np.float64]:
 
     D_n = 2^(alpha log2(n/3) + log2 D3) for n = 3 ... 7 and 2^(beta log2(n/8) + log2 D8) from 8.
     D_0 and D_1 are 0: the first is the radius itself, the second only shifts the stone.
-
-    Parameters
-    ----------
-    settings : FourierSettings
-        The descriptors that are given.
-
-    Examples
-    --------
-    >>> fourier_descriptors(FourierSettings(D2=0.2))[[1, 2, 3, 6, 8, 16]]
-    array([0.     , 0.2    , 0.05   , 0.0125 , 0.015  , 0.00375])
     """
     return np.concatenate([[0.0, 0.0, settings.D2], 2.0 ** _log2_descriptors(settings)])
 
@@ -121,20 +111,8 @@ def _log2_descriptors(settings: FourierSettings) -> NDArray[np.float64]:
 def fourier_contour(radius_px: float, settings: FourierSettings, rng: Generator) -> Outline | None:
     """Draw one contour (Eq. 30a-c): descriptors as given, phases at random in [-pi, pi).
 
-    Parameters
-    ----------
-    radius_px : float
-        Mean radius r0.
-    settings : FourierSettings
-        Descriptors and number of points.
-    rng : Generator
-        Source of the phases.
-
-    Returns
-    -------
-    contour : (points, 2) float array or None
-        About its pole, counter-clockwise, the first point on the x axis; None when the radius is
-        not positive everywhere, so that the contour would cross itself.
+    (points, 2) about its pole, counter-clockwise, the first point on the x axis; None when the
+    radius is not positive everywhere, so that the contour would cross itself.
     """
     amplitude = radius_px * fourier_descriptors(settings)
     phase = rng.uniform(-math.pi, math.pi, amplitude.size)

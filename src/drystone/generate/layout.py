@@ -23,24 +23,7 @@ LARGEST_PX = 500_000_000
 def check_room(
     count: int, size_px: tuple[float, float], settings: Sequence[str], where: str
 ) -> None:
-    """Refuse stones that no image has room for, before any is made.
-
-    Parameters
-    ----------
-    count : int
-        Number of stones.
-    size_px : (float, float)
-        Width and height of the box of a stone, about.
-    settings : sequence of str
-        Names of those that decide the size.
-    where : str
-        Name of the stones, for the message.
-
-    Raises
-    ------
-    UsageError
-        E130.
-    """
+    """Refuse stones that no image has room for, before any is made."""
     width, height = (side + GAP_PX for side in size_px)
     if not count * width * height <= LARGEST_PX:
         raise UsageError(
@@ -81,19 +64,7 @@ def lay_out(stones: StoneSet) -> Labels:
 
 
 def stones_of(masks: Sequence[Mask]) -> StoneSet:
-    """Make stones 1 ... n of masks, lying where :func:`lay_out` draws them.
-
-    Parameters
-    ----------
-    masks : sequence of (h, w) bool array
-        Cropped, row 0 at the top, each in one piece.
-
-    Examples
-    --------
-    >>> stones = stones_of([np.ones((2, 4), bool)])
-    >>> stones.by_id(1).left_px, stones.source.width_px
-    (4, 12)
-    """
+    """Make stones 1 ... n of masks, lying where :func:`lay_out` draws them."""
     corners, (height, width) = _rows([mask.shape for mask in masks])
     stones = (
         Stone(number, mask, left_px=col, bottom_px=height - row - mask.shape[0])

@@ -21,13 +21,7 @@ ATTEMPTS = 1000
 
 
 def polygon_area(outline: Outline) -> float:
-    """Return the area of a simple polygon, px.
-
-    Examples
-    --------
-    >>> polygon_area(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0]]))
-    6.0
-    """
+    """Return the area of a simple polygon, px."""
     x, y = outline.T
     return abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2
 
@@ -35,34 +29,15 @@ def polygon_area(outline: Outline) -> float:
 def outline_mask(outline: Outline) -> Mask:
     """Rasterise a polygon: the pixels whose centre is inside, by the even-odd rule.
 
-    Parameters
-    ----------
-    outline : (n, 2) float array
-        A simple polygon, turning either way.
-
-    Returns
-    -------
-    mask : (h, w) bool array
-        Cropped to its pixels, row 0 at the top; of shape (0, 0) when no centre is inside.  A
-        centre on the outline is inside when the polygon lies to its right or above it, so
-        polygons that share a side share no pixel.
-
-    Examples
-    --------
-    >>> outline_mask(np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 3.0]])).astype(int).tolist()
-    [[1, 0], [1, 1]]
+    Cropped to its pixels, row 0 at the top; of shape (0, 0) when no centre is inside.  A centre on
+    the outline is inside when the polygon lies to its right or above it, so polygons that share a
+    side share no pixel.
     """
     return rasterise_polygon(outline)[0]
 
 
 def is_whole(mask: Mask) -> bool:
-    """Return True when a mask is one 8-connected piece without holes, so it reads as one stone.
-
-    Examples
-    --------
-    >>> is_whole(np.array([[1, 0, 1]], bool)), is_whole(np.array([[1, 0], [0, 1]], bool))
-    (False, True)
-    """
+    """Return True when a mask is one 8-connected piece without holes, so it reads as one stone."""
     if ndimage.label(mask, _WITH_CORNERS)[1] != 1:
         return False
     # A hole is a piece of its own among what is not stone, with a rim around it.
@@ -70,19 +45,9 @@ def is_whole(mask: Mask) -> bool:
 
 
 def draw_stone(draws: Iterable[Outline | None], what: str) -> Mask:
-    """Take outlines until one gives the mask of a whole stone.
+    """Take outlines, None for those to be rejected, until one gives the mask of a whole stone.
 
-    Parameters
-    ----------
-    draws : iterable of outlines
-        One after the other; None for a draw that is to be rejected.
-    what : str
-        Name of the stones, for the message.
-
-    Raises
-    ------
-    UsageError
-        E130 when a thousand draws in a row are rejected.
+    E130 when a thousand draws in a row are rejected.
     """
     for outline in islice(draws, ATTEMPTS):
         if outline is not None and is_whole(mask := outline_mask(outline)):

@@ -61,12 +61,8 @@ def noisy_polygon(settings: PolygonSettings, rng: Generator) -> Outline | None:
     """Draw one brick with moved corners.
 
     A brick of a running bond has six corners: its own four and, in the middle of each bed face,
-    the head joint of the next course.
-
-    Returns
-    -------
-    outline : (3 ... 6, 2) float array or None
-        Counter-clockwise when convex; None for a splinter or a polygon that crosses itself.
+    the head joint of the next course.  Counter-clockwise when convex; None for a splinter or a
+    polygon that crosses itself.
     """
     width, height = settings.width_px, settings.height_px
     x = np.array([0.0, width / 2, width, width, width / 2, 0.0])

@@ -8,13 +8,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from drystone.generate.layout import check_room, stones_of
-from drystone.generate.outlines import (
-    Outline,
-    check_setting,
-    is_whole,
-    outline_mask,
-    polygon_area,
-)
+from drystone.generate.outlines import Outline, check_setting, is_whole, outline_mask, polygon_area
 from drystone.kernels.raster import turn
 from drystone.model.stone import StoneSet
 
@@ -64,7 +58,7 @@ class RubbleSettings:
     tilt_deg: float = 10.0
 
     def __post_init__(self) -> None:
-        ranges = (
+        for ok, what in (
             (1 <= self.courses <= self.count, "there must be a stone for every course"),
             (self.height_px >= 4 * self.courses, "the courses must be 4 px high or more"),
             (
@@ -77,8 +71,7 @@ class RubbleSettings:
             (0 <= self.pentagons <= 1, "pentagons must be between 0 and 1"),
             (0 <= self.rounding <= 0.3, "rounding must be between 0 and .3"),
             (0 <= self.tilt_deg <= 360, "tilt_deg must be between 0 and 360"),
-        )
-        for ok, what in ranges:
+        ):
             check_setting(ok, what, "rubble")
         # Long stones that lie askew have large boxes.
         names = ("width_px", "height_px") + (("tilt_deg",) if self.tilt_deg else ())
@@ -93,19 +86,9 @@ class RubbleSettings:
 
 
 def course_sizes(settings: RubbleSettings, rng: Generator) -> NDArray[np.float64]:
-    """Draw the boxes of the stones: courses that fill the wall's height, each as long as the wall.
+    """Draw the boxes of the stones, (count, 2) in px, course by course from the highest.
 
-    Parameters
-    ----------
-    settings : RubbleSettings
-        Size of the wall, number and spread of its courses.
-    rng : Generator
-        Source of the widths and of how much lower than its course a stone is.
-
-    Returns
-    -------
-    sizes : (count, 2) float array
-        Width and height, px, course by course from the highest.
+    The courses fill the height of the wall, and each is as long as it.
     """
     share = np.linspace(1 + settings.spread / 2, 1 - settings.spread / 2, settings.courses)
     heights = share * settings.height_px / settings.courses
@@ -127,19 +110,7 @@ def rubble_outline(
 ) -> Outline:
     """Draw one stone about a box: four or five corners moved a little, then cut off twice.
 
-    Parameters
-    ----------
-    width_px, height_px : float
-        The box.
-    settings : RubbleSettings
-        Roughness, share of pentagons, rounding.
-    rng : Generator
-        Source of the corners.
-
-    Returns
-    -------
-    outline : (16 or 20, 2) float array
-        Counter-clockwise, convex or nearly so.
+    Counter-clockwise, convex or nearly so.
     """
     inwards = rng.uniform(-0.5, 1.0, (4, 2)) * settings.roughness * height_px
     x = np.array([0.0, width_px, width_px, 0.0]) + inwards[:, 0] * [1, -1, -1, 1]

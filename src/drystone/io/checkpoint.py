@@ -16,7 +16,7 @@ from drystone.errors import PlanError
 from drystone.io.plain_data import as_json, from_plain
 from drystone.planner.search_settings import SearchSettings
 from drystone.search.operators import OPERATORS
-from drystone.search.packed import Packed
+from drystone.search.packed import PackedWall
 from drystone.search.standing import Chains, Standing
 from drystone.whole_files import write_whole
 
@@ -131,7 +131,7 @@ def _possible(chains: Chains, search: SearchSettings) -> bool:
     )
 
 
-def _walls(standing: Standing) -> Iterator[Packed]:
+def _walls(standing: Standing) -> Iterator[PackedWall]:
     """Iterate over all walls of a search."""
     chains = standing.chains
     yield from standing.found

@@ -11,17 +11,11 @@ from drystone.model.wall import Labels
 
 @dataclass(frozen=True, eq=False)
 class WallFrame:
-    """A wall cut out of its image, and where it should end.
+    """A wall cut out of its image, and where it should end."""
 
-    Parameters
-    ----------
-    labels : (h, w) array
-        First row: the highest stone pixel; last row: the lowest, on which the wall stands.
-    left_px, right_px : float
-        The two end lines of the wall, as columns of `labels` measured from its left edge.
-    """
-
+    # (h, w), first row: the highest stone pixel; last row: the lowest, on which the wall stands.
     labels: Labels
+    # The two end lines of the wall, as columns of `labels` measured from its left edge.
     left_px: float
     right_px: float
 
@@ -33,30 +27,8 @@ def frame_wall(labels: Labels, width_px: float | None = None) -> WallFrame:
     at both ends go as well, and the end lines are the ends of the stones.  With a width, an image
     that is exactly as wide keeps its columns, as plans do; in any other image the stones are
     taken to stand in the middle between the end lines.  No stone is ever cut off.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is, row 0 at the top.
-    width_px : float, optional
-        Width of the wall that was to be built, in px of the image, positive.
-
-    Raises
-    ------
-    LabelImageError
-        E104 when there is no stone in the image.
-
-    Examples
-    --------
-    >>> image = np.pad(np.ones((2, 4), np.uint32), 3)
-    >>> frame_wall(image).labels.shape
-    (2, 4)
-    >>> frame = frame_wall(image, width_px=6.0)
-    >>> frame.labels.shape, frame.left_px, frame.right_px
-    ((2, 6), 0.0, 6.0)
+    E104 when there is no stone in the image.
     """
-    if labels.ndim != 2:
-        raise ValueError(f"labels must have two dimensions, not {labels.ndim}")
     filled = labels > 0
     rows = np.flatnonzero(filled.any(axis=1))
     if not rows.size:

@@ -13,24 +13,8 @@ def joint_mask(labels: Labels) -> Mask:
     """Return where a path may run: everything that is not the inside of a stone.
 
     Every stone is eroded once by a 3 x 3 square, so stones that touch have a joint of 2 px.  The
-    edge of the image erodes nothing.  The result is padded by :data:`PAD_TOP` and the other
-    three with open joint.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        The wall, cut out by :func:`drystone.metrics.frame.frame_wall`; wedges count as stones.
-
-    Returns
-    -------
-    joint : (h + 3, w + 3) bool array
-        True in joints; pixel (row, col) of the wall is pixel (row + 1, col + 1) here.
-
-    Examples
-    --------
-    >>> wall = np.array([[1, 1, 1, 2, 2, 2]] * 3, np.uint32)
-    >>> joint_mask(wall)[1, 1:-2].astype(int).tolist()
-    [0, 0, 1, 1, 0, 0]
+    edge of the image erodes nothing.  The result, (h + 3, w + 3), is padded by :data:`PAD_TOP` and
+    the other three with open joint: pixel (row, col) of the wall is pixel (row + 1, col + 1) of it.
     """
     height, width = labels.shape
     # Repeating the edge gives an outer pixel neighbours of its own stone.

@@ -23,26 +23,11 @@ SHORTEST = 5
 def vertical_arrangement(joint: Mask) -> float | None:
     """Return F_AV in percent, by how much vertical paths are longer than straight (Eq. 27).
 
-    Higher is better: head joints are interrupted.
-
-    Parameters
-    ----------
-    joint : (H, W) bool array
-        True where a path may run (:func:`drystone.metrics.joints.joint_mask`).
-
-    Returns
-    -------
-    F_AV : float or None
-        100 (v - (H - 1)) / (H - 1) with v the length of a path of :func:`vertical_paths`, averaged
-        over the five shortest, or over all when there are fewer; None when there is none.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> vertical_arrangement(np.ones((4, 21), bool))
-    0.0
+    100 (v - (H - 1)) / (H - 1) with H the height of the joint image, (H, W), and v the length of a
+    path of :func:`vertical_paths`, averaged over the five shortest, or over all when there are
+    fewer; None when there is none.  Higher is better: head joints are interrupted.
     """
-    return mean_excess(vertical_lengths(joint), joint.shape[0] - 1)
+    return horizontal_arrangement(joint.T)
 
 
 def horizontal_arrangement(joint: Mask) -> float | None:
@@ -51,40 +36,21 @@ def horizontal_arrangement(joint: Mask) -> float | None:
     Lower is better: courses are straight.  As :func:`vertical_arrangement`, with W and
     :func:`horizontal_paths`.
     """
-    return mean_excess(horizontal_lengths(joint), joint.shape[1] - 1)
+    return mean_excess(horizontal_lengths(joint)[:SHORTEST], joint.shape[1] - 1)
 
 
 def mean_excess(lengths_px: Sequence[float], straight_px: int) -> float | None:
-    """Return by how much the shortest of some paths are longer than straight, in percent.
-
-    Parameters
-    ----------
-    lengths_px : sequence of float
-        The shortest first; the first :data:`SHORTEST` count.
-    straight_px : int
-        Length of the straight line from start to end.
-
-    Examples
-    --------
-    >>> mean_excess([10.0, 15.0], 10)
-    25.0
-    """
-    shortest = lengths_px[:SHORTEST]
-    if not shortest:
+    """Return by how much paths are longer than a straight line, in percent; None without any."""
+    if not lengths_px:
         return None
-    return 100.0 * math.fsum(length / straight_px - 1.0 for length in shortest) / len(shortest)
+    return 100.0 * math.fsum(length / straight_px - 1.0 for length in lengths_px) / len(lengths_px)
 
 
 @dataclass(frozen=True, eq=False)
 class JointPath:
-    """One shortest path along the joints.
+    """One shortest path along the joints."""
 
-    Parameters
-    ----------
-    pixels : (n, 2) int array
-        Row and column of its pixels in the joint image, from start to end.
-    """
-
+    # (n, 2), row and column of its pixels in the joint image, from start to end.
     pixels: NDArray[np.intp]
 
     @property
@@ -92,17 +58,6 @@ class JointPath:
         """Length over pixel centres: 1 for a straight step, sqrt 2 for a diagonal one."""
         steps = np.abs(np.diff(self.pixels, axis=0)).sum(axis=1)
         return length_px(int((steps == 1).sum()), int((steps == 2).sum()))
-
-
-def vertical_lengths(joint: Mask) -> tuple[float, ...]:
-    """Return the lengths of :func:`vertical_paths`, px, the shortest first.
-
-    Examples
-    --------
-    >>> vertical_lengths(np.ones((4, 21), bool))
-    (3.0,)
-    """
-    return horizontal_lengths(joint.T)
 
 
 def horizontal_lengths(joint: Mask) -> tuple[float, ...]:
@@ -115,22 +70,8 @@ def vertical_paths(joint: Mask) -> tuple[JointPath, ...]:
     """Find the shortest paths from the top row to the same column of the last row (Fig. 17b).
 
     Starts are at columns 10, 10 + floor(W / 10), ... < W - 10, with W the width of the joint
-    image, its padding included.
-
-    Parameters
-    ----------
-    joint : (h, w) bool array
-        True where a path may run (:func:`drystone.metrics.joints.joint_mask`).
-
-    Returns
-    -------
-    paths : tuple of JointPath
-        The shortest first; of equal ones the left one first.  Starts without a path are left out.
-
-    Examples
-    --------
-    >>> [path.length_px for path in vertical_paths(np.ones((4, 21), bool))]
-    [3.0]
+    image (:func:`drystone.metrics.joints.joint_mask`), its padding included.  The shortest comes
+    first, of equal ones the left one; starts without a path are left out.
     """
     return tuple(JointPath(path.pixels[:, ::-1]) for path in horizontal_paths(joint.T))
 
@@ -139,21 +80,6 @@ def horizontal_paths(joint: Mask) -> tuple[JointPath, ...]:
     """Find the shortest paths from the left column to the same row of the last one (Fig. 17a).
 
     Starts are at rows 10, 10 + floor(H / 10), ... < H - 10, with H the height of the joint image.
-
-    Parameters
-    ----------
-    joint : (h, w) bool array
-        True where a path may run (:func:`drystone.metrics.joints.joint_mask`).
-
-    Returns
-    -------
-    paths : tuple of JointPath
-        The shortest first; of equal ones the upper one first.
-
-    Examples
-    --------
-    >>> [path.length_px for path in horizontal_paths(np.ones((21, 4), bool))]
-    [3.0]
     """
     ways = row_ways(joint, _starts(joint.shape[0]))
     paths = [JointPath(way) for way in ways if way is not None]

@@ -12,29 +12,7 @@ def reduce_labels(labels: Labels, scale: float) -> Labels:
     Pixel i of the result takes source pixel floor(i * source size / size), so the first row and
     column stay what they are.  This is the sampling with which the published figures of the
     masons' walls were measured; other choices of the sample point move F_AV by up to two points.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is, row 0 at the top.
-    scale : float
-        Size of the result over the size of the image, positive; each side becomes
-        floor(size * scale + .5) px, at least one.
-
-    Returns
-    -------
-    reduced : (h', w') array of the same type
-        A copy, also when `scale` is 1.
-
-    Raises
-    ------
-    ValueError
-        When `scale` is not positive.
-
-    Examples
-    --------
-    >>> reduce_labels(np.array([[1, 1, 2, 2], [1, 1, 2, 2]], np.uint32), 0.5).tolist()
-    [[1, 2]]
+    Each side becomes floor(size * scale + .5) px, at least one; the result is a copy.
     """
     if not scale > 0:
         raise ValueError(f"scale must be positive, not {scale}")

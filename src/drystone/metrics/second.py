@@ -6,7 +6,6 @@ start, that they end where they like and cannot pass by the wall; that all of th
 the shortest alone.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -17,7 +16,7 @@ from drystone.kernels.paths import row_lengths, step_counts
 from drystone.kernels.raster import Mask
 from drystone.metrics.frame import frame_wall
 from drystone.metrics.joints import PAD_BOTTOM, PAD_LEFT, PAD_RIGHT, PAD_TOP, joint_mask
-from drystone.metrics.paths import length_px
+from drystone.metrics.paths import length_px, mean_excess
 from drystone.model.outlines import Outlined, Outlines
 from drystone.model.site import Site
 from drystone.model.wall import Labels
@@ -31,18 +30,12 @@ STARTS = 10
 
 @dataclass(frozen=True)
 class SecondArrangement:
-    """Interlocking and straightness by the second definition.
+    """Interlocking and straightness by the second definition."""
 
-    Parameters
-    ----------
-    F_AV : float or None
-        By how much paths between the top and the foot of the wall are longer than straight,
-        percent; higher is better.  None where a stone from end to end leaves no path.
-    F_AH : float or None
-        The same between its ends; lower is better.  None where a stone is as high as the wall.
-    """
-
+    # By how much paths between the top and the foot of the wall are longer than straight,
+    # percent; higher is better.  None where a stone from end to end leaves no path.
     F_AV: float | None
+    # The same between its ends; lower is better.  None where a stone is as high as the wall.
     F_AH: float | None
 
 
@@ -53,25 +46,9 @@ def second_arrangement(labels: Labels) -> SecondArrangement:
     there is open joint only along the sides where paths start and end, one px of it: paths cannot
     pass by the wall.  :data:`STARTS` paths start evenly spread on each of two sides that face each
     other, and end anywhere on the other one: 100 (v - s) / s, with v their length and s that of a
-    straight one, is averaged over all of them.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        The wall at :data:`FINER` times the working resolution, of :func:`finer_labels` or
-        :func:`outlined_labels`; wedges count as stones.  It is cut to its stones: where a wall is
-        a little shorter than planned, paths must not run through the slit at its end.
-
-    Raises
-    ------
-    LabelImageError
-        E104 when there is no stone in the image.
-
-    Examples
-    --------
-    >>> bed_joint = np.repeat(np.array([[1], [2]], np.uint32), 30, axis=0).repeat(200, axis=1)
-    >>> second_arrangement(bed_joint).F_AV is None, second_arrangement(bed_joint.T).F_AH is None
-    (True, True)
+    straight one, is averaged over all of them.  The wall is at :data:`FINER` times the working
+    resolution, and cut to its stones: where it is a little shorter than planned, paths must not
+    run through the slit at its end.
     """
     joint = joint_mask(frame_wall(labels).labels)
     rows, cols = slice(PAD_TOP, -PAD_BOTTOM), slice(PAD_LEFT, -PAD_RIGHT)
@@ -82,31 +59,12 @@ def second_arrangement(labels: Labels) -> SecondArrangement:
 
 
 def finer_labels(labels: Labels) -> Labels:
-    """Repeat every pixel of a wall that is known at the working resolution only.
-
-    Examples
-    --------
-    >>> finer_labels(np.array([[1, 2]], np.uint32)).tolist()
-    [[1, 1, 1, 2, 2, 2], [1, 1, 1, 2, 2, 2], [1, 1, 1, 2, 2, 2]]
-    """
+    """Repeat every pixel of a wall that is known at the working resolution only."""
     return labels.repeat(FINER, axis=0).repeat(FINER, axis=1)
 
 
 def outlined_labels(blocks: Sequence[Outlined], site: Site) -> Labels:
-    """Draw outlines at the resolution of the second definition.
-
-    Parameters
-    ----------
-    blocks : sequence of (int, (n, 2) float array)
-        Ids and corners of stones and wedges in the wall frame, source px.
-    site : Site
-        Of the wall, at the working resolution.
-
-    Returns
-    -------
-    labels : (h, w) uint32 array
-        As of :class:`drystone.model.wall.Wall`, on finer px.
-    """
+    """Draw outlines at the resolution of the second definition."""
     scale = FINER * site.scale
     finer = Site(FINER * site.width_px, FINER * site.height_px, scale)
     return Outlines.empty(finer).added(blocks, scale).shares.labels
@@ -123,9 +81,7 @@ def _mean_excess(joint: Mask) -> float | None:
     first = (2 * np.arange(STARTS // 2) + 1) * side // (2 * STARTS)
     starts = np.concatenate([first, side - 1 - first[::-1]])
     lengths = [*_lengths_across(joint, starts), *_lengths_across(joint[:, ::-1], starts)]
-    if not lengths:
-        return None
-    return 100.0 * math.fsum(length / straight - 1.0 for length in lengths) / len(lengths)
+    return mean_excess(lengths, straight)
 
 
 def _lengths_across(joint: Mask, rows: NDArray[np.intp]) -> list[float]:

@@ -15,44 +15,16 @@ from drystone.model.wall import Labels
 
 @dataclass(frozen=True)
 class StoneSizes:
-    """What the stones of a wall measure, wedges left out.
+    """What the stones of a wall measure, wedges left out."""
 
-    Parameters
-    ----------
-    count : int
-        Number of stones.
-    area_px : int
-        Pixels of all stones together.
-    mean_height_px, mean_width_px : float
-        Of their upright bounding boxes.
-    """
-
-    count: int
-    area_px: int
-    mean_height_px: float
+    count: int  # number of stones
+    area_px: int  # pixels of all stones together
+    mean_height_px: float  # of their upright bounding boxes
     mean_width_px: float
 
 
 def stone_sizes(labels: Labels, wedge_ids: Collection[int] = frozenset()) -> StoneSizes:
-    """Measure the stones of a wall.
-
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is.
-    wedge_ids : collection of int
-        Labels that are wedges, not stones.
-
-    Raises
-    ------
-    LabelImageError
-        E104 when there is no stone in the image, or nothing but wedges.
-
-    Examples
-    --------
-    >>> stone_sizes(np.array([[0, 7, 7], [9, 7, 7]], np.uint32), wedge_ids={9})
-    StoneSizes(count=1, area_px=4, mean_height_px=2.0, mean_width_px=2.0)
-    """
+    """Measure the stones of a wall."""
     index, ids = numbered(labels)
     boxes = ndimage.find_objects(index)
     areas = counted(index, len(ids))[1:]
@@ -74,23 +46,9 @@ def stone_sizes(labels: Labels, wedge_ids: Collection[int] = frozenset()) -> Sto
 
 
 def top_profile(labels: Labels) -> NDArray[np.intp]:
-    """Return the height of the highest stone pixel over the last row, per column.
+    """Return the height of the highest stone or wedge pixel over the last row, per column.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        The wall, cut out by :func:`drystone.metrics.frame.frame_wall`, standing on its last row.
-
-    Returns
-    -------
-    height_px : (w,) int array
-        Upper edge of the highest stone or wedge pixel of a column; 0 where there is none, be it a
-        joint from top to bottom or an end that the wall does not reach.
-
-    Examples
-    --------
-    >>> top_profile(np.array([[0, 1, 0], [2, 0, 0]], np.uint32)).tolist()
-    [1, 2, 0]
+    0 where there is none, be it a joint from top to bottom or an end that the wall does not reach.
     """
     filled = labels > 0
     return np.where(filled.any(axis=0), labels.shape[0] - filled.argmax(axis=0), 0)
@@ -104,22 +62,8 @@ def level_deviation(labels: Labels, mean_stone_height_px: float) -> float:
     half is a whole stone higher than the other has .5.  Lower is better.  It exposes walls whose
     F_AV is high because of towers.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        The wall, cut out by :func:`drystone.metrics.frame.frame_wall`.
-    mean_stone_height_px : float
-        Positive, wedges left out.
-
-    Notes
-    -----
     The profile is the plain one: in a head joint that is open at the top it drops to what lies
     below, so walls traced with wide joints read higher (the masons' level wall R: .12).
-
-    Examples
-    --------
-    >>> level_deviation(np.array([[1, 1, 0, 0], [2, 2, 3, 3]], np.uint32), 1.0)
-    0.5
     """
     profile = top_profile(labels)
     return float(np.abs(profile - profile.mean()).mean()) / mean_stone_height_px
@@ -133,19 +77,6 @@ def flush_deviation(frame: WallFrame, mean_stone_width_px: float) -> float:
     they lie in the wall.  Rows without any stone, open bed joints, have no end and are left out.
     0 is two straight ends; a wall that lacks half a stone at one end of every other course has
     .125.  Lower is better.  It exposes walls whose F_AV is high because of ragged ends.
-
-    Parameters
-    ----------
-    frame : WallFrame
-        The wall and its end lines.
-    mean_stone_width_px : float
-        Positive, wedges left out.
-
-    Examples
-    --------
-    >>> wall = np.array([[1, 1, 1, 0], [2, 2, 2, 2]], np.uint32)
-    >>> flush_deviation(WallFrame(wall, 0.0, 4.0), 2.0)
-    0.125
     """
     filled = frame.labels > 0
     filled = filled[filled.any(axis=1)]

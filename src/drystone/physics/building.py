@@ -4,12 +4,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import shapely
 
+from drystone.kernels.polygons import Points
+from drystone.kernels.profiles import Floats
 from drystone.physics.scatter import TiltResult, Variation, tilt_test
-from drystone.physics.scene import EngineSettings, Points, Scene
+from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.table import TiltingTable
 from drystone.physics.tilt import TiltSettings
-from drystone.physics.watch import Watch
 
 Group = Sequence[tuple[int, Points]]
 """A stone and its wedges, which come together: ids and corners in the wall frame, source px."""
@@ -25,92 +27,49 @@ stone by .1 L).  For stones of 50 px it is .15 px, about the contact tolerance.
 
 @dataclass(frozen=True)
 class BuildSettings:
-    """How a wall is built up; lengths in mean block sizes L, times in sqrt(L / g).
+    """How a wall is built up; lengths in mean block sizes L, times in sqrt(L / g)."""
 
-    Parameters
-    ----------
-    engine : EngineSettings
-        How the engine is driven.
-    moved_share : float
-        A block has fallen when a point of it has moved by more than this share of its size, the
-        square root of its area; a wedge, when by more than this share of its stone's size.
-    turned_deg : float
-        Or when it has turned by more than this.
-    resting_move, resting_time : float
-        The blocks rest when no point of any has moved by more than this for so long.
-    longest_rest : float
-        Time after every stone.  When blocks still move then the next one comes.
-    look_every : float
-        Time between two looks at the blocks.
-    """
-
-    engine: EngineSettings = field(default_factory=lambda: ROUNDED)
+    engine: EngineSettings = field(default_factory=lambda: ROUNDED)  # how the engine is driven
+    # A block has fallen when a point of it has moved by more than this share of its size, the
+    # square root of its area; a wedge, when by more than this share of its stone's size.
     moved_share: float = 0.1
-    turned_deg: float = 10.0
+    turned_deg: float = 10.0  # or when it has turned by more than this
+    # The blocks rest when no point of any has moved by more than this for so long.
     resting_move: float = 3e-4
     resting_time: float = 1.0
+    # Time after every stone.  When blocks still move then the next one comes.
     longest_rest: float = 10.0
-    look_every: float = 0.25
+    look_every: float = 0.25  # time between two looks at the blocks
 
 
 @dataclass(frozen=True)
 class BlockMove:
-    """What became of one block.
-
-    Parameters
-    ----------
-    id : int
-        Of the block.
-    group : int
-        Number of its group, from 1.
-    move_px : float
-        Largest distance of any point of it from where it was planned, over its whole life.
-    share : float
-        The same over the size (square root of the area) of the stone of its group.
-    turn_deg : float
-        Largest turn over its whole life, either way.
-    overlap_px : float
-        How deep it lay in others, or in the ground, when it was put where it was planned.
-    fell : bool
-        It moved or turned by more than the settings allow.
-    """
+    """What became of one block."""
 
     id: int
-    group: int
+    group: int  # number of its group, from 1
+    # Largest distance of any point of it from where it was planned, over its whole life.
     move_px: float
-    share: float
-    turn_deg: float
+    share: float  # the same over the size (square root of the area) of the stone of its group
+    turn_deg: float  # largest turn over its whole life, either way
+    # How deep it lay in others, or in the ground, when it was put where it was planned.
     overlap_px: float
-    fell: bool
+    fell: bool  # it moved or turned by more than the settings allow
 
 
 @dataclass(frozen=True, eq=False)
 class BuildUp:
-    """A wall as it stands, or lies, when its last stone has come to rest.
+    """A wall as it stands, or lies, when its last stone has come to rest."""
 
-    Parameters
-    ----------
-    moves : tuple of BlockMove
-        In the order of placement.
-    planned, outlines : dict of int to (n, 2) float array
-        Corners of every block where it was planned and where it ended, source px, wall frame,
-        counter-clockwise, not closed.
-    found_moved_px : tuple of float
-        By group: how far a block at most was from its planned place when the group came.
-    restless : tuple of int
-        Numbers of the groups after which the engine did not come to rest.
-    first_fall : int or None
-        Number of the group after which the first block had fallen.
-    mu : float
-        Coefficient of friction.
-    """
-
-    moves: tuple[BlockMove, ...]
+    moves: tuple[BlockMove, ...]  # in the order of placement
+    # (n, 2), corners of every block where it was planned and where it ended, source px, wall
+    # frame, counter-clockwise, not closed.
     planned: dict[int, Points]
     outlines: dict[int, Points]
+    # By group: how far a block at most was from its planned place when the group came.
     found_moved_px: tuple[float, ...]
-    restless: tuple[int, ...]
-    first_fall: int | None
+    restless: tuple[int, ...]  # numbers of the groups after which the engine did not come to rest
+    first_fall: int | None  # number of the group after which the first block had fallen
     mu: float
 
     @property
@@ -139,43 +98,14 @@ def build_up(
     """Put stones on a level ground one after the other and let each come to rest.
 
     Every block comes where it was planned, whatever those before it have done since.  Where it
-    overlaps them the engine pushes both apart, slowly and without giving them speed.
-
-    Parameters
-    ----------
-    groups : sequence of sequence of (int, (n, 2) float array)
-        Stones with their wedges in the order of placement, the stone first: ids and corners.
-    mu : float
-        Coefficient of friction.
-    settings : BuildSettings, optional
-        How the engine is driven, when blocks rest, and when they have fallen.
-    on_group : callable, optional
-        Told the number of groups that stand, after each.
-
-    Returns
-    -------
-    BuildUp
-        Same input, same result.
-
-    Raises
-    ------
-    InputError
-        E302 for mu, E303 for an outline that is none.
-    UsageError
-        E305 when pymunk is not installed.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> block = np.array([[0, 0], [40, 0], [40, 20], [0, 20]])
-    >>> built = build_up([[(1, block)], [(2, block + [0, 20])], [(3, block + [30, 40])]])
-    >>> built.fallen, built.first_fall
-    ((3,), 3)
+    overlaps them the engine pushes both apart, slowly and without giving them speed.  Groups come
+    in the order of placement, the stone of each first; `on_group` is told the number of those that
+    stand.
     """
     settings = settings or BuildSettings()
     if not any(groups):
         return BuildUp((), {}, {}, (0.0,) * len(groups), (), None, mu)
-    scene = Scene({block: corners for group in groups for block, corners in group}, mu)
+    scene = EngineScene({block: corners for group in groups for block, corners in group}, mu)
     table = TiltingTable(scene, settings.engine, placed=())
     table.tilt(0.0)
     watch = Watch(scene)
@@ -204,36 +134,74 @@ def build_up(
     )
 
 
+class Watch:
+    """Keeps the largest movement and turn of every block on a table from where it was planned.
+
+    Its free blocks may come onto the table in any order.
+    """
+
+    def __init__(self, scene: EngineScene) -> None:
+        self._scene = scene
+        self._arms: dict[int, Points] = {}
+        self._centres: dict[int, Points] = {}
+        for block, shape in scene.shapes.items():
+            self._centres[block] = np.array(shape.centroid.coords[0])
+            self._arms[block] = shapely.get_coordinates(shape)[:-1] - self._centres[block]
+        self._moves = dict.fromkeys(scene.shapes, 0.0)
+        self._turns = dict.fromkeys(scene.shapes, 0.0)
+
+    def look(self, table: TiltingTable) -> float:
+        """Take note of where the blocks are; return how far any is from its place at most."""
+        furthest = 0.0
+        for block, corners, turn in self._now(table):
+            way = corners - self._arms[block] - self._centres[block]
+            # Of all points of a rigid body a corner moves furthest.
+            move = float(np.hypot(*way.T).max())
+            self._moves[block] = max(self._moves[block], move)
+            self._turns[block] = max(self._turns[block], float(abs(np.degrees(turn))))
+            furthest = max(furthest, move)
+        return furthest
+
+    def outlines(self, table: TiltingTable) -> dict[int, Points]:
+        """Return the corners of every block on the table where it is now."""
+        return {block: corners for block, corners, _ in self._now(table)}
+
+    def planned(self) -> dict[int, Points]:
+        """Return the corners of every block where it was planned."""
+        return {block: self._arms[block] + centre for block, centre in self._centres.items()}
+
+    def largest(self, block: int) -> tuple[float, float]:
+        """Return the largest movement of any point (unit of the scene) and turn (degrees)."""
+        return self._moves[block], self._turns[block]
+
+    def _now(self, table: TiltingTable) -> list[tuple[int, Points, float]]:
+        found = []
+        poses: Floats = table.poses()
+        for block, (x, y, turn) in zip(table.ids, poses.tolist(), strict=True):
+            cos, sin = np.cos(turn), np.sin(turn)
+            turned = self._arms[block] @ np.array([[cos, sin], [-sin, cos]])
+            centre = np.array([x, y]) * self._scene.length + (0.0, self._scene.ground_y)
+            found.append((block, turned + centre, turn))
+        return found
+
+
 QUICK = Variation("quick", ROUNDED, TiltSettings(coarse=0.064, fine=0.004, longest_hold=20.0))
 """One tilt test for a check: within .01 of one with a quarter of the steps and twice the time to
 come to rest, in half its time; fewer iterations or shorter holds were off by .1 (measured)."""
 
 
 def tilt_of(
-    built: BuildUp, variations: Sequence[Variation] = (QUICK,), seed: int = 0
+    built: BuildUp, variations: Sequence[Variation] = (QUICK,)
 ) -> tuple[TiltResult, TiltResult] | None:
     """Tilt a finished wall from where it came to rest, to the left and to the right.
 
-    Parameters
-    ----------
-    built : BuildUp
-        The wall.
-    variations : sequence of Variation
-        Each is one test; with several their scatter is known.
-    seed : int
-        Of the order and noise of variations.
-
-    Returns
-    -------
-    (TiltResult, TiltResult) or None
-        To the left and to the right; None for a wall that fell, moves on, or is empty.
+    None for a wall that fell, moves on, or is empty.
     """
     if not (built.stands and built.rests and built.outlines):
         return None
-    scene = Scene(built.outlines, built.mu)
-    left = tilt_test(scene, "left", np.random.default_rng(seed), variations)
-    right = tilt_test(scene, "right", np.random.default_rng(seed), variations)
-    return left, right
+    scene = EngineScene(built.outlines, built.mu)
+    left = tilt_test(scene, "left", np.random.default_rng(0), variations)
+    return left, tilt_test(scene, "right", np.random.default_rng(0), variations)
 
 
 def _rest(table: TiltingTable, watch: Watch, settings: BuildSettings) -> bool:
@@ -252,7 +220,7 @@ def _rest(table: TiltingTable, watch: Watch, settings: BuildSettings) -> bool:
 def _moves(
     groups: Sequence[Group],
     watch: Watch,
-    scene: Scene,
+    scene: EngineScene,
     overlaps: dict[int, float],
     settings: BuildSettings,
 ) -> list[BlockMove]:

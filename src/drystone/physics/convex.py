@@ -4,9 +4,9 @@ from math import dist
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-Points = NDArray[np.float64]
+from drystone.kernels.polygons import Points
+
 _Corner = tuple[float, float]
 _Side = tuple[_Corner, _Corner]
 
@@ -29,23 +29,8 @@ def convex_parts(outline: Points) -> tuple[Points, ...]:
     neighbour that touches this corner would be held by it (measured: stones hooked to their
     neighbours, and tilt angles above the proven bound).  Stones of a wall touch at corners
     everywhere.  So parts reach over their seams, between their own faces, and end elsewhere.
-    Inside the stone, where nothing gets to, holes may be left.
-
-    Parameters
-    ----------
-    outline : (n, 2) float array
-        Counter-clockwise, not closed, without crossings.
-
-    Returns
-    -------
-    tuple of (m, 2) float arrays
-        Counter-clockwise, not closed; the outline itself when it is convex.
-
-    Examples
-    --------
-    >>> corner = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], float)
-    >>> len(convex_parts(corner)), len(convex_parts(corner[:3]))
-    (4, 1)
+    Inside the stone, where nothing gets to, holes may be left.  Outline and parts, (n, 2), turn
+    counter-clockwise and are not closed; a convex outline stays as it is.
     """
     ring = _corners(outline)
     whole = shapely.Polygon(ring)
@@ -66,23 +51,6 @@ def without_straight_corners(part: Points) -> Points:
     The engine takes the corner furthest along a normal, then the face at it; where a face is made
     of several edges that may be the wrong one, and the contact comes to lie beside both stones
     (measured: a contact 46 px from where two stones touched, which turned one by 14 degrees).
-
-    Parameters
-    ----------
-    part : (n, 2) float array
-        Counter-clockwise, not closed.
-
-    Returns
-    -------
-    (m, 2) float array
-        The corners that are left.
-
-    Examples
-    --------
-    >>> without_straight_corners(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 2.0]]))
-    array([[0., 0.],
-           [2., 0.],
-           [0., 2.]])
     """
     before, after = part - np.roll(part, 1, axis=0), np.roll(part, -1, axis=0) - part
     turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
@@ -91,10 +59,7 @@ def without_straight_corners(part: Points) -> Points:
 
 
 def _slabs(
-    ring: list[_Corner],
-    whole: shapely.Polygon,
-    faces: set[_Side],
-    cell: list[_Corner],
+    ring: list[_Corner], whole: shapely.Polygon, faces: set[_Side], cell: list[_Corner]
 ) -> list[list[_Corner]]:
     """Cover the faces of a cell one by one; a cell without faces needs nothing."""
     slabs = []
@@ -120,17 +85,7 @@ def _slabs(
 def _reaching(
     whole: shapely.Polygon, inside: _Corner, sides: list[tuple[_Side, bool]]
 ) -> list[_Corner] | None:
-    """Return what of a stone lies between lines, some moved outwards as far as it stays convex.
-
-    Parameters
-    ----------
-    whole : shapely.Polygon
-        The stone.
-    inside : (float, float)
-        A point of the piece that is wanted.
-    sides : list of ((point, point), bool)
-        Lines, the piece to their left, and whether they may be moved.
-    """
+    """Return what of a stone lies between lines, some moved outwards as far as it stays convex."""
     left, low, right, high = whole.bounds
     size = float(np.sqrt(whole.area))
     for reach in REACHES:

@@ -8,9 +8,12 @@ from typing import Literal
 import numpy as np
 import shapely
 
-from drystone.physics.scene import EngineSettings, Points, Scene
+from drystone.kernels.polygons import Points
+from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.tilt import TiltSettings, TiltTrial, tilt_once
-from drystone.statics.model import Direction
+from drystone.statics.flow.nonassociative import nonassociative_load
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import Direction, RigidBlockModel
 
 Event = Literal["fall", "first motion"]
 """Blocks come down; or some block moves noticeably, which often finds a new rest."""
@@ -18,30 +21,17 @@ Event = Literal["fall", "first motion"]
 
 @dataclass(frozen=True)
 class Variation:
-    """One way to run the same test.
+    """One way to run the same test."""
 
-    Parameters
-    ----------
-    name : str
-        What differs.
-    engine : EngineSettings
-        How the engine is driven.
-    tilt : TiltSettings
-        How the table is tilted.
-    shuffled : bool
-        Blocks are given to the engine in a random order.
-    placement_noise, outline_noise : float
-        Greatest shift of every block, and of every corner, along either axis, in mean block sizes.
-    """
-
-    name: str
-    engine: EngineSettings
-    tilt: TiltSettings
-    shuffled: bool = False
+    name: str  # what differs
+    engine: EngineSettings  # how the engine is driven
+    tilt: TiltSettings  # how the table is tilted
+    shuffled: bool = False  # blocks are given to the engine in a random order
+    # Greatest shift of every block, and of every corner, along either axis, in mean block sizes.
     placement_noise: float = 0.0
     outline_noise: float = 0.0
 
-    def of(self, scene: Scene, rng: np.random.Generator) -> Scene:
+    def of(self, scene: EngineScene, rng: np.random.Generator) -> EngineScene:
         """Return the scene with this variation's order and noise."""
         blocks = list(scene.outlines)
         if self.shuffled:
@@ -64,19 +54,12 @@ def _moved(corners: Points, moves: Points) -> Points:
     return corners
 
 
-def usual_variations(
-    engine: EngineSettings | None = None, tilt: TiltSettings | None = None
-) -> tuple[Variation, ...]:
+def usual_variations() -> tuple[Variation, ...]:
     """Return the variations of a tilt test: none, of the engine, of the scene, of the tilting.
 
     Noise stays at the depth to which blocks may overlap, far below a contact tolerance.
-
-    Examples
-    --------
-    >>> [variation.name for variation in usual_variations()][:3]
-    ['as given', 'another order', 'three times the iterations']
     """
-    engine, tilt = engine or EngineSettings(), tilt or TiltSettings()
+    engine, tilt = EngineSettings(), TiltSettings()
     thorough = replace(engine, iterations=3 * engine.iterations)
     return (
         Variation("as given", engine, tilt),
@@ -93,21 +76,10 @@ def usual_variations(
 
 @dataclass(frozen=True)
 class TiltResult:
-    """Outcome of repeated tilt tests in one direction.
+    """Outcome of repeated tilt tests in one direction."""
 
-    Parameters
-    ----------
-    direction : {"left", "right"}
-        Where gravity turns to.
-    trials : tuple of TiltTrial
-        In the order of `names`.
-    names : tuple of str
-        What differed.
-    """
-
-    direction: Direction
+    direction: Direction  # where gravity turns to
     trials: tuple[TiltTrial, ...]
-    names: tuple[str, ...]
 
     @property
     def alphas(self) -> tuple[float, ...]:
@@ -115,19 +87,9 @@ class TiltResult:
         return tuple(trial.alpha for trial in self.trials if trial.alpha is not None)
 
     @property
-    def first_motions(self) -> tuple[float, ...]:
-        """Alphas at which some block first moved noticeably."""
-        return tuple(t.first_motion for t in self.trials if t.first_motion is not None)
-
-    @property
     def alpha(self) -> float | None:
         """Median; None when no trial has one."""
         return median(self.alphas) if self.alphas else None
-
-    @property
-    def low(self) -> float | None:
-        """Greatest tilt that the weakest trial with an alpha stood; None when none has one."""
-        return None if (found := self.interval("fall")) is None else found[0]
 
     @property
     def high(self) -> float | None:
@@ -136,16 +98,14 @@ class TiltResult:
 
     def interval(self, event: Event) -> tuple[float, float] | None:
         """Return the scatter of an event, resolution included; None when it never happened."""
-        alphas = self.alphas if event == "fall" else self.first_motions
+        alphas = self.alphas
+        if event == "first motion":
+            motions = (trial.first_motion for trial in self.trials)
+            alphas = tuple(alpha for alpha in motions if alpha is not None)
         if not alphas:
             return None
         resolution = max(trial.resolution for trial in self.trials)
         return min(alphas) - resolution, max(alphas) + resolution
-
-    @property
-    def moved(self) -> tuple[int, ...]:
-        """Blocks that moved in the fall of the first trial."""
-        return self.trials[0].moved
 
     @property
     def settled_shift(self) -> float:
@@ -159,37 +119,52 @@ class TiltResult:
 
 
 def tilt_test(
-    scene: Scene,
+    scene: EngineScene,
     direction: Direction,
     rng: np.random.Generator,
     variations: Sequence[Variation] | None = None,
 ) -> TiltResult:
-    """Tilt a wall again and again, with variations that should not matter.
-
-    Parameters
-    ----------
-    scene : Scene
-        The wall.
-    direction : {"left", "right"}
-        The horizontal share of gravity points to -x for "left".
-    rng : numpy.random.Generator
-        Of order and noise.
-    variations : sequence of Variation, optional
-        :func:`usual_variations` unless given.
-
-    Returns
-    -------
-    TiltResult
-        One trial a variation.
-
-    Raises
-    ------
-    UsageError
-        E305 when pymunk is not installed.
-    """
+    """Tilt a wall again and again, with variations that should not matter."""
     variations = usual_variations() if variations is None else variations
     trials = tuple(
         tilt_once(variation.of(scene, rng), direction, variation.engine, variation.tilt)
         for variation in variations
     )
-    return TiltResult(direction, trials, tuple(variation.name for variation in variations))
+    return TiltResult(direction, trials)
+
+
+@dataclass(frozen=True)
+class TiltComparison:
+    """One direction of one wall.
+
+    Limit analysis is about the first motion of the blocks as they lie.  A block that has moved may
+    find a better rest, so that the wall falls later than any analysis of it says.
+    """
+
+    simulated: TiltResult
+    associative: float | None  # predicted load multipliers; None when there is none
+    nonassociative: float | None
+
+    @property
+    def direction(self) -> Direction:
+        """Where gravity turns to."""
+        return self.simulated.direction
+
+
+def compare_with_tilt(
+    scene: EngineScene,
+    model: RigidBlockModel,
+    rng: np.random.Generator,
+    variations: Sequence[Variation] | None = None,
+    directions: Sequence[Direction] = ("left", "right"),
+) -> tuple[TiltComparison, ...]:
+    """Tilt a wall and predict its load multipliers, best by a model of the same outlines."""
+    predicted = lateral_resistance(model)
+    return tuple(
+        TiltComparison(
+            tilt_test(scene, direction, rng, variations),
+            (predicted.left if direction == "left" else predicted.right).alpha,
+            nonassociative_load(model, direction).alpha,
+        )
+        for direction in directions
+    )

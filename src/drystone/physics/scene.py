@@ -7,49 +7,24 @@ from math import isfinite
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from drystone.contacts.blocks import check_mu
 from drystone.errors import InputError
-
-Points = NDArray[np.float64]
+from drystone.kernels.polygons import Points
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
-    """Blocks that stand on a level ground, without gaps or overlaps worth speaking of.
+class EngineScene:
+    """Blocks that stand on a level ground, without gaps or overlaps worth speaking of."""
 
-    Parameters
-    ----------
-    outlines : mapping of int to (n, 2) float array
-        By id: corners in the wall frame, y up, either way round, closed or not; any unit of
-        length.  Concave stones are welcome.
-    mu : float
-        Coefficient of friction of every pair, and of the ground.
-    densities : mapping of int to float
-        Weight of a unit of area where it is not 1.
-    fixed : frozenset of int
-        Blocks that are part of the ground.
-    ground_y : float
-        Where the ground is.
-
-    Raises
-    ------
-    InputError
-        E302 for mu, E303 for an outline that is none or a density that is not above 0.
-
-    Examples
-    --------
-    >>> scene = Scene({1: np.array([[0, 0], [1, 0], [1, 4], [0, 4]])}, 0.6)
-    >>> scene.length, scene.shapes[1].area
-    (2.0, 4.0)
-    """
-
+    # (n, 2), by id: corners in the wall frame, y up, either way round, closed or not; any unit
+    # of length.  Concave stones are welcome.
     outlines: Mapping[int, Points]
-    mu: float = 0.58
+    mu: float = 0.58  # coefficient of friction of every pair, and of the ground
+    # Weight of a unit of area where it is not 1.
     densities: Mapping[int, float] = field(default_factory=dict)
-    fixed: frozenset[int] = frozenset()
-    ground_y: float = 0.0
+    fixed: frozenset[int] = frozenset()  # blocks that are part of the ground
+    ground_y: float = 0.0  # where the ground is
 
     def __post_init__(self) -> None:
         check_mu(self.mu)
@@ -90,24 +65,10 @@ class Scene:
 
 @dataclass(frozen=True)
 class EngineSettings:
-    """How the engine is driven; lengths in mean block sizes L, times in sqrt(L / g).
+    """How the engine is driven; lengths in mean block sizes L, times in sqrt(L / g)."""
 
-    Parameters
-    ----------
-    time_step : float
-        Of the engine.
-    iterations : int
-        Passes over all contacts in a step.
-    slop : float
-        Depth to which blocks may overlap, so that contacts do not flicker.
-    overlap_left : float
-        Share of deeper overlap that is left after a unit of time.
-    corner_radius : float
-        Corners of blocks are rounded by this, faces stay where they are.
-    """
-
-    time_step: float = 0.01
-    iterations: int = 100
-    slop: float = 1e-3
-    overlap_left: float = 1.8e-3
-    corner_radius: float = 0.0
+    time_step: float = 0.01  # of the engine
+    iterations: int = 100  # passes over all contacts in a step
+    slop: float = 1e-3  # depth to which blocks may overlap, so that contacts do not flicker
+    overlap_left: float = 1.8e-3  # share of deeper overlap that is left after a unit of time
+    corner_radius: float = 0.0  # corners of blocks are rounded by this, faces stay where they are

@@ -9,13 +9,11 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from drystone.physics.scene import EngineSettings, Scene
+from drystone.kernels.profiles import Floats
+from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.table import TiltingTable
 from drystone.physics.tilt import TiltSettings, hold
-
-Floats = NDArray[np.float64]
 
 LOOKS = 8
 """At the blocks, in every cycle."""
@@ -23,62 +21,36 @@ LOOKS = 8
 
 @dataclass(frozen=True)
 class ShakeSettings:
-    """How the table is shaken; lengths in mean block sizes L, times in sqrt(L / g).
+    """How the table is shaken; lengths in mean block sizes L, times in sqrt(L / g)."""
 
-    Parameters
-    ----------
-    period : float
-        Of the sinusoidal motion: 7 is a second for stones of .2 m.
-    cycles : int
-        At every amplitude.
-    coarse, fine : float
-        Steps of the amplitude, in g.  When blocks move by the limit they are set back by a step,
-        and it is halved until it is at most the fine one.
-    greatest : float
-        Largest amplitude that is tried, g.
-    limit : float
-        A block that has come so far since the wall stood at rest has moved.
-    pause : float
-        Time at rest after the cycles of an amplitude.
-    level : TiltSettings
-        How the wall settles before, and when it has fallen then.
-    """
-
-    period: float = 7.0
-    cycles: int = 2
+    period: float = 7.0  # of the sinusoidal motion: 7 is a second for stones of .2 m
+    cycles: int = 2  # at every amplitude
+    # Steps of the amplitude, in g.  When blocks move by the limit they are set back by a step,
+    # and it is halved until it is at most the fine one.
     coarse: float = 0.1
     fine: float = 0.0125
-    greatest: float = 1.5
-    limit: float = 0.1
-    pause: float = 1.0
+    greatest: float = 1.5  # largest amplitude that is tried, g
+    limit: float = 0.1  # a block that has come so far since the wall stood at rest has moved
+    pause: float = 1.0  # time at rest after the cycles of an amplitude
+    # How the wall settles before, and when it has fallen then.
     level: TiltSettings = field(default_factory=lambda: TiltSettings(longest_hold=20.0))
 
 
 @dataclass(frozen=True)
 class ShakeTrial:
-    """Outcome of a test.
+    """Outcome of a test."""
 
-    Parameters
-    ----------
-    pga_g : float or None
-        Peak acceleration of the ground, in g, that the blocks stood: the largest amplitude at
-        which none moved by the limit.  None when they do not stand at rest.
-    resolution_g : float
-        At `pga_g` plus it, some did; 0 when none did up to the largest amplitude.
-    moved : tuple of int
-        Blocks that moved by the limit then, those that moved most first.
-    settled_shift : float
-        Largest way of any point of a block while the wall settled, unit of the scene.
-    """
-
+    # Peak acceleration of the ground, in g, that the blocks stood: the largest amplitude at
+    # which none moved by the limit.  None when they do not stand at rest.
     pga_g: float | None
-    resolution_g: float
-    moved: tuple[int, ...]
+    resolution_g: float  # at `pga_g` plus it, some did; 0 when none did up to the largest amplitude
+    moved: tuple[int, ...]  # blocks that moved by the limit then, those that moved most first
+    # Largest way of any point of a block while the wall settled, unit of the scene.
     settled_shift: float
 
 
 def shake_once(
-    scene: Scene,
+    scene: EngineScene,
     engine: EngineSettings | None = None,
     settings: ShakeSettings | None = None,
     *,
@@ -86,109 +58,51 @@ def shake_once(
 ) -> ShakeTrial:
     """Shake the ground under a wall, step by step, each from the state before.
 
-    Parameters
-    ----------
-    scene : Scene
-        The wall.
-    engine : EngineSettings, optional
-        How the engine is driven.
-    settings : ShakeSettings, optional
-        How the table is shaken.
-    watched : collection of int, optional
-        Blocks whose movement counts; all unless given.
-
-    Returns
-    -------
-    ShakeTrial
-        Same input, same result.
-
-    Raises
-    ------
-    UsageError
-        E305 when pymunk is not installed.
-
-    Notes
-    -----
     A rigid block on the ground slides when the acceleration exceeds mu g and rocks when it exceeds
     b/h g, for its width b and height h.  By how much it must for a movement of the limit depends
-    on the period: the shorter, the more.
+    on the period: the shorter, the more.  Only the blocks that are watched count; all unless given.
     """
-    settings = settings or ShakeSettings()
-    table = TiltingTable(scene, engine or EngineSettings())
+    settings, engine = settings or ShakeSettings(), engine or EngineSettings()
+    table = TiltingTable(scene, engine)
     given = table.poses()
     stands = hold(table, 0.0, given, settings.level)
     shifts = table.shifts(given)
     settled_shift = float(shifts.max()) * scene.length
     if not stands:
-        return ShakeTrial(None, 0.0, _beyond(table, shifts, settings.level.fallen), settled_shift)
-    time_step = (engine or EngineSettings()).time_step
-    test = _Test(table.poses(), _counted(table, watched), time_step, settings)
-    pga_g, resolution_g, moved = test.raised(table)
-    return ShakeTrial(pga_g, resolution_g, moved, settled_shift)
+        fallen = table.beyond(shifts, settings.level.fallen)
+        return ShakeTrial(None, 0.0, fallen, settled_shift)
+    counted = np.array([watched is None or block in watched for block in table.ids])
 
+    def moved(shaken: TiltingTable, amplitude_g: float) -> tuple[int, ...]:
+        """Shake at an amplitude; return the blocks that moved, once one did."""
+        signal = sinusoid(amplitude_g, settings, engine.time_step)
+        still = [0.0] * round(settings.pause / engine.time_step)
+        parts = np.array_split(signal, LOOKS * settings.cycles)
+        for part in (*(part.tolist() for part in parts), still):
+            shaken.ride(part)
+            shifts = np.where(counted, shaken.shifts(settled), 0.0)
+            if shifts.max() > settings.limit:
+                return shaken.beyond(shifts, settings.limit)
+        return ()
 
-@dataclass(frozen=True, eq=False)
-class _Test:
-    settled: Floats
-    counted: NDArray[np.bool_]
-    time_step: float
-    settings: ShakeSettings
-
-    def raised(self, standing: TiltingTable) -> tuple[float, float, tuple[int, ...]]:
-        """Raise the amplitude until blocks move; return the last that they stood, and which."""
-        low, step, suspect = 0.0, self.settings.coarse, 0.0
-        while low < self.settings.greatest:
-            table = standing.copy()
-            shifts = self._shaken(table, low + step)
-            if shifts is None:
-                low, standing = low + step, table
-                # Smaller steps may have led past what a larger one set off.
-                step = self.settings.coarse if low >= suspect else step
-            elif step > self.settings.fine:
-                suspect, step = low + step, step / 2
-            else:
-                return low, step, _beyond(table, shifts, self.settings.limit)
-        return low, 0.0, ()
-
-    def _shaken(self, table: TiltingTable, amplitude_g: float) -> Floats | None:
-        """Shake at an amplitude; return how far the blocks came if one moved by the limit."""
-        signal = sinusoid(amplitude_g, self.settings, self.time_step)
-        for part in np.array_split(signal, LOOKS * self.settings.cycles):
-            table.ride(part.tolist())
-            shifts = np.where(self.counted, table.shifts(self.settled), 0.0)
-            if shifts.max() > self.settings.limit:
-                return shifts
-        table.ride([0.0] * round(self.settings.pause / self.time_step))
-        shifts = np.where(self.counted, table.shifts(self.settled), 0.0)
-        return shifts if shifts.max() > self.settings.limit else None
+    settled, standing = table.poses(), table
+    low, step, suspect = 0.0, settings.coarse, 0.0
+    while low < settings.greatest:
+        table = standing.copy()
+        found = moved(table, low + step)
+        if not found:
+            low, standing = low + step, table
+            # Smaller steps may have led past what a larger one set off.
+            step = settings.coarse if low >= suspect else step
+        elif step > settings.fine:
+            suspect, step = low + step, step / 2
+        else:
+            return ShakeTrial(low, step, found, settled_shift)
+    return ShakeTrial(low, 0.0, (), settled_shift)
 
 
 def sinusoid(amplitude_g: float, settings: ShakeSettings, time_step: float) -> Floats:
-    """Return the accelerations of the ground at an amplitude, a time step apart, in g.
-
-    Parameters
-    ----------
-    amplitude_g : float
-        Peak acceleration.
-    settings : ShakeSettings
-        Period and number of cycles.
-    time_step : float
-        Of the engine.
-
-    Examples
-    --------
-    >>> sinusoid(0.5, ShakeSettings(period=4.0, cycles=1), 1.0).round(3).tolist()
-    [0.354, 0.354, -0.354, -0.354]
-    """
+    """Return the accelerations of the ground at an amplitude, a time step apart, in g."""
     steps = round(settings.cycles * settings.period / time_step)
     times = (np.arange(steps) + 0.5) * time_step
     return np.asarray(amplitude_g * np.sin(2 * np.pi * times / settings.period))
-
-
-def _counted(table: TiltingTable, watched: Collection[int] | None) -> NDArray[np.bool_]:
-    return np.array([watched is None or block in watched for block in table.ids])
-
-
-def _beyond(table: TiltingTable, shifts: Floats, limit: float) -> tuple[int, ...]:
-    order = np.argsort(-shifts, kind="stable")
-    return tuple(table.ids[i] for i in order.tolist() if shifts[i] > limit)

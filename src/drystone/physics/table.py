@@ -7,13 +7,12 @@ from typing import Any, Self
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from drystone.errors import UsageError
-from drystone.physics.convex import Points, convex_parts, without_straight_corners
-from drystone.physics.scene import EngineSettings, Scene
-
-Floats = NDArray[np.float64]
+from drystone.kernels.polygons import Points
+from drystone.kernels.profiles import Floats
+from drystone.physics.convex import convex_parts, without_straight_corners
+from drystone.physics.scene import EngineScene, EngineSettings
 
 GROUND_THICKNESS = 2.0
 """In mean block sizes; thick enough that nothing gets through."""
@@ -22,25 +21,12 @@ GROUND_THICKNESS = 2.0
 class TiltingTable:
     """Blocks on a table; lengths in mean block sizes L, times in sqrt(L / g).
 
-    Turning gravity is the same as turning the table, seen from the table.
-
-    Parameters
-    ----------
-    scene : Scene
-        The blocks; their order is that of the engine.
-    settings : EngineSettings
-        How the engine is driven.
-    placed : iterable of int, optional
-        Blocks that stand on it from the beginning; all of them unless given.
-
-    Raises
-    ------
-    UsageError
-        E305 when pymunk is not installed.
+    Turning gravity is the same as turning the table, seen from the table.  The engine has the
+    blocks in the order of the scene; all of them stand on it unless some are given as `placed`.
     """
 
     def __init__(
-        self, scene: Scene, settings: EngineSettings, placed: Iterable[int] | None = None
+        self, scene: EngineScene, settings: EngineSettings, placed: Iterable[int] | None = None
     ) -> None:
         self.ids: tuple[int, ...] = ()
         self._settings = settings
@@ -53,20 +39,10 @@ class TiltingTable:
             self.place(scene, block)
         self._add_ground(scene)
 
-    def place(self, scene: Scene, block: int) -> float:
+    def place(self, scene: EngineScene, block: int) -> float:
         """Put a block where its scene has it, whatever the others have done since.
 
-        Parameters
-        ----------
-        scene : Scene
-            That of the table.
-        block : int
-            Its id.
-
-        Returns
-        -------
-        float
-            How deep it lies in others, or in the ground, before the engine pushes them apart.
+        Returns how deep it lies in others, or in the ground, before the engine pushes them apart.
         """
         engine = load_engine()
         shape = scene.shapes[block]
@@ -111,7 +87,7 @@ class TiltingTable:
         shape.elasticity = 0.0
         self._space.add(shape)
 
-    def _add_ground(self, scene: Scene) -> None:
+    def _add_ground(self, scene: EngineScene) -> None:
         left, _, right, _ = shapely.GeometryCollection(list(scene.shapes.values())).bounds
         left, right = (2 * left - right) / scene.length, (2 * right - left) / scene.length
         ground = np.array(
@@ -162,6 +138,11 @@ class TiltingTable:
         turns = np.minimum(np.abs(change[:, 2]), np.pi)
         return np.asarray(np.hypot(change[:, 0], change[:, 1]) + turns * self._reaches)
 
+    def beyond(self, shifts: Floats, limit: float) -> tuple[int, ...]:
+        """Return which free blocks have come further than a limit, those that moved most first."""
+        order = np.argsort(-shifts, kind="stable")
+        return tuple(self.ids[i] for i in order.tolist() if shifts[i] > limit)
+
     def _free(self) -> list[Any]:
         dynamic = load_engine().Body.DYNAMIC
         return [body for body in self._space.bodies if body.body_type == dynamic]
@@ -173,13 +154,7 @@ def _outline(part: shapely.Polygon) -> Points:
 
 
 def load_engine() -> Any:
-    """Return pymunk; it is an extra, so it is loaded only when it is needed.
-
-    Raises
-    ------
-    UsageError
-        E305 when it is not installed.
-    """
+    """Return pymunk; it is an extra, so it is loaded only when it is needed."""
     try:
         return import_module("pymunk")
     except ImportError as error:

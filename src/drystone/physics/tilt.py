@@ -2,111 +2,60 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-from drystone.physics.scene import EngineSettings, Scene
+from drystone.kernels.profiles import Floats
+from drystone.physics.scene import EngineScene, EngineSettings
 from drystone.physics.table import TiltingTable
 from drystone.statics.model import Direction
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class TiltSettings:
-    """How the table is tilted; lengths in mean block sizes L, times in sqrt(L / g).
+    """How the table is tilted; lengths in mean block sizes L, times in sqrt(L / g)."""
 
-    Parameters
-    ----------
-    coarse, fine : float
-        Steps of alpha.  When blocks come down, or first move, they are set back by a step, and it
-        is halved until it is at most the fine one.
-    greatest : float
-        Largest alpha that is tried.
-    fallen : float
-        A block that has come so far since the wall stood at rest has fallen.
-    noticeable : float
-        A block that has come so far has moved.
-    resting_speed : float
-        The blocks rest when no point of any is faster.
-    from_level : bool
-        Every tilt is reached at once from the settled wall instead of from the tilt before.
-    shortest_hold, longest_hold : float
-        Time at every tilt.  Blocks that still move after the longest count as fallen.
-    """
-
+    # Steps of alpha.  When blocks come down, or first move, they are set back by a step, and it
+    # is halved until it is at most the fine one.
     coarse: float = 0.032
     fine: float = 0.002
-    greatest: float = 1.5
-    fallen: float = 0.5
-    noticeable: float = 0.02
-    resting_speed: float = 1e-4
+    greatest: float = 1.5  # largest alpha that is tried
+    fallen: float = 0.5  # a block that has come so far since the wall stood at rest has fallen
+    noticeable: float = 0.02  # a block that has come so far has moved
+    resting_speed: float = 1e-4  # the blocks rest when no point of any is faster
+    # Time at every tilt.  Blocks that still move after the longest count as fallen.
     shortest_hold: float = 1.0
     longest_hold: float = 40.0
+    # Every tilt is reached at once from the settled wall instead of from the tilt before.
     from_level: bool = False
 
 
 @dataclass(frozen=True)
 class TiltTrial:
-    """Outcome of one tilt test.
+    """Outcome of one tilt test."""
 
-    Parameters
-    ----------
-    direction : {"left", "right"}
-        Where gravity turns to.
-    alpha : float or None
-        Tangent of the angle at which blocks come down; None when they fell at rest or never.
-    first_motion : float or None
-        Alpha at which some block first moved noticeably, even if it came to rest again.
-    moved : tuple of int
-        Blocks that moved noticeably at the last tilt, those that moved most first.
-    settled_shift : float
-        Largest way of any point of a block while the wall settled on the level table, in the
-        unit of the scene.
-    resolution : float
-        Of `alpha` and `first_motion`: the blocks stood at `alpha` minus it and fell at `alpha` plus
-        it.  Half a fine step or less.
-    fell_at_rest : bool
-        Blocks came down on the level table.
-    """
-
-    direction: Direction
+    direction: Direction  # gravity turns there
+    # Tangent of the angle at which blocks come down; None when they fell at rest or never.
     alpha: float | None
+    # Alpha at which some block first moved noticeably, even if it came to rest again.
     first_motion: float | None
+    # Blocks that moved noticeably at the last tilt, those that moved most first.
     moved: tuple[int, ...]
+    # Largest way of any point of a block while the wall settled on the level table, in the unit
+    # of the scene.
     settled_shift: float
+    # Of `alpha` and `first_motion`: the blocks stood at `alpha` minus it and fell at `alpha`
+    # plus it.  Half a fine step or less.
     resolution: float
-    fell_at_rest: bool = False
+    fell_at_rest: bool = False  # blocks came down on the level table
 
 
 def tilt_once(
-    scene: Scene,
+    scene: EngineScene,
     direction: Direction,
     engine: EngineSettings | None = None,
     settings: TiltSettings | None = None,
 ) -> TiltTrial:
     """Tilt the table under a wall, step by step, each from the state before.
 
-    Parameters
-    ----------
-    scene : Scene
-        The wall.
-    direction : {"left", "right"}
-        The horizontal share of gravity points to -x for "left".
-    engine : EngineSettings, optional
-        How the engine is driven.
-    settings : TiltSettings, optional
-        How the table is tilted.
-
-    Returns
-    -------
-    TiltTrial
-        Same input, same result.
-
-    Raises
-    ------
-    UsageError
-        E305 when pymunk is not installed.
+    The horizontal share of gravity points to -x for "left".
     """
     settings = settings or TiltSettings()
     table = TiltingTable(scene, engine or EngineSettings())
@@ -115,25 +64,17 @@ def tilt_once(
     shifts = table.shifts(given)
     settled_shift = float(shifts.max()) * scene.length
     if not stands:
-        fallen = _moved(table.ids, shifts, settings)
-        return TiltTrial(direction, None, None, fallen, settled_shift, 0.0, fell_at_rest=True)
-    fall = _raised(table, -1.0 if direction == "left" else 1.0, settings)
-    return TiltTrial(
-        direction, fall.alpha, fall.first_motion, fall.moved, settled_shift, fall.step / 2
-    )
+        moved = table.beyond(shifts, settings.noticeable)
+        return TiltTrial(direction, None, None, moved, settled_shift, 0.0, fell_at_rest=True)
+    return _raised(table, direction, settings, settled_shift)
 
 
-@dataclass(frozen=True)
-class _Fall:
-    alpha: float | None
-    first_motion: float | None
-    moved: tuple[int, ...]
-    step: float
-
-
-def _raised(level: TiltingTable, sign: float, settings: TiltSettings) -> _Fall:
+def _raised(
+    level: TiltingTable, direction: Direction, settings: TiltSettings, settled_shift: float
+) -> TiltTrial:
     """Raise the table until blocks come down."""
     settled, standing = level.poses(), level
+    sign = -1.0 if direction == "left" else 1.0
     low, step, suspect = 0.0, settings.coarse, 0.0
     first_motion: float | None = None
     while low < settings.greatest:
@@ -147,32 +88,21 @@ def _raised(level: TiltingTable, sign: float, settings: TiltSettings) -> _Fall:
         if first:
             first_motion = low + step / 2
         if not stands:
-            moved = _moved(table.ids, table.shifts(standing.poses()), settings)
-            return _Fall(low + step / 2, first_motion, moved, step)
+            moved = table.beyond(table.shifts(standing.poses()), settings.noticeable)
+            alpha = low + step / 2
+            return TiltTrial(direction, alpha, first_motion, moved, settled_shift, step / 2)
         low, standing = low + step, table
         # Smaller steps may have led past what a larger one set off.
         step = settings.coarse if first or low >= suspect else step
-    return _Fall(None, first_motion, (), min(step, settings.fine))
+    resolution = min(step, settings.fine) / 2
+    return TiltTrial(direction, None, first_motion, (), settled_shift, resolution)
 
 
 def hold(table: TiltingTable, alpha: float, settled: Floats, settings: TiltSettings) -> bool:
-    """Hold a tilt until the blocks rest or have fallen.
+    """Hold a tilt until the blocks rest or have fallen, and say whether they rest.
 
-    Parameters
-    ----------
-    table : TiltingTable
-        Changed: it is left in the state reached.
-    alpha : float
-        Tangent of the tilt, positive when gravity turns towards +x.
-    settled : (n, 3) float array
-        Poses that falling is measured from.
-    settings : TiltSettings
-        When blocks rest, and when they have fallen.
-
-    Returns
-    -------
-    bool
-        Whether they rest.
+    `alpha` is the tangent of the tilt, positive when gravity turns towards +x; falling is measured
+    from the settled poses, (n, 3).  The table is left in the state reached.
     """
     table.tilt(alpha)
     chunk, held = settings.shortest_hold / 4, 0.0
@@ -184,8 +114,3 @@ def hold(table: TiltingTable, alpha: float, settled: Floats, settings: TiltSetti
         if held >= settings.shortest_hold and table.speeds().max() <= settings.resting_speed:
             return True
     return False
-
-
-def _moved(ids: tuple[int, ...], shifts: Floats, settings: TiltSettings) -> tuple[int, ...]:
-    order = np.argsort(-shifts, kind="stable")
-    return tuple(ids[i] for i in order.tolist() if shifts[i] > settings.noticeable)

@@ -14,19 +14,15 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
+from drystone.planner.deadline import TimeIsUp
 from drystone.planner.search_settings import SearchSettings
-from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
-from drystone.planner.workshop import Workshop
-from drystone.search.archive import archived
-from drystone.search.chain import wedged
-from drystone.search.first_walls import next_batch, promised
-from drystone.search.found import Found
+from drystone.search.chain import Job, more_links, one_pass, wedged
+from drystone.search.goal import FoundWall
 from drystone.search.operators import Credits
-from drystone.search.packed import Packed
-from drystone.search.standing import Chains, PackedLink, Progress, Reached, Standing
-from drystone.search.work import Job, more_links, one_pass
+from drystone.search.packed import PackedWall
+from drystone.search.standing import Chains, Link, Progress, Reached, Standing
+from drystone.search.yard import Yard
 
 NOTABLE = 0.01
 """A round goes on for walls that are so much better, in units of merit, than at the last time."""
@@ -34,63 +30,55 @@ NOTABLE = 0.01
 PROMISING = 32
 """Walls of a chain after which planned walls are worth no more than their merit."""
 
+BATCH = 4
+"""Walls after which it is looked how the planned ones do: however many processes there are."""
+
+SHARE = 0.75
+"""The share of the first walls that are planned before anything is known."""
+
+WEIGHT = 2.0
+"""For how many walls that counts."""
+
+STALE = 8
+"""After so many first walls that are not better than one that was not planned there are no more."""
+
+PROMISE = 0.6
+"""So much more than others, in units of merit, planned walls win by the changes of chains."""
+
 Result = TypeVar("Result")
 
 
 def searching(
-    start: Found | Standing,
-    workshop: Workshop,
-    settings: PlannerSettings,
-    seed: int,
-    *,
-    until: Deadline = NEVER,
-    executor: Executor | None = None,
+    start: FoundWall | Standing, yard: Yard, seed: int, executor: Executor | None = None
 ) -> Iterator[Progress]:
-    """Look for better walls than a first one.
+    """Look for better walls than that of the seed itself, or go on from where a search was cut off.
 
-    Parameters
-    ----------
-    start : Found or Standing
-        The wall of the seed itself, or where the search was cut off.
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        All parameters; those of the search say how many walls are built at most.
-    seed : int
-        Of everything that is drawn.
-    until : Deadline
-        Ends the search, as far as the budget does not end it before.  A wall that is not whole by
-        then is none.
-    executor : concurrent.futures.Executor, optional
-        Processes that build walls side by side; the walls do not depend on it.
-
-    Yields
-    ------
-    Progress
-        After the first wall, and whenever walls have been added.  Of a search that goes on, first
-        what it had come to.
+    Yields what it has come to after the first wall, or when it goes on, and whenever walls have
+    been added.  It ends with the budget or with the time of the yard; a wall that is not whole by
+    then is none.  The walls do not depend on the processes that build them.
     """
-    tools = pickle.dumps((workshop.stones, workshop.site, settings))
-    job = Job(tools, seed, until)
+    settings = yard.settings
+    job = Job(pickle.dumps((yard.workshop.stones, yard.workshop.site, settings)), seed, yard.until)
     if isinstance(start, Standing):
         at = start
-        yield _Round(at.number, at.before, job, settings, executor).again(at)
+        reached = at.chains.reached if at.chains else _together(at.found)
+        yield _Round(at.number, at.before, job, settings.search, executor).after(reached, at)
     else:
         with suppress(TimeIsUp):
-            start = start.judged(workshop, settings, until=until)
-        first = Packed.of(start)
-        yield Progress(1, first, first.solves, archived((), [first]))
+            start = start.judged(yard)
+        first = Reached.of(PackedWall.of(start))
+        yield Progress(first.walls, first.best, first.solves, first.kept)
         if settings.search.budget == 1:
             return
         # Its wedges are told of with the next wall: a search that ends before that is repeated by
         # the budget 1, which is the wall without them.
         try:
-            until.look()
-            at = Standing(0, None, (Packed.of(wedged(start, workshop, settings, until)),))
+            yard.until.look()
+            at = Standing(0, None, (PackedWall.of(wedged(start, yard)),))
         except TimeIsUp:
             return
     while True:
-        one = _Round(at.number, at.before, job, settings, executor)
+        one = _Round(at.number, at.before, job, settings.search, executor)
         chains = at.chains or (yield from one.first_walls(at.found))
         before = None if chains is None else (yield from one.improved(chains))
         if before is None:
@@ -100,46 +88,28 @@ def searching(
 
 @dataclass(frozen=True, eq=False)
 class _Round:
-    """First walls and chains until they find nothing better: what all of it goes by.
+    """First walls and chains until they find nothing better: what all of it goes by."""
 
-    Parameters
-    ----------
-    number : int
-        Of the round, from 0.
-    before : Reached or None
-        What the rounds before it came to.
-    job, settings, executor
-        See :func:`searching`.
-    """
-
-    number: int
-    before: Reached | None
+    number: int  # from 0
+    before: Reached | None  # by the rounds before it
     job: Job
-    settings: PlannerSettings
+    search: SearchSettings
     executor: Executor | None
 
     @property
-    def search(self) -> SearchSettings:
-        """Settings with the budget that is left to this round.
+    def budget(self) -> int:
+        """What is left to this round.
 
         A search may go on with a smaller budget than it had, which ends it.
         """
-        search = self.settings.search
-        spent = self.before.walls if self.before else 0
-        return replace(search, budget=max(1, search.budget - spent))
+        return max(1, self.search.budget - (self.before.walls if self.before else 0))
 
-    def again(self, at: Standing) -> Progress:
-        """Say what a search had come to that goes on from where it stood."""
-        reached = at.chains.reached if at.chains else _together(at.found)
-        return self._after(reached, at)
-
-    def first_walls(self, found: Sequence[Packed]) -> Generator[Progress, None, Chains | None]:
+    def first_walls(self, found: Sequence[PackedWall]) -> Generator[Progress, None, Chains | None]:
         """Add first walls to those that are found; return what chains begin with.
 
         None where time is up.
         """
-        search = self.search
-        reached = _together(found) if found else None
+        search = replace(self.search, budget=self.budget)
         while (batch := next_batch(found, search)) is not None:
             numbers, share = batch
             tasks = [(self.job, self.number * search.passes + k, share) for k in numbers]
@@ -147,112 +117,73 @@ class _Round:
                 if wall is None:
                     return None
                 found = (*found, wall)
-                reached = _together([wall], reached)
-                yield self._after(reached, Standing(self.number, self.before, found))
-        assert reached is not None  # noqa: S101 - a round has at least one first wall
+                yield self.after(_together(found), Standing(self.number, self.before, found))
+        reached = _together(found)
         links = tuple(_links(found, self.number, search.chains))
         return Chains(reached, links, 0, reached.walls, reached.best.merit + NOTABLE)
 
     def improved(self, at: Chains) -> Generator[Progress, None, Reached | None]:
         """Improve the first walls; return what another round begins after, None at the end."""
-        search = self.search
-        while at.reached.walls < search.budget:
-            left = search.budget - at.reached.walls + at.turn * search.share_every
-            counts = _shares(left, search.chains, search.share_every)
+        search, budget = self.search, self.budget
+        each = search.share_every
+        while at.reached.walls < budget:
+            left = budget - at.reached.walls + at.turn * each
+            # All chains build as many walls, but for the end of the budget.
+            counts = [min(each, max(0, left - k * each)) for k in range(search.chains)]
             asked = range(at.turn, sum(count > 0 for count in counts))
             tasks = [(self.job, at.links[k], counts[k]) for k in asked]
             for link, k in zip(_mapped(self.executor, more_links, tasks), asked, strict=True):
                 if link is None:
                     return None
                 built = link.done - at.links[k].done
-                at = _lengthened(at, link, built)
-                whole = built == search.share_every
-                standing = Standing(self.number, self.before, (), at) if whole else None
-                yield self._after(at.reached, standing)
+                at = _with_link(at, link, built)
+                standing = Standing(self.number, self.before, (), at) if built == each else None
+                yield self.after(at.reached, standing)
                 if built < counts[k]:
                     # It became too late; what later chains have built is not in the budget.
                     return None
             best, walls = at.reached.best, at.reached.walls
             if best.merit >= at.goal:
                 at = replace(at, better=walls, goal=best.merit + NOTABLE)
-            if walls - at.better >= search.patience * len(best.groups) and walls < search.budget:
+            if walls - at.better >= search.patience * len(best.groups) and walls < budget:
                 return self._in_all(at.reached)
-            at = replace(at, links=tuple(_shared(_knowing(at.links))), turn=0)
+            # All chains know then which changes have helped in each.
+            known = sum((link.learnt for link in at.links), at.links[0].known)
+            links = [replace(link, known=known, learnt=Credits()) for link in at.links]
+            at = replace(at, links=tuple(_shared(links)), turn=0)
         return None
 
-    def _after(self, reached: Reached, standing: Standing | None) -> Progress:
+    def after(self, reached: Reached, standing: Standing | None) -> Progress:
         """Say how far the search is, from what this round has come to."""
         whole = self._in_all(reached)
         return Progress(whole.walls, whole.best, whole.solves, whole.kept, standing)
 
     def _in_all(self, reached: Reached) -> Reached:
-        """Add what the rounds before have come to."""
-        before = self.before
-        if before is None:
-            return reached
-        return Reached(
-            before.walls + reached.walls,
-            _best([before.best, reached.best]),
-            before.solves + reached.solves,
-            archived(before.kept, reached.kept),
-        )
+        return reached if self.before is None else self.before + reached
 
 
-def _together(walls: Sequence[Packed], before: Reached | None = None) -> Reached:
-    """Add first walls to what a round has come to, one after the other."""
-    for wall in walls:
-        before = (
-            Reached(1, wall, wall.solves, archived((), [wall]))
-            if before is None
-            else Reached(
-                before.walls + 1,
-                _best([before.best, wall]),
-                before.solves + wall.solves,
-                archived(before.kept, [wall]),
-            )
-        )
-    assert before is not None  # noqa: S101 - there is at least one
-    return before
+def _together(walls: Sequence[PackedWall]) -> Reached:
+    """Say what the first walls of a round have come to."""
+    first, *others = map(Reached.of, walls)
+    return sum(others, first)
 
 
-def _lengthened(at: Chains, link: PackedLink, built: int) -> Chains:
+def _with_link(at: Chains, link: Link, built: int) -> Chains:
     """Add the walls of the chain whose turn it is."""
-    reached, last = at.reached, at.links[at.turn]
-    reached = Reached(
-        reached.walls + built,
-        _best([reached.best, link.best]),
-        reached.solves + link.solves - last.solves,
-        archived(reached.kept, link.kept),
-    )
+    more = Reached(built, link.best, link.solves - at.links[at.turn].solves, link.kept)
     links = (*at.links[: at.turn], replace(link, kept=()), *at.links[at.turn + 1 :])
-    return replace(at, reached=reached, links=links, turn=at.turn + 1)
+    return replace(at, reached=at.reached + more, links=links, turn=at.turn + 1)
 
 
-def _best(walls: Sequence[Packed]) -> Packed:
-    """Return the best wall; of equal ones the first."""
-    return max(walls, key=lambda wall: wall.merit)
-
-
-def _links(found: Sequence[Packed], number: int, chains: int) -> list[PackedLink]:
+def _links(found: Sequence[PackedWall], number: int, chains: int) -> list[Link]:
     """Begin a round's chains from the most promising; from the first again where there are few."""
     order = sorted(range(len(found)), key=lambda k: (-promised(found[k]), k))
     starts = [found[order[k] if k < len(order) else order[0]] for k in range(chains)]
     first = number * chains
-    return [PackedLink(first + k, 0, start, start, Solves()) for k, start in enumerate(starts)]
+    return [Link(first + k, 0, start, start, Solves()) for k, start in enumerate(starts)]
 
 
-def _shares(left: int, chains: int, each: int) -> list[int]:
-    """Say how many walls each chain builds next: all the same, but for the end of the budget."""
-    return [min(each, max(0, left - k * each)) for k in range(chains)]
-
-
-def _knowing(links: Sequence[PackedLink]) -> list[PackedLink]:
-    """Let all chains know which changes have helped in each."""
-    known = sum((link.learnt for link in links), links[0].known)
-    return [replace(link, known=known, learnt=Credits()) for link in links]
-
-
-def _shared(links: list[PackedLink]) -> list[PackedLink]:
+def _shared(links: list[Link]) -> list[Link]:
     """Let the chain that is furthest behind go on from the wall that is best or promises most."""
     worth = [promised(link.best, max(0.0, 1.0 - link.done / PROMISING)) for link in links]
     first, last = worth.index(max(worth)), worth.index(min(worth))
@@ -278,3 +209,45 @@ def _mapped(
     finally:
         for future in futures:
             future.cancel()
+
+
+def promised(wall: PackedWall, share: float = 1.0) -> float:
+    """Return what a wall is worth as a start.
+
+    A planned one promises something beyond its merit; the share of it is what is still to come.
+    """
+    return wall.merit + (0.0 if wall.courses is None else share * PROMISE)
+
+
+def next_batch(found: Sequence[PackedWall], search: SearchSettings) -> tuple[range, float] | None:
+    """Return the numbers of the next first walls of a round, and which share of them is planned.
+
+    None when there are enough, and it is time to improve the best of them.
+    """
+    done = len(found)
+    # Of a batch that is begun all is as when it began; the very first wall is of the first batch.
+    before = found[: done - done % BATCH]
+    if done >= search.passes or (before and stale(before)):
+        return None
+    end = min(len(before) + BATCH, search.passes, search.budget)
+    return (range(done, end), planned_share(before)) if end > done else None
+
+
+def stale(found: Sequence[PackedWall]) -> bool:
+    """Say whether it is time to improve the best wall, as the last were none better.
+
+    Never of a planned wall: improving it wins less than another plan may.
+    """
+    best = max(range(len(found)), key=lambda k: (promised(found[k]), -k))
+    return found[best].courses is None and len(found) - 1 - best >= STALE
+
+
+def planned_share(found: Sequence[PackedWall]) -> float:
+    """Return the share of the next walls that are planned: that of the better half so far.
+
+    On stones of masons plans win; stones with many corners are laid too unlike their plans.
+    """
+    order = sorted(range(len(found)), key=lambda k: (-promised(found[k]), k))
+    better = [found[k] for k in order[: (len(found) + 1) // 2]] if len(found) > 1 else []
+    planned = sum(wall.courses is not None for wall in better)
+    return (planned + SHARE * WEIGHT) / (len(better) + WEIGHT)

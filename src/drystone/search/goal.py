@@ -1,20 +1,22 @@
-"""How good a finished wall is: its figures of merit, weighed into one number."""
+"""Finished walls, and how good they are: figures of merit, weighed into one number."""
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from drystone.craft.bond import bond_faults
 from drystone.craft.masonry import Masonry
 from drystone.craft.settings import CraftSettings
 from drystone.metrics.measure import measure_labels
 from drystone.planner.build import Build
-from drystone.planner.deadline import NEVER, Deadline
+from drystone.planner.planner import Planner
 from drystone.planner.search_settings import GoalSettings
+from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
-from drystone.statics.flow.flow_search import NonassociativeSettings
+from drystone.search.courses import CoursePlan
+from drystone.search.yard import Yard
+from drystone.statics.flow.flow_search import STARTS, NonassociativeSettings
 from drystone.statics.flow.nonassociative import nonassociative_resistance
-from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus
 
 MISSING = 10.0
@@ -24,23 +26,15 @@ SCANNED = CraftSettings(sample=0.07)
 """Bond is looked at along fewer lines than `craft` does, for every wall of a search."""
 
 
-@dataclass(frozen=True)
-class Figures:
-    """Figures of merit of a finished wall.
+QUICK = NonassociativeSettings(starts=STARTS[:1], random_starts=0, let_go=False)
+"""One start of twelve finds the least load without dilatancy of most walls."""
 
-    Parameters
-    ----------
-    stones : int
-        How many it has.
-    F_SF, F_LR, F_AV, F_AH, T_LEVEL, E_FLUSH : float
-        As :class:`drystone.metrics.measure.WallMetrics`; 0 where a figure is not defined.
-    missing : int
-        How many pinned stones it lacks.
-    bond : float
-        Faults of its bond (:func:`drystone.craft.bond.bond_faults`); 0 for a wall of pixels.
-    F_LR_coulomb : float or None
-        F_LR without dilatancy, 0 where the wall can fall by itself; None where it was not asked
-        for (:func:`with_coulomb`).
+
+@dataclass(frozen=True)
+class WallFigures:
+    """WallFigures of merit of a finished wall; 0 where a figure is not defined.
+
+    Their names are those of :class:`drystone.metrics.measure.WallMetrics`.
     """
 
     stones: int
@@ -50,8 +44,9 @@ class Figures:
     F_AH: float
     T_LEVEL: float
     E_FLUSH: float
-    missing: int = 0
-    bond: float = 0.0
+    missing: int = 0  # how many pinned stones it lacks
+    bond: float = 0.0  # `drystone.craft.bond.bond_faults`; 0 for a wall of pixels
+    # F_LR without dilatancy, 0 where the wall can fall by itself; None where it was not asked for.
     F_LR_coulomb: float | None = None
 
     @property
@@ -60,7 +55,7 @@ class Figures:
         return self.F_LR if self.F_LR_coulomb is None else min(self.F_LR, self.F_LR_coulomb)
 
 
-def figures_of(build: Build, pinned: Collection[int] = ()) -> Figures | None:
+def figures_of(build: Build, pinned: Collection[int] = ()) -> WallFigures | None:
     """Measure a wall, and count the pinned stones that it lacks; None when it is empty."""
     if not build.actions:
         return None
@@ -70,11 +65,9 @@ def figures_of(build: Build, pinned: Collection[int] = ()) -> Figures | None:
     if outlines is not None:
         bond = bond_faults(Masonry(dict(outlines.blocks), None, wedges, settings=SCANNED))
     measured = measure_labels(
-        build.wall.labels,
-        wedge_ids=wedges,
-        wall_px=(site.width_px, site.height_px),
+        build.wall.labels, wedge_ids=wedges, wall_px=(site.width_px, site.height_px)
     )
-    return Figures(
+    return WallFigures(
         stones=len(build.actions),
         F_SF=build.wall.filling,
         F_LR=build.actions[-1].resistance.value or 0.0,
@@ -85,27 +78,6 @@ def figures_of(build: Build, pinned: Collection[int] = ()) -> Figures | None:
         missing=len(set(pinned) - {action.stone_id for action in build.actions}),
         bond=bond,
     )
-
-
-def with_coulomb(
-    figures: Figures,
-    model: RigidBlockModel,
-    settings: NonassociativeSettings,
-    until: Deadline = NEVER,
-) -> Figures:
-    """Add what a wall carries without dilatancy, the least that is found (DESIGN 4.8).
-
-    Where nothing is found the associative value stands, above which none can be.  Where the time
-    limit strikes, :class:`TimeIsUp` is raised.
-    """
-    found = nonassociative_resistance(model, settings=settings, look=until.look)
-    least = figures.F_LR
-    for end in (found.left, found.right):
-        if end.status is LimitStatus.UNSTABLE:
-            least = 0.0
-        elif end.alpha is not None:
-            least = min(least, end.alpha / found.mu)
-    return replace(figures, F_LR_coulomb=least)
 
 
 def usable_area_px(workshop: Workshop) -> int:
@@ -120,23 +92,8 @@ def possible_filling(workshop: Workshop) -> float:
     return min(1.0, stones / (site.width_px * site.height_px))
 
 
-def merit_of(figures: Figures | None, possible: float, goal: GoalSettings) -> float:
-    """Weigh the figures of a wall.
-
-    Parameters
-    ----------
-    figures : Figures or None
-        None for an empty wall, the worst of all.
-    possible : float
-        Largest F_SF that the stones allow.
-    goal : GoalSettings
-        Weights and aims.
-
-    Returns
-    -------
-    float
-        Higher is better.
-    """
+def merit_of(figures: WallFigures | None, possible: float, goal: GoalSettings) -> float:
+    """Weigh the figures of a wall."""
     if figures is None:
         return -math.inf
     return math.fsum(
@@ -161,3 +118,61 @@ def _up(value: float, aim: float, urgent: float) -> float:
 def _down(value: float, aim: float, urgent: float) -> float:
     """Return what a figure counts that shall be low: no less than its aim."""
     return value if aim == 0.0 else urgent * max(value, aim)
+
+
+@dataclass(frozen=True)
+class Courses:
+    """How a wall was laid course by course."""
+
+    plan: CoursePlan
+    ends: tuple[int, ...]  # how many stones the wall had before the first course, and after each
+
+
+@dataclass(frozen=True, eq=False)
+class FoundWall:
+    """A finished wall and what it is worth."""
+
+    build: Build
+    figures: WallFigures | None  # None when it is empty
+    merit: float  # no less than that of the same wall once it is `judged`
+    solves: Solves = field(default_factory=Solves)  # trouble with it
+    courses: Courses | None = None  # None for a wall that was not planned before
+
+    @classmethod
+    def of(
+        cls, planner: Planner, courses: Courses | None = None, before: Solves | None = None
+    ) -> "FoundWall":
+        """Measure what a planner has built, after what trouble there was before."""
+        solves = (before or Solves()) + Solves(planner.failed_solves, planner.cold_solves)
+        return cls.measured(planner.build, Yard.of(planner), solves, courses)
+
+    @classmethod
+    def measured(
+        cls, build: Build, yard: Yard, solves: Solves | None = None, courses: Courses | None = None
+    ) -> "FoundWall":
+        """Measure a wall."""
+        figures = figures_of(build, yard.settings.pin)
+        merit = merit_of(figures, possible_filling(yard.workshop), yard.settings.goal)
+        return cls(build, figures, merit, solves or Solves(), courses)
+
+    def judged(self, yard: Yard, flow: NonassociativeSettings | None = None) -> "FoundWall":
+        """Return the same wall with what it carries without dilatancy, unless that is known.
+
+        It is asked for again when settings are given.  The least that is found counts
+        (DESIGN 4.8); where nothing is found the associative value stands, above which none can be.
+        """
+        figures, model = self.figures, self.build.model
+        if figures is None or self.build.wall.outlines is None:
+            return self
+        if figures.F_LR_coulomb is not None and flow is None:
+            return self
+        found = nonassociative_resistance(model, settings=flow or QUICK, look=yard.until.look)
+        least = figures.F_LR
+        for end in (found.left, found.right):
+            if end.status is LimitStatus.UNSTABLE:
+                least = 0.0
+            elif end.alpha is not None:
+                least = min(least, end.alpha / found.mu)
+        figures = replace(figures, F_LR_coulomb=least)
+        merit = merit_of(figures, possible_filling(yard.workshop), yard.settings.goal)
+        return replace(self, figures=figures, merit=merit)

@@ -18,11 +18,6 @@ def terminable() -> Iterator[Callable[[], int | None]]:
     """Let SIGTERM raise :class:`Terminated`, as Ctrl-C raises an interrupt, and note both.
 
     Only the main thread may set handlers; in others nothing changes.
-
-    Yields
-    ------
-    callable
-        Returns the signal that came last, or None.
     """
     came: list[int] = []
 

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from drystone.kernels.polygons import Points
-from drystone.kernels.profiles import Floats, StoneProfile, hanging
+from drystone.kernels.polygons import Points, mirrored_polygon, no_polygons
+from drystone.kernels.profiles import Floats, HeightProfile, StoneProfile, bare, hanging, raised
+from drystone.model.outlines import Outlines
+from drystone.model.placement import Side
 from drystone.planner.laying_settings import LayingSettings
 from drystone.poses import wrap_deg
-from drystone.search.views import View
-from drystone.settle.rest import Repose, Turned, repose, rests, touch_down
+from drystone.settle.rest import Repose, Scene, Turned, repose, rests, touch_down
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import WedgeLimits
 from drystone.settle.wedged import held
@@ -27,87 +28,70 @@ SAME_PX, SAME_DEG = 1.0, 0.05
 """Stones that rest so near to each other rest alike."""
 
 
+@dataclass(frozen=True, eq=False)
+class SideView:
+    """What is built and how high it is, seen so that the building side is on the left."""
+
+    scene: Scene
+    profile: HeightProfile
+    column_px: float  # width of the profile's columns, source px
+
+    @classmethod
+    def bare(cls, width_px: float, side: Side, mu: float, column_px: float) -> "SideView":
+        """Look at the bare ground."""
+        scene = Scene(no_polygons(), width_px, side, mu)
+        return cls(scene, bare(math.ceil(width_px / column_px)), column_px)
+
+    def grown(self, outlines: Outlines) -> "SideView":
+        """Return the view of a wall that has more stones than this one, after the same ones."""
+        scene, profile = self.scene, self.profile
+        seen = len(scene.polygons)
+        new = [outlines.polygons.polygon(i) for i in range(seen, len(outlines.polygons))]
+        if not new:
+            return self
+        if scene.side == "right":
+            new = [mirrored_polygon(corners, scene.width_px) for corners in new]
+        for index, corners in enumerate(new, seen):
+            profile = raised(profile, corners, index, self.column_px)
+        polygons = scene.polygons.added(new)
+        return SideView(
+            Scene(polygons, scene.width_px, scene.side, scene.mu), profile, self.column_px
+        )
+
+
 @dataclass(frozen=True)
 class Aim:
-    """Where a stone shall come to rest, as the view of its side sees it; source px.
+    """Where a stone shall come to rest, as the view of its side sees it; source px."""
 
-    Parameters
-    ----------
-    left_px : float or None
-        Its left end; None for anywhere along the wall.
-    top_px : float
-        Its top.
-    angle_deg : float
-        Its turn in the wall frame.
-    highest_px : float
-        Above this no stone may be.
-    unit_px : float
-        Mean stone height: unit of the costs.
-    """
-
-    left_px: float | None
+    left_px: float | None  # its left end; None for anywhere along the wall
     top_px: float
-    angle_deg: float
-    highest_px: float
-    unit_px: float
+    angle_deg: float  # its turn in the wall frame
+    highest_px: float  # above this no stone may be
+    unit_px: float  # mean stone height: unit of the costs
 
 
 @dataclass(frozen=True, eq=False)
 class Resting:
-    """Where a stone came to rest, and what that costs.
-
-    Parameters
-    ----------
-    repose : Repose
-        Where.
-    wedge : (n, 2) float array or None
-        Corners of the wedge that holds it, in the wall frame.
-    cost : float
-        Lower is better.
-    """
+    """Where a stone came to rest, and what that costs."""
 
     repose: Repose
-    wedge: Points | None
+    wedge: Points | None  # (n, 2), corners of the wedge that holds it, in the wall frame
     cost: float
 
 
 @dataclass(frozen=True, eq=False)
 class Hand:
-    """Lets stones go.
+    """Lets stones go."""
 
-    Parameters
-    ----------
-    settings : LayingSettings
-        From where, and what it costs to rest elsewhere than planned.
-    settle : SettleSettings
-        How stones settle.
-    limits : WedgeLimits
-        Of wedges.
-    method : {"both", "rotation", "wedge", "none"}
-        What is tried with a stone that does not rest.
-    """
-
-    settings: LayingSettings
+    settings: LayingSettings  # from where, and what it costs to rest elsewhere than planned
     settle: SettleSettings
     limits: WedgeLimits
-    method: Method
+    method: Method  # what is tried with a stone that does not rest
 
-    def starts(self, stone: Turned, view: View, aim: Aim) -> list[Place]:
+    def starts(self, stone: Turned, view: SideView, aim: Aim) -> list[Place]:
         """Return from where a stone is let go: where it first touches, the cheapest place first.
 
-        Parameters
-        ----------
-        stone : Turned
-            As the view sees it.
-        view : View
-            What is there.
-        aim : Aim
-            Where the stone shall go.
-
-        Returns
-        -------
-        starts : list of (float, float)
-            Of its centroid, in the view.
+        Places are those of its centroid, in the view.
         """
         settings, column_px = self.settings, view.column_px
         profile = hanging(stone.corners, column_px)
@@ -132,7 +116,7 @@ class Hand:
         return found
 
     def _columns(
-        self, stone: StoneProfile, size_px: float, view: View, aim: Aim
+        self, stone: StoneProfile, size_px: float, view: SideView, aim: Aim
     ) -> tuple[int, int]:
         """Return the first and the last column on which the stone's left end may be."""
         room = view.scene.width_px + self.settle.beyond_px - (stone.right - stone.left)
@@ -154,18 +138,11 @@ class Hand:
         return np.asarray(cost / aim.unit_px)
 
     def resting(
-        self, stone: Turned, view: View, aim: Aim, starts: Sequence[Place]
+        self, stone: Turned, view: SideView, aim: Aim, starts: Sequence[Place]
     ) -> list[Resting]:
         """Let a stone go, and return where it rests near its place, the cheapest first.
 
         Where it rests nowhere, it is wedged.
-
-        Parameters
-        ----------
-        stone, view, aim
-            As for :meth:`starts`.
-        starts : sequence of (float, float)
-            From where.
         """
         turns = self.method in ("both", "rotation")
         settled = (
@@ -183,7 +160,7 @@ class Hand:
         return list(self._wedged(self._cheapest(there, math.inf, view, aim), view))
 
     def _cheapest(
-        self, found: Iterable[list[Repose]], enough: float, view: View, aim: Aim
+        self, found: Iterable[list[Repose]], enough: float, view: SideView, aim: Aim
     ) -> list[Resting]:
         """Return the different places near the plan, the cheapest first.
 
@@ -200,14 +177,14 @@ class Hand:
         # Costs that differ by rounding are equal; then the earlier start goes first.
         return sorted(near.values(), key=lambda one: round(one.cost, 9))
 
-    def _wedged(self, places: Iterable[Resting], view: View) -> Iterator[Resting]:
+    def _wedged(self, places: Iterable[Resting], view: SideView) -> Iterator[Resting]:
         """Wedge a stone where it was lowered, and list where that holds it."""
         for place in places:
             found = held(place.repose, view.scene, self.limits)
             if found is not None:
                 yield Resting(found.repose, found.wedge, place.cost + self.settings.wedge)
 
-    def _cost(self, found: Repose, view: View, aim: Aim) -> float:
+    def _cost(self, found: Repose, view: SideView, aim: Aim) -> float:
         """Return what it costs to rest somewhere; infinite where it is far from the plan."""
         settings, corners = self.settings, found.settled.corners
         top = float(corners[:, 1].max())

@@ -1,8 +1,14 @@
-"""Lays the planned stones of a course one after the other."""
+"""Laying a course plan, stone by stone.
+
+A plan knows height profiles only.  Here each stone is let go near its planned place, pushed to the
+neighbour on its side of the course, and of all places where it rests one is taken that is near the
+plan, keeps the course's width, and leaves a wall that stands.
+"""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from operator import attrgetter
 from typing import Literal
 
@@ -11,20 +17,14 @@ from drystone.model.outlines import Outlined
 from drystone.model.placement import Side
 from drystone.model.stone import Stone
 from drystone.planner.build import Build, Candidate, Proposal
-from drystone.planner.deadline import NEVER, Deadline
-from drystone.planner.dropping import wedge_limits
 from drystone.planner.evaluate import Evaluator, Loaded
 from drystone.planner.laying_settings import LayingSettings
-from drystone.planner.settings import PlannerSettings
 from drystone.planner.settled import settled_in
 from drystone.planner.solves import Solves
-from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
-from drystone.search.course_plan import PlannedStone
-from drystone.search.letting_go import Aim, Hand, Resting
-from drystone.search.views import View
-
-Views = dict[Side, View]
+from drystone.search.courses import CoursePlan, PlannedStone
+from drystone.search.letting_go import Aim, Hand, Resting, SideView
+from drystone.search.yard import Yard
 
 Status = Literal["as planned", "half turn", "elsewhere", "used", "no place", "no rest", "falls"]
 """What became of a planned stone.
@@ -43,221 +43,144 @@ HALVES: tuple[tuple[Status, float], ...] = (("as planned", 0.0), ("half turn", 1
 SIDES: tuple[Side, ...] = ("left", "right")
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """What became of a planned stone.
-
-    Parameters
-    ----------
-    stone : PlannedStone
-        As it was planned.
-    status : str
-        One of :data:`Status`.
-    solves : Solves
-        What trouble the solver had with its places.
-    """
+@dataclass(frozen=True, eq=False)
+class StoneLaying:
+    """What became of a planned stone."""
 
     stone: PlannedStone
     status: Status
-    solves: Solves = field(default_factory=Solves)
+    action: Candidate | None = None  # what is done; None where it is not laid
+    solves: Solves = field(default_factory=Solves)  # trouble with its places
 
 
 @dataclass(frozen=True, eq=False)
-class _Chosen:
-    """How a stone is laid; without an action why it is not.
+class CourseLaying:
+    """A course plan, laid."""
 
-    Parameters
-    ----------
-    status : str
-        One of :data:`Status`.
-    action : Candidate or None
-        What is to be done.
-    solves : Solves
-        What trouble the solver had with its places.
-    """
+    states: tuple[Build, ...]  # before the first course, and after each
+    courses: tuple[tuple[StoneLaying, ...], ...]  # in the order of the plan
 
-    status: Status
-    action: Candidate | None = None
-    solves: Solves = field(default_factory=Solves)
+    @property
+    def build(self) -> Build:
+        """The wall after the last course."""
+        return self.states[-1]
+
+    @property
+    def solves(self) -> Solves:
+        """What trouble the solver had."""
+        return sum((one.solves for one in chain(*self.courses)), Solves())
 
 
-@dataclass(frozen=True)
-class _Front:
-    """How far the stones of a side of a course have come, in the view of that side.
-
-    Parameters
-    ----------
-    planned : float
-        Planned right end of the stone that was planned last.
-    reached : float
-        Right end of the one that was laid last.
-    """
-
-    planned: float = 0.0
-    reached: float = 0.0
-
-    def aim(self, left: float) -> float:
-        """Return where the left end of a stone shall be that is planned at a place.
-
-        As far from its neighbour as planned, but no further in than planned.
-        """
-        return min(left, self.reached + left - self.planned)
+def lay(
+    plan: CoursePlan, build: Build, yard: Yard, laying: LayingSettings | None = None
+) -> CourseLaying:
+    """Lay a course plan on what is built; stones that are in the wall already are passed over."""
+    mason = Mason.of(yard, laying or yard.settings.laying)
+    states, courses = [build], []
+    for course in plan.courses:
+        after, became = mason.course(states[-1], course)
+        states.append(after)
+        courses.append(became)
+    return CourseLaying(tuple(states), tuple(courses))
 
 
 @dataclass(frozen=True, eq=False)
-class _Rated:
-    """A place of a stone, and what the wall carries with the stone there.
-
-    Parameters
-    ----------
-    place : Resting
-        The place.
-    spot : int
-        Which of the pose's, the cheapest first.
-    blocks : list of (int, (n, 2) float array)
-        Ids and outlines of the stone and its wedge.
-    loaded : Loaded
-        The wall with them.
-    cost : float
-        Of the place, less the bonus for LLC; infinite where the wall does not stand.
-    """
+class _RatedPlace:
+    """A place of a stone, and what the wall carries with the stone there."""
 
     place: Resting
-    spot: int
-    blocks: list[Outlined]
-    loaded: Loaded
-    cost: float
+    spot: int  # which of the pose's, the cheapest first
+    blocks: list[Outlined]  # the stone and its wedge
+    loaded: Loaded  # the wall with them
+    cost: float  # of the place, less the bonus for LLC; infinite where the wall does not stand
 
 
 @dataclass(frozen=True, eq=False)
 class Mason:
-    """Lays courses.
+    """Lays the planned stones of courses one after the other."""
 
-    Parameters
-    ----------
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        How stones settle and are judged.
-    laying : LayingSettings
-        How a plan is laid.
-    hand : Hand
-        Lets stones go.
-    evaluator : Evaluator
-        Judges walls.
-    """
-
-    workshop: Workshop
-    settings: PlannerSettings
+    yard: Yard
     laying: LayingSettings
     hand: Hand
     evaluator: Evaluator
+    views: dict[Side, SideView]  # from both ends; brought up to date when they are looked at
 
     @classmethod
-    def of(
-        cls,
-        workshop: Workshop,
-        settings: PlannerSettings,
-        laying: LayingSettings,
-        until: Deadline = NEVER,
-    ) -> "Mason":
-        """Return who lays stones of a workshop."""
-        limits = wedge_limits(settings, workshop.stock, workshop.site)
-        hand = Hand(laying, settings.settle, limits, settings.stabilise.method)
-        evaluator = Evaluator(settings, workshop.stock, until=until)
-        return cls(workshop, settings, laying, hand, evaluator)
-
-    def views(self) -> Views:
-        """Look at the bare ground from both ends."""
-        width_px, column_px = self.workshop.site.extent_px[0], self.laying.column_px
-        return {side: View.bare(width_px, side, self.settings.mu, column_px) for side in SIDES}
+    def of(cls, yard: Yard, laying: LayingSettings) -> "Mason":
+        """Return one who looks at the bare ground."""
+        workshop, settings = yard.workshop, yard.settings
+        hand = Hand(laying, settings.settle, yard.limits, settings.stabilise.method)
+        evaluator = Evaluator(settings, workshop.stock, until=yard.until)
+        width_px, mu = workshop.site.extent_px[0], settings.mu
+        views = {side: SideView.bare(width_px, side, mu, laying.column_px) for side in SIDES}
+        return cls(yard, laying, hand, evaluator, views)
 
     def course(
-        self, build: Build, course: Sequence[PlannedStone], views: Views
-    ) -> tuple[Build, tuple[Outcome, ...]]:
-        """Lay a course.
-
-        Parameters
-        ----------
-        build : Build
-            What is there.
-        course : sequence of PlannedStone
-            In the order of laying.
-        views : dict
-            Of an earlier state of the same wall; those that are looked at are brought up to date.
-
-        Returns
-        -------
-        build : Build
-            The wall with the course.
-        outcomes : tuple of Outcome
-            Of its stones, in their order.
-        """
-        width_px = self.workshop.site.extent_px[0]
-        fronts: dict[Side, _Front] = {side: _Front() for side in SIDES}
-        outcomes: list[Outcome] = []
+        self, build: Build, course: Sequence[PlannedStone]
+    ) -> tuple[Build, tuple[StoneLaying, ...]]:
+        """Lay the stones of a course in their order, on the same wall as before with more on it."""
+        width_px = self.yard.workshop.site.extent_px[0]
+        # Of each side, as it sees them: the planned right end of the stone that was planned last,
+        # and the right end of the one that was laid last.
+        planned, reached = dict.fromkeys(SIDES, 0.0), dict.fromkeys(SIDES, 0.0)
+        became: list[StoneLaying] = []
         for stone in course:
             side = stone.side
             left, right = _seen_from(side, stone.left_px, stone.right_px, width_px)
-            chosen = self._chosen(views, build, stone, side, fronts[side].aim(left))
-            outcomes.append(Outcome(stone, chosen.status, chosen.solves))
-            end = fronts[side].reached
-            if chosen.action is not None:
-                build = build.add(chosen.action, keep=True)
-                settled = chosen.action.stabilised.placement.settled
+            # As far from its neighbour as planned, but no further in than planned.
+            aim = min(left, reached[side] + left - planned[side])
+            became.append(self._laid(build, stone, side, aim))
+            planned[side], action = right, became[-1].action
+            if action is not None:
+                build = build.add(action, keep=True)
+                settled = action.stabilised.placement.settled
                 assert settled is not None  # noqa: S101 - it settled on outlines
                 x_px = settled.corners[:, 0].tolist()
-                _, end = _seen_from(side, min(x_px), max(x_px), width_px)
-            fronts[side] = _Front(right, end)
-        return self._again(build, outcomes, views)
-
-    def _again(
-        self, build: Build, outcomes: Sequence[Outcome], views: Views
-    ) -> tuple[Build, tuple[Outcome, ...]]:
-        """Try what could not be laid anywhere in its course, from its own side first."""
-        ended = list(outcomes)
-        for k, one in enumerate(outcomes):
+                _, reached[side] = _seen_from(side, min(x_px), max(x_px), width_px)
+        # What could not be laid is tried anywhere in its course, from its own side first.
+        for k, one in enumerate(became):
             if one.status in LAID or one.status == "used":
                 continue
             status, solves = one.status, one.solves
             for side in sorted(SIDES, key=lambda side: side != one.stone.side):
-                chosen = self._chosen(views, build, one.stone, side, None)
-                solves += chosen.solves
-                if chosen.action is not None:
-                    build = build.add(chosen.action, keep=True)
+                again = self._laid(build, one.stone, side, None)
+                solves += again.solves
+                if again.action is not None:
+                    build = build.add(again.action, keep=True)
                     status = "elsewhere"
                     break
-            ended[k] = Outcome(one.stone, status, solves)
-        return build, tuple(ended)
+            became[k] = StoneLaying(one.stone, status, again.action, solves)
+        return build, tuple(became)
 
-    def _chosen(
-        self, views: Views, build: Build, planned: PlannedStone, side: Side, left: float | None
-    ) -> _Chosen:
+    def _laid(
+        self, build: Build, planned: PlannedStone, side: Side, left: float | None
+    ) -> StoneLaying:
         """Choose how a stone is laid, with its left end near a place of the view or anywhere."""
-        if planned.stone_id not in self.workshop.remaining(build):
-            return _Chosen("used")
-        outlines, site = build.wall.outlines, self.workshop.site
+        workshop = self.yard.workshop
+        if planned.stone_id not in workshop.remaining(build):
+            return StoneLaying(planned, "used")
+        outlines, site = build.wall.outlines, workshop.site
         assert outlines is not None  # noqa: S101 - a course plan is laid on outlines
-        view = views[side] = views[side].grown(outlines)
-        unit_px = self.workshop.stock.mean_height_px / site.scale
-        highest_px = site.extent_px[1] + self.settings.settle.beyond_px
-        stone = self.workshop.stones.by_id(planned.stone_id)
+        view = self.views[side] = self.views[side].grown(outlines)
+        unit_px = workshop.stock.mean_height_px / site.scale
+        highest_px = site.extent_px[1] + self.yard.settings.settle.beyond_px
+        stone = workshop.stones.by_id(planned.stone_id)
         reasons: list[Status] = []
         solves = Solves()
         for status, half_deg in HALVES:
             angle_deg = wrap_deg(planned.angle_deg + half_deg)
-            turned = self.workshop.outlines.hung(stone, angle_deg, side).turned
+            turned = workshop.outlines.hung(stone, angle_deg, side).turned
             aim = Aim(left, planned.top_px, angle_deg, highest_px, unit_px)
             starts = self.hand.starts(turned, view, aim)
             resting = self.hand.resting(turned, view, aim, starts)
             action, trouble = self._best(build, stone, angle_deg, side, resting)
             solves += trouble
             if action is not None:
-                return _Chosen(status, action, solves)
+                return StoneLaying(planned, status, action, solves)
             reasons.append("falls" if resting else "no rest" if starts else "no place")
         # Why not: how far the pose came that came furthest.
         order: tuple[Status, ...] = ("falls", "no rest", "no place")
-        return _Chosen(min(reasons, key=order.index), solves=solves)
+        return StoneLaying(planned, min(reasons, key=order.index), None, solves)
 
     def _best(
         self, build: Build, stone: Stone, angle_deg: float, side: Side, resting: Sequence[Resting]
@@ -278,17 +201,26 @@ class Mason:
                     solves += _solves(sturdy, _solves(one.loaded))
                 if sturdy is not None and not sturdy.grown.resistance.stable:
                     continue
-                action = self._action(build, stone, angle_deg, side, one, sturdy)
-                if action is not None and action.sturdy:
+                place = one.place
+                stabilised = settled_in(
+                    build.wall, stone, side, place.repose, place.wedge,
+                    wedge_id=self.yard.workshop.next_wedge(build),
+                )  # fmt: skip
+                if stabilised is None:  # it fills no pixel there
+                    continue
+                proposal = Proposal(stabilised, angle_deg, cost=place.cost, spot=one.spot)
+                landscape = Landscape.of(build.wall, side)
+                action = self.evaluator.candidate(landscape, proposal, one.loaded, sturdy)
+                if action.sturdy:
                     return action, solves
         return None, solves
 
     def _rated(
         self, build: Build, stone: Stone, places: Sequence[tuple[int, Resting]]
-    ) -> list[_Rated]:
+    ) -> list[_RatedPlace]:
         """Compare some places by cost and LLC: the first, as far as one may be the best."""
-        laying, number = self.laying, self.workshop.next_wedge(build)
-        rated: list[_Rated] = []
+        laying, number = self.laying, self.yard.workshop.next_wedge(build)
+        rated: list[_RatedPlace] = []
         best, standing = math.inf, 0
         for spot, place in places:
             # LLC is 1 at most: the wall slides on the ground.
@@ -299,27 +231,9 @@ class Mason:
             loaded = self.evaluator.loaded(build, blocks)
             llc = loaded.grown.resistance.value or 0.0
             cost = round(place.cost - laying.llc * llc, 9) if llc > 0.0 else math.inf
-            rated.append(_Rated(place, spot, blocks, loaded, cost))
+            rated.append(_RatedPlace(place, spot, blocks, loaded, cost))
             best, standing = min(best, cost), standing + (llc > 0.0)
         return rated
-
-    def _action(
-        self,
-        build: Build,
-        stone: Stone,
-        angle_deg: float,
-        side: Side,
-        rated: _Rated,
-        sturdy: Loaded | None,
-    ) -> Candidate | None:
-        """Return the action that lays a stone at a place; None when it fills no pixel there."""
-        place, number = rated.place, self.workshop.next_wedge(build)
-        stabilised = settled_in(build.wall, stone, side, place.repose, place.wedge, wedge_id=number)
-        if stabilised is None:
-            return None
-        proposal = Proposal(stabilised, angle_deg, cost=place.cost, spot=rated.spot)
-        landscape = Landscape.of(build.wall, side)
-        return self.evaluator.candidate(landscape, proposal, rated.loaded, sturdy)
 
 
 def _solves(loaded: Loaded, known: Solves | None = None) -> Solves:

@@ -21,15 +21,7 @@ EXPECTED, WEIGHT = 0.1, 6.0
 
 
 def shares(planned: bool, polish: float) -> tuple[float, ...]:
-    """Return the shares of the operators before anything is known.
-
-    Parameters
-    ----------
-    planned : bool
-        Whether the wall was planned in courses; on others there is no plan to change.
-    polish : float
-        Share of parts of planned walls that are built up again freely.
-    """
+    """Return the shares of the operators before anything is known."""
     if not planned:
         return (1.0, 0.0, 0.0, 0.0)
     new = 1.0 - RELAID_SHARE - REPLANNED_SHARE
@@ -38,15 +30,9 @@ def shares(planned: bool, polish: float) -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class Credits:
-    """How often operators were used, and how often a wall was better than the one it came from.
+    """How often operators were used, and how often a wall was better than the one it came from."""
 
-    Parameters
-    ----------
-    uses, helped : tuple of int
-        In the order of :data:`OPERATORS`.
-    """
-
-    uses: tuple[int, ...] = (0,) * len(OPERATORS)
+    uses: tuple[int, ...] = (0,) * len(OPERATORS)  # in the order of `OPERATORS`
     helped: tuple[int, ...] = (0,) * len(OPERATORS)
 
     def __add__(self, other: "Credits") -> "Credits":
@@ -62,15 +48,7 @@ class Credits:
         return self + Credits(used, tuple(int(helped) * one for one in used))
 
     def drawn(self, usual: Sequence[float], rng: Generator) -> str:
-        """Draw an operator: the more often it has helped, the likelier.
-
-        Parameters
-        ----------
-        usual : sequence of float
-            Of the operators, before anything is known.
-        rng : numpy.random.Generator
-            Draws.
-        """
+        """Draw an operator: the more often it has helped, the likelier."""
         rate = [
             share * (helped + EXPECTED * WEIGHT) / (uses + WEIGHT)
             for share, uses, helped in zip(usual, self.uses, self.helped, strict=True)

@@ -3,6 +3,7 @@
 All of it is plain: numbers, words and tuples of them.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,81 +13,47 @@ from drystone.model.placement import Placement, Settled, Side, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
 from drystone.model.wall import Group
-from drystone.planner.deadline import NEVER, Deadline
-from drystone.planner.planner import Planner
-from drystone.planner.replay import replayed
-from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.planner.workshop import Workshop
-from drystone.search.found import Courses, Found
-from drystone.search.goal import Figures
+from drystone.search.goal import Courses, FoundWall, WallFigures
+from drystone.search.yard import Yard
 from drystone.settle.rest import placed_outline
 
 UNSEEN: Mask = np.ones((1, 1), bool)
 """Stands for the pixels of what is settled, which are found when it is placed."""
 
+MOST = 12
+"""So many walls are kept."""
 
-PackedWedge = tuple[tuple[float, float], ...]
-"""Corners of a wedge, source px."""
+STEPS = {"F_SF": 0.005, "F_AV": 1.0, "F_AH": -0.1, "carried": 0.02}
+"""Differences of figures that count; below 0 where less is better."""
 
 
 @dataclass(frozen=True)
 class PackedGroup:
-    """One step of construction.
-
-    Parameters
-    ----------
-    stone_id : int
-        Of the stone.
-    angle_deg : float
-        Its pose.
-    place : (float, float)
-        Where its centroid lies, source px.
-    side : {"left", "right"}
-        From which end it was placed.
-    rotation_moves : int
-        See :class:`drystone.model.placement.Placement`.
-    wedges : tuple of PackedWedge
-        Under it.
-    course_height_px : float or None
-        See :class:`drystone.planner.build.Candidate`.
-    """
+    """One step of construction; lengths in source px."""
 
     stone_id: int
     angle_deg: float
-    place: tuple[float, float]
+    place: tuple[float, float]  # of the stone's centroid
     side: Side
     rotation_moves: int
-    wedges: tuple[PackedWedge, ...]
+    wedges: tuple[tuple[tuple[float, float], ...], ...]  # corners of those under the stone
     course_height_px: float | None
 
 
 @dataclass(frozen=True, eq=False)
-class Packed:
-    """A finished wall and what it is worth, in few bytes.
-
-    Parameters
-    ----------
-    groups : tuple of PackedGroup
-        The steps of its construction.
-    figures : Figures or None
-        See :class:`drystone.search.found.Found`.
-    merit : float
-        Likewise.
-    solves : Solves
-        Likewise.
-    courses : Courses or None
-        Likewise.
-    """
+class PackedWall:
+    """A :class:`~drystone.search.goal.FoundWall` as the steps of its construction."""
 
     groups: tuple[PackedGroup, ...]
-    figures: Figures | None
+    figures: WallFigures | None
     merit: float
     solves: Solves
     courses: Courses | None
 
     @classmethod
-    def of(cls, found: Found) -> "Packed":
+    def of(cls, found: FoundWall) -> "PackedWall":
         """Pack a wall."""
         heights = found.build.course_heights_px()
         groups = tuple(_packed_group(group, heights) for group in found.build.wall.groups)
@@ -111,26 +78,14 @@ def _packed_group(group: Group, heights: dict[int, float]) -> PackedGroup:
     )
 
 
-def found_again(
-    one: Packed, workshop: Workshop, settings: PlannerSettings, until: Deadline = NEVER
-) -> Found:
-    """Build a wall again.
-
-    Raises
-    ------
-    ValueError
-        When it does not stand, as another wall than the one that was packed may.
-    TimeIsUp
-        The time limit struck.
-    """
-    start = Planner(workshop.stones, workshop.site, settings=settings, workshop=workshop).build
-    groups = one.groups
-    heights = {g.stone_id: g.course_height_px for g in groups if g.course_height_px is not None}
-    again = [_group(group, workshop) for group in groups]
-    build, left_out, _ = replayed(start, again, heights, workshop, settings, until=until)
+def found_again(one: PackedWall, yard: Yard) -> FoundWall:
+    """Build a wall again; ValueError when it does not stand, as another wall may."""
+    groups = [_group(group, yard.workshop) for group in one.groups]
+    heights = {g.stone_id: g.course_height_px for g in one.groups if g.course_height_px is not None}
+    build, left_out, _ = yard.replayed(yard.planner().build, groups, heights)
     if left_out:
         raise ValueError(f"stones {left_out} do not stand where they stood")
-    return Found(build, one.figures, one.merit, one.solves, one.courses)
+    return FoundWall(build, one.figures, one.merit, one.solves, one.courses)
 
 
 def _group(one: PackedGroup, workshop: Workshop) -> Group:
@@ -150,3 +105,33 @@ def settled_again(
     """Return where a stone lies whose centroid is at a place, source px."""
     outline = workshop.outlines.outline(stone)
     return Settled(*place, placed_outline(outline, angle_deg, *place))
+
+
+def archived(kept: Iterable[PackedWall], more: Iterable[PackedWall]) -> tuple[PackedWall, ...]:
+    """Add walls to those of which none is beaten by another; the best first, at most :data:`MOST`.
+
+    A wall is beaten by one of at least its merit that is at least as good in every figure, rounded
+    to :data:`STEPS`; one that lacks pinned stones is, by any of more merit that lacks fewer.  Of
+    equal ones the first is kept.
+    """
+    scored = [(wall, score_of(wall.figures)) for wall in (*kept, *more) if wall.figures is not None]
+    # None is beaten by one after it.
+    scored.sort(key=lambda one: (one[0].merit, one[1]), reverse=True)
+    found: list[tuple[PackedWall, tuple[int, ...]]] = []
+    for wall, score in scored:
+        if not any(_as_good(other, score) for _, other in found):
+            found.append((wall, score))
+    return tuple(wall for wall, _ in found[:MOST])
+
+
+def score_of(figures: WallFigures) -> tuple[int, ...]:
+    """Return the pinned stones that are there, and the figures in steps; higher is better."""
+    steps = (round(getattr(figures, name) / step) for name, step in STEPS.items())
+    return (-figures.missing, *steps)
+
+
+def _as_good(one: tuple[int, ...], other: tuple[int, ...]) -> bool:
+    """Say whether a wall is at least as good as another in every figure, and lacks no more."""
+    if one[0] != other[0]:
+        return one[0] > other[0]
+    return all(a >= b for a, b in zip(one, other, strict=True))

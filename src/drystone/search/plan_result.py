@@ -22,7 +22,6 @@ from drystone.planner.profile import Profile
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.solves import Solves
 from drystone.search.goal import usable_area_px
-from drystone.search.notices import missing_stones
 from drystone.shown import html_of
 from drystone.statics.flow.nonassociative import nonassociative_resistance
 from drystone.statics.limit import lateral_resistance
@@ -111,6 +110,17 @@ class PlanResult:
         return html_of("plan", self)
 
 
+def provenance_of(settings: PlannerSettings, method: str, seed: int, budget: int) -> dict[str, Any]:
+    """Say how a plan was made; `budget` is that which repeats it."""
+    search = replace(settings.search, budget=budget)
+    return {
+        "version": version("drystone"),
+        "method": method,
+        "seed": seed,
+        "settings": replace(settings, search=search).as_dict(),
+    }
+
+
 def finish(
     planner: Planner,
     frame: Frame,
@@ -166,18 +176,17 @@ def result_of(planner: Planner) -> PlanResult:
     >>> result.status, len(result.plan.steps)
     ('interrupted', 2)
     """
-    settings = planner.settings
-    one_pass = replace(settings, search=replace(settings.search, budget=1))
-    provenance = {
-        "version": version("drystone"),
-        "method": "custom",
-        "seed": planner.seed,
-        "settings": one_pass.as_dict(),
-    }
+    provenance = provenance_of(planner.settings, "custom", planner.seed, 1)
     site = planner.build.wall.site
     stopped = planner.stopped or INTERRUPTED
     result = finish(planner, Frame(*site.extent_px, site), stopped, provenance, 0.0)
     return replace(result, solves=Solves(planner.failed_solves, planner.cold_solves))
+
+
+def missing_stones(planner: Planner) -> tuple[int, ...]:
+    """Return the ids of pinned stones that are not in the wall of a planner."""
+    placed = {action.stone_id for action in planner.build.actions}
+    return tuple(sorted(set(planner.settings.pin) - placed))
 
 
 def _shortfall(planner: Planner, metrics: PlanMetrics) -> str:
@@ -190,26 +199,12 @@ def _shortfall(planner: Planner, metrics: PlanMetrics) -> str:
 
 
 def other_resistances(
-    build: Build,
-    resistance: LateralResistance,
-    settings: PlannerSettings,
-    until: Deadline = NEVER,
+    build: Build, resistance: LateralResistance, settings: PlannerSettings, until: Deadline = NEVER
 ) -> dict[str, float | None]:
     """Return F_LR by other rules, and load multipliers, by the names of a plan's metrics.
 
     Without dilatancy it is looked for in walls of up to :data:`MOST_WITHOUT_DILATANCY` blocks,
     where the wall stands, and where there is time.
-
-    Parameters
-    ----------
-    build : Build
-        The wall.
-    resistance : LateralResistance
-        Of it.
-    settings : PlannerSettings
-        Friction, contact tolerance and set-back.
-    until : Deadline
-        For what is looked for.
     """
     found: dict[str, float | None] = {}
     if resistance.stable and 0 < len(build.model.blocks) <= MOST_WITHOUT_DILATANCY:

@@ -6,30 +6,26 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from importlib.metadata import version
 
 import numpy as np
 
-from drystone.errors import UsageError
+from drystone.errors import Notice, UsageError
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame
 from drystone.planner.deadline import Deadline, TimeIsUp
-from drystone.planner.events import INTERRUPTED, Callbacks
+from drystone.planner.events import INTERRUPTED, OUT_OF_TIME, Callbacks
 from drystone.planner.planner import Planner
 from drystone.planner.search_settings import UNLIMITED
 from drystone.planner.settings import PlannerSettings, method_settings
 from drystone.planner.solves import Solves
-from drystone.search.ending import as_found
 from drystone.search.interrupts import held
-from drystone.search.notices import planning_notices
-from drystone.search.packed import Packed
-from drystone.search.plan_result import PlanResult, finish
+from drystone.search.plan_result import PlanResult, finish, missing_stones, provenance_of
 from drystone.search.processes import processes, threads
 from drystone.search.standing import Progress, Standing
 from drystone.search.warm_start import begin_with
-from drystone.search.whole_search import Ended, cut_off, run_to_end
+from drystone.search.whole_search import SearchEnd, as_found, cut_off, run_to_end
 
 TYPICAL_STONE_PX = 40
 """Longer side of the median stone at the resolution that is chosen when none is given."""
@@ -192,21 +188,17 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
             cure="Give a share of the source resolution such as .5, or none to have it chosen.",
         )
     frame = Frame(width, height, Site.from_source(width, height, scale, px_per_m))
-    asked = _Asked(frame, settings, method, seed, time.perf_counter())
+    asked = _PlanOrigin(frame, settings, method, seed, time.perf_counter())
     grace_s = max(1.0, GRACE * seconds)
     single = settings.search.budget == 1
     own = threads(n_jobs if executor is None and single else 1)
-    ended: Ended | None = None
+    ended: SearchEnd | None = None
     try:
         with own as pool, processes(1 if single else n_jobs) as workers:
             first = Planner(
-                stones,
-                frame.site,
-                seed=seed,
-                settings=settings,
-                executor=executor or pool,
-                callbacks=callbacks,
-            )
+                stones, frame.site, seed=seed, settings=settings,
+                executor=executor or pool, callbacks=callbacks,
+            )  # fmt: skip
             if built is not None:
                 first.restore(built, course_heights_px or {})
             left_out = () if begin is None else begin_with(first, begin, course_heights_px or {})
@@ -217,9 +209,9 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
                 grace_s=grace_s,
                 first_whole=first_whole,
                 executor=workers,
-                told=lambda one: (keep or _untold)(SoFar(one, lambda: asked.cut_off(first, one))),
+                told=lambda one: keep and keep(SoFar(one, lambda: asked.cut_off(first, one))),
             )
-        asked = asked.after(time.perf_counter())
+        asked = replace(asked, took=time.perf_counter() - asked.started)
         if ended.stopped is not INTERRUPTED:
             grace = Deadline.after(grace_s)
             return asked.result(first, ended, left_out, grace, choice=choice)
@@ -233,90 +225,50 @@ def plan_wall(  # noqa: PLR0913 - one call, everything by keyword
 
 
 @dataclass(frozen=True, eq=False)
-class _Asked:
-    """What a plan says of how it was made.
-
-    Parameters
-    ----------
-    frame : Frame
-        Of the wall.
-    settings : PlannerSettings
-        All of them.
-    method : str
-        Their name.
-    seed : int
-        Of the random choices.
-    started, took : float
-        By the clock of performance; seconds to the last step.
-    """
+class _PlanOrigin:
+    """What a plan says of how it was made."""
 
     frame: Frame
     settings: PlannerSettings
     method: str
     seed: int
-    started: float
-    took: float = 0.0
-
-    def after(self, now: float) -> "_Asked":
-        """Return the same with the time to the last step, which is now."""
-        return replace(self, took=now - self.started)
+    started: float  # by the clock of performance
+    took: float = 0.0  # seconds to the last step
 
     def cut_off(self, first: Planner, progress: Progress | None) -> PlanResult:
         """Return the plan of the best wall so far, without what takes long."""
         return self.plan(cut_off(first, progress), Deadline(-math.inf))
 
-    def plan(self, ended: Ended, until: Deadline) -> PlanResult:
+    def plan(self, ended: SearchEnd, until: Deadline) -> PlanResult:
         """Judge the wall that a search ended with, and write its plan."""
-        search = replace(self.settings.search, budget=ended.walls)
-        provenance = {
-            "version": version("drystone"),
-            "method": self.method,
-            "seed": self.seed,
-            "settings": replace(self.settings, search=search).as_dict(),
-        }
+        provenance = provenance_of(self.settings, self.method, self.seed, ended.walls)
         return finish(ended.planner, self.frame, ended.stopped, provenance, self.took, until)
 
     def result(
         self,
         first: Planner,
-        ended: Ended,
+        ended: SearchEnd,
         left_out: tuple[int, ...],
         until: Deadline,
         *,
         choice: bool,
     ) -> PlanResult:
         """Return the plan, with others to choose from, and all that there is to say of it."""
-        best = self.plan(ended, until)
+        plans = [self.plan(ended, until)]
         to_choose = ended.kept if choice else ()
-        others = tuple(self._others(first, ended, to_choose[1:], until))
-        cut = ended.cut or len(others) < len(to_choose[1:])
-        return replace(
-            best,
-            notices=planning_notices(
-                first,
-                ended.planner,
-                left_out,
-                lost=ended.lost,
-                fallen=ended.fallen,
-                cut_after=ended.walls if cut else None,
-                stopped=ended.stopped,
-            ),
-            solves=Solves(first.failed_solves, first.cold_solves),
-            choice=(best, *others) if to_choose else (),
-        )
-
-    def _others(
-        self, first: Planner, ended: Ended, kept: Sequence[Packed], until: Deadline
-    ) -> Iterator[PlanResult]:
-        """Finish other walls to choose from; those of least merit that there is no time for not."""
+        # Those of least merit that there is no time for are left out.
         with suppress(TimeIsUp):
-            for wall in kept:
+            for wall in to_choose[1:]:
                 planner, stopped = as_found(first, wall, until)
-                yield self.plan(ended._replace(planner=planner, stopped=stopped), until)
-
-
-def _untold(_: SoFar) -> None:
-    """Keep nothing."""
+                other = ended._replace(planner=planner, stopped=stopped)
+                plans.append(self.plan(other, until))
+        cut = ended.cut or len(plans) < len(to_choose)
+        return replace(
+            plans[0],
+            notices=tuple(_notices(first, ended, left_out, cut=cut)),
+            solves=Solves(first.failed_solves, first.cold_solves),
+            choice=tuple(plans) if to_choose else (),
+        )
 
 
 def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> PlannerSettings:
@@ -325,3 +277,63 @@ def _searched(settings: PlannerSettings, budget: int | None, seconds: float) -> 
     if budget is None and (single or not math.isfinite(seconds)):
         return settings
     return settings.updated({"search": {"budget": UNLIMITED if budget is None else budget}})
+
+
+def _notices(
+    first: Planner, ended: SearchEnd, left_out: Sequence[int], *, cut: bool
+) -> Iterator[Notice]:
+    """List the notices of a plan.
+
+    `left_out` are stones of the wall that was begun with; `cut` says that there was no time for
+    all that follows a search.
+    """
+    if left_out:
+        yield Notice(
+            "W121",
+            f"stones {_listed(left_out)} of the plan to begin with were taken out: "
+            "banned, out of their turn, or not standing without the others or with these settings.",
+        )
+    if ended.fallen:
+        yield Notice(
+            "W126",
+            "the wall that is built already does not stand after stones "
+            f"{_listed(ended.fallen)}; no better wall was looked for.",
+            "Take down the first of them and what rests on it, and plan again.",
+        )
+    if missing := missing_stones(ended.planner):
+        yield Notice(
+            "W120",
+            f"pinned stones found no place in the wall: {_listed(missing)}.",
+            "Look for longer (--time), or pin fewer stones.",
+        )
+    if ended.lost:
+        yield Notice(
+            "W122",
+            "a process of the search died, and the search ended there with the best wall so far.",
+            "Give less --jobs if memory ran out.",
+        )
+    if cut:
+        yield Notice(
+            "W125",
+            f"what follows a search was cut short after {ended.walls} walls; this is the best of "
+            "them.",
+            "To look for a better one from here, give this plan to --from.",
+        )
+    if ended.stopped == OUT_OF_TIME:
+        placed, fitting = len(ended.planner.build.actions), len(first.workshop.fitting)
+        yield Notice(
+            "W128",
+            f"the time limit struck after {placed} of {fitting} stones of the first wall; the plan "
+            "is what is built of it.",
+            "Give the same command again with --resume to go on with it, or more --time.",
+        )
+    if first.failed_solves:
+        yield Notice(
+            "W303",
+            f"the solver gave up on {first.failed_solves} candidates, which were passed over.",
+            "Please report this with the stones and the settings.",
+        )
+
+
+def _listed(stone_ids: Sequence[int]) -> str:
+    return ", ".join(map(str, stone_ids))

@@ -24,13 +24,7 @@ of IR on pixels (.46 GB, and no more after 300 s).
 
 @contextmanager
 def processes(count: int) -> Iterator[Executor | None]:
-    """Start processes; they end with the block, whatever they do then.
-
-    Parameters
-    ----------
-    count : int
-        How many; with 1, nothing is started and None is given.
-    """
+    """Start processes; they end with the block, whatever they do then."""
     if count == 1:
         yield None
         return
@@ -57,15 +51,7 @@ def threads(count: int) -> Iterator[Executor | None]:
 
 
 def process_pool(count: int, env: Mapping[str, str]) -> Any:
-    """Return an executor of loky, whose processes end with this one, whatever kills it.
-
-    Parameters
-    ----------
-    count : int
-        How many processes; they start when there is something to do.
-    env : mapping of str to str
-        Variables of their environment.
-    """
+    """Return an executor of loky, whose processes end with this one, whatever kills it."""
     from loky import ProcessPoolExecutor  # noqa: PLC0415 - most plans do without
 
     class Pool(ProcessPoolExecutor):  # type: ignore[misc]

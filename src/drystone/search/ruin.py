@@ -1,7 +1,7 @@
 """What is taken down of a wall before it is built up again."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 from numpy.random import Generator
@@ -23,10 +23,8 @@ BEARS = 0.2
 
 def taken_down(build: Build, ruin: Ruin, settings: SearchSettings, rng: Generator) -> Ids:
     """Choose stones by a ruin, and all that rest on them."""
-    stones = len(build.actions)
-    most = max(1, round(settings.largest * stones))
-    count = int(rng.integers(1, most + 1))
-    return with_all_above(build, ruin(build, count, rng))
+    most = max(1, round(settings.largest * len(build.actions)))
+    return with_all_above(build, ruin(build, int(rng.integers(1, most + 1)), rng))
 
 
 def with_all_above(build: Build, chosen: Ids) -> Ids:
@@ -57,10 +55,15 @@ def centres(build: Build) -> tuple[list[int], Points]:
     )
 
 
+def _least(build: Build, cost: Points, count: int) -> Ids:
+    """Take the stones of least cost; of equal ones those that were placed first."""
+    order = np.argsort(cost, kind="stable")
+    return frozenset(build.wall.placements[k].stone_id for k in order[:count].tolist())
+
+
 def _nearest(build: Build, point: Points, count: int) -> Ids:
-    ids, at = centres(build)
-    order = np.argsort(np.hypot(*(at - point).T), kind="stable")
-    return frozenset(ids[k] for k in order[:count].tolist())
+    _, at = centres(build)
+    return _least(build, np.hypot(*(at - point).T), count)
 
 
 def disc(build: Build, count: int, rng: Generator) -> Ids:
@@ -69,29 +72,23 @@ def disc(build: Build, count: int, rng: Generator) -> Ids:
     return _nearest(build, at[int(rng.integers(len(ids)))], count)
 
 
-def top(build: Build, count: int, rng: Generator) -> Ids:
+def top(build: Build, count: int, _: Generator) -> Ids:
     """Take the highest stones of the whole wall."""
-    del rng
-    ids, at = centres(build)
-    order = np.argsort(-at[:, 1], kind="stable")
-    return frozenset(ids[k] for k in order[:count].tolist())
+    return _least(build, -centres(build)[1][:, 1], count)
 
 
 def column(build: Build, count: int, rng: Generator) -> Ids:
     """Take the upper stones around a vertical line."""
-    ids, at = centres(build)
-    x = float(rng.uniform(0, build.wall.site.width_px))
-    order = np.argsort(np.abs(at[:, 0] - x) - 0.5 * at[:, 1], kind="stable")
-    return frozenset(ids[k] for k in order[:count].tolist())
+    x, y = centres(build)[1].T
+    middle = float(rng.uniform(0, build.wall.site.width_px))
+    return _least(build, np.abs(x - middle) - 0.5 * y, count)
 
 
 def end(build: Build, count: int, rng: Generator) -> Ids:
     """Take the stones at one end, from the top down."""
-    ids, at = centres(build)
-    width, height = build.wall.site.width_px, build.wall.site.height_px
-    away = at[:, 0] if rng.integers(2) else width - at[:, 0]
-    order = np.argsort(away - (at[:, 1] - height), kind="stable")
-    return frozenset(ids[k] for k in order[:count].tolist())
+    (x, y), site = centres(build)[1].T, build.wall.site
+    away = x if rng.integers(2) else site.width_px - x
+    return _least(build, away - (y - site.height_px), count)
 
 
 def joint(build: Build, count: int, rng: Generator) -> Ids:
@@ -140,13 +137,5 @@ def mechanism(build: Build, count: int, rng: Generator) -> Ids:
     return _nearest(build, at[int(rng.choice(len(ids), p=speed / speed.sum()))], count)
 
 
-RUINS: Mapping[str, Ruin] = {
-    "disc": disc,
-    "top": top,
-    "column": column,
-    "end": end,
-    "joint": joint,
-    "step": step,
-    "mechanism": mechanism,
-}
-"""By name, in the order in which they are drawn."""
+RUINS: tuple[Ruin, ...] = (disc, top, column, end, joint, step, mechanism)
+"""In the order in which they are drawn."""

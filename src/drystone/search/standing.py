@@ -8,89 +8,64 @@ from dataclasses import dataclass, field
 
 from drystone.planner.solves import Solves
 from drystone.search.operators import Credits
-from drystone.search.packed import Packed
+from drystone.search.packed import PackedWall, archived
 
 
 @dataclass(frozen=True, eq=False)
-class PackedLink:
-    """Where a chain is (:class:`drystone.search.chain.Link`)."""
+class Link:
+    """Where a chain is."""
 
-    number: int
-    done: int
-    now: Packed
-    best: Packed
-    solves: Solves
-    kept: tuple[Packed, ...] = ()
-    known: Credits = field(default_factory=Credits)
-    learnt: Credits = field(default_factory=Credits)
+    number: int  # of the chain
+    done: int  # how many walls it has built
+    now: PackedWall  # it goes on from here
+    best: PackedWall
+    solves: Solves  # trouble with all of them
+    kept: tuple[PackedWall, ...] = ()  # the last ones that none of them beats in every figure
+    known: Credits = field(default_factory=Credits)  # which changes have helped in all chains
+    learnt: Credits = field(default_factory=Credits)  # and in this one since then
 
 
 @dataclass(frozen=True, eq=False)
 class Reached:
-    """What a search has come to.
+    """What a search has come to."""
 
-    Parameters
-    ----------
-    walls : int
-        How many walls it has built that count: the budget that repeats it.
-    best : Packed
-        The best of them.
-    solves : Solves
-        What trouble there was with all of them.
-    kept : tuple of Packed
-        Those that none beats in every figure of merit (:mod:`drystone.search.archive`).
-    """
+    walls: int  # that count: the budget that repeats it
+    best: PackedWall
+    solves: Solves  # trouble with all of them
+    kept: tuple[PackedWall, ...]  # those that none beats in every figure of merit
 
-    walls: int
-    best: Packed
-    solves: Solves
-    kept: tuple[Packed, ...]
+    @classmethod
+    def of(cls, wall: PackedWall) -> "Reached":
+        """Begin with a wall."""
+        return cls(1, wall, wall.solves, archived((), [wall]))
+
+    def __add__(self, later: "Reached") -> "Reached":
+        return Reached(
+            self.walls + later.walls,
+            self.best if self.best.merit >= later.best.merit else later.best,
+            self.solves + later.solves,
+            archived(self.kept, later.kept),
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Chains:
-    """Where the chains of a round are.
+    """Where the chains of a round are."""
 
-    Parameters
-    ----------
-    reached : Reached
-        By the round.
-    links : tuple of PackedLink
-        Of every chain.
-    turn : int
-        How many of them have built their share since they last shared their best.
-    better : int
-        Walls of the round after which the best was last notably better.
-    goal : float
-        The merit that is so next.
-    """
-
-    reached: Reached
-    links: tuple[PackedLink, ...]
-    turn: int
-    better: int
-    goal: float
+    reached: Reached  # by the round
+    links: tuple[Link, ...]
+    turn: int  # how many of them have built their share since they last shared their best
+    better: int  # walls of the round after which the best was last notably better
+    goal: float  # the merit that is so next
 
 
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """Where a search stands.
+    """Where a search stands."""
 
-    Parameters
-    ----------
-    number : int
-        Of the round, from 0.
-    before : Reached or None
-        By the rounds before it.
-    found : tuple of Packed
-        Its first walls, as long as there are no chains.
-    chains : Chains or None
-        What they have become.
-    """
-
-    number: int
-    before: Reached | None
-    found: tuple[Packed, ...]
+    number: int  # of the round, from 0
+    before: Reached | None  # by the rounds before it
+    found: tuple[PackedWall, ...]  # its first walls, as long as there are no chains
     chains: Chains | None = None
 
     @property
@@ -102,13 +77,8 @@ class Standing:
 
 @dataclass(frozen=True, eq=False)
 class Progress(Reached):
-    """What a search has come to, and where it stands.
+    """What a search has come to, and where it stands."""
 
-    Parameters
-    ----------
-    standing : Standing or None
-        From where it goes on to the walls that it would find itself; None where the clock or the
-        budget has cut a chain short, and before there is more than the first wall.
-    """
-
+    # From where it goes on to the walls that it would find itself; None where the clock or the
+    # budget has cut a chain short, and before there is more than the first wall.
     standing: Standing | None = None

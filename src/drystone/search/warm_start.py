@@ -5,11 +5,10 @@ from dataclasses import replace
 
 from drystone.model.wall import Group, Wall, outlined
 from drystone.model.wedge_shape import WedgeShape
-from drystone.planner.dropping import wedge_limits
 from drystone.planner.planner import Planner
-from drystone.planner.replay import replayed
 from drystone.planner.workshop import Workshop
 from drystone.search.packed import settled_again
+from drystone.search.yard import Yard
 from drystone.settle.wedge import WedgeLimits, squeezed_out
 
 EDGE_PX = 1e-6
@@ -21,26 +20,14 @@ def begin_with(
 ) -> tuple[int, ...]:
     """Let a planner begin with a wall, as far as its stones may be used and stand.
 
-    Without its wedges that are none by these settings.
-
-    Parameters
-    ----------
-    planner : Planner
-        Has built nothing yet; of the same stones, size and resolution as the wall.
-    wall : Wall
-        Any wall of these stones.
-    course_heights_px : mapping of int to float
-        For stones that began a course: the height that Eq. 8 compared with.
-
-    Returns
-    -------
-    left_out : tuple of int
-        Ids of the stones of the wall that were taken out: banned, out of their turn in a given
-        order, standing out of the wall by more than `settle.beyond_px` allows now, or not standing
-        with these settings, as when what carried them is left out.
+    Without its wedges that are none by these settings.  The planner has built nothing yet, of the
+    same stones, size and resolution as the wall.  For stones that began a course, the height is
+    that which Eq. 8 compared with.  Returns the ids of the stones that were taken out: banned, out
+    of their turn in a given order, standing out of the wall by more than `settle.beyond_px` allows
+    now, or not standing with these settings, as when what carried them is left out.
     """
-    workshop, settings = planner.workshop, planner.settings
-    limits = wedge_limits(settings, workshop.stock, workshop.site)
+    yard = Yard.of(planner)
+    workshop, settings, limits = yard.workshop, yard.settings, yard.limits
     allowed, groups, last = set(workshop.fitting), [], -1
     for group in wall.groups:
         stone_id = group.placement.stone_id
@@ -48,9 +35,7 @@ def begin_with(
         if stone_id in allowed and in_turn and _within(wall, group, settings.settle.beyond_px):
             groups.append(_outlined_as_here(_well_wedged(wall, group, limits), workshop))
             last = stone_id
-    planner.build, _, solves = replayed(
-        planner.build, groups, course_heights_px, workshop, settings, strict=False
-    )
+    planner.build, _, solves = yard.replayed(planner.build, groups, course_heights_px, strict=False)
     planner.failed_solves += solves.failed
     planner.cold_solves += solves.cold
     used = {action.stone_id for action in planner.build.actions}

@@ -7,7 +7,6 @@ added one after the other, and the one that cannot be is barred from the next dr
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 
@@ -15,14 +14,10 @@ from drystone.kernels.polygons import Points
 from drystone.model.placement import Wedge
 from drystone.model.wall import Group
 from drystone.planner.build import Build
-from drystone.planner.deadline import NEVER, Deadline
-from drystone.planner.replay import replayed
-from drystone.planner.settings import PlannerSettings
+from drystone.planner.deadline import Deadline
 from drystone.planner.solves import Solves
-from drystone.planner.workshop import Workshop
-from drystone.search.wedge_draft import Draft
-from drystone.search.wedge_places import Motion, WedgePlace
-from drystone.settle.wedge import WedgeLimits
+from drystone.search.wedge_draft import Motion, WedgeDraft, WedgePlace
+from drystone.search.yard import Yard
 from drystone.statics.model import RigidBlockModel
 
 LEAST = 0.003
@@ -45,21 +40,11 @@ Barred = frozenset[tuple[int, bytes]]
 
 @dataclass(frozen=True, eq=False)
 class _Change:
-    """A wedge more or less.
+    """A wedge more or less."""
 
-    Parameters
-    ----------
-    step : int
-        Which step places the stone on it.
-    corners : (n, 2) float array
-        Its outline; that of the very wedge of the wall if it is dropped.
-    dropped : bool
-        Whether it is dropped, not added.
-    """
-
-    step: int
-    corners: Points
-    dropped: bool = False
+    step: int  # which step places the stone on it
+    corners: Points  # (n, 2), its outline; that of the very wedge of the wall if it is dropped
+    dropped: bool = False  # whether it is dropped, not added
 
     def of(self, group: Group) -> Group:
         """Return the step with the change."""
@@ -72,22 +57,16 @@ class _Change:
 
 
 @dataclass(frozen=True, eq=False)
-class _Yard:
-    """What wedging needs beside the wall: see :func:`wedged_up`; and what trouble there was."""
+class _Steps:
+    """Takes steps of a wall again, and remembers what trouble there was."""
 
-    workshop: Workshop
-    settings: PlannerSettings
-    limits: WedgeLimits
+    yard: Yard
     course_heights_px: dict[int, float]
-    until: Deadline
     trouble: list[Solves] = field(default_factory=list)
 
     def again(self, start: Build, groups: Sequence[Group]) -> Build | None:
         """Take steps again on what is built; None when one of them cannot be taken."""
-        heights, until = self.course_heights_px, self.until
-        build, left_out, solves = replayed(
-            start, groups, heights, self.workshop, self.settings, until=until
-        )
+        build, left_out, solves = self.yard.replayed(start, groups, self.course_heights_px)
         self.trouble.append(solves)
         return None if left_out else build
 
@@ -109,79 +88,32 @@ class _Yard:
             build = build if wall is None else wall
 
 
-class WedgedUp(NamedTuple):
-    """A wall with other wedges.
-
-    Parameters
-    ----------
-    build : Build
-        The wall.
-    solves : Solves
-        What trouble the solver had with steps that were taken again.
-    """
-
-    build: Build
-    solves: Solves
-
-
-def wedged_up(
-    build: Build,
-    workshop: Workshop,
-    settings: PlannerSettings,
-    limits: WedgeLimits,
-    most: int,
-    until: Deadline = NEVER,
-) -> WedgedUp:
-    """Add wedges to a finished wall that raise F_LR, and drop those that do not matter.
+def wedged_up(build: Build, yard: Yard, most: int) -> tuple[Build, Solves]:
+    """Add wedges to a finished wall of outlines that raise F_LR, and drop those that do not matter.
 
     No stone moves.  A wedge is placed with the stone that lies on it, and the wall stands after
-    every step, in both models.
-
-    Parameters
-    ----------
-    build : Build
-        A wall of outlines.
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        With which it was built.
-    limits : WedgeLimits
-        What wedges may be (:func:`drystone.planner.dropping.wedge_limits`).
-    most : int
-        So many are added.
-    until : Deadline
-        Looked at for every wedge that is tried, and every step that is taken again.
-
-    Returns
-    -------
-    wedged : WedgedUp
-        Its build has all its states; it is the same one when nothing changes, or when its own steps
-        cannot be taken again.
-
-    Raises
-    ------
-    TimeIsUp
-        The time limit struck.
+    every step, in both models.  The wall has all its states then; it is the same one when nothing
+    changes, or when its own steps cannot be taken again.  At most so many wedges are added.
     """
     if build.wall.outlines is None:
         raise ValueError("only walls of outlines are wedged up")
-    yard = _Yard(workshop, settings, limits, build.course_heights_px(), until)
-    begun = _with_states(build, yard)
-    wall = begun if begun is None or not begun.actions else _wedged(begun, yard, most)
-    solves = sum(yard.trouble, Solves())
-    return WedgedUp(build if wall is None or wall is begun else wall, solves)
+    steps = _Steps(yard, build.course_heights_px())
+    begun: Build | None = build
+    if len(build.states()) <= len(build.actions):  # it does not know its states
+        begun = steps.again(yard.planner().build, build.wall.groups)
+    wall = begun if begun is None or not begun.actions else _wedged(begun, steps, most)
+    return build if wall is None or wall is begun else wall, sum(steps.trouble, Solves())
 
 
-def _wedged(begun: Build, yard: _Yard, most: int) -> Build:
+def _wedged(wall: Build, steps: _Steps, most: int) -> Build:
     """Return a wall that knows its states with other wedges; the same when nothing changes."""
-    wall, barred = begun, Barred()
+    barred = Barred()
     for _ in range(DRAFTS):
-        added, dropped = _drafted(wall, yard, most, barred)
-        better = _with_all(wall, added, dropped, yard)
+        added, dropped = _drafted(wall, steps, most, barred)
+        better = _with_all(wall, added, dropped, steps)
         if better is not None:
-            wall = better
-            break
-        for change, one in zip(added, yard.one_by_one(wall, added), strict=True):
+            return better
+        for change, one in zip(added, steps.one_by_one(wall, added), strict=True):
             if one is None:
                 barred |= {(change.step, change.corners.tobytes())}
                 break
@@ -189,46 +121,39 @@ def _wedged(begun: Build, yard: _Yard, most: int) -> Build:
     return wall
 
 
-def _with_states(build: Build, yard: _Yard) -> Build | None:
-    """Return the same wall with all states on the way; None when it cannot be built again."""
-    if len(build.states()) == len(build.actions) + 1:
-        return build
-    mean_area_px = yard.workshop.stock.mean_area_px
-    empty = Build.empty(build.wall.site, yard.settings.mu, mean_area_px, exact=True)
-    return yard.again(empty, build.wall.groups)
-
-
 def _with_all(
-    build: Build, added: Sequence[_Change], dropped: Sequence[_Change], yard: _Yard
+    build: Build, added: Sequence[_Change], dropped: Sequence[_Change], steps: _Steps
 ) -> Build | None:
     """Return a wall with wedges added and dropped; None when it does not stand with them.
 
     What cannot be dropped stays.
     """
-    wall = yard.changed(build, [*added, *dropped])
+    wall = steps.changed(build, [*added, *dropped])
     if wall is not None or not dropped:
         return wall
-    wall = yard.changed(build, added)
+    wall = steps.changed(build, added)
     if wall is None:
         return None
-    return [wall, *filter(None, yard.one_by_one(wall, dropped))][-1]
+    return [wall, *filter(None, steps.one_by_one(wall, dropped))][-1]
 
 
 def _drafted(
-    build: Build, yard: _Yard, most: int, barred: Barred
+    build: Build, steps: _Steps, most: int, barred: Barred
 ) -> tuple[list[_Change], list[_Change]]:
     """Return which wedges a wall should get, the most useful first, and which it does not need."""
-    draft = Draft.of(build, yard.limits)
-    number = yard.workshop.next_wedge(build)
+    draft = WedgeDraft.of(build, steps.yard.limits)
+    number = steps.yard.workshop.next_wedge(build)
     while len(draft.added) < most:
-        better = _with_one_more(draft, number + len(draft.added), barred, yard.until)
+        better = _with_one_more(draft, number + len(draft.added), barred, steps.yard.until)
         if better is None:
             break
         draft = better
-    return _needed(build, draft, yard)
+    return _needed(build, draft, steps)
 
 
-def _with_one_more(draft: Draft, number: int, barred: Barred, until: Deadline) -> Draft | None:
+def _with_one_more(
+    draft: WedgeDraft, number: int, barred: Barred, until: Deadline
+) -> WedgeDraft | None:
     """Return a draft with one more wedge, the best one; None when none helps."""
     value, mu = draft.resistance.value, draft.resistance.mu
     if value is None:  # the solver gave up: it stood when it was built
@@ -263,7 +188,7 @@ def _share(alpha: float | None, mu: float) -> float | None:
     return None if alpha is None else alpha / mu
 
 
-def _resisting(draft: Draft, motion: Motion, barred: Barred) -> list[WedgePlace]:
+def _resisting(draft: WedgeDraft, motion: Motion, barred: Barred) -> list[WedgePlace]:
     """List the places that a mechanism violates most, then such as only their weight could help."""
     places = [
         place
@@ -275,7 +200,7 @@ def _resisting(draft: Draft, motion: Motion, barred: Barred) -> list[WedgePlace]
     return [places[k] for k in order[:ANALYSED].tolist()]
 
 
-def _needed(build: Build, draft: Draft, yard: _Yard) -> tuple[list[_Change], list[_Change]]:
+def _needed(build: Build, draft: WedgeDraft, steps: _Steps) -> tuple[list[_Change], list[_Change]]:
     """Return the wedges of a draft that matter, and those of the wall that do not.
 
     Those that are needed when others are there are needed without them: each is asked for once.
@@ -289,14 +214,14 @@ def _needed(build: Build, draft: Draft, yard: _Yard) -> tuple[list[_Change], lis
     }
     dropped: list[_Change] = []
     for number in sorted([*there, *added], key=draft.placed.ids.index):
-        yard.until.look()
+        steps.yard.until.look()
         model = draft.idle(number)
         value, carried = draft.resistance.value, draft.analysis.resistance_with(model).resistance
         if value is None or carried.value is None or carried.value < value - SAME:
             continue
         if number in added:
             del added[number]
-        elif _stands_at(build, [*added.values(), *dropped, there[number]], yard):
+        elif _stands_at(build, [*added.values(), *dropped, there[number]], steps):
             dropped.append(there[number])
         else:
             continue
@@ -304,11 +229,11 @@ def _needed(build: Build, draft: Draft, yard: _Yard) -> tuple[list[_Change], lis
     return list(added.values()), dropped
 
 
-def _stands_at(build: Build, changes: Sequence[_Change], yard: _Yard) -> bool:
+def _stands_at(build: Build, changes: Sequence[_Change], steps: _Steps) -> bool:
     """Say whether the step of the last of some changes can be taken with them."""
     step = changes[-1].step
     group = build.wall.groups[step]
     for change in changes:
         if change.step == step:
             group = change.of(group)
-    return yard.again(build.states()[step], [group]) is not None
+    return steps.again(build.states()[step], [group]) is not None

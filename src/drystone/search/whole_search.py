@@ -1,53 +1,51 @@
 """A first wall, the search for better ones, and what follows it; an interrupt keeps the best."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
+from itertools import islice
 from typing import NamedTuple
 
 from drystone.errors import PlanError
+from drystone.planner.build import Build
 from drystone.planner.deadline import NEVER, Deadline, TimeIsUp
 from drystone.planner.events import INTERRUPTED, OUT_OF_TIME, Incumbent, Stopped
 from drystone.planner.planner import Planner
 from drystone.planner.replay import stands
+from drystone.planner.sturdy import ROUNDS
 from drystone.search.anytime import searching
-from drystone.search.archive import archived
-from drystone.search.ending import as_found, surest, with_the_rest
-from drystone.search.found import Found
+from drystone.search.chain import forget
+from drystone.search.goal import FoundWall, WallFigures
 from drystone.search.interrupts import held
-from drystone.search.packed import Packed
+from drystone.search.packed import PackedWall, archived, found_again
 from drystone.search.standing import Progress, Standing
-from drystone.search.work import forget
+from drystone.search.yard import Yard
+from drystone.statics.flow.flow_search import NonassociativeSettings
+from drystone.statics.flow.release import fall_of
+from drystone.statics.lp.program import assemble
+
+_FOUND = Stopped("search", "kept as the search found it")
+
+THOROUGH = NonassociativeSettings()
+"""How the load without dilatancy is looked for at the end."""
+
+JUDGED_AGAIN = 4
+"""So many of the best walls of a search are looked at thoroughly at most."""
 
 
-class Ended(NamedTuple):
-    """How a search ended.
+class SearchEnd(NamedTuple):
+    """How a search ended."""
 
-    Parameters
-    ----------
-    planner : Planner
-        The one that built the best wall.
-    stopped : Stopped
-        Why its construction ended; :data:`~drystone.planner.events.INTERRUPTED` where somebody had
-        enough.
-    walls : int
-        How many walls were built: the budget that repeats it.
-    kept : tuple of Packed
-        Walls that none beats in every figure of merit, the best first; none of a single pass.
-    lost, cut : bool
-        A process of the search died, and it ended there; what follows the search took too long.
-    fallen : tuple of int
-        Stones after which the wall to begin with does not stand, so that nothing was looked for.
-    """
-
-    planner: Planner
-    stopped: Stopped
-    walls: int
-    kept: tuple[Packed, ...]
-    lost: bool = False
-    cut: bool = False
+    planner: Planner  # the one that built the best wall
+    stopped: Stopped  # why its construction ended; INTERRUPTED where somebody had enough
+    walls: int  # how many were built: the budget that repeats it
+    # Those that none beats in every figure of merit, the best first; none of a single pass.
+    kept: tuple[PackedWall, ...]
+    lost: bool = False  # a process of the search died, and it ended there
+    cut: bool = False  # what follows the search took too long
+    # Stones after which the wall to begin with does not stand, so that nothing was looked for.
     fallen: tuple[int, ...] = ()
 
 
@@ -60,46 +58,23 @@ def run_to_end(
     first_whole: bool = False,
     executor: Executor | None = None,
     told: Callable[[Progress | None], None] = lambda _: None,
-) -> Ended:
+) -> SearchEnd:
     """Build a first wall, and look for better ones; an interrupt keeps the best so far.
 
-    So does the time limit; a first wall that either cuts short is what is built of it.
-
-    Parameters
-    ----------
-    planner : Planner
-        Of the first wall.
-    start : Standing, optional
-        Where the search was cut off; there is no first wall to build then.
-    until : Deadline
-        Ends the search, or the first wall.
-    grace_s : float
-        So long may take what follows the search.
-    first_whole : bool
-        Whether the first wall is built to its end whatever the clock says.
-    executor : concurrent.futures.Executor, optional
-        Processes for the search.
-    told : callable
-        Told of every progress of the search; before it, with None, of stones of the first wall.
-
-    Returns
-    -------
-    ended : Ended
-        With the best wall.
-
-    Raises
-    ------
-    PlanError
-        E207: a wall of `start` cannot be built again.
+    So does the time limit; a first wall that either cuts short is what is built of it, but with
+    `first_whole` it is built to its end whatever the clock says.  Of a search that goes on from
+    `start` there is no first wall to build.  What follows the search may take `grace_s`.  Told of
+    every progress of the search, and before it, with None, of stones of the first wall.
+    PlanError: a wall of `start` cannot be built again (E207).
     """
     stopped = INTERRUPTED
     if start is None:
         stopped = _built(planner, NEVER if first_whole else until, told)
         if planner.settings.search.budget == 1 or stopped in (INTERRUPTED, OUT_OF_TIME):
-            return Ended(planner, stopped, 1, ())
+            return SearchEnd(planner, stopped, 1, ())
         fallen = tuple(one.stone_id for one in planner.build.actions if not stands(one))
         if fallen:
-            return Ended(planner, stopped, 1, (), fallen=fallen)
+            return SearchEnd(planner, stopped, 1, (), fallen=fallen)
     try:
         return _improved(planner, start or stopped, until, grace_s, executor, told)
     except (ValueError, LookupError, ArithmeticError) as error:
@@ -120,21 +95,15 @@ def _improved(
     grace_s: float,
     executor: Executor | None,
     told: Callable[[Progress | None], None],
-) -> Ended:
+) -> SearchEnd:
     """Look for better walls; see :func:`run_to_end`."""
     progress: Progress | None = None
     lost = interrupted = False
     try:
-        begun = start if isinstance(start, Standing) else Found.of(planner)
+        begun = start if isinstance(start, Standing) else FoundWall.of(planner)
+        yard = Yard.of(planner, until)
         with planner.profile.part("search"):
-            for progress in searching(
-                begun,
-                planner.workshop,
-                planner.settings,
-                planner.seed,
-                until=until,
-                executor=executor,
-            ):
+            for progress in searching(begun, yard, planner.seed, executor):
                 planner.failed_solves = progress.solves.failed
                 planner.cold_solves = progress.solves.cold
                 planner.callbacks.on_walls(_incumbent(progress))
@@ -148,7 +117,7 @@ def _improved(
     with suppress(KeyboardInterrupt):
         if not interrupted:
             if isinstance(start, Stopped) and (progress is None or progress.walls == 1):
-                return Ended(planner, start, 1, progress.kept if progress else (), lost)
+                return SearchEnd(planner, start, 1, progress.kept if progress else (), lost)
             assert progress is not None  # noqa: S101 - what a search goes on from comes first
             return _ended(planner, progress, Deadline.after(grace_s, until.clock), lost=lost)
     with suppress(KeyboardInterrupt), held():
@@ -156,23 +125,15 @@ def _improved(
     return ended
 
 
-def cut_off(planner: Planner, progress: Progress | None) -> Ended:
-    """Return what there is so far, as the end of a search that somebody has had enough of.
-
-    Parameters
-    ----------
-    planner : Planner
-        Of the first wall.
-    progress : Progress or None
-        Of the search; None while the first wall is built.
-    """
+def cut_off(planner: Planner, progress: Progress | None) -> SearchEnd:
+    """Return what there is so far, as the end of a search that somebody has had enough of."""
     if progress is None:
-        return Ended(planner, INTERRUPTED, 1, ())
+        return SearchEnd(planner, INTERRUPTED, 1, ())
     last = planner if progress.walls == 1 else as_found(planner, progress.best)[0]
-    return Ended(last, INTERRUPTED, progress.walls, progress.kept)
+    return SearchEnd(last, INTERRUPTED, progress.walls, progress.kept)
 
 
-def _ended(planner: Planner, progress: Progress, grace: Deadline, *, lost: bool) -> Ended:
+def _ended(planner: Planner, progress: Progress, grace: Deadline, *, lost: bool) -> SearchEnd:
     """Judge the best walls of a search thoroughly, and add what finds a place on the best."""
     kept = progress.kept
     surer, unsure = surest(planner, kept, grace)
@@ -181,8 +142,8 @@ def _ended(planner: Planner, progress: Progress, grace: Deadline, *, lost: bool)
     planner.failed_solves += last.failed_solves
     planner.cold_solves += last.cold_solves
     if len(last.build.actions) > len(best.groups):
-        kept = archived(kept, [Packed.of(Found.of(last))])
-    return Ended(last, stopped, progress.walls, kept, lost, unsure or cut)
+        kept = archived(kept, [PackedWall.of(FoundWall.of(last))])
+    return SearchEnd(last, stopped, progress.walls, kept, lost, unsure or cut)
 
 
 def _built(planner: Planner, until: Deadline, told: Callable[[Progress | None], None]) -> Stopped:
@@ -205,15 +166,97 @@ def _built(planner: Planner, until: Deadline, told: Callable[[Progress | None], 
 
 
 def _incumbent(progress: Progress) -> Incumbent:
-    figures = progress.best.figures
-    if figures is None:
-        return Incumbent(progress.walls, 0, progress.best.merit, 0.0, 0.0, 0.0, 0.0)
+    best = progress.best
+    figures = best.figures or WallFigures(0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     return Incumbent(
         progress.walls,
         figures.stones,
-        progress.best.merit,
+        best.merit,
         figures.F_SF,
         figures.F_LR,
         figures.F_AV,
         figures.F_AH,
     )
+
+
+def surest(
+    planner: Planner, walls: Iterable[PackedWall], until: Deadline = NEVER
+) -> tuple[PackedWall | None, bool]:
+    """Return the best of some walls once their load without dilatancy is looked for thoroughly.
+
+    Walls come the best first; of none there is no best.  A wall that falls when it is let go after
+    some step is taken only where all do.  Says too whether time was up before all were looked at:
+    the best is then one of those that were, and the first where none was.
+    """
+    yard = Yard.of(planner, until)
+    sound: list[PackedWall] = []
+    fallen: list[PackedWall] = []
+    for wall in islice(walls, JUDGED_AGAIN):
+        if sound and wall.merit <= _best(sound).merit:
+            break
+        try:
+            again = found_again(wall, yard)
+            judged = PackedWall.of(again.judged(yard, THOROUGH))
+            (sound if stays_at_every_step(again.build, until) else fallen).append(judged)
+        except TimeIsUp:
+            return _best(sound or fallen or [wall]), True
+    looked_at = sound or fallen
+    return _best(looked_at) if looked_at else None, False
+
+
+def stays_at_every_step(build: Build, until: Deadline = NEVER) -> bool:
+    """Return whether a wall on outlines stays as it is when all of it is let go after each step.
+
+    Forces that would hold it may exist that do not arise (DESIGN 4.8).  For the newest stone alone
+    that is asked whenever a stone is placed; for all, which takes longer, only here.
+    """
+    if build.wall.outlines is None:
+        return True
+    models = (action.model for action in build.actions)
+    return all(fall_of(m, assemble(m), ROUNDS, until.look) is None for m in models)
+
+
+def _best(walls: Sequence[PackedWall]) -> PackedWall:
+    return max(walls, key=lambda one: one.merit)
+
+
+def as_found(
+    planner: Planner, wall: PackedWall, until: Deadline = NEVER
+) -> tuple[Planner, Stopped]:
+    """Return a planner with a wall as a search has found it, and why nothing is added.
+
+    The planner of the first wall gives all else.
+    """
+    yard = Yard.of(planner, until)
+    last = yard.planner(planner.seed)
+    last.profile = planner.profile
+    last.build = found_again(wall, yard).build
+    return last, last.finished or _FOUND
+
+
+def with_the_rest(
+    planner: Planner, best: PackedWall, until: Deadline = NEVER
+) -> tuple[Planner, Stopped, bool]:
+    """Return a planner with the best wall of a search, and why nothing more is placed on it.
+
+    The passes of a search have weights of their own: a stone that found no place by those may
+    find one by the weights of the first wall.  As many stay as make the wall best.  Says too
+    whether time was up before all was tried.
+    """
+    last, _ = as_found(planner, best)
+    build, merit, cut = last.build, best.merit, False
+    try:
+        for _ in last.steps(until):
+            now = FoundWall.of(last)
+            if now.merit > merit:
+                now = now.judged(Yard.of(planner, until), THOROUGH)
+            if now.merit > merit:
+                build, merit = last.build, now.merit
+    except TimeIsUp:
+        cut = True
+    if last.stopped is not None and last.build is build:
+        return last, last.stopped, cut
+    last.build = build
+    if cut:
+        return last, last.finished or _FOUND, True
+    return last, Stopped("search", "the stones that are left do not make the wall better"), False

@@ -12,7 +12,7 @@ from drystone.contacts.outlines import outlines_of_labels
 from drystone.kernels.polygons import Points
 from drystone.model.wall import Wall
 from drystone.physics.building import ROUNDED
-from drystone.physics.scene import Scene
+from drystone.physics.scene import EngineScene
 from drystone.physics.shake import shake_once
 from drystone.physics.table import load_engine
 from drystone_lab.packing import load_packer
@@ -44,7 +44,7 @@ def pga_of(spec: RunSpec, outcome: Outcome, data: Path | None) -> float | None:
     wall = outcome.wall(spec, data)
     # Wedges may fall out: the score is about stones.
     stones = frozenset(placement.stone_id for placement in wall.placements)
-    scene = Scene(wall_outlines(wall), spec.settings().mu)
+    scene = EngineScene(wall_outlines(wall), spec.settings().mu)
     trial = shake_once(scene, ROUNDED, watched=stones)
     return trial.pga_g
 

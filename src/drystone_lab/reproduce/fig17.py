@@ -56,8 +56,8 @@ class Paths:
     @property
     def figures(self) -> tuple[float | None, float | None]:
         """F_AH and F_AV, in percent; None where there is no path."""
-        across = [path.length_px for path in self.across]
-        upright = [path.length_px for path in self.upright]
+        across = [path.length_px for path in self.across[:SHORTEST]]
+        upright = [path.length_px for path in self.upright[:SHORTEST]]
         return mean_excess(across, self.width), mean_excess(upright, self.height)
 
 

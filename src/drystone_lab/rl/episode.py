@@ -12,7 +12,7 @@ from drystone.planner.build import Build, Candidate
 from drystone.planner.offers import offer
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
-from drystone.search.goal import Figures, figures_of, merit_of, possible_filling
+from drystone.search.goal import WallFigures, figures_of, merit_of, possible_filling
 from drystone.selection.policy import Offer
 
 ARRIVING = PlannerSettings(
@@ -140,7 +140,7 @@ class Episode:
             self.aside += 1
 
     @property
-    def figures(self) -> Figures | None:
+    def figures(self) -> WallFigures | None:
         """All figures of merit of the wall as it is; None when it is empty."""
         return figures_of(self.build, self._settings.pin)
 
@@ -158,7 +158,7 @@ class Episode:
         """
         if self.over or not self.build.actions:
             return self.merit
-        so_far = Figures(
+        so_far = WallFigures(
             stones=len(self.build.actions),
             F_SF=self.build.wall.filling,
             F_LR=self.build.actions[-1].resistance.value or 0.0,

@@ -13,7 +13,7 @@ from gymnasium.utils.env_checker import check_env
 import drystone_lab.rl
 from drystone.errors import UsageError
 from drystone.model.site import Site
-from drystone.search.goal import Figures, merit_of
+from drystone.search.goal import WallFigures, merit_of
 from drystone.selection.policies.learned import FEATURES, features
 from drystone_lab.rl.env import WallEnv
 from drystone_lab.rl.episode import ARRIVING
@@ -53,7 +53,7 @@ def test_rewards_sum_up_to_the_merit_of_the_wall() -> None:
     for seed in range(5):
         rewards, info, _ = played(env, seed)
         possible = min(1.0, SMALL.surplus)
-        worth = merit_of(Figures(**info["metrics"]), possible, env.settings.goal)
+        worth = merit_of(WallFigures(**info["metrics"]), possible, env.settings.goal)
         assert sum(rewards) == pytest.approx(worth, abs=1e-9)
         assert info["merit"] == worth
         assert info["metrics"]["stones"] == info["placed"] == len(rewards)

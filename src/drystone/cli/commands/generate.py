@@ -19,7 +19,7 @@ from drystone.model.settings import updated
 
 def add(command: argparse.ArgumentParser) -> None:
     """Add its options."""
-    command.add_argument("kind", choices=["fourier", "polygon", "brick", "rubble"])
+    command.add_argument("kind", choices=[*generate.GENERATORS])
     command.add_argument("-o", "--output", required=True, metavar="STONES.png")
     command.add_argument("--count", type=whole_from(1), help="number of stones")
     command.add_argument("--seed", type=whole_from(0), default=0)

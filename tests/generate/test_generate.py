@@ -1,0 +1,376 @@
+"""Stone sets that are made: each kind by what is known of it, and all as pictures."""
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import ndimage
+
+from drystone.errors import UsageError
+from drystone.generate.brick import BrickSettings, brick_stones
+from drystone.generate.fourier import (
+    FourierSettings,
+    fourier_contour,
+    fourier_descriptors,
+    fourier_stones,
+)
+from drystone.generate.layout import GAP_PX, check_room, lay_out, stones_of
+from drystone.generate.polygon import PolygonSettings, noisy_polygon, polygon_stones
+from drystone.generate.rubble import RubbleSettings, course_sizes, rubble_outline, rubble_stones
+from drystone.model.stone import Stone, StoneSet
+from tests.strategies import repeatable
+
+IMPOSSIBLE = {
+    BrickSettings: [
+        {"count": 0},
+        {"count": -1, "halves": 2},
+        {"height_px": 0},
+        {"aspect": 0.05},
+        {"aspect": 1.49 / 12},
+        {"aspect": -1e308},
+        {"aspect": math.nan},
+    ],
+    FourierSettings: [
+        {"count": 0},
+        {"smallest_radius_px": 31.0},
+        {"smallest_radius_px": 0.0},
+        {"D2": -0.1},
+        {"D3": 0.0},
+        {"D8": 0.0},
+        {"points": 4},
+        {"harmonics": 64},
+        {"harmonics": 2},
+        {"D2": 1e308},
+        {"D3": 1e308},
+        {"D8": 1e308},
+        {"D8": 2.1},
+        {"alpha": 1e308},
+        {"alpha": math.inf},
+        {"alpha": math.nan},
+        {"beta": 10**18},
+        {"beta": 1000.0},
+        {"points": 2**63 - 1},
+        {"points": 10**6},
+    ],
+    PolygonSettings: [{"count": 0}, {"height_px": 3.0}, {"noise": -0.1}, {"noise": 3}],
+    RubbleSettings: [
+        {"count": 3},
+        {"courses": 0},
+        {"height_px": 15.0},
+        {"width_px": 20.0},
+        {"area_ratio": 0.0},
+        {"area_ratio": 0.96},
+        {"spread": 1.5},
+        {"roughness": 0.4},
+        {"pentagons": 1.1},
+        {"rounding": 0.4},
+        {"tilt_deg": -1.0},
+        {"tilt_deg": 361.0},
+        {"tilt_deg": 1e308},
+    ],
+}
+
+
+@pytest.mark.parametrize("kind", IMPOSSIBLE)
+def test_impossible_settings(kind):
+    for wrong in IMPOSSIBLE[kind]:
+        with pytest.raises(UsageError, match="E130 generate"):
+            kind(**wrong)
+
+
+GENERATORS = {
+    "fourier": (
+        fourier_stones,
+        FourierSettings(count=12, D2=0.2, smallest_radius_px=10.0, largest_radius_px=50.0),
+    ),
+    "polygon": (polygon_stones, PolygonSettings(count=12, noise=0.7)),
+    "notched": (polygon_stones, PolygonSettings(count=12, noise=0.3, convex=False)),
+    "brick": (brick_stones, BrickSettings(count=12, halves=3)),
+    "rubble": (rubble_stones, RubbleSettings()),
+}
+
+
+@pytest.fixture(params=GENERATORS)
+def generated(request):
+    generate, settings = GENERATORS[request.param]
+    return lambda seed=5: generate(settings, np.random.default_rng(seed))
+
+
+def test_stones_are_numbered_from_one_and_whole(generated):
+    stones = generated()
+    assert [stone.id for stone in stones] == list(range(1, len(stones) + 1))
+    for stone in stones:
+        assert ndimage.label(stone.mask, np.ones((3, 3)))[1] == 1
+        assert np.array_equal(ndimage.binary_fill_holes(stone.mask), stone.mask)
+        assert stone.mask[[0, -1]].any(axis=1).all()
+        assert stone.mask[:, [0, -1]].any(axis=0).all()
+
+
+def test_the_picture_reads_back_as_the_same_stones(generated):
+    stones = generated()
+    labels = lay_out(stones)
+    assert np.array_equal(labels, lay_out(generated()))
+    assert not np.array_equal(labels, lay_out(generated(seed=6)))
+    assert labels.dtype == np.uint32
+    assert labels.shape == (stones.source.height_px, stones.source.width_px)
+    boxes = ndimage.find_objects(labels.astype(int))
+    for stone, (rows, cols) in zip(stones, boxes, strict=True):
+        assert np.array_equal(labels[rows, cols] == stone.id, stone.mask)
+        assert (cols.start, labels.shape[0] - rows.stop) == (stone.left_px, stone.bottom_px)
+    assert np.count_nonzero(labels) == stones.total_area_px
+
+
+SIZES = st.tuples(st.integers(1, 40), st.integers(1, 40))
+
+
+@repeatable()
+@given(st.lists(SIZES, min_size=1, max_size=25))
+def test_stones_never_touch_each_other_or_the_edge(sizes):
+    labels = lay_out(stones_of([np.ones(size, bool) for size in sizes]))
+    grown = np.zeros_like(labels)
+    for stone in range(1, len(sizes) + 1):
+        near = ndimage.binary_dilation(labels == stone, np.ones((3, 3)), iterations=GAP_PX)
+        assert not (near & (labels != stone) & (labels > 0)).any()
+        grown[labels == stone] = stone
+    assert np.array_equal(grown, labels)
+    assert not np.delete(labels, np.s_[GAP_PX:-GAP_PX], axis=0).any()
+    assert not np.delete(labels, np.s_[GAP_PX:-GAP_PX], axis=1).any()
+
+
+@pytest.mark.parametrize(
+    ("settings", "wrong", "named"),
+    [
+        (FourierSettings, {"largest_radius_px": 1e8}, "largest_radius_px or count"),
+        (FourierSettings, {"count": 10**9}, "largest_radius_px or count"),
+        (PolygonSettings, {"height_px": 1e8}, "width_px, height_px or count"),
+        (BrickSettings, {"height_px": 10**12}, "height_px, aspect or count"),
+        # No product of these is a finite number.
+        (BrickSettings, {"aspect": 1e308}, "height_px, aspect or count"),
+        (PolygonSettings, {"width_px": 1e308}, "width_px, height_px or count"),
+        (FourierSettings, {"largest_radius_px": 1e308}, "largest_radius_px or count"),
+        (RubbleSettings, {"width_px": 1e308}, "width_px, height_px or tilt_deg"),
+        (RubbleSettings, {"height_px": 1e308, "tilt_deg": 0.0}, "width_px or height_px"),
+        (BrickSettings, {"halves": 10**9}, "height_px, aspect, count or halves"),
+        (RubbleSettings, {"height_px": 1e8}, "width_px, height_px or tilt_deg"),
+        # 280 million px of stone, in boxes of billions.
+        (RubbleSettings, {"height_px": 1e6}, "width_px, height_px or tilt_deg"),
+        (RubbleSettings, {"height_px": 1e8, "tilt_deg": 0.0}, "width_px or height_px"),
+    ],
+)
+def test_stones_that_fit_into_no_image_are_refused(settings, wrong, named):
+    with pytest.raises(UsageError, match=f"E130 .*500 million px. Make {named} smaller"):
+        settings(**wrong)
+
+
+def test_large_images_of_stones_are_allowed():
+    RubbleSettings(count=10_000, width_px=28_000, height_px=8_000, courses=100)
+    RubbleSettings(height_px=1e6, tilt_deg=0.0)
+    RubbleSettings(tilt_deg=360.0)
+    check_room(5, (9_996, 9_996), ("a", "b"), "test")
+
+
+def test_ids_of_any_stones_are_kept():
+    mask = np.ones((3, 5), bool)
+    labels = lay_out(StoneSet((Stone(300, mask), Stone(4_000_000_000, mask))))
+    assert np.unique(labels).tolist() == [0, 300, 4_000_000_000]
+
+
+@pytest.mark.parametrize(("aspect", "width"), [(2, 24), (2.5, 30), (1.5 / 12, 2)])
+def test_bricks_are_exact(aspect, width):
+    stones = brick_stones(BrickSettings(count=7, aspect=aspect), np.random.default_rng(0))
+    assert [stone.mask.shape for stone in stones] == [(12, width)] * 7
+    assert [stone.area_px for stone in stones] == [12 * width] * 7
+
+
+def test_halves_are_half_as_wide_and_lie_among_the_others():
+    settings = BrickSettings(count=20, halves=8)
+    stones = brick_stones(settings, np.random.default_rng(0))
+    widths = [stone.mask.shape[1] for stone in stones]
+    assert sorted(widths) == [18] * 8 + [36] * 20
+    assert widths != sorted(widths)
+    assert widths != sorted(widths, reverse=True)
+
+
+def recovered(contour):
+    """Mean radius and descriptors of a contour, by a Fourier transform of its radius."""
+    radius = np.hypot(*contour.T)
+    spectrum = np.fft.rfft(radius) / len(radius)
+    return spectrum[0].real, 2 * np.abs(spectrum) / spectrum[0].real
+
+
+@pytest.mark.parametrize("elongation", [0.0, 0.2])
+def test_descriptors_come_back_from_the_contour(elongation):
+    settings = FourierSettings(D2=elongation)
+    for seed in range(5):
+        contour = fourier_contour(30.0, settings, np.random.default_rng(seed))
+        assert contour.shape == (128, 2)
+        radius, descriptor = recovered(contour)
+        assert radius == pytest.approx(30.0)
+        expected = [0.0, elongation, 0.05, 0.015]
+        assert descriptor[[1, 2, 3, 8]] == pytest.approx(expected, abs=1e-12)
+        assert descriptor[1:64] == pytest.approx(fourier_descriptors(settings)[1:], abs=1e-12)
+
+
+def test_decay_follows_the_exponents():
+    descriptor = fourier_descriptors(FourierSettings(alpha=-1.0, beta=-3.0))
+    assert descriptor[6] == pytest.approx(0.05 / 2)
+    assert descriptor[7] == pytest.approx(0.05 * 3 / 7)
+    assert descriptor[16] == pytest.approx(0.015 / 8)
+    assert descriptor[9] == pytest.approx(0.015 * (8 / 9) ** 3)
+
+
+def test_phases_spread_over_the_whole_circle():
+    rng = np.random.default_rng(3)
+    contours = [fourier_contour(30.0, FourierSettings(), rng) for _ in range(300)]
+    third = [np.angle(np.fft.rfft(np.hypot(*contour.T))[3]) for contour in contours]
+    assert np.histogram(third, bins=4, range=(-math.pi, math.pi))[0].min() > 45
+
+
+@pytest.mark.parametrize("elongation", [0.0, 0.2])
+def test_area_is_that_of_the_series(elongation):
+    settings = FourierSettings(count=20, D2=elongation)
+    stones = fourier_stones(settings, np.random.default_rng(7))
+    expected = math.pi * 30**2 * (1 + (fourier_descriptors(settings) ** 2).sum() / 2)
+    for stone in stones:
+        assert stone.area_px == pytest.approx(expected, rel=0.01)
+
+
+def test_radii_are_uniform():
+    settings = FourierSettings(count=400, smallest_radius_px=10.0, largest_radius_px=50.0)
+    stones = fourier_stones(settings, np.random.default_rng(2))
+    radii = np.sqrt([stone.area_px / math.pi for stone in stones])
+    assert len(radii) == 400
+    assert 9.5 < radii.min() < 11
+    assert 49 < radii.max() < 51
+    assert radii.mean() == pytest.approx(30, abs=1.5)
+    assert radii.std() == pytest.approx(40 / math.sqrt(12), abs=0.8)
+
+
+def test_no_contour_has_a_descriptor_above_two():
+    # The radius r0 (1 + cos 2 theta) touches the pole, and all that has a larger part crosses it.
+    for wrong in ({"D2": 2.01}, {"D3": 2.01}, {"alpha": 4.4}, {"beta": 2.4}):
+        with pytest.raises(UsageError, match="E130 generate fourier: D2, and what D3"):
+            FourierSettings(**wrong)
+    for allowed in ({"D2": 2.0}, {"D3": 2.0}, {"alpha": 4.3}, {"beta": 2.3}):
+        settings = FourierSettings(**allowed)
+        assert 1.6 < fourier_descriptors(settings).max() <= 2.0
+        draws = (fourier_contour(30.0, settings, np.random.default_rng(seed)) for seed in range(50))
+        assert all(contour is None for contour in draws)
+
+
+def test_descriptors_may_decay_at_once():
+    steep = FourierSettings(alpha=-1e308, beta=-1e308)
+    descriptor = fourier_descriptors(steep)
+    assert np.flatnonzero(descriptor).tolist() == [3, 8]
+    assert fourier_contour(30.0, steep, np.random.default_rng(0)) is not None
+
+
+def test_a_contour_that_would_cross_itself_is_rejected():
+    assert fourier_contour(30.0, FourierSettings(D2=1.5), np.random.default_rng(0)) is None
+    with pytest.raises(UsageError, match="E130"):
+        fourier_stones(FourierSettings(count=1, D2=1.5), np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("convex", [True, False])
+@pytest.mark.parametrize("noise", [0.1, 0.8])
+def test_polygons_are_simple(noise, convex):
+    rng = np.random.default_rng(1)
+    settings = PolygonSettings(noise=noise, convex=convex)
+    outlines = [noisy_polygon(settings, rng) for _ in range(200)]
+    accepted = [outline for outline in outlines if outline is not None]
+    assert len(accepted) > 20
+    for outline in accepted:
+        polygon = shapely.Polygon(outline)
+        assert polygon.is_valid
+        assert polygon.area >= 0.1 * 130 * 90
+        if convex:
+            assert polygon.convex_hull.area == pytest.approx(polygon.area)
+
+
+def test_corners_deviate_by_the_given_share_of_the_shorter_side():
+    rng = np.random.default_rng(2)
+    settings = PolygonSettings(noise=0.05, convex=False)
+    corners = np.array([noisy_polygon(settings, rng) for _ in range(500)])
+    assert corners.std(axis=0) == pytest.approx(np.full((6, 2), 0.05 * 90), rel=0.15)
+    assert corners.mean(axis=0)[2] == pytest.approx([130, 0], abs=1)
+
+
+def test_without_noise_they_are_bricks():
+    settings = PolygonSettings(count=4, noise=0.0, width_px=40, height_px=20)
+    stones = polygon_stones(settings, np.random.default_rng(0))
+    assert [stone.mask.shape for stone in stones] == [(20, 40)] * 4
+    assert stones.total_area_px == 4 * 800
+
+
+@pytest.mark.parametrize("noise", [0.2, 0.7])
+def test_a_set_has_the_area_of_its_bricks(noise):
+    stones = polygon_stones(PolygonSettings(noise=noise), np.random.default_rng(3))
+    assert len(stones) == 28
+    assert stones.total_area_px == pytest.approx(28 * 130 * 90, rel=0.005)
+
+
+def test_tiny_notched_polygons_are_drawn_again_until_whole():
+    settings = PolygonSettings(count=40, width_px=5, height_px=4, noise=0.5, convex=False)
+    assert len(polygon_stones(settings, np.random.default_rng(5))) == 40
+
+
+def test_draws_do_not_go_on_for_ever(monkeypatch):
+    monkeypatch.setattr("drystone.generate.polygon.ATTEMPTS", 0)
+    with pytest.raises(UsageError, match="E130 generate polygon: no stone"):
+        polygon_stones(PolygonSettings(count=1), np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_demo_set_suits_its_wall(seed):
+    stones = rubble_stones(RubbleSettings(), np.random.default_rng(seed))
+    heights, widths = np.array([stone.mask.shape for stone in stones]).T
+    assert len(stones) == 30
+    assert stones.total_area_px == pytest.approx(0.88 * 280 * 80, rel=0.005)
+    assert 13 <= heights.min() < heights.max() <= 34
+    assert 18 <= widths.min() < widths.max() <= 64
+
+
+def test_courses_fill_the_wall():
+    settings = RubbleSettings(count=31, courses=4, spread=0.3)
+    sizes = course_sizes(settings, np.random.default_rng(0))
+    assert len(sizes) == 31
+    heights = np.array([23.0, 21.0, 19.0, 17.0])
+    course = np.array([heights[heights >= height].min() for height in sizes[:, 1]])
+    for height in heights:
+        assert sizes[course == height, 0].sum() == pytest.approx(280)
+        assert (sizes[course == height, 1] > 0.92 * height).all()
+    counts = [np.count_nonzero(course == height) for height in heights]
+    assert counts == sorted(counts)
+
+
+def test_each_course_has_a_stone():
+    sizes = course_sizes(RubbleSettings(count=4, courses=4), np.random.default_rng(0))
+    assert sizes[:, 0].tolist() == pytest.approx([280.0] * 4)
+
+
+def test_outlines_are_rounded_and_close_to_their_box():
+    rng = np.random.default_rng(1)
+    outlines = [rubble_outline(40.0, 20.0, RubbleSettings(), rng) for _ in range(200)]
+    assert {len(outline) for outline in outlines} == {16, 20}
+    for outline in outlines:
+        polygon = shapely.Polygon(outline)
+        assert polygon.is_valid
+        assert 0.75 * 800 < polygon.area < 1.1 * 800
+        assert polygon.area > 0.97 * polygon.convex_hull.area
+    five = np.mean([len(outline) == 20 for outline in outlines])
+    assert five == pytest.approx(0.3, abs=0.1)
+
+
+def test_order_does_not_tell_the_course():
+    stones = rubble_stones(RubbleSettings(tilt_deg=0.0, spread=1.0), np.random.default_rng(2))
+    heights = np.array([stone.mask.shape[0] for stone in stones])
+    assert abs(np.corrcoef(heights, np.arange(len(heights)))[0, 1]) < 0.5
+
+
+def test_too_many_stones_for_the_pixels():
+    settings = RubbleSettings(count=12, width_px=24, height_px=8, courses=2, area_ratio=0.02)
+    with pytest.raises(UsageError, match="E130 generate rubble: the stones must be large enough"):
+        rubble_stones(settings, np.random.default_rng(0))
