@@ -14,21 +14,11 @@ Outlined = tuple[int, Points]
 
 @dataclass(frozen=True, eq=False)
 class Outlines:
-    """Outlines in the wall frame, source px; immutable.
+    """Outlines in the wall frame, source px; immutable."""
 
-    Parameters
-    ----------
-    polygons : Polygons
-        Of stones and wedges, in the order of placement.
-    ids : tuple of int
-        Of each.
-    shares : Shares
-        How much of each working px they cover.
-    """
-
-    polygons: Polygons
+    polygons: Polygons  # of stones and wedges, in the order of placement
     ids: tuple[int, ...]
-    shares: Shares
+    shares: Shares  # how much of each working px they cover
 
     @classmethod
     def empty(cls, site: Site) -> "Outlines":

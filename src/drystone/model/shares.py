@@ -14,15 +14,6 @@ from drystone.kernels.raster import Mask
 class Shares:
     """What exact outlines cover of the cells of a site, immutable; :meth:`added` gives the next.
 
-    Parameters
-    ----------
-    total : (height_px, width_px) float64 array
-        Share of each cell that all blocks together cover, row 0 at the top.
-    largest : (height_px, width_px) float64 array
-        The largest share that one block covers.
-    owners : (height_px, width_px) uint32 array
-        The id of that block, of equals the one placed first; 0 where there is none.
-
     Examples
     --------
     >>> shares = Shares.empty(1, 3).added(7, np.array([[1.0, 0.3]]), 0, 0)
@@ -30,8 +21,12 @@ class Shares:
     [[7, 7, 8]]
     """
 
+    # (height_px, width_px): share of each cell that all blocks together cover, row 0 at the
+    # top
     total: Grid
-    largest: Grid
+    largest: Grid  # (height_px, width_px): the largest share that one block covers
+    # (height_px, width_px): the id of that block, of equals the one placed first; 0 where
+    # there is none
     owners: NDArray[np.uint32]
 
     def __post_init__(self) -> None:

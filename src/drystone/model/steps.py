@@ -10,20 +10,10 @@ Step = StoneStep | WedgeStep
 
 @dataclass(frozen=True)
 class Fault:
-    """A step that cannot be where it is, or cannot have its id.
+    """A step that cannot be where it is, or cannot have its id."""
 
-    Parameters
-    ----------
-    code : {"E213", "E214"}
-        An id; the order.
-    step : int
-        Number that the step gives itself.
-    message : str
-        What is wrong.
-    """
-
-    code: str
-    step: int
+    code: str  # an id; the order
+    step: int  # number that the step gives itself
     message: str
 
 

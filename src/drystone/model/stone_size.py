@@ -14,22 +14,11 @@ from drystone.kernels.raster import Mask
 
 @dataclass(frozen=True)
 class StoneSize:
-    """Size of a stone.
-
-    Parameters
-    ----------
-    id : int
-        Its number.
-    at_px : (float, float)
-        Its middle, column and row.
-    length_px, width_px : float
-        Longer and shorter side of the smallest rectangle around it, turned in any way.
-    area_px : int
-        Number of its px.
-    """
+    """Size of a stone."""
 
     id: int
-    at_px: tuple[float, float]
+    at_px: tuple[float, float]  # its middle, column and row
+    # longer and shorter side of the smallest rectangle around it, turned in any way
     length_px: float
     width_px: float
     area_px: int

@@ -16,39 +16,22 @@ Labels = NDArray[np.uint32]
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """One step of construction: a stone and the wedges under it, judged together.
-
-    Parameters
-    ----------
-    placement : Placement
-        The stone.
-    wedges : tuple of Wedge
-        The wedges under it, in the order in which they are pushed in.
-    """
+    """One step of construction: a stone and the wedges under it, judged together."""
 
     placement: Placement
-    wedges: tuple[Wedge, ...] = ()
+    wedges: tuple[Wedge, ...] = ()  # the wedges under it, in the order in which they are pushed in
 
 
 @dataclass(frozen=True, eq=False)
 class Wall:
-    """An immutable wall; :meth:`add` returns the next one (Eq. 1).
-
-    Parameters
-    ----------
-    site : Site
-        Its place.
-    labels : (height_px, width_px) uint32 array
-        0 where nothing is, otherwise the id of a stone or wedge; row 0 at the top.
-    groups : tuple of Group
-        What was placed, in order.
-    outlines : Outlines or None
-        Of what was placed; None when the stones of the wall are their pixels.
-    """
+    """An immutable wall; :meth:`add` returns the next one (Eq. 1)."""
 
     site: Site
+    # (height_px, width_px): 0 where nothing is, otherwise the id of a stone or wedge; row 0
+    # at the top
     labels: Labels
     groups: tuple[Group, ...] = ()
+    # of what was placed; None when the stones of the wall are their pixels
     outlines: Outlines | None = None
 
     def __post_init__(self) -> None:

@@ -80,28 +80,17 @@ class WedgeSettings:
 
 
 class WedgeShape(NamedTuple):
-    """Measures of a wedge, in the unit of its corners.
+    """Measures of a wedge, in the unit of its corners."""
 
-    Parameters
-    ----------
-    width, height : float
-        Of its upright box.
-    thickness : float
-        Of the thinnest place: length of an upright line inside.
-    area : float
-        Square units.
-    bed, top : float
-        Slopes (rise over run) of the lower and of the upper face, from end to end.
-    bend : float
-        Largest distance of a face from the line between its ends, upright, over the width.
-    """
-
+    # of its upright box
     width: float
     height: float
-    thickness: float
+    thickness: float  # of the thinnest place: length of an upright line inside
     area: float
+    # slopes (rise over run) of the lower and of the upper face, from end to end
     bed: float
     top: float
+    # largest distance of a face from the line between its ends, upright, over the width
     bend: float
 
     @classmethod
@@ -167,24 +156,13 @@ class WedgeShape(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class WedgeRule:
-    """What a wedge may be, in the unit of its corners.
+    """What a wedge may be, in the unit of its corners."""
 
-    Parameters
-    ----------
-    least_thickness : float
-        At any place; a wedge does not end in an edge.
-    greatest_height : float
-        Of its upright box.
-    greatest_area : float
-        Square units.
-    mu : float
-        Coefficient of friction: no face is steeper, nor do the two open wider, or the load would
-        push the wedge out.
-    """
-
-    least_thickness: float
-    greatest_height: float
+    least_thickness: float  # at any place; a wedge does not end in an edge
+    greatest_height: float  # of its upright box
     greatest_area: float = math.inf
+    # coefficient of friction: no face is steeper, nor do the two open wider, or the load
+    # would push the wedge out
     mu: float = 0.58
 
     def __post_init__(self) -> None:

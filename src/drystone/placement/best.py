@@ -15,17 +15,10 @@ from drystone.placement.settings import PlacementSettings
 
 @dataclass(frozen=True)
 class Spot:
-    """A feasible place for one of several poses.
+    """A feasible place for one of several poses."""
 
-    Parameters
-    ----------
-    pose : int
-        Which of the poses.
-    row, col : int
-        Top-left corner of its mask, in the landscape's view.
-    """
-
-    pose: int
+    pose: int  # which of the poses
+    # top-left corner of its mask, in the landscape's view
     row: int
     col: int
 

@@ -66,24 +66,12 @@ Rested = tuple[Repose, Points | None]
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """A stone that is to be put where it was measured.
-
-    Parameters
-    ----------
-    stone : Stone
-        The stone.
-    place : Place
-        Where it was measured.
-    side : {"left", "right"}
-        The end of the wall from which it was placed.
-    planned : Group or None
-        How it was planned: with wedges it gets one again.
-    """
+    """A stone that is to be put where it was measured."""
 
     stone: Stone
     place: Place
-    side: Side
-    planned: Group | None
+    side: Side  # the end of the wall from which it was placed
+    planned: Group | None  # how it was planned: with wedges it gets one again
 
     @property
     def on_wedges(self) -> bool:

@@ -23,19 +23,12 @@ from drystone.statics.result import LateralResistance
 
 @dataclass(frozen=True)
 class Frame:
-    """Lengths of the plan: the wall in source px, and how working px become plan units.
+    """Lengths of the plan: the wall in source px, and how working px become plan units."""
 
-    Parameters
-    ----------
-    width, height : float
-        Of the wall, source px.
-    site : Site
-        The same at the working resolution.
-    """
-
+    # of the wall, source px
     width: float
     height: float
-    site: Site
+    site: Site  # the same at the working resolution
 
     def point(self, x: float, y: float) -> tuple[float, float]:
         """Turn a point of the wall frame in working px into plan units."""

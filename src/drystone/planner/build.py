@@ -17,27 +17,14 @@ from drystone.statics.result import LateralResistance
 
 @dataclass(frozen=True, eq=False)
 class Proposal:
-    """A stone, stabilised somewhere; whether the wall then stands is not known yet.
-
-    Parameters
-    ----------
-    stabilised : Stabilised
-        Placement and wedges.
-    trial_angle_deg : float
-        Angle of the pose that was tried, before stabilisation.
-    course_height_px : float or None
-        Mean height of the other candidates of the step (Eq. 8); None when there are none.
-    cost : float
-        Weighted craft cost (:mod:`drystone.selection.scored`); 0 when no rule asks for it.
-    spot : int
-        Which of the places that were tried with this pose.
-    """
+    """A stone, stabilised somewhere; whether the wall then stands is not known yet."""
 
     stabilised: Stabilised
-    trial_angle_deg: float
+    trial_angle_deg: float  # angle of the pose that was tried, before stabilisation
+    # mean height of the other candidates of the step (Eq. 8); None when there are none
     course_height_px: float | None = None
-    cost: float = 0.0
-    spot: int = 0
+    cost: float = 0.0  # weighted craft cost (`scored`); 0 when no rule asks for it
+    spot: int = 0  # which of the places that were tried with this pose
 
     @property
     def stone_id(self) -> int:
@@ -52,41 +39,22 @@ class Proposal:
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """One evaluated action (M_m, S_m).
-
-    Parameters
-    ----------
-    proposal : Proposal
-        The action.
-    indices : Indices
-        Of the action.
-    course_height_px : float or None
-        Mean height of the other candidates when the stone begins a course (Eq. 8).
-    model : RigidBlockModel
-        Of the wall with the action done.
-    resistance : LateralResistance
-        Of that model.
-    solved_cold : bool
-        True when an answer found from the bases of the wall had no certificate, and a model was
-        solved from the start.
-    sturdy_model : RigidBlockModel or None
-        The model of outlines with fewer and less able contacts, in which the wall must stand as
-        well (:mod:`drystone.planner.sturdy`); None for pixels.
-    sturdy : bool
-        Whether it does.
-    failed : bool
-        True when the solver gave up on one of the models.
-    """
+    """One evaluated action (M_m, S_m)."""
 
     proposal: Proposal
     indices: Indices
+    # mean height of the other candidates when the stone begins a course (Eq. 8)
     course_height_px: float | None
     model: RigidBlockModel
     resistance: LateralResistance
+    # True when an answer found from the bases of the wall had no certificate, and a model was
+    # solved from the start
     solved_cold: bool = False
+    # the model of outlines with fewer and less able contacts, in which the wall must stand as
+    # well (`sturdy`); None for pixels
     sturdy_model: RigidBlockModel | None = None
-    sturdy: bool = True
-    failed: bool = False
+    sturdy: bool = True  # whether it does
+    failed: bool = False  # True when the solver gave up on one of the models
 
     def __repr__(self) -> str:
         return f"<Candidate: {self.said}>"
@@ -116,33 +84,16 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Build:
-    """What is built after some steps; immutable.
-
-    Parameters
-    ----------
-    wall : Wall
-        Stones and wedges placed.
-    model : RigidBlockModel
-        Of the wall.
-    actions : tuple of Candidate
-        The chosen actions, in order.
-    grown_from : IncrementalAnalysis or None
-        Of the wall before the last action; None when nothing will be built on the wall.
-    before : Build or None
-        The state before the last action, if it was kept.
-    sturdy_model : RigidBlockModel or None
-        Of a wall of outlines: see :class:`Candidate`.
-    sturdy_from : IncrementalAnalysis or None
-        Of its sturdy model before the last action.
-    """
+    """What is built after some steps; immutable."""
 
     wall: Wall
     model: RigidBlockModel
     actions: tuple[Candidate, ...] = ()
+    # of the wall before the last action; None when nothing will be built on the wall
     grown_from: IncrementalAnalysis | None = None
-    before: "Build | None" = None
-    sturdy_model: RigidBlockModel | None = None
-    sturdy_from: IncrementalAnalysis | None = None
+    before: "Build | None" = None  # the state before the last action, if it was kept
+    sturdy_model: RigidBlockModel | None = None  # of a wall of outlines: see `Candidate`
+    sturdy_from: IncrementalAnalysis | None = None  # of its sturdy model before the last action
 
     @classmethod
     def empty(cls, site: Site, mu: float, stone_area_px: float, *, exact: bool = False) -> "Build":

@@ -28,23 +28,12 @@ UNBALANCED = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Drop:
-    """A place where a stone could be let go.
-
-    Parameters
-    ----------
-    trial : Trial
-        Stone and side.
-    spot : int
-        Which place of the trial's pose.
-    start : (float, float)
-        Of its centroid, in the view, source px.
-    rank : (float, tuple)
-        Estimated cost, and what tells it from the others of a step: sorts the cheapest first.
-    """
+    """A place where a stone could be let go."""
 
     trial: Trial
-    spot: int
-    start: tuple[float, float]
+    spot: int  # which place of the trial's pose
+    start: tuple[float, float]  # of its centroid, in the view, source px
+    # estimated cost, and what tells it from the others of a step: sorts the cheapest first
     rank: tuple[float, tuple[Key, int]]
 
     @property
@@ -55,21 +44,11 @@ class Drop:
 
 @dataclass(frozen=True, eq=False)
 class Dropped:
-    """Where the poses of a trial could be let go.
-
-    Parameters
-    ----------
-    trial : Trial
-        One stone and side.
-    places : tuple of (n, 4) float arrays
-        Of each pose (:func:`drystone.kernels.drops.drops`).
-    limit : float
-        Those that cost more may be missing.
-    """
+    """Where the poses of a trial could be let go."""
 
     trial: Trial
-    places: tuple[Floats, ...]
-    limit: float
+    places: tuple[Floats, ...]  # (n, 4): of each pose (`drops`)
+    limit: float  # those that cost more may be missing
 
 
 def drop_terms(site: Site, stock: Stock, rest: Rest, settings: PlannerSettings) -> DropTerms:

@@ -33,40 +33,20 @@ from drystone.statics.result import LateralResistance
 
 @dataclass(frozen=True, eq=False)
 class Loaded:
-    """A wall with one more stone, and what it carries.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Of the wall with the stone.
-    grown : IncrementalResult
-        Its resistance, and how that was found.
-    """
+    """A wall with one more stone, and what it carries."""
 
     model: RigidBlockModel
-    grown: IncrementalResult
+    grown: IncrementalResult  # its resistance, and how that was found
 
 
 @dataclass(frozen=True, eq=False)
 class Evaluator:
-    """Turns proposals into candidates.
-
-    Parameters
-    ----------
-    settings : PlannerSettings
-        Of the planner.
-    stock : Stock
-        Sizes of the set.
-    profile : Profile
-        Told where the time goes.
-    until : Deadline
-        Looked at for every wall that is judged: :class:`TimeIsUp` ends the judging.
-    """
+    """Turns proposals into candidates."""
 
     settings: PlannerSettings
-    stock: Stock
-    profile: Profile = field(default_factory=Profile)
-    until: Deadline = NEVER
+    stock: Stock  # sizes of the set
+    profile: Profile = field(default_factory=Profile)  # told where the time goes
+    until: Deadline = NEVER  # looked at for every wall that is judged: `TimeIsUp` ends the judging
 
     def judge(self, build: Build, landscape: Landscape, proposal: Proposal) -> Candidate:
         """Return the candidate of a proposal: all indices, with the wall's resistance after it.

@@ -87,17 +87,10 @@ class Step:
 
 @dataclass(frozen=True)
 class Stopped:
-    """Why construction ended.
+    """Why construction ended."""
 
-    Parameters
-    ----------
-    reason : {"filled", "stones", "failures", "search", "interrupted", "time"}
-        Design goal reached, all stones placed, too many failures in a row, left so by a search,
-        stopped by the user, or by the time limit.
-    text : str
-        The same in words.
-    """
-
+    # design goal reached, all stones placed, too many failures in a row, left so by a search,
+    # stopped by the user, or by the time limit
     reason: Literal["filled", "stones", "failures", "search", "interrupted", "time"]
     text: str
 
@@ -111,23 +104,12 @@ UNFINISHED = (INTERRUPTED.text, OUT_OF_TIME.text)
 
 @dataclass(frozen=True)
 class Incumbent:
-    """The best wall of a search so far (:mod:`drystone.search`).
+    """The best wall of a search so far (:mod:`drystone.search`)."""
 
-    Parameters
-    ----------
-    walls : int
-        How many have been built: the budget that repeats it.
-    stones : int
-        Placed in the best one.
-    merit : float
-        What the goal makes of it; higher is better.
-    F_SF, F_LR, F_AV, F_AH : float
-        Its figures of merit at the working resolution.
-    """
-
-    walls: int
-    stones: int
-    merit: float
+    walls: int  # how many have been built: the budget that repeats it
+    stones: int  # placed in the best one
+    merit: float  # what the goal makes of it; higher is better
+    # its figures of merit at the working resolution
     F_SF: float
     F_LR: float
     F_AV: float

@@ -56,22 +56,13 @@ class MeasuredPose:
 
 @dataclass(frozen=True)
 class Place:
-    """The same in source px.
+    """The same in source px."""
 
-    Parameters
-    ----------
-    x_px, y_px : float
-        Centroid, source px.
-    angle_deg : float
-        In [-180, 180).
-    as_planned : bool
-        The picture shows the stone where it was planned.
-    """
-
+    # centroid, source px
     x_px: float
     y_px: float
-    angle_deg: float
-    as_planned: bool = False
+    angle_deg: float  # in [-180, 180)
+    as_planned: bool = False  # the picture shows the stone where it was planned
 
 
 def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Place]:

@@ -21,24 +21,13 @@ PARTS: tuple[Part, ...] = (
 
 @dataclass(frozen=True)
 class StepTime:
-    """What one step took.
+    """What one step took."""
 
-    Parameters
-    ----------
-    stones : int
-        Stones that were there before it.
-    candidates : int
-        How many candidates were evaluated.
-    seconds : float
-        From its first attempt to its action.
-    parts : dict of str to float
-        Seconds by part of the work; what is missing to `seconds` is sampling, selection and
-        keeping books.  With several threads the parts of all of them, waiting included.
-    """
-
-    stones: int
-    candidates: int
-    seconds: float
+    stones: int  # stones that were there before it
+    candidates: int  # how many candidates were evaluated
+    seconds: float  # from its first attempt to its action
+    # seconds by part of the work; what is missing to `seconds` is sampling, selection and
+    # keeping books.  With several threads the parts of all of them, waiting included.
     parts: dict[Part, float]
 
 

@@ -39,21 +39,12 @@ def one_by_one(work: Callable[[Any], Any], items: Sequence[Any]) -> list[Any]:
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """What is to be tried: one stone, from one side.
+    """What is to be tried: one stone, from one side."""
 
-    Parameters
-    ----------
-    poses : tuple of PosedStone
-        The stone as it may be turned for the trial; the placement rule picks one.
-    landscape : Landscape
-        What is built, seen from the side.
-    rest : Rest or None
-        What the stones that are left could fill; None when no choice depends on it.
-    """
-
+    # the stone as it may be turned for the trial; the placement rule picks one
     poses: tuple[PosedStone, ...]
-    landscape: Landscape
-    rest: Rest | None
+    landscape: Landscape  # what is built, seen from the side
+    rest: Rest | None  # what the stones that are left could fill; None when no choice depends on it
 
     @property
     def key(self) -> Key:
@@ -98,21 +89,12 @@ class Proposer(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Spotted:
-    """Where the stone of a trial could be put, before it is made stable.
-
-    Parameters
-    ----------
-    trial : Trial
-        One stone and side.
-    spots : tuple of Spot
-        The best places by the placement rule, best first.
-    promise : float
-        Where selection goes by cost: what the best of them costs at least, while the stone need
-        not be turned there; infinite when there is none.
-    """
+    """Where the stone of a trial could be put, before it is made stable."""
 
     trial: Trial
-    spots: tuple[Spot, ...]
+    spots: tuple[Spot, ...]  # the best places by the placement rule, best first
+    # where selection goes by cost: what the best of them costs at least, while the stone need
+    # not be turned there; infinite when there is none
     promise: float
 
 

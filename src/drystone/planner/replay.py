@@ -22,23 +22,14 @@ from drystone.stabilise.stabilise import Stabilised
 
 
 class Replayed(NamedTuple):
-    """Steps taken again.
+    """Steps taken again."""
 
-    Parameters
-    ----------
-    build : Build
-        After the steps that could be taken.
-    left_out : tuple of int
-        Ids of the stones of the others: they overlap what is there, fill no pixel of the wall,
-        have a wedge that nothing would be beside, or leave a wall that does not stand in both
-        models.
-    solves : Solves
-        What trouble the solver had; a step on which it gave up is left out.
-    """
-
-    build: Build
+    build: Build  # after the steps that could be taken
+    # ids of the stones of the others: they overlap what is there, fill no pixel of the wall,
+    # have a wedge that nothing would be beside, or leave a wall that does not stand in both
+    # models
     left_out: tuple[int, ...]
-    solves: Solves
+    solves: Solves  # what trouble the solver had; a step on which it gave up is left out
 
 
 def replayed(

@@ -14,14 +14,9 @@ from drystone.model.site import Site
 
 @dataclass(frozen=True, eq=False)
 class Sides:
-    """The shorter and the longer sides of some stones, counted.
+    """The shorter and the longer sides of some stones, counted."""
 
-    Parameters
-    ----------
-    counts : Counter of pairs of int
-        How many stones in their initial poses have a box of these sides, working px.
-    """
-
+    # how many stones in their initial poses have a box of these sides, working px
     counts: Counter[tuple[int, ...]] = field(default_factory=Counter)
 
     @classmethod
@@ -36,27 +31,14 @@ class Sides:
 
 @dataclass(frozen=True)
 class Stock:
-    """Sizes of the stones in their initial poses, working px.
+    """Sizes of the stones in their initial poses, working px."""
 
-    Parameters
-    ----------
-    narrowest_px : float
-        Width of the narrowest, which tells boundary stones from inner ones.
-    mean_height_px, mean_area_px : float
-        Means over the set.
-    median_area_px : float
-        Of the stones themselves, whatever their pixels.
-    largest_id : int
-        Wedges are numbered after it.
-    sides : Sides
-        Of the stones.
-    """
-
-    narrowest_px: float
+    narrowest_px: float  # width of the narrowest, which tells boundary stones from inner ones
+    # means over the set
     mean_height_px: float
     mean_area_px: float
-    median_area_px: float
-    largest_id: int
+    median_area_px: float  # of the stones themselves, whatever their pixels
+    largest_id: int  # wedges are numbered after it
     sides: Sides = field(default_factory=Sides, compare=False)
 
     @classmethod
@@ -87,16 +69,11 @@ class Stock:
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """What the stones that are left could still fill.
+    """What the stones that are left could still fill."""
 
-    Parameters
-    ----------
-    height_px, width_px : int arrays
-        For every free height over a stone, and every free width beside it: what is left over when
-        the remaining stones fill it as well as they can, lying flat on top of each other or side
-        by side in any of two orientations.
-    """
-
+    # for every free height over a stone, and every free width beside it: what is left over
+    # when the remaining stones fill it as well as they can, lying flat on top of each other
+    # or side by side in any of two orientations
     height_px: NDArray[np.int64]
     width_px: NDArray[np.int64]
 

@@ -9,21 +9,11 @@ from drystone.model.site import Site
 
 
 class OutlineView(NamedTuple):
-    """What is built, seen so that the building side is on the left.
+    """What is built, seen so that the building side is on the left."""
 
-    Parameters
-    ----------
-    built : Polygons
-        In the wall frame.
-    seen : Polygons
-        In the view.
-    profile : HeightProfile
-        Their height in the view.
-    """
-
-    built: Polygons
-    seen: Polygons
-    profile: HeightProfile
+    built: Polygons  # in the wall frame
+    seen: Polygons  # in the view
+    profile: HeightProfile  # their height in the view
 
 
 class Views:

@@ -19,48 +19,22 @@ from drystone.stabilise.memory import StabiliseMemory
 
 @dataclass(frozen=True, eq=False)
 class Workshop:
-    """Stones clustered and measured; their poses are made when they are asked for.
-
-    Parameters
-    ----------
-    stones : StoneSet
-        To build with.
-    site : Site
-        Where.
-    book : PoseBook
-        Turned stones.
-    clusters : dict of int to int
-        Cluster of each stone (§3.4).
-    orientations : str
-        Which poses of a stone are candidates (DESIGN 4.2).
-    fitting : tuple of int
-        Ids of the stones that fit into the wall in a candidate pose and are not banned, ascending.
-    stock : Stock
-        Sizes of the set.
-    sides : Sides
-        Of the stones that fit.
-    memory : StabiliseMemory
-        Stabilises stones that are pixels.
-    outlines : OutlineBook
-        Turned outlines, for stones that settle on them.
-    costs : PoseCosts
-        Of their poses, wherever they go.
-    views : Views
-        Of walls of outlines.
-    """
+    """Stones clustered and measured; their poses are made when they are asked for."""
 
     stones: StoneSet
     site: Site
-    book: PoseBook
-    clusters: dict[int, int]
-    orientations: str
+    book: PoseBook  # turned stones
+    clusters: dict[int, int]  # cluster of each stone (§3.4)
+    orientations: str  # which poses of a stone are candidates (DESIGN 4.2)
+    # ids of the stones that fit into the wall in a candidate pose and are not banned,
+    # ascending
     fitting: tuple[int, ...]
-    stock: Stock
-    sides: Sides
-    memory: StabiliseMemory
-    outlines: OutlineBook
-    costs: PoseCosts
-    views: Views
+    stock: Stock  # sizes of the set
+    sides: Sides  # of the stones that fit
+    memory: StabiliseMemory  # stabilises stones that are pixels
+    outlines: OutlineBook  # turned outlines, for stones that settle on them
+    costs: PoseCosts  # of their poses, wherever they go
+    views: Views  # of walls of outlines
     _angles: dict[int, tuple[float, ...]] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod

@@ -15,18 +15,10 @@ BOOK_BYTES = 1 << 28
 
 @dataclass(frozen=True, eq=False)
 class Hung:
-    """A turned outline, ready to be dropped.
+    """A turned outline, ready to be dropped."""
 
-    Parameters
-    ----------
-    turned : Turned
-        As a scene sees it.
-    profile : StoneProfile
-        Its lowest and highest points over columns of a working px.
-    """
-
-    turned: Turned
-    profile: StoneProfile
+    turned: Turned  # as a scene sees it
+    profile: StoneProfile  # its lowest and highest points over columns of a working px
 
 
 class OutlineBook:

@@ -33,23 +33,11 @@ OVERLAP_PX = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What a stone meets, seen so that the building side is on the left.
+    """What a stone meets, seen so that the building side is on the left."""
 
-    Parameters
-    ----------
-    polygons : Polygons
-        Outlines of stones and wedges in the view, source px.
-    width_px : float
-        Of the wall, source px; its ends block but carry nothing.
-    side : {"left", "right"}
-        Which end of the wall is on the left of the view.
-    mu : float
-        Coefficient of friction.
-    """
-
-    polygons: Polygons
-    width_px: float
-    side: Side
+    polygons: Polygons  # outlines of stones and wedges in the view, source px
+    width_px: float  # of the wall, source px; its ends block but carry nothing
+    side: Side  # which end of the wall is on the left of the view
     mu: float
 
     @classmethod
@@ -61,30 +49,14 @@ class Scene:
 
 @dataclass(frozen=True, eq=False)
 class Turned:
-    """The outline of a stone in a pose, as a scene sees it; the pose itself is the stone's.
+    """The outline of a stone in a pose, as a scene sees it; the pose itself is the stone's."""
 
-    Parameters
-    ----------
-    outline : (n, 2) float array
-        Of the stone, not turned, relative to its centroid, source px.
-    angle_deg : float
-        By which it is turned in the wall frame.
-    side : {"left", "right"}
-        Of the scene.
-    corners : (n, 2) float array
-        Turned, and mirrored where the scene is.
-    edges : (n, 3) float array
-        Of the corners.
-    size_px : float
-        Root of the stone's area.
-    """
-
-    outline: Points
-    angle_deg: float
+    outline: Points  # (n, 2): of the stone, not turned, relative to its centroid, source px
+    angle_deg: float  # by which it is turned in the wall frame
     side: Side
-    corners: Points
-    edges: Points
-    size_px: float
+    corners: Points  # (n, 2): turned, and mirrored where the scene is
+    edges: Points  # (n, 3): of the corners
+    size_px: float  # root of the stone's area
 
     @classmethod
     def of(cls, outline: Points, angle_deg: float, side: Side, size_px: float) -> "Turned":
@@ -97,24 +69,13 @@ class Turned:
 
 @dataclass(frozen=True, eq=False)
 class Repose:
-    """Where a stone came to rest.
+    """Where a stone came to rest."""
 
-    Parameters
-    ----------
-    settled : Settled
-        Where, in the wall frame.
-    angle_deg : float
-        Turned by so much from the source image.
-    turned : bool
-        Whether it turned while it settled.
-    margin : float
-        How far gravity may lean until it moves, over mu; below the least margin of the settings
-        it does not rest.
-    """
-
-    settled: Settled
-    angle_deg: float
-    turned: bool
+    settled: Settled  # where, in the wall frame
+    angle_deg: float  # turned by so much from the source image
+    turned: bool  # whether it turned while it settled
+    # how far gravity may lean until it moves, over mu; below the least margin of the settings
+    # it does not rest
     margin: float
 
 

@@ -20,37 +20,19 @@ WIDENINGS = 8
 
 @dataclass(frozen=True, kw_only=True)
 class WedgeLimits(WedgeRule):
-    """What a wedge may be, and how it must hold a stone; source px.
+    """What a wedge may be, and how it must hold a stone; source px."""
 
-    Parameters
-    ----------
-    least_thickness, greatest_height, greatest_area, mu : float
-        See :class:`drystone.model.wedge_shape.WedgeRule`.
-    margin : float
-        Distance of the centre of mass from the end of the support, as a share of the stone's
-        width.
-    clearance_px : float
-        Gap that is left above and below.
-    contact_px : float
-        Gaps up to this one touch.
-    setback : float
-        See :class:`drystone.settle.settings.SettleSettings`.
-    room_px : float
-        Between a stone and the end of the wall, in which another one may come to stand beside its
-        wedge.
-    rest : float
-        How far gravity may lean until the wedged stone moves, over mu, at least.
-    steep : float
-        See :class:`drystone.settle.settings.SettleSettings`.
-    """
-
+    # distance of the centre of mass from the end of the support, as a share of the stone's
+    # width
     margin: float = 0.0
-    clearance_px: float = 0.01
-    contact_px: float = 0.1
-    setback: float = 0.01
+    clearance_px: float = 0.01  # gap that is left above and below
+    contact_px: float = 0.1  # gaps up to this one touch
+    setback: float = 0.01  # see `SettleSettings`
+    # between a stone and the end of the wall, in which another one may come to stand beside
+    # its wedge
     room_px: float = 0.0
-    rest: float = 0.0
-    steep: float = -1.0
+    rest: float = 0.0  # how far gravity may lean until the wedged stone moves, over mu, at least
+    steep: float = -1.0  # see `SettleSettings`
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -61,17 +43,10 @@ class WedgeLimits(WedgeRule):
 
 
 class Slabs(NamedTuple):
-    """A crevice cut into slabs with straight floors and lids (:func:`slabs`).
+    """A crevice cut into slabs with straight floors and lids (:func:`slabs`)."""
 
-    Parameters
-    ----------
-    x : (n + 1,) float array
-        Where the slabs begin, and the end of the last.
-    low, high : (n, 2) float arrays
-        y of floor and lid at the left and at the right of each slab.
-    """
-
-    x: Points
+    x: Points  # (n + 1,): where the slabs begin, and the end of the last
+    # (n, 2): y of floor and lid at the left and at the right of each slab
     low: Points
     high: Points
 

@@ -10,18 +10,10 @@ from drystone.settle.wedge import WedgeLimits, gridded, wedge_under
 
 @dataclass(frozen=True, eq=False)
 class Wedged:
-    """A stone on a wedge.
-
-    Parameters
-    ----------
-    repose : Repose
-        Where the stone is.
-    wedge : (n, 2) float array
-        Corners of the wedge in the wall frame, counter-clockwise, source px.
-    """
+    """A stone on a wedge."""
 
     repose: Repose
-    wedge: Points
+    wedge: Points  # (n, 2): corners of the wedge in the wall frame, counter-clockwise, source px
 
 
 def wedged(

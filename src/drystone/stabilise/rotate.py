@@ -12,20 +12,13 @@ from drystone.stabilise.support import Pose, Support, falling_side, support_poly
 
 @dataclass(frozen=True, eq=False)
 class Rotation:
-    """What became of a stone that was turned.
+    """What became of a stone that was turned."""
 
-    Parameters
-    ----------
-    pose : (PosedStone, int, int) or None
-        Where it rests; None when it meets the landscape before it does, or a limit is reached.
-    pivots : int
-        How many points it was turned about.
-    depth : int
-        Rows of the landscape, from the top, that were looked at: what is further down has no say.
-    """
-
+    # where it rests; None when it meets the landscape before it does, or a limit is reached
     pose: Pose | None
-    pivots: int
+    pivots: int  # how many points it was turned about
+    # rows of the landscape, from the top, that were looked at: what is further down has no
+    # say
     depth: int
 
 

@@ -14,50 +14,27 @@ from drystone.stabilise.support import Pose, falling_side, support_polyline
 
 @dataclass(frozen=True, eq=False)
 class Stabilised:
-    """A stable placement with the wedges that make it so.
-
-    Parameters
-    ----------
-    placement : Placement
-        The stone.
-    wedges : tuple of Wedge
-        Empty when the stone rests by itself.
-    """
+    """A stable placement with the wedges that make it so."""
 
     placement: Placement
-    wedges: tuple[Wedge, ...] = ()
+    wedges: tuple[Wedge, ...] = ()  # empty when the stone rests by itself
 
 
 @dataclass(frozen=True)
 class WedgeStock:
-    """What cutting a wedge needs to know of the whole.
-
-    Parameters
-    ----------
-    next_id : int
-        Id of the next wedge.
-    mean_height_px : float
-        Mean height of the stones of the set in their initial poses, working px.
-    """
+    """What cutting a wedge needs to know of the whole."""
 
     next_id: int
-    mean_height_px: float
+    mean_height_px: float  # mean height of the stones of the set in their initial poses, working px
 
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What became of a stone that falls.
+    """What became of a stone that falls."""
 
-    Parameters
-    ----------
-    stabilised : Stabilised or None
-        None when it cannot be made stable.
-    depth : int
-        Rows of the landscape, from the top, that were looked at: in another landscape that is the
-        same so far down the outcome is the same.
-    """
-
-    stabilised: Stabilised | None
+    stabilised: Stabilised | None  # None when it cannot be made stable
+    # rows of the landscape, from the top, that were looked at: in another landscape that is
+    # the same so far down the outcome is the same
     depth: int
 
 

@@ -13,18 +13,12 @@ Pose = tuple[PosedStone, int, int]
 
 @dataclass(frozen=True)
 class Support:
-    """The ends of the support polyline, in image coordinates (x right, rows downwards).
+    """The ends of the support polyline, in image coordinates (x right, rows downwards)."""
 
-    Parameters
-    ----------
-    left_x, right_x : float
-        x of A and B: the outer edges of the outermost supporting pixels.
-    left_row, right_row : int
-        Rows of the edges on which they stand.
-    """
-
+    # x of A and B: the outer edges of the outermost supporting pixels
     left_x: int
     right_x: int
+    # rows of the edges on which they stand
     left_row: int
     right_row: int
 

@@ -41,18 +41,10 @@ FLUSH = 0.15
 
 @dataclass(frozen=True)
 class ValueModel:
-    """What a policy thinks of an action: the sum of its features, each times a weight.
+    """What a policy thinks of an action: the sum of its features, each times a weight."""
 
-    Parameters
-    ----------
-    weights : tuple of float
-        One a feature, in the order of :data:`FEATURES`.
-    trained : mapping of str to value
-        How they were found; nothing depends on it.
-    """
-
-    weights: tuple[float, ...]
-    trained: Mapping[str, Any]
+    weights: tuple[float, ...]  # one a feature, in the order of `FEATURES`
+    trained: Mapping[str, Any]  # how they were found; nothing depends on it
 
     def __post_init__(self) -> None:
         if len(self.weights) != len(FEATURES) or not all(map(math.isfinite, self.weights)):
