@@ -8,7 +8,7 @@ from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement, Wedge
 from drystone.model.site import Site
 from drystone.model.stone import Stone, StoneSet
-from drystone.model.wall import Wall
+from drystone.model.wall import Group, Wall
 from drystone.planner.assemble import Frame, plan_metrics, plan_steps
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import action_indices
@@ -17,7 +17,6 @@ from drystone.planner.solves import Solves
 from drystone.poses import PoseBook
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
-from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.incremental import IncrementalAnalysis, IncrementalResult
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
@@ -37,7 +36,7 @@ def wedged_build() -> tuple[Build, Frame]:
         Wedge(8 + k, 7, np.ones((2, 4), bool), site.height_px - 2, col)
         for k, col in enumerate((2, 16))
     )
-    stabilised = Stabilised(Placement(posed, row, 1), wedges)
+    stabilised = Group(Placement(posed, row, 1), wedges)
     empty = Wall.empty(site)
     model = model_with(RigidBlockModel((), ()), empty.labels, stabilised.placement, wedges)
     resistance = lateral_resistance(model)

@@ -8,7 +8,7 @@ import pytest
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement
 from drystone.model.site import Site
-from drystone.model.wall import Wall
+from drystone.model.wall import Group, Wall
 from drystone.planner.attempt import Attempt
 from drystone.planner.build import Proposal
 from drystone.planner.evaluate import Evaluator
@@ -16,7 +16,6 @@ from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
 from drystone.planner.proposing import RasterProposer, Spotted, Trial
 from drystone.planner.settings import PlannerSettings
-from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.incremental import IncrementalAnalysis
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
 
@@ -168,5 +167,5 @@ def test_a_stone_that_turns_keeps_its_clearance(clearance_px: int, proposed: boo
     assert posed.mask.shape == (10, 20)
     slot = np.zeros((40, 60), bool)
     slot[10:, :19] = slot[10:, 41:] = True
-    turned = Stabilised(Placement(posed, 30, 20, "left", 1))
+    turned = Group(Placement(posed, 30, 20, "left", 1))
     assert proposer._reached(Landscape(slot, ()), turned) is proposed

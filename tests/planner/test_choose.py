@@ -11,13 +11,12 @@ from drystone.indices import Indices
 from drystone.model.placement import Placement, Side
 from drystone.model.site import Site
 from drystone.model.stone import Stone
-from drystone.model.wall import Wall
+from drystone.model.wall import Group, Wall
 from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.choose import better_side, choose_by_algorithm2, choose_by_score
 from drystone.poses import PoseBook
 from drystone.selection.algorithm2 import SelectionSettings
 from drystone.selection.scored import ScoreSettings
-from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 
@@ -27,7 +26,7 @@ INDICES = Indices(SF=1.0, LFR=1.0, GDS=0.5, NHR=0.0, IWR=0.5, IS=0.0, LLC=0.5, b
 
 def _proposal(stone_id: int, side: Side = "left", cost: float = 0.0) -> Proposal:
     posed = PoseBook().pose(Stone(stone_id, np.ones((2, 4), bool)), 0.0)
-    return Proposal(Stabilised(Placement(posed, 18, 0, side)), 0.0, cost=cost)
+    return Proposal(Group(Placement(posed, 18, 0, side)), 0.0, cost=cost)
 
 
 def _candidate(proposal: Proposal, llc: float | None = 0.5, gds: float = 0.5) -> Candidate:

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 import drystone.stabilise.memory as memory_module
 from drystone.kernels.raster import Mask
 from drystone.model.pose import PosedStone
-from drystone.model.wall import Wall
+from drystone.model.wall import Group, Wall
 from drystone.poses import PoseBook
 from drystone.stabilise.memory import StabiliseMemory
 from drystone.stabilise.settings import Method, StabiliseSettings
-from drystone.stabilise.stabilise import Outcome, Stabilised, WedgeStock, make_stable, stabilise
+from drystone.stabilise.stabilise import Outcome, WedgeStock, make_stable, stabilise
 from tests.naive.overlap import lowered, overlaps
 from tests.stabilise.scenes import (
     BAR,
@@ -31,7 +31,7 @@ from tests.strategies import posed_on_walls, repeatable
 SETTINGS = StabiliseSettings()
 
 
-def told(outcome: Stabilised | None) -> object:
+def told(outcome: Group | None) -> object:
     """Everything that an outcome says, comparable."""
     if outcome is None:
         return None
@@ -42,7 +42,7 @@ def told(outcome: Stabilised | None) -> object:
 
 def afresh(
     occupied: Mask, trial: Pose, settings: StabiliseSettings, mean_height_px: float = 12.0
-) -> Stabilised | None:
+) -> Group | None:
     """Stabilise from the left in the window that reaches down to the ground, wedges from 50 on."""
     posed, row, col = trial
     reach = memory_module._reach_px(posed)

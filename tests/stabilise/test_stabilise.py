@@ -6,10 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drystone.model.pose import PosedStone
-from drystone.model.wall import Wall
+from drystone.model.wall import Group, Wall
 from drystone.poses import PoseBook
 from drystone.stabilise.settings import Method, StabiliseSettings
-from drystone.stabilise.stabilise import Stabilised, WedgeStock, make_stable, stabilise
+from drystone.stabilise.stabilise import WedgeStock, make_stable, stabilise
 from tests.naive import support as naive
 from tests.stabilise.scenes import bar_on_the_ledge, ledge
 from tests.stabilise.test_wedge import check_wedge, holds
@@ -19,7 +19,7 @@ STOCK = WedgeStock(next_id=100, mean_height_px=12.0)
 METHODS: tuple[Method, ...] = ("both", "rotation", "wedge", "none")
 
 
-def stabilised_bar(method: Method, **limits: float) -> Stabilised | None:
+def stabilised_bar(method: Method, **limits: float) -> Group | None:
     book, occupied = PoseBook(), ledge()
     settings = StabiliseSettings(method=method, **limits)  # type: ignore[arg-type]
     return stabilise(occupied, bar_on_the_ledge(occupied, book), "left", book, STOCK, settings)

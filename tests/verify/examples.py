@@ -12,13 +12,12 @@ from drystone.model.placement import Placement, Side, Wedge
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.model.site import Site
 from drystone.model.stone import Source, Stone, StoneSet
-from drystone.model.wall import Wall
+from drystone.model.wall import Group, Wall
 from drystone.planner.assemble import Frame, plan_metrics
 from drystone.planner.build import Build
 from drystone.planner.evaluate import action_indices
 from drystone.planner.settings import PlannerSettings
 from drystone.poses import PoseBook
-from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.limit import lateral_resistance
 
 SETTINGS = PlannerSettings(orientations="quarter", two_sided=True)
@@ -93,7 +92,7 @@ def true_plan(built: Wall, stones: StoneSet) -> Plan:
         carried = lateral_resistance(model_from_labels(wall.labels, settings.mu).model)
         indices, course_height = action_indices(
             Landscape.of(before, placement.side),
-            Stabilised(placement, group.wedges),
+            group,
             carried,
             11.5 * site.scale,
             NARROWEST_PX * site.scale,

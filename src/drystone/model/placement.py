@@ -47,6 +47,13 @@ class Placement:
         return self.posed.stone.id
 
     @property
+    def exact(self) -> Settled:
+        """Where it lies exactly; ValueError for a stone that is its pixels."""
+        if self.settled is None:
+            raise ValueError(f"stone {self.stone_id} is its pixels")
+        return self.settled
+
+    @property
     def window(self) -> tuple[slice, slice]:
         """Rows and columns of the wall image that the mask covers."""
         return (

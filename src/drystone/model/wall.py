@@ -43,15 +43,7 @@ class Wall:
 
     @classmethod
     def empty(cls, site: Site, *, exact: bool = False) -> "Wall":
-        """Return the wall before the first stone.
-
-        Parameters
-        ----------
-        site : Site
-            Its place.
-        exact : bool
-            Stones are their outlines, and all placements settled ones.
-        """
+        """Return the wall before the first stone; exact: stones are their outlines."""
         outlines = Outlines.empty(site) if exact else None
         return cls(site, np.zeros((site.height_px, site.width_px), np.uint32), outlines=outlines)
 
@@ -59,12 +51,8 @@ class Wall:
         """Return the wall with one more stone and its wedges.
 
         With outlines, a pixel belongs to the stone or wedge that covers most of it, where all
-        together cover at least half (DESIGN 4.9).
-
-        Raises
-        ------
-        ValueError
-            When pixels overlap or leave the site.
+        together cover at least half (DESIGN 4.9).  ValueError when pixels overlap or leave the
+        site.
         """
         groups = (*self.groups, Group(placement, wedges))
         if self.outlines is not None:
@@ -75,6 +63,13 @@ class Wall:
         for wedge in wedges:
             _paint(labels, wedge.window, wedge.mask, wedge.id)
         return Wall(self.site, labels, groups)
+
+    @property
+    def exact(self) -> Outlines:
+        """Its outlines; ValueError where the stones are their pixels."""
+        if self.outlines is None:
+            raise ValueError("the stones of this wall are their pixels")
+        return self.outlines
 
     @property
     def placements(self) -> tuple[Placement, ...]:
@@ -108,8 +103,7 @@ class Wall:
 
 def outlined(placement: Placement, wedges: tuple[Wedge, ...]) -> list[Outlined]:
     """Return ids and outlines of a settled stone and its wedges."""
-    assert placement.settled is not None  # noqa: S101 - all stones of the wall are outlines
-    blocks = [(placement.stone_id, placement.settled.corners)]
+    blocks = [(placement.stone_id, placement.exact.corners)]
     return blocks + [(wedge.id, wedge.corners) for wedge in wedges if wedge.corners is not None]
 
 

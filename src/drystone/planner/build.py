@@ -7,8 +7,7 @@ from drystone.contacts.interfaces import PointContacts
 from drystone.indices import Indices
 from drystone.model.placement import Side
 from drystone.model.site import Site
-from drystone.model.wall import Wall
-from drystone.stabilise.stabilise import Stabilised
+from drystone.model.wall import Group, Wall
 from drystone.statics.incremental import IncrementalAnalysis, incremental_analysis
 from drystone.statics.lp.program import Units
 from drystone.statics.model import RigidBlockModel
@@ -19,7 +18,7 @@ from drystone.statics.result import LateralResistance
 class Proposal:
     """A stone, stabilised somewhere; whether the wall then stands is not known yet."""
 
-    stabilised: Stabilised
+    stabilised: Group
     trial_angle_deg: float  # angle of the pose that was tried, before stabilisation
     # mean height of the other candidates of the step (Eq. 8); None when there are none
     course_height_px: float | None = None
@@ -67,7 +66,7 @@ class Candidate:
         return f"stone {self.stone_id} turned by {angle_deg:.1f} deg, {wedges} wedges"
 
     @property
-    def stabilised(self) -> Stabilised:
+    def stabilised(self) -> Group:
         """Placement and wedges."""
         return self.proposal.stabilised
 

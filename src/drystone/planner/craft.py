@@ -6,19 +6,19 @@ from drystone.indices import interlocking_width_ratio, inward_slope, is_boundary
 from drystone.kernels.columns import free_below, free_beside
 from drystone.model.landscape import Landscape, view_box
 from drystone.model.pose import PosedStone
+from drystone.model.wall import Group
 from drystone.planner.stock import Rest, Stock
 from drystone.selection.scored import Craft, ScoreSettings
-from drystone.stabilise.stabilise import Stabilised
 
 
-def action_craft(landscape: Landscape, stabilised: Stabilised, stock: Stock, rest: Rest) -> Craft:
+def action_craft(landscape: Landscape, stabilised: Group, stock: Stock, rest: Rest) -> Craft:
     """Return the craft terms of a stabilised action.
 
     Parameters
     ----------
     landscape : Landscape
         Before the action, seen from the side from which the stone is placed.
-    stabilised : Stabilised
+    stabilised : Group
         The action.
     stock : Stock
         Mean sizes of the stones.

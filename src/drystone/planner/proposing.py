@@ -8,6 +8,7 @@ from typing import Any, Protocol
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Side
 from drystone.model.pose import PosedStone
+from drystone.model.wall import Group
 from drystone.placement.best import Spot, best_spots
 from drystone.placement.feasible import can_be_lowered
 from drystone.planner.build import Build, Proposal
@@ -17,7 +18,6 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest
 from drystone.planner.workshop import Workshop
 from drystone.selection.scored import PIN_BONUS, craft_cost
-from drystone.stabilise.stabilise import Stabilised
 
 TOGETHER = 16
 """So many trials are stabilised before it is looked whether these are enough."""
@@ -53,7 +53,7 @@ class Trial:
 
 
 def action_cost(
-    trial: Trial, stabilised: Stabilised, workshop: Workshop, settings: PlannerSettings
+    trial: Trial, stabilised: Group, workshop: Workshop, settings: PlannerSettings
 ) -> float:
     """Return the weighted craft cost of an action; 0 when no choice depends on it."""
     if not settings.weighs_craft:
@@ -214,7 +214,7 @@ class RasterProposer:
                 best = proposal
         return best
 
-    def _reached(self, landscape: Landscape, stabilised: Stabilised) -> bool:
+    def _reached(self, landscape: Landscape, stabilised: Group) -> bool:
         """Say whether a stone that was turned can still be put where it is."""
         settings = self._settings.placement
         if settings.reach == "any":

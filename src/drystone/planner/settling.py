@@ -11,6 +11,7 @@ from drystone.kernels.drops import DropTerms, Wanted, drops
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import OVER, HeightProfile, StoneProfile, in_a_row
 from drystone.model.placement import Side
+from drystone.model.wall import Group
 from drystone.planner.build import Build, Proposal
 from drystone.planner.dropping import (
     Drop,
@@ -27,7 +28,6 @@ from drystone.planner.settled import settled_in
 from drystone.planner.workshop import Workshop
 from drystone.settle.rest import Repose, Scene, come_to_rest
 from drystone.settle.wedged import wedged
-from drystone.stabilise.stabilise import Stabilised
 
 CHUNK = 256
 """So many trials of one side are dropped together."""
@@ -218,9 +218,7 @@ class ExactProposer:
         clear = 2.0 * self._settings.settle.clearance_px
         return (max(beside) + clear - stone.left, y) if beside else start
 
-    def _stabilised(
-        self, drop: Drop, repose: Repose, wedge: Points | None = None
-    ) -> Stabilised | None:
+    def _stabilised(self, drop: Drop, repose: Repose, wedge: Points | None = None) -> Group | None:
         """Return a stone that rests, with the pixels that it fills; None when it is too high."""
         wall, posed = self._build.wall, drop.trial.poses[0]
         beyond_px = self._settings.settle.beyond_px

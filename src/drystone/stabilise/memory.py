@@ -8,9 +8,10 @@ from drystone.kernels.raster import Mask
 from drystone.model.placement import Placement, Side, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
+from drystone.model.wall import Group
 from drystone.poses import PoseBook, RecentlyUsed, memory_bytes
 from drystone.stabilise.settings import StabiliseSettings
-from drystone.stabilise.stabilise import Outcome, Stabilised, WedgeStock, falls_to, make_stable
+from drystone.stabilise.stabilise import Outcome, WedgeStock, falls_to, make_stable
 from drystone.stabilise.support import Pose
 
 Key = tuple[Stone, float, int, int, int, tuple[int, ...], bytes]
@@ -54,7 +55,7 @@ class StabiliseMemory:
 
     def stabilise(
         self, occupied: Mask, trial: Pose, side: Side, next_wedge: int
-    ) -> Stabilised | None:
+    ) -> Group | None:
         """Return a stable placement from a trial one; None when there is none (§3.7).
 
         Parameters
@@ -76,7 +77,7 @@ class StabiliseMemory:
         if falls is None:
             return None
         if falls == 0:  # most are: quicker seen than remembered
-            return Stabilised(Placement(*trial, side))
+            return Group(Placement(*trial, side))
         posed, row, col = trial
         reach = _reach_px(posed)
         top, left = max(0, row - reach), max(0, col - reach)
@@ -124,8 +125,8 @@ def _memory_bytes(key: Key, outcome: Outcome) -> int:
 
 
 def _moved(
-    stabilised: Stabilised | None, top: int, left: int, side: Side, next_wedge: int
-) -> Stabilised | None:
+    stabilised: Group | None, top: int, left: int, side: Side, next_wedge: int
+) -> Group | None:
     """Return an outcome in the rows and columns of the whole wall, with wedge ids of its own."""
     if stabilised is None:
         return None
@@ -135,4 +136,4 @@ def _moved(
         for k, wedge in enumerate(stabilised.wedges)
     )
     placement = Placement(at.posed, at.row + top, at.col + left, side, at.rotation_moves)
-    return Stabilised(placement, wedges)
+    return Group(placement, wedges)

@@ -6,18 +6,11 @@ from dataclasses import dataclass
 from drystone.kernels.columns import gap_filling
 from drystone.kernels.raster import Mask
 from drystone.model.placement import Placement, Side, Wedge
+from drystone.model.wall import Group
 from drystone.poses import PoseBook
 from drystone.stabilise.rotate import rotate_to_rest
 from drystone.stabilise.settings import StabiliseSettings
 from drystone.stabilise.support import Pose, falling_side, support_polyline
-
-
-@dataclass(frozen=True, eq=False)
-class Stabilised:
-    """A stable placement with the wedges that make it so."""
-
-    placement: Placement
-    wedges: tuple[Wedge, ...] = ()  # empty when the stone rests by itself
 
 
 @dataclass(frozen=True)
@@ -32,7 +25,7 @@ class WedgeStock:
 class Outcome:
     """What became of a stone that falls."""
 
-    stabilised: Stabilised | None  # None when it cannot be made stable
+    stabilised: Group | None  # None when it cannot be made stable
     # rows of the landscape, from the top, that were looked at: in another landscape that is
     # the same so far down the outcome is the same
     depth: int
@@ -45,7 +38,7 @@ def stabilise(
     book: PoseBook,
     wedges: WedgeStock,
     settings: StabiliseSettings,
-) -> Stabilised | None:
+) -> Group | None:
     """Return a stable placement from a trial one; None when it cannot be made stable (§3.7).
 
     Parameters
@@ -67,7 +60,7 @@ def stabilise(
     if falls is None:
         return None
     if falls == 0:
-        return Stabilised(Placement(*trial, side))
+        return Group(Placement(*trial, side))
     return make_stable(occupied, trial, side, book, wedges, settings).stabilised
 
 
@@ -99,13 +92,13 @@ def make_stable(
         depth = max(depth, rotation.depth)
         if rotation.pose is not None:
             placement = Placement(*rotation.pose, side, rotation_moves=rotation.pivots)
-            return Outcome(Stabilised(placement), depth)
+            return Outcome(Group(placement), depth)
     if settings.method in ("both", "wedge"):
         deepest = row + posed.height_px + wedge_sizes_px(wedges.mean_height_px, settings)[1] + 1
         depth = max(depth, deepest)
         cut = _wedges_under(occupied[:deepest], trial, wedges, settings)
         if cut is not None:
-            return Outcome(Stabilised(Placement(posed, row, col, side), cut), depth)
+            return Outcome(Group(Placement(posed, row, col, side), cut), depth)
     return Outcome(None, depth)
 
 

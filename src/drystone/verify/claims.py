@@ -7,6 +7,7 @@ from drystone.clusters import cluster_stones
 from drystone.model.landscape import Landscape
 from drystone.model.plan import Plan, PlanMetrics, StoneStep
 from drystone.model.stone import StoneSet
+from drystone.model.wall import Group
 from drystone.planner.assemble import Frame, plan_metrics
 from drystone.planner.build import Build
 from drystone.planner.evaluate import action_indices
@@ -14,7 +15,6 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
 from drystone.poses import PoseBook, orientation_step_deg
 from drystone.search.plan_result import other_resistances
-from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
@@ -166,7 +166,7 @@ def check_indices(
     claimed_height = step.course_height
     indices, course_height = action_indices(
         Landscape.of(stage.before, step.side),
-        Stabilised(group.placement, group.wedges),
+        group,
         resistance,
         None if claimed_height is None else claimed_height / units_per_px,
         reference.stock.narrowest_px,
