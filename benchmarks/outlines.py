@@ -110,7 +110,7 @@ def outline_scene(stones: Stock) -> OutlineScene:
     scene, profile = proposer.view("left")
     landscape = Landscape.of(build.wall)
     trials = [
-        Trial((posed,), landscape, workshop.rest(build))
+        Trial((posed,), landscape)
         for stone in workshop.remaining(build)
         for posed in workshop.poses(stone)
     ]

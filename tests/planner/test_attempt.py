@@ -150,7 +150,7 @@ def test_a_stone_that_turns_out_of_reach_from_above_is_not_proposed(
     proposer = RasterProposer(planner.workshop, settings, planner.build, Profile())
     posed = planner.workshop.poses(1)[0]
     landscape = Landscape.of(planner.build.wall)
-    trial = Trial((posed,), landscape, planner.workshop.rest(planner.build))
+    trial = Trial((posed,), landscape)
     assert proposer.stabilised(proposer.spotted(trial)) is not None
     monkeypatch.setattr("drystone.planner.proposing.can_be_lowered", lambda *_: False)
     assert proposer.stabilised(proposer.spotted(trial)) is None

@@ -27,7 +27,7 @@ def test_a_trial_is_known_by_its_first_pose_and_side() -> None:
     poses = workshop.poses(3)
     planner = Planner(rubble(), RUBBLE_SITE)
     view = Landscape.of(planner.build.wall, "right")
-    assert Trial(poses, view, None).key == (3, poses[0].angle_deg, "right")
+    assert Trial(poses, view).key == (3, poses[0].angle_deg, "right")
 
 
 def test_one_by_one_keeps_the_order() -> None:
@@ -46,9 +46,9 @@ class _Watched:
         workshop, build = planner.workshop, planner.build
         self.proposer = RasterProposer(workshop, settings, build, Profile())
         self.analysed = settings.score.analysed
-        rest, view = workshop.rest(build), Landscape.of(build.wall)
+        view = Landscape.of(build.wall)
         self.trials = [
-            Trial((posed,), view, rest)
+            Trial((posed,), view)
             for stone_id in workshop.remaining(build)
             for posed in workshop.poses(stone_id)
         ]
@@ -139,9 +139,9 @@ def test_what_is_proposed_is_of_the_trials_and_none_of_it_is_in_the_way(
     workshop, build = planner.workshop, planner.build
     kind = RasterProposer if geometry == "raster" else ExactProposer
     proposer = kind(workshop, settings, build, Profile())
-    rest, view = workshop.rest(build), Landscape.of(build.wall, "right")
+    view = Landscape.of(build.wall, "right")
     stones = workshop.remaining(build)[::2]
-    trials = [Trial((p,), view, rest) for i in stones for p in workshop.poses(i)]
+    trials = [Trial((p,), view) for i in stones for p in workshop.poses(i)]
     found = [p for batch in proposer.proposals(trials, one_by_one) for p in batch]
     assert {p.stone_id for p in found} <= set(stones)
     assert len(found) > 2
@@ -159,6 +159,6 @@ def test_without_craft_there_is_no_cost() -> None:
         planner = Planner(rubble(), RUBBLE_SITE, settings=settings)
         proposer = kind(planner.workshop, settings, planner.build, Profile())
         view = Landscape.of(planner.build.wall)
-        trials = [Trial(planner.workshop.poses(i), view, None) for i in (1, 2, 3)]
+        trials = [Trial(planner.workshop.poses(i), view) for i in (1, 2, 3)]
         (found,) = proposer.proposals(trials, one_by_one)
         assert [(p.stone_id, p.cost) for p in found] == [(1, 0.0), (2, 0.0), (3, 0.0)]

@@ -51,9 +51,8 @@ class _Step:
         return ExactProposer(self.workshop, self.settings, self.build, Profile())
 
     def trials(self, sides: tuple[Side, ...] = ("left", "right")) -> list[Trial]:
-        rest = self.workshop.rest(self.build)
         return [
-            Trial((posed,), Landscape.of(self.build.wall, side), rest)
+            Trial((posed,), Landscape.of(self.build.wall, side))
             for side in sides
             for stone_id in self.workshop.remaining(self.build)
             for posed in self.workshop.poses(stone_id)
@@ -146,7 +145,7 @@ def test_algorithm_2_compares_each_trial_where_its_first_drop_rests(choice: str)
     trials = step.trials()
     if choice == "placement":
         trials = [
-            Trial(step.workshop.poses(stone_id), trials[0].landscape, trials[0].rest)
+            Trial(step.workshop.poses(stone_id), trials[0].landscape)
             for stone_id in step.workshop.remaining(step.build)
         ]
     proposer = step.proposer()

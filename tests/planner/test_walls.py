@@ -95,7 +95,7 @@ def _judged(evaluator: Evaluator, build: Build, proposal: Proposal) -> Candidate
 
 def _trial(planner: Planner, stone_id: int) -> Trial:
     workshop, build = planner.workshop, planner.build
-    return Trial(workshop.poses(stone_id), Landscape.of(build.wall), workshop.rest(build))
+    return Trial(workshop.poses(stone_id), Landscape.of(build.wall))
 
 
 @pytest.mark.parametrize(

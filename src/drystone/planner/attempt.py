@@ -88,7 +88,6 @@ class Attempt:
         self._evaluator = Evaluator(settings, workshop.stock, self._profile)
         sides: tuple[Side, ...] = ("left", "right") if settings.two_sided else ("left",)
         self._landscapes = {side: Landscape.of(build.wall, side) for side in sides}
-        self._rest = workshop.rest(build) if settings.weighs_craft else None
         self._judged: dict[Key, Candidate] = {}
 
     @property
@@ -186,7 +185,7 @@ class Attempt:
             groups = [poses(stone_id) for stone_id in stones]
         else:
             groups = [(posed,) for stone_id in stones for posed in poses(stone_id)]
-        trials = [Trial(poses, view, self._rest) for view in landscapes for poses in groups]
+        trials = [Trial(poses, view) for view in landscapes for poses in groups]
         heights = _course_heights(groups)
         for batch in self._proposer.proposals(trials, self._map):
             yield [

@@ -9,7 +9,6 @@ import numpy as np
 
 from drystone.kernels.drops import DropTerms
 from drystone.kernels.profiles import Floats
-from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.wedge_shape import WedgeRule
 from drystone.planner.proposing import Key, Trial
@@ -52,19 +51,7 @@ class Dropped:
 
 
 def drop_terms(site: Site, stock: Stock, rest: Rest, settings: PlannerSettings) -> DropTerms:
-    """Return what drops cost in a state of construction.
-
-    Parameters
-    ----------
-    site : Site
-        Of the wall.
-    stock : Stock
-        Sizes of the stones.
-    rest : Rest
-        What the stones that are left could fill.
-    settings : PlannerSettings
-        Weights and clearances.
-    """
+    """Return what drops cost in a state of construction."""
     score, settle = settings.score, settings.settle
     return DropTerms(
         cell_px=1.0 / site.scale,
@@ -102,7 +89,9 @@ def in_order(dropped: Sequence[Dropped], book: OutlineBook) -> Iterator[Drop]:
         owner[order].tolist(), spot[order].tolist(), rows[order].tolist(), strict=True
     ):
         trial, posed = owners[at]
-        drop = _drop(trial, posed, spot_at, (x, y, round(cost, 12)), book)
+        one = trial if len(trial.poses) == 1 else replace(trial, poses=(posed,))
+        left = book.hung(posed.stone, posed.angle_deg, trial.landscape.side).profile.left
+        drop = Drop(one, spot_at, (x - left, y), (round(cost, 12), (one.key, spot_at)))
         # Rounding keeps the order of costs, except that it makes some equal.
         if equal and equal[-1].rank[0] != drop.rank[0]:
             yield from sorted(equal, key=attrgetter("rank"))
@@ -111,28 +100,10 @@ def in_order(dropped: Sequence[Dropped], book: OutlineBook) -> Iterator[Drop]:
     yield from sorted(equal, key=attrgetter("rank"))
 
 
-def _drop(
-    trial: Trial,
-    posed: PosedStone,
-    spot: int,
-    place: tuple[float, float, float],
-    book: OutlineBook,
-) -> Drop:
-    one = trial if len(trial.poses) == 1 else replace(trial, poses=(posed,))
-    x, y, cost = place
-    left = book.hung(posed.stone, posed.angle_deg, trial.landscape.side).profile.left
-    return Drop(one, spot, (x - left, y), (cost, (one.key, spot)))
-
-
 def shortlist(drops: Iterable[Drop], settings: SettleSettings) -> list[Drop]:
     """Take the first drops, only so many of one stone.
 
-    Parameters
-    ----------
-    drops : iterable of Drop
-        The cheapest first; asked for no further than needed.
-    settings : SettleSettings
-        How many.
+    `drops` has the cheapest first, and is asked for no further than needed.
     """
     taken: list[Drop] = []
     counts: Counter[int] = Counter()
@@ -147,17 +118,7 @@ def shortlist(drops: Iterable[Drop], settings: SettleSettings) -> list[Drop]:
 
 
 def wedge_limits(settings: PlannerSettings, stock: Stock, site: Site) -> WedgeLimits:
-    """Return what wedges may be, in source px.
-
-    Parameters
-    ----------
-    settings : PlannerSettings
-        Sizes of wedges, and how a wedged stone must rest.
-    stock : Stock
-        Sizes of the stones, working px.
-    site : Site
-        Its resolution, and its scale.
-    """
+    """Return what wedges may be, in source px; the stock is in working px."""
     settle, size_px = settings.settle, stock.median_area_px**0.5 / site.scale
     rule = WedgeRule.of(settings.wedge, settings.mu, size_px, site.px_per_m)
     return WedgeLimits(

@@ -1,9 +1,11 @@
 """Trial placement and stabilisation of candidates (Algorithm 1, lines 8-15)."""
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from functools import cached_property
+from typing import Any
 
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Side
@@ -44,7 +46,6 @@ class Trial:
     # the stone as it may be turned for the trial; the placement rule picks one
     poses: tuple[PosedStone, ...]
     landscape: Landscape  # what is built, seen from the side
-    rest: Rest | None  # what the stones that are left could fill; None when no choice depends on it
 
     @property
     def key(self) -> Key:
@@ -52,39 +53,44 @@ class Trial:
         return self.poses[0].stone.id, self.poses[0].angle_deg, self.landscape.side
 
 
-def action_cost(
-    trial: Trial, stabilised: Group, workshop: Workshop, settings: PlannerSettings
-) -> float:
-    """Return the weighted craft cost of an action; 0 when no choice depends on it."""
-    if not settings.weighs_craft:
-        return 0.0
-    assert trial.rest is not None  # noqa: S101 - the attempt gives it then
-    craft = action_craft(trial.landscape, stabilised, workshop.stock, trial.rest)
-    bonus = PIN_BONUS if trial.poses[0].stone.id in settings.pin else 0.0
-    return craft_cost(craft, settings.score) - bonus
-
-
-class Proposer(Protocol):
+class Proposer(ABC):
     """Places and stabilises candidates on one state of construction; remembers what it tried."""
 
+    def __init__(
+        self, workshop: Workshop, settings: PlannerSettings, build: Build, profile: Profile
+    ) -> None:
+        self._workshop = workshop
+        self._settings = settings
+        self._build = build
+        self._profile = profile
+
     @property
+    @abstractmethod
     def tried(self) -> int:
         """How many candidates were looked at."""
-        ...
 
+    @abstractmethod
     def proposals(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Proposal]]:
-        """List where the stones of some trials could stand.
+        """List where the stones of some trials, which are compared with each other, could stand.
 
-        Proposals come in batches: whoever can use none of one batch asks for the next.
-
-        Parameters
-        ----------
-        trials : sequence of Trial
-            Candidates that are compared with each other.
-        apply : callable
-            Does independent work, on several threads if there are any.
+        Proposals come in batches: whoever can use none of one batch asks for the next.  `apply`
+        does independent work, on several threads if there are any.
         """
-        ...
+
+    @cached_property
+    def rest(self) -> Rest:
+        """What the stones that are left could fill."""
+        return self._workshop.rest(self._build)
+
+    def _cost(self, trial: Trial, stabilised: Group) -> float:
+        """Return the weighted craft cost of an action; 0 when no choice depends on it."""
+        settings = self._settings
+        if not settings.weighs_craft:
+            return 0.0
+        with self._profile.part("indices"):
+            craft = action_craft(trial.landscape, stabilised, self._workshop.stock, self.rest)
+        bonus = PIN_BONUS if trial.poses[0].stone.id in settings.pin else 0.0
+        return craft_cost(craft, settings.score) - bonus
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,31 +104,17 @@ class Spotted:
     promise: float
 
 
-class RasterProposer:
+class RasterProposer(Proposer):
     """Stones are their pixels at the working resolution.
 
     Where selection goes by cost, the stones that promise to be cheapest are stabilised first, and
     others only while they promise less than enough of those cost; Algorithm 2 compares all.
-
-    Parameters
-    ----------
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        All parameters.
-    build : Build
-        What is built.
-    profile : Profile
-        Told where the time goes.
     """
 
     def __init__(
         self, workshop: Workshop, settings: PlannerSettings, build: Build, profile: Profile
     ) -> None:
-        self._workshop = workshop
-        self._settings = settings
-        self._build = build
-        self._profile = profile
+        super().__init__(workshop, settings, build, profile)
         self._spotted: dict[Key, Spotted] = {}
         self._proposed: dict[Key, Proposal | None] = {}
 
@@ -173,10 +165,9 @@ class RasterProposer:
             spots = best_spots(landscape, views, settings.placement)
         if settings.selection_rule != "score" or not spots:
             return Spotted(trial, tuple(spots), math.inf)
-        assert trial.rest is not None  # noqa: S101 - the attempt gives it then
         with self._profile.part("indices"):
             constants = self._workshop.costs.of(trial.poses, settings.score)
-            stock, rest, score = self._workshop.stock, trial.rest, settings.score
+            stock, rest, score = self._workshop.stock, self.rest, settings.score
             costs = [
                 constants[spot.pose]
                 + place_cost(landscape, views[spot.pose], spot.at, stock, rest, score)
@@ -205,8 +196,7 @@ class RasterProposer:
                 )
             if stabilised is None or not self._reached(landscape, stabilised):
                 continue
-            with self._profile.part("indices"):
-                cost = action_cost(trial, stabilised, self._workshop, self._settings)
+            cost = self._cost(trial, stabilised)
             proposal = Proposal(stabilised, posed.angle_deg, cost=cost)
             if not self._settings.placement.compare:
                 return proposal

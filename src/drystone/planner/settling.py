@@ -2,8 +2,8 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from functools import partial
-from itertools import islice
+from functools import cached_property, partial
+from itertools import chain, islice
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from drystone.planner.dropping import (
     wedge_limits,
 )
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import Apply, Key, Trial, action_cost
+from drystone.planner.proposing import Apply, Key, Proposer, Trial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settled import settled_in
 from drystone.planner.workshop import Workshop
@@ -37,35 +37,20 @@ TOGETHER = 6
 hand it over more often lose more than they gain."""
 
 
-class ExactProposer:
+class ExactProposer(Proposer):
     """Stones settle on the outlines of others.
 
     Where selection goes by cost, the cheapest drops of all trials are settled, and where none of
     them can be used the next ones; Algorithm 2 compares all trials, each where its first drop
     rests.
-
-    Parameters
-    ----------
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        All parameters.
-    build : Build
-        What is built.
-    profile : Profile
-        Told where the time goes.
     """
 
     def __init__(
         self, workshop: Workshop, settings: PlannerSettings, build: Build, profile: Profile
     ) -> None:
-        self._workshop = workshop
-        self._settings = settings
-        self._build = build
-        self._profile = profile
+        super().__init__(workshop, settings, build, profile)
         self._views: dict[Side, tuple[Scene, HeightProfile]] = {}
         self._limits = wedge_limits(settings, workshop.stock, build.wall.site)
-        self._terms: DropTerms | None = None
         self._dropped: dict[Key, Dropped] = {}
         self._settled: dict[tuple[Key, int], Proposal | None] = {}
 
@@ -78,7 +63,7 @@ class ExactProposer:
         """See :class:`drystone.planner.proposing.Proposer`."""
         if self._settings.selection_rule == "score":
             for batch in self.batches(trials, apply):
-                yield [proposal for proposal in self._all_settled(batch, apply) if proposal]
+                yield self._all_settled(batch, apply)
         else:
             drops = self.drops(trials, apply)
             yield [proposal for proposal in apply(self._first, drops) if proposal is not None]
@@ -108,12 +93,16 @@ class ExactProposer:
     def view(self, side: Side) -> tuple[Scene, HeightProfile]:
         """Return what is built and how high it is, as it is seen from a side."""
         if side not in self._views:
-            site, outlines = self._build.wall.site, self._build.wall.outlines
-            assert outlines is not None  # noqa: S101 - the planner builds on outlines
-            view = self._workshop.views.of(outlines.polygons, side)
-            scene = Scene(view.seen, site.extent_px[0], side, self._settings.mu)
+            wall = self._build.wall
+            view = self._workshop.views.of(wall.exact.polygons, side)
+            scene = Scene(view.seen, wall.site.extent_px[0], side, self._settings.mu)
             self._views[side] = scene, view.profile
         return self._views[side]
+
+    @cached_property
+    def _terms(self) -> DropTerms:
+        site, stock = self._build.wall.site, self._workshop.stock
+        return drop_terms(site, stock, self.rest, self._settings)
 
     def _drop(self, trials: Sequence[Trial], apply: Apply, needed: float) -> None:
         """Drop the stones of the trials of which not all drops up to a cost are known.
@@ -128,10 +117,7 @@ class ExactProposer:
             self.view(side)
             mine = [trial for trial in lacking if trial.landscape.side == side]
             chunks += [mine[k : k + CHUNK] for k in range(0, len(mine), CHUNK)]
-        if lacking and self._terms is None:
-            rest = lacking[0].rest or self._workshop.rest(self._build)
-            site, stock = self._build.wall.site, self._workshop.stock
-            self._terms = drop_terms(site, stock, rest, self._settings)
+        _ = lacking and self._terms  # before the threads ask for them, all at once
         for found in apply(partial(self._dropped_together, cheapest), chunks):
             known.update((one.trial.key, one) for one in found)
 
@@ -150,22 +136,18 @@ class ExactProposer:
             )
             stones = in_a_row([one.profile for one in hung])
             constants = self._workshop.costs.of(poses, self._settings.score)
-            assert self._terms is not None  # noqa: S101 - they are there before the threads are
             places, limit = drops(self.view(side)[1], stones, self._terms, constants, wanted)
         next_ones = iter(places)
         return [
             Dropped(trial, tuple(islice(next_ones, len(trial.poses))), limit) for trial in trials
         ]
 
-    def _all_settled(self, drops: Sequence[Drop], apply: Apply) -> list[Proposal | None]:
+    def _all_settled(self, drops: Sequence[Drop], apply: Apply) -> list[Proposal]:
         new = [drop for drop in drops if drop.key not in self._settled]
         groups = [new[k : k + TOGETHER] for k in range(0, len(new), TOGETHER)]
-        found = [one for group in apply(self._settle_all, groups) for one in group]
-        self._settled.update(zip([drop.key for drop in new], found, strict=True))
-        return [self._settled[drop.key] for drop in drops]
-
-    def _settle_all(self, drops: Sequence[Drop]) -> list[Proposal | None]:
-        return [self._settle(drop) for drop in drops]
+        found = apply(partial(one_by_one, self._settle), groups)
+        self._settled.update(zip([drop.key for drop in new], chain(*found), strict=True))
+        return [found for drop in drops if (found := self._settled[drop.key]) is not None]
 
     def _first(self, drops: Sequence[Drop]) -> Proposal | None:
         """Settle the drops of a trial until one rests."""
@@ -196,8 +178,7 @@ class ExactProposer:
                     stabilised = self._stabilised(drop, found.repose, found.wedge)
         if stabilised is None:
             return None
-        with self._profile.part("indices"):
-            cost = action_cost(drop.trial, stabilised, self._workshop, self._settings)
+        cost = self._cost(drop.trial, stabilised)
         return Proposal(stabilised, posed.angle_deg, cost=cost, spot=drop.spot)
 
     def _beside(
