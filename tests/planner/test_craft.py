@@ -11,8 +11,7 @@ from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall
-from drystone.planner.craft import action_craft, place_cost
-from drystone.planner.pose_costs import pose_cost
+from drystone.planner.craft import action_craft, place_cost, pose_cost
 from drystone.planner.stock import Rest, Stock
 from drystone.poses import PoseBook
 from drystone.selection.scored import Craft, ScoreSettings, craft_cost

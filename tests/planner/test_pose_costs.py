@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from drystone.planner import pose_costs
-from drystone.planner.pose_costs import PoseCosts, pose_cost
+from drystone.planner import craft
+from drystone.planner.craft import PoseCosts, pose_cost
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.selection.scored import ScoreSettings
@@ -43,7 +43,7 @@ def test_costs_are_worked_out_once_for_the_weights_of_now(monkeypatch: pytest.Mo
         made.append(args[0])
         return pose_cost(*args)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(pose_costs, "pose_cost", watched)
+    monkeypatch.setattr(craft, "pose_cost", watched)
     costs, other = PoseCosts(WORKSHOP.stock), ScoreSettings(area=0.3)
     for score, poses, new in (
         (ScoreSettings(), POSES[:3], 3),

@@ -6,8 +6,8 @@ import pytest
 
 from drystone.errors import UsageError
 from drystone.model.site import Site
+from drystone.planner.craft import PoseCosts
 from drystone.planner.planner import Planner
-from drystone.planner.pose_costs import PoseCosts
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.selection.scored import PIN_BONUS, ScoreSettings

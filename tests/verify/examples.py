@@ -12,7 +12,7 @@ from drystone.model.placement import Placement, Side, Wedge
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.model.site import Site
 from drystone.model.stone import Source, Stone, StoneSet
-from drystone.model.wall import Group, Wall
+from drystone.model.wall import Wall
 from drystone.planner.assemble import Frame, plan_metrics
 from drystone.planner.build import Build
 from drystone.planner.evaluate import action_indices

@@ -31,15 +31,7 @@ class Outlines:
         return [(block, self.polygons.polygon(i)) for i, block in enumerate(self.ids)]
 
     def added(self, blocks: Sequence[Outlined], scale: float) -> "Outlines":
-        """Return these outlines with a stone and its wedges.
-
-        Parameters
-        ----------
-        blocks : sequence of (int, (n, 2) float array)
-            Id and corners of each.
-        scale : float
-            Working resolution over source resolution.
-        """
+        """Return these outlines with a stone and its wedges; scale: working over source px."""
         shares = self.shares
         for block_id, corners in blocks:
             shares = shares.added(block_id, *coverage(corners * scale))

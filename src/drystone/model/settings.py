@@ -29,19 +29,9 @@ _MOST = 2**63 - 1
 def updated(settings: Settings, changes: Mapping[str, Any], prefix: str = "") -> Settings:
     """Return settings with some values replaced, checked against the declared types.
 
-    Parameters
-    ----------
-    settings : dataclass instance
-        Frozen settings, which may contain settings.
-    changes : mapping
-        Nested in the same way; missing keys stay as they are.
-    prefix : str
-        Where the settings stand in larger ones, for messages.
-
-    Raises
-    ------
-    UsageError
-        E123: an unknown name, a wrong type, or a value out of range.
+    Frozen settings may contain settings; `changes` is nested in the same way, and missing keys stay
+    as they are.  `prefix` says where the settings stand in larger ones.  UsageError (E123): an
+    unknown name, a wrong type, or a value out of range.
     """
     hints = get_type_hints(type(settings))
     values = {}
@@ -84,14 +74,8 @@ def ranged(
 ) -> Any:
     """Return the field of a number with its range, which :class:`Ranged` checks.
 
-    Parameters
-    ----------
-    default : float
-        Its value where none is given; an int for a whole number.
-    least, above : float, optional
-        Its lower end, itself allowed or not.
-    most, below : float, optional
-        Its upper end, likewise.
+    The ends `least` and `most` are allowed themselves, `above` and `below` are not.  A default that
+    is an int is that of a whole number.
     """
     ends = {"least": least, "above": above, "most": most, "below": below}
     allowed = {name: end for name, end in ends.items() if end is not None}
@@ -99,13 +83,7 @@ def ranged(
 
 
 def range_text(allowed: Mapping[str, float]) -> str:
-    """Write a range as in mathematics, or as a bound where it has one end.
-
-    Examples
-    --------
-    >>> range_text({"above": 0, "most": 0.5}), range_text({"least": 1})
-    ('in (0, 0.5]', 'at least 1')
-    """
+    """Write a range as in mathematics, or as a bound where it has one end."""
     low = allowed.get("least", allowed.get("above"))
     high = allowed.get("most", allowed.get("below"))
     if low is None or high is None:
@@ -118,10 +96,7 @@ def range_text(allowed: Mapping[str, float]) -> str:
 class Ranged:
     """Settings that check themselves: choices by their types, numbers by their ranges.
 
-    Raises
-    ------
-    ValueError
-        A value is none of the choices, or out of its range.
+    ValueError: a value is not one of the choices, or out of its range.
     """
 
     def __post_init__(self) -> None:

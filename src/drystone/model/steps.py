@@ -23,13 +23,7 @@ def piece_id(step: Step) -> int:
 
 
 def piece_name(step: Step) -> str:
-    """Return what messages call it.
-
-    Examples
-    --------
-    >>> piece_name(WedgeStep(2, 301, 7, (), None, None))
-    'wedge 301'
-    """
+    """Return what messages call it, such as "wedge 301"."""
     return f"{step.kind} {piece_id(step)}"
 
 
@@ -59,16 +53,9 @@ def grouped(steps: Sequence[Step]) -> tuple[list[list[Step]], list[Fault]]:
 
 
 def id_fault(step: Step, used: set[int], largest: int) -> Fault | None:
-    """Note an id as used; say when it was, or is none of a wedge (E213).
+    """Note the id of a step as used; say when it was, or is not one of a wedge (E213).
 
-    Parameters
-    ----------
-    step : StoneStep or WedgeStep
-        The step.
-    used : set of int
-        Ids of the steps before it; this one's is added.
-    largest : int
-        Id of a stone; those of wedges are larger.
+    The ids of wedges are larger than `largest`, that of a stone.
     """
     name, its_id = piece_name(step), piece_id(step)
     if its_id in used:

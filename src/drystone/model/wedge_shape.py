@@ -63,18 +63,7 @@ class WedgeSettings:
     def least_thickness(self, size: float, per_m: float | None) -> float:
         """Return the least thickness of a wedge, in the unit of the size.
 
-        Parameters
-        ----------
-        size : float
-            Root of the median stone's area.
-        per_m : float or None
-            Units of length in a metre, when that is known.
-
-        Examples
-        --------
-        >>> sizes = WedgeSettings()
-        >>> sizes.least_thickness(125.0, None), sizes.least_thickness(125.0, 1032.0)
-        (5.0, 5.16)
+        `size` is the root of the median stone's area, `per_m` units of length in a metre, if known.
         """
         return self.thickness * size if per_m is None else self.thickness_mm * per_m / 1000.0
 
@@ -97,12 +86,8 @@ class WedgeShape(NamedTuple):
     def of_slabs(cls, x: Points, low: Points, high: Points) -> "WedgeShape":
         """Measure what lies between a floor and a lid.
 
-        Parameters
-        ----------
-        x : (n + 1,) float array
-            Where the slabs begin, from left to right, and the end of the last.
-        low, high : (n, 2) float arrays
-            y of floor and lid at the left and at the right of each slab.
+        `x`, (n + 1,), is where the slabs begin, from left to right, and the end of the last; `low`
+        and `high`, (n, 2), are y of floor and lid at the left and at the right of each slab.
         """
         width, thick = float(x[-1] - x[0]), high - low
         # Straight lines between the ends, at both ends of each slab.
@@ -123,16 +108,7 @@ class WedgeShape(NamedTuple):
 
     @classmethod
     def of(cls, corners: Points) -> "WedgeShape":
-        """Measure a polygon, counter-clockwise.
-
-        Examples
-        --------
-        >>> shape = WedgeShape.of(np.array([[0.0, 0.0], [4.0, 1.0], [4.0, 3.0], [0.0, 4.0]]))
-        >>> shape.width, shape.height, shape.thickness, shape.area
-        (4.0, 4.0, 2.0, 12.0)
-        >>> shape.bed, shape.top, shape.bend
-        (0.25, -0.25, 0.0)
-        """
+        """Measure a polygon, counter-clockwise."""
         starts, ends = corners, np.roll(corners, -1, axis=0)
         x = np.unique(corners[:, 0])
         low, high, thin, area = [], [], [], 0.0
@@ -177,18 +153,9 @@ class WedgeRule:
     def of(
         cls, sizes: WedgeSettings, mu: float, size: float, per_m: float | None = None
     ) -> "WedgeRule":
-        """Return the rule for a set of stones.
+        """Return the rule for stones of which `size` is the root of the median area.
 
-        Parameters
-        ----------
-        sizes : WedgeSettings
-            Shares and millimetres.
-        mu : float
-            Coefficient of friction.
-        size : float
-            Root of the median stone's area.
-        per_m : float, optional
-            Units of length in a metre, when that is known.
+        `per_m` is units of length in a metre, when that is known.
         """
         least = sizes.least_thickness(size, per_m)
         return cls(
@@ -242,21 +209,7 @@ def open_sides(wedge: Points, others: Polygons) -> tuple[bool, bool]:
     """Say whether nothing is beside a wedge at its left, and at its right, up to the wall's end.
 
     Beside it is what lies further out in the same rows, in half of its height or more: then the
-    wedge cannot be squeezed out of its place.
-
-    Parameters
-    ----------
-    wedge : (n, 2) float array
-        Its corners.
-    others : Polygons
-        Stones and other wedges; the wedge itself may be among them.
-
-    Examples
-    --------
-    >>> from drystone.kernels.polygons import no_polygons
-    >>> wedge = np.array([[4.0, 0.0], [6.0, 0.0], [6.0, 1.0], [4.0, 1.0]])
-    >>> open_sides(wedge, no_polygons().added([wedge + [3.0, 0.4]]))
-    (True, False)
+    wedge cannot be squeezed out of its place.  The wedge itself may be among the others.
     """
     (left, low), (right, high) = wedge.min(axis=0).tolist(), wedge.max(axis=0).tolist()
     after = np.arange(1, len(others.corners) + 1)

@@ -82,16 +82,7 @@ def plan_metrics(
 ) -> PlanMetrics:
     """Return the figures of merit of what is built (DESIGN 5).
 
-    Parameters
-    ----------
-    build : Build
-        The wall.
-    frame : Frame
-        Lengths.
-    resistance : LateralResistance
-        Of the wall.
-    others : mapping of str to float or None
-        F_LR by other rules, by the names of :class:`drystone.model.plan.PlanMetrics`.
+    `others` are F_LR by other rules, by the names of :class:`drystone.model.plan.PlanMetrics`.
     """
     scale = frame.site.scale
     wall = build.wall
@@ -135,23 +126,7 @@ def assemble_plan(
     metrics: PlanMetrics,
     provenance: Mapping[str, Any],
 ) -> Plan:
-    """Return the plan of what is built.
-
-    Parameters
-    ----------
-    workshop : Workshop
-        The stones and their clusters.
-    frame : Frame
-        Lengths.
-    build : Build
-        What is built.
-    stopped : Stopped
-        Why construction ended.
-    metrics : PlanMetrics
-        Of the wall.
-    provenance : mapping
-        version, method, seed and settings.
-    """
+    """Return the plan of what is built; `provenance`: version, method, seed and settings."""
     stones, source = workshop.stones, workshop.stones.source
     described: dict[str, Any] = {
         "path": source.path,

@@ -96,19 +96,10 @@ class Build:
 
     @classmethod
     def empty(cls, site: Site, mu: float, stone_area_px: float, *, exact: bool = False) -> "Build":
-        """Return the state before the first stone.
+        """Return the state before the first stone; exact: stones are their outlines, source px.
 
-        Parameters
-        ----------
-        site : Site
-            Where.
-        mu : float
-            Coefficient of friction.
-        stone_area_px : float
-            Mean area of the stones of the set, working px: the unit of weight of the limit
-            analysis, whatever is built.
-        exact : bool
-            Stones are their outlines, in source px, instead of pixels.
+        `stone_area_px` is the mean area of the stones of the set, working px: the unit of weight
+        of the limit analysis, whatever is built.
         """
         area = stone_area_px / site.scale**2 if exact else stone_area_px
         model = RigidBlockModel((), (), mu)
@@ -142,19 +133,12 @@ class Build:
     def add(self, action: Candidate, *, keep: bool = False) -> "Build":
         """Return the state after one more action (Eq. 1).
 
-        Parameters
-        ----------
-        action : Candidate
-            What is done.
-        keep : bool
-            Whether the new state knows this one, to go back to it.
+        `keep`: the new state knows this one, to go back to it.
         """
         wall = self.wall.add(action.stabilised.placement, action.stabilised.wedges)
-        before = self if keep else None
-        actions = (*self.actions, action)
         return Build(
-            wall, action.model, actions, self.analysis, before, action.sturdy_model,
-            self.sturdy_analysis,
+            wall, action.model, (*self.actions, action), self.analysis, self if keep else None,
+            action.sturdy_model, self.sturdy_analysis,
         )  # fmt: skip
 
     def states(self) -> "tuple[Build, ...]":

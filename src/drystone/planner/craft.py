@@ -1,6 +1,10 @@
-"""The craft terms of an action (see :mod:`drystone.selection.scored`)."""
+"""The craft terms of an action and of a pose (see :mod:`drystone.selection.scored`)."""
 
 import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
 
 from drystone.indices import interlocking_width_ratio, inward_slope, is_boundary, left_neighbour
 from drystone.kernels.columns import free_below, free_beside
@@ -8,22 +12,13 @@ from drystone.model.landscape import Landscape, view_box
 from drystone.model.pose import PosedStone
 from drystone.model.wall import Group
 from drystone.planner.stock import Rest, Stock
-from drystone.selection.scored import Craft, ScoreSettings
+from drystone.selection.scored import PIN_BONUS, Craft, ScoreSettings
 
 
 def action_craft(landscape: Landscape, stabilised: Group, stock: Stock, rest: Rest) -> Craft:
     """Return the craft terms of a stabilised action.
 
-    Parameters
-    ----------
-    landscape : Landscape
-        Before the action, seen from the side from which the stone is placed.
-    stabilised : Group
-        The action.
-    stock : Stock
-        Mean sizes of the stones.
-    rest : Rest
-        What the stones that are left could fill.
+    The landscape is that before the action, seen from the side from which the stone is placed.
     """
     placement = stabilised.placement
     posed = landscape.view(placement.posed)
@@ -67,22 +62,8 @@ def place_cost(
 
     They are those of :func:`action_craft` but for what the pose itself costs, the step to the
     neighbour and the joint, none of which is below 0: a stone that stays there by itself costs
-    at least this and its pose.
-
-    Parameters
-    ----------
-    landscape : Landscape
-        Before the action, seen from the side from which the stone is placed.
-    posed : PosedStone
-        The stone in the same view.
-    place : (int, int)
-        Row and column of the top-left corner of its mask.
-    stock : Stock
-        Mean sizes of the stones.
-    rest : Rest
-        What the stones that are left could fill.
-    score : ScoreSettings
-        Weights.
+    at least this and its pose.  `posed` is the stone in the view of the landscape, `place` the row
+    and column of the top-left corner of its mask.
     """
     row, col = place
     under = int(free_below(landscape.occupied, posed.bottom, row, col).sum())
@@ -100,3 +81,41 @@ def place_cost(
             score.headroom * headroom / mean_area,
         ]
     )
+
+
+def pose_cost(posed: PosedStone, stock: Stock, score: ScoreSettings) -> float:
+    """Return what a pose costs wherever it goes."""
+    upright = max(0.0, 1.0 - posed.width_px / posed.height_px)
+    return math.fsum(
+        [
+            score.roughness * posed.top_roughness_px / stock.mean_height_px,
+            score.upright * upright,
+            -score.area * posed.area_px / stock.mean_area_px,
+            -score.thickness * min(posed.width_px, posed.height_px) / stock.mean_height_px,
+        ]
+    )
+
+
+class PoseCosts:
+    """Costs of poses by the weights that were asked for last; pinned stones earn a bonus."""
+
+    def __init__(self, stock: Stock, pinned: frozenset[int] = frozenset()) -> None:
+        self._stock = stock
+        self._pinned = pinned
+        self._known: tuple[ScoreSettings, dict[tuple[int, float], float]] = (ScoreSettings(), {})
+
+    def of(self, poses: Sequence[PosedStone], score: ScoreSettings) -> NDArray[np.float64]:
+        """Return :func:`pose_cost` of candidate poses."""
+        weights, known = self._known  # one object: another thread may ask for other weights
+        if weights != score:
+            known = {}
+            self._known = score, known
+        costs = np.empty(len(poses))
+        for at, posed in enumerate(poses):
+            key = posed.stone.id, posed.angle_deg
+            cost = known.get(key)
+            if cost is None:
+                bonus = PIN_BONUS if posed.stone.id in self._pinned else 0.0
+                cost = known[key] = pose_cost(posed, self._stock, score) - bonus
+            costs[at] = cost
+        return costs

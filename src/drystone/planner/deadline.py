@@ -28,13 +28,7 @@ class Deadline:
         return cls(clock() + seconds, clock)
 
     def look(self) -> None:
-        """Look at the clock.
-
-        Raises
-        ------
-        TimeIsUp
-            The limit has struck.
-        """
+        """Raise TimeIsUp when the limit has struck."""
         if self.clock() > self.at:
             raise TimeIsUp
 

@@ -52,15 +52,8 @@ class Step:
     def place_pose(self, thickness_m: float = 0.0) -> Pose3d:
         """Return where the centroid of the stone goes in the wall (frame W), and how it is turned.
 
-        Parameters
-        ----------
-        thickness_m : float
-            Of the wall; the centroid is half of it behind the front face.
-
-        Raises
-        ------
-        UsageError
-            E131: the site has no scale.
+        The centroid is half of the wall's thickness behind the front face.  UsageError (E131): the
+        site has no scale.
         """
         site, placement = self.build.wall.site, self.action.stabilised.placement
         x, y = placement.centroid(site.height_px)
@@ -70,15 +63,8 @@ class Step:
     def pick_pose(self, thickness_m: float = 0.0) -> Pose3d:
         """Return where the stone lies in the picture that it was read from (frame P).
 
-        Parameters
-        ----------
-        thickness_m : float
-            Of the stone; its centroid is half of it above the ground.
-
-        Raises
-        ------
-        UsageError
-            E131: the site has no scale.
+        Its centroid is half of its thickness above the ground.  UsageError (E131): the site has no
+        scale.
         """
         x, y = self.action.stabilised.placement.posed.stone.centroid
         metres = metres_of(1.0, self.build.wall.site.px_per_m)

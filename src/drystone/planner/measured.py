@@ -32,7 +32,7 @@ SAME = 0.15
 with fewer it is where it was planned, as far as the picture can tell."""
 
 
-Pose = tuple[float, float, float]
+Fit = tuple[float, float, float]
 """x, y in px of a picture, y up, and an angle in degrees."""
 
 
@@ -68,10 +68,7 @@ class Place:
 def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Place]:
     """Return measured poses in source px.
 
-    Raises
-    ------
-    InputError
-        E197: a pose is no number, or its centroid is outside of the wall.
+    InputError (E197): a pose is not a number, or its centroid is outside of the wall.
     """
     px = site.px_per_m or 1.0
     width, height = site.extent_px
@@ -102,25 +99,15 @@ def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Place]
 def places_in(labels: NDArray[np.integer], wall: Wall, stones: StoneSet) -> dict[int, Place]:
     """Return where the stones of a picture of ids are.
 
+    The picture has 0 for nothing, row 0 at the top; it shows the whole wall at the working or the
+    source resolution of the site.  Ids of the wedges of the planned `wall` are not looked at.
+
     Each stone is matched with its outline: its centroid is that of its pixels, its angle the one
     at which the outline covers them best, and both are refined together until the squared
     difference of pixels and coverage is least.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        Ids, 0 for nothing, row 0 at the top: of the whole wall, at the working or the source
-        resolution of the site.  Ids of the wedges of `wall` are not looked at.
-    wall : Wall
-        As it was planned.
-    stones : StoneSet
-        All stones.
-
-    Raises
-    ------
-    InputError
-        E196: the picture is none, or of another size; E195: an id is none of a stone; E197: much
-        of a stone is not to be seen, or more than there is of it.
+    InputError: E196: the picture is not one of the wall; E195: an id is not that of a stone; E197:
+    much of a stone is not to be seen, or more than there is of it.
     """
     scale = _scale_of(np.asarray(labels), wall.site)
     planned = {p.stone_id: p for p in wall.placements}
@@ -164,24 +151,17 @@ def require_known(ids: Iterable[object], stones: StoneSet) -> None:
 def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None) -> Place:
     """Return the pose at which an outline covers the pixels of a stone best.
 
-    Parameters
-    ----------
-    seen : (h, w) bool array
-        The pixels, row 0 at the top.
-    outline : (n, 2) float array
-        About the centroid, source px.
-    scale : float
-        Of the picture over the source.
-    planned_deg : float or None
-        The angle to begin with.  All others are tried as well, but one that is far from it is
-        taken only if it is clearly better: some stones look the same upside down.
+    `seen` are the pixels, row 0 at the top; the outline is about the centroid, source px; `scale`
+    that of the picture over the source.  `planned_deg` is the angle to begin with, if any.  All
+    others are tried as well, but one that is far from it is taken only if it is clearly better:
+    some stones look the same upside down.
     """
     rows, cols = np.nonzero(seen)
     x, y = float(cols.mean()) + 0.5, len(seen) - float(rows.mean()) - 0.5
     shape = np.asarray(outline * scale)
     reach = float(np.hypot(*shape.T).max())
 
-    def misfit(pose: Pose) -> float:
+    def misfit(pose: Fit) -> float:
         return _misfit(seen, len(rows), shape, pose)
 
     angles = np.arange(0.0, 360.0, COARSE_DEG).tolist()
@@ -197,7 +177,7 @@ def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None)
     return Place(x / scale, y / scale, wrap_deg(angle))
 
 
-def _refined(misfit: Callable[[Pose], float], pose: Pose, reach: float) -> tuple[float, Pose]:
+def _refined(misfit: Callable[[Fit], float], pose: Fit, reach: float) -> tuple[float, Fit]:
     """Go down from a pose along x, y and the angle, with steps that get shorter."""
     least = misfit(pose)
     step = 8.0 * FIRST_STEP
@@ -218,7 +198,7 @@ def _refined(misfit: Callable[[Pose], float], pose: Pose, reach: float) -> tuple
     return least, pose
 
 
-def _misfit(seen: Mask, count: int, shape: Points, pose: Pose) -> float:
+def _misfit(seen: Mask, count: int, shape: Points, pose: Fit) -> float:
     """Return the sum of squares of what an outline covers of each pixel, less what is seen."""
     corners = turn(shape, pose[2])
     corners[:, 0] += pose[0]

@@ -20,11 +20,6 @@ class Views:
     """The last view from each side; only what is new is added to it.
 
     A view depends on what is built alone, not on what was asked for before.
-
-    Parameters
-    ----------
-    site : Site
-        Of the wall.
     """
 
     def __init__(self, site: Site) -> None:

@@ -8,7 +8,7 @@ from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.build import Build
-from drystone.planner.pose_costs import PoseCosts
+from drystone.planner.craft import PoseCosts
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, Sides, Stock
 from drystone.planner.views import Views
@@ -39,13 +39,7 @@ class Workshop:
 
     @classmethod
     def prepare(cls, stones: StoneSet, site: Site, settings: PlannerSettings) -> "Workshop":
-        """Prepare stones for a site.
-
-        Raises
-        ------
-        UsageError
-            Those of :func:`fitting_stones`.
-        """
+        """Prepare stones for a site; UsageErrors are those of :func:`fitting_stones`."""
         book = PoseBook(site.scale)
         fitting = fitting_stones(stones, site, settings, book)
         stock = Stock.of(book.pose(s, book.initial_angle(s)) for s in stones)
@@ -97,23 +91,9 @@ def fitting_stones(
 ) -> tuple[int, ...]:
     """Return the ids of the stones that can be built with: not banned, and the wall has room.
 
-    Parameters
-    ----------
-    stones : StoneSet
-        To build with.
-    site : Site
-        Where.
-    settings : PlannerSettings
-        Which stones are banned, and in which poses the others are candidates.
-    book : PoseBook, optional
-        At the resolution of the site; keeps the poses that are looked at.
-
-    Raises
-    ------
-    UsageError
-        E120: a stone fits into the wall in no orientation, and is not to be skipped; E126: there
-        are no stones; E137: no ids are left for wedges; E145: a stone is banned or pinned that
-        does not exist.
+    `book`, at the resolution of the site, keeps the poses that are looked at.  UsageError: E120: a
+    stone fits into the wall in no orientation, and is not to be skipped; E126: there are no
+    stones; E137: no ids are left for wedges; E145: a stone is banned or pinned that does not exist.
     """
     if not len(stones):
         raise UsageError(

@@ -24,14 +24,8 @@ class Hung:
 class OutlineBook:
     """Outlines of stones within a tolerance, turned to the angles of poses.
 
-    Parameters
-    ----------
-    tolerance_px : float
-        How far outlines may stay away from the contour of the pixels, source px.
-    cell_px : float
-        A working px in source px.
-    budget_bytes : int
-        Memory for turned outlines; those not asked for for longest are made again.
+    `tolerance_px` is how far outlines may stay away from the contour of the pixels, `cell_px` a
+    working px, both in source px.  Outlines not asked for for longest are made again.
     """
 
     def __init__(self, tolerance_px: float, cell_px: float, budget_bytes: int = BOOK_BYTES) -> None:

@@ -87,21 +87,7 @@ def come_to_rest(
     *,
     turns: bool = True,
 ) -> Repose | None:
-    """Let a stone go, and return where it rests; None when it does not rest nearby.
-
-    Parameters
-    ----------
-    stone : Turned
-        As the scene sees it.
-    scene : Scene
-        What is there.
-    start : (float, float)
-        Centroid where it is let go, in the view.
-    settings : SettleSettings
-        How it settles.
-    turns : bool
-        Whether it may turn.
-    """
+    """Let a stone go with its centroid at a start of the view; None where it does not rest."""
     for found in rests(stone, scene, start, settings, turns=turns):
         return repose(stone, scene, found)
     return None
@@ -115,13 +101,7 @@ def rests(
     *,
     turns: bool = True,
 ) -> Iterator[Settling]:
-    """List where a stone rests that is let go in all ways (:func:`ways`), in their order.
-
-    Parameters
-    ----------
-    stone, scene, start, settings, turns
-        As for :func:`come_to_rest`.
-    """
+    """List where a stone rests that is let go in all ways (:func:`ways`), in their order."""
     *earlier, last = ways(stone, scene, settings, turns=turns)
     stopped = None
     for rules in earlier:
@@ -162,17 +142,7 @@ def lay(
 ) -> Repose | None:
     """Lay a stone where it is planned, and move it no further than until it rests.
 
-    What it overlaps a little there it is brought apart from.
-
-    Parameters
-    ----------
-    stone, scene, start, settings
-        As for :func:`come_to_rest`.
-
-    Returns
-    -------
-    repose : Repose or None
-        None when it does not rest nearby.
+    What it overlaps a little there it is brought apart from.  None when it does not rest nearby.
     """
     rules = ways(stone, scene, replace(settings, method="energy"))[-1]._replace(stop=0.0)
     found = let_go(stone, scene, start, rules)

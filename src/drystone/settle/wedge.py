@@ -53,32 +53,13 @@ def wedge_under(
     limits: WedgeLimits,
     falls: int | None = None,
 ) -> Points | None:
-    """Cut the wedge that keeps a stone where it is (§3.7, Fig. 9c).
+    """Cut the wedge, (m, 2) counter-clockwise, that keeps a stone where it is (§3.7, Fig. 9c).
 
     Of the free space under the side to which the stone falls, the nearest piece is taken that is
     far enough out to bring the centre of mass inside the support, is a wedge that a mason would
     cut, has something beside it or room for it, rests by itself on what is below, and holds the
-    stone.
-
-    Parameters
-    ----------
-    stone : (n, 2) float array
-        The stone where it touches something below, counter-clockwise, in the wall frame.
-    centroid : (float, float)
-        Its centre of mass.
-    around : Polygons
-        The stones and wedges that are there.
-    width : float
-        Of the wall.
-    limits : WedgeLimits
-        What a wedge may be.
-    falls : {-1, 1}, optional
-        To which side the stone falls, left or right; found from its contacts when it is not given.
-
-    Returns
-    -------
-    wedge : (m, 2) float array or None
-        Its corners, counter-clockwise.  None when no wedge within the limits holds the stone.
+    stone.  None when there is none.  The stone touches something below, in the wall frame; `width`
+    is that of the wall; `falls`, -1 left or 1 right, is found from its contacts when not given.
     """
     if falls is None:
         falls = falling_side(stone, centroid[0], around, limits)
@@ -94,21 +75,9 @@ def wedge_under(
 
 
 def wedges_below(polygons: Polygons, stone: int, limits: WedgeLimits) -> Iterator[Points]:
-    """List wedges in the free space under a stone of a wall, whatever they shall hold.
+    """List wedges, (m, 2) on the grid, in the free space under a stone, whatever they shall hold.
 
-    Parameters
-    ----------
-    polygons : Polygons
-        Stones and wedges of the wall.
-    stone : int
-        Which of them is the stone.
-    limits : WedgeLimits
-        What a wedge may be.
-
-    Yields
-    ------
-    wedge : (m, 2) float array
-        Its corners, counter-clockwise, on the grid.
+    `stone` says which of the polygons it is.
     """
     corners = polygons.polygon(stone)
     space = crevice(corners, _near(corners, polygons, limits, stone), limits.clearance_px)
@@ -119,41 +88,13 @@ def wedges_below(polygons: Polygons, stone: int, limits: WedgeLimits) -> Iterato
 
 
 def gridded(wedge: Points) -> Points:
-    """Return a wedge with its corners on the grid, of which no two in a row are the same.
-
-    Parameters
-    ----------
-    wedge : (n, 2) float array
-        Its corners.
-
-    Returns
-    -------
-    wedge : (m, 2) float array
-        Those that are less than a step of the grid apart may have become one.
-
-    Examples
-    --------
-    >>> gridded(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1e-7], [2.0, 1.0]])).tolist()
-    [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]]
-    """
+    """Return a wedge with its corners on the grid, of which no two in a row are the same."""
     corners = on_grid(wedge)
     return np.asarray(corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)])
 
 
 def rests(wedge: Points, around: Polygons, width: float, limits: WedgeLimits) -> bool:
-    """Say whether a wedge rests on what is below it, without the stone on it.
-
-    Parameters
-    ----------
-    wedge : (n, 2) float array
-        Its corners.
-    around : Polygons
-        What is there, rigid.
-    width : float
-        Of the wall.
-    limits : WedgeLimits
-        Friction and contact tolerance.
-    """
+    """Say whether a wedge rests on what is below it, rigid, without the stone on it."""
     _, x, y = area_and_centroid(wedge)
     mu, contact_px, steep = limits.mu, limits.contact_px, limits.steep
     return rest_margin(wedge, (x, y), around, width, mu, contact_px, steep=steep) >= 0.0
@@ -164,18 +105,7 @@ def squeezed_out(
 ) -> bool:
     """Say whether nothing is beside a wedge at a side, and no other stone can come there.
 
-    Parameters
-    ----------
-    wedge : (n, 2) float array
-        Its corners.
-    stone : (n, 2) float array
-        The stone that lies on it.
-    around : Polygons
-        What else is there, or will be; the wedge and the stone may be among them.
-    width : float
-        Of the wall.
-    limits : WedgeLimits
-        How much room another stone needs between the stone and the end of the wall.
+    `stone` lies on it; `around` is what else is there, or will be: both may be among it.
     """
     left = stone[:, 0].min() < limits.room_px - ROUNDING
     right = stone[:, 0].max() > width - limits.room_px + ROUNDING
@@ -188,15 +118,8 @@ def squeezed_out(
 def falling_side(stone: Points, x_c: float, around: Polygons, limits: WedgeLimits) -> int:
     """Say to which side a stone on its contacts falls: -1 left, +1 right.
 
-    0 when its centre of mass lies over the support, as far inside as `limits.margin` says, and
-    when nothing supports it.
-
-    Parameters
-    ----------
-    stone, around, limits
-        As for :func:`wedge_under`.
-    x_c : float
-        x of its centre of mass.
+    0 when its centre of mass, at `x_c`, lies over the support, as far inside as `limits.margin`
+    says, and when nothing supports it.
     """
     x, low, high = slabs(crevice(stone, around, 0.0), *extent(stone))
     run = (x[1:] - x[:-1])[:, None]
@@ -258,21 +181,9 @@ def _spans(space: Crevice, x_c: float, limits: WedgeLimits) -> Iterator[Span]:
 
 
 def met_below(stone: Points, around: Points, limits: WedgeLimits) -> NDArray[np.bool_]:
-    """Say which polygons a stone, or a wedge under it, could meet.
+    """Say which polygons, by their (k, 4) boxes, a stone, or a wedge under it, could meet.
 
-    Parameters
-    ----------
-    stone : (n, 2) float array
-        Corners of the stone.
-    around : (k, 4) float array
-        Boxes of the polygons: left, bottom, right and top of each.
-    limits : WedgeLimits
-        What a wedge may be.
-
-    Returns
-    -------
-    met : (k,) bool array
-        The stone itself is met, if it is one of them.
+    A box is left, bottom, right and top.  The stone itself is met, if it is one of them.
     """
     reach = limits.contact_px + 4.0 * limits.clearance_px
     left, low = stone.min(axis=0) - reach

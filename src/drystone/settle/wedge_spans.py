@@ -74,15 +74,8 @@ class Slabs(NamedTuple):
 def all_spans(table: Slabs, places: int, limits: WedgeLimits) -> list[Span]:
     """List where wedges may be anywhere in a crevice, from left to right.
 
-    Parameters
-    ----------
-    table : Slabs
-        The crevice.
-    places : int
-        At so many places, from one end to the other of each part of it: as wide as high there;
-        and over the whole part.
-    limits : WedgeLimits
-        What a wedge may be.
+    At so many places, from one end to the other of each part of it: as wide as high there; and
+    over the whole part.
     """
     found: list[Span] = []
     for part in parts(table, limits):

@@ -23,37 +23,16 @@ def wedged(
     settings: SettleSettings,
     limits: WedgeLimits,
 ) -> Wedged | None:
-    """Lower a stone without turning it, and wedge it there; None when no wedge holds it.
+    """Lower a stone from a start of the view without turning it, and wedge it there.
 
-    Parameters
-    ----------
-    stone : Turned
-        As the scene sees it.
-    scene : Scene
-        What is there.
-    start : (float, float)
-        Centroid where it is let go, in the view.
-    settings : SettleSettings
-        How it is lowered.
-    limits : WedgeLimits
-        Sizes of wedges.
+    None when no wedge holds it.
     """
     repose = touch_down(stone, scene, start, settings)
     return None if repose is None else held(repose, scene, limits)
 
 
 def held(repose: Repose, scene: Scene, limits: WedgeLimits) -> Wedged | None:
-    """Wedge a stone where it was lowered; None when no wedge holds it.
-
-    Parameters
-    ----------
-    repose : Repose
-        Of the stone, as :func:`drystone.settle.rest.touch_down` found it.
-    scene : Scene
-        What is there.
-    limits : WedgeLimits
-        Sizes of wedges.
-    """
+    """Wedge a stone where `touch_down` lowered it; None when no wedge holds it."""
     x, corners = repose.settled.x_px, repose.settled.corners
     if scene.side == "right":
         x, corners = scene.width_px - x, mirrored_polygon(corners, scene.width_px)

@@ -28,17 +28,8 @@ class StabiliseMemory:
     the outcome can be used again whenever the window looks the same, in a later step or in
     another wall: as far down, that is, as was looked at to make the stone stable.
 
-    Parameters
-    ----------
-    book : PoseBook
-        Gives turned stones.
-    mean_height_px : float
-        Mean height of the stones, which limits the wedges.
-    settings : StabiliseSettings
-        Which methods, with which limits.
-    budget_bytes : int
-        Memory for outcomes.  Those not asked for for longest are forgotten and worked out again
-        when they are: no result depends on it.
+    Outcomes not asked for for longest are forgotten and worked out again when they are: no result
+    depends on the budget.  The mean height of the stones limits the wedges.
     """
 
     def __init__(
@@ -53,25 +44,11 @@ class StabiliseMemory:
         self._settings = settings
         self._outcomes = RecentlyUsed[Key, Outcome](budget_bytes)
 
-    def stabilise(
-        self, occupied: Mask, trial: Pose, side: Side, next_wedge: int
-    ) -> Group | None:
+    def stabilise(self, occupied: Mask, trial: Pose, side: Side, next_wedge: int) -> Group | None:
         """Return a stable placement from a trial one; None when there is none (§3.7).
 
-        Parameters
-        ----------
-        occupied : (h, w) bool array
-            The landscape without the stone.
-        trial : (PosedStone, int, int)
-            The stone and the row and column of its mask.
-        side : {"left", "right"}
-            End of the wall from which it is placed.
-        next_wedge : int
-            Id of the next wedge.
-
-        Notes
-        -----
-        A stone that would turn or slide out of the window counts as not stable.
+        `occupied` is the landscape without the stone, `next_wedge` the id of the next wedge.  A
+        stone that would turn or slide out of the window counts as not stable.
         """
         falls = falls_to(occupied, trial, self._settings)
         if falls is None:

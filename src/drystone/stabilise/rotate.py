@@ -30,18 +30,7 @@ def rotate_to_rest(
     The stone turns towards the side to which it falls, in steps of a degree.  Each step takes the
     turned stone from its source pixels, keeps point A in place to the nearest pixel, and seats it
     on the landscape again; new contacts give a new support polyline and, when that does not hold
-    either, a new point A.
-
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape.
-    trial : (PosedStone, int, int)
-        The stone and the row and column of its mask; overlapping nothing, supported somewhere.
-    book : PoseBook
-        Gives the turned stones.
-    settings : StabiliseSettings
-        Margin, steps and limits.
+    either, a new point A.  At first it overlaps nothing, and is supported somewhere.
     """
     pose, depth = trial, trial[1] + trial[0].height_px + 1
     support = support_polyline(occupied, *trial)

@@ -41,20 +41,7 @@ def stabilise(
 ) -> Group | None:
     """Return a stable placement from a trial one; None when it cannot be made stable (§3.7).
 
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape without the stone.
-    trial : (PosedStone, int, int)
-        The stone and the row and column of its mask.
-    side : {"left", "right"}
-        End of the wall from which it is placed.
-    book : PoseBook
-        Gives turned stones.
-    wedges : WedgeStock
-        For cutting wedges.
-    settings : StabiliseSettings
-        Which methods, with which limits.
+    `occupied` is the landscape without the stone.
     """
     falls = falls_to(occupied, trial, settings)
     if falls is None:
@@ -78,13 +65,7 @@ def make_stable(
     wedges: WedgeStock,
     settings: StabiliseSettings,
 ) -> Outcome:
-    """Turn a stone that falls, or wedge it.
-
-    Parameters
-    ----------
-    occupied, trial, side, book, wedges, settings
-        As for :func:`stabilise`.
-    """
+    """Turn a stone that falls, or wedge it; arguments as for :func:`stabilise`."""
     posed, row, col = trial
     depth = row + posed.height_px + 1
     if settings.method in ("both", "rotation"):
@@ -136,31 +117,13 @@ def wedge_under(
     mean_height_px: float,
     settings: StabiliseSettings,
 ) -> Wedge | None:
-    """Cut the wedge that keeps an unstable stone where it is (§3.7, Fig. 9c).
+    """Cut the wedge that keeps an unstable stone where it is (§3.7, Fig. 9c); None when none does.
 
     The free side is the part of the stone beyond the end of its support to which it falls.  It is
     lowered in thought until it touches; how far gives the wedge's height, the columns that touch
     then give its width.  Only columns far enough out to bring the centre of mass inside the new
     support count.  The wedge is the gap itself in those columns, so it touches the stone above
     and what is below all along.
-
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape without the stone.
-    pose : (PosedStone, int, int)
-        The stone and the row and column of its mask.
-    wedge_id : int
-        Id to give to the wedge.
-    mean_height_px : float
-        Mean height of the stones, which limits the wedge's.
-    settings : StabiliseSettings
-        Smallest and largest size, margin.
-
-    Returns
-    -------
-    wedge : Wedge or None
-        None when no wedge within the limits holds the stone.
     """
     posed, row, col = pose
     support = support_polyline(occupied, posed, row, col)

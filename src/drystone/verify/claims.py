@@ -7,7 +7,6 @@ from drystone.clusters import cluster_stones
 from drystone.model.landscape import Landscape
 from drystone.model.plan import Plan, PlanMetrics, StoneStep
 from drystone.model.stone import StoneSet
-from drystone.model.wall import Group
 from drystone.planner.assemble import Frame, plan_metrics
 from drystone.planner.build import Build
 from drystone.planner.evaluate import action_indices
