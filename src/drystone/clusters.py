@@ -7,12 +7,13 @@ from numpy.typing import NDArray
 from scipy.cluster.hierarchy import fcluster, ward
 
 from drystone.kernels.raster import turn
+from drystone.model.settings import Ranged, ranged
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 
 
 @dataclass(frozen=True, kw_only=True)
-class ClusterSettings:
+class ClusterSettings(Ranged):
     """How stones are grouped.
 
     Parameters
@@ -21,11 +22,7 @@ class ClusterSettings:
         Ward distance above which clusters stay apart; the paper uses 0.2.
     """
 
-    distance: float = 0.2
-
-    def __post_init__(self) -> None:
-        if self.distance <= 0:
-            raise ValueError("distance must be positive")
+    distance: float = ranged(0.2, above=0)
 
 
 def stone_features(stones: StoneSet, book: PoseBook) -> NDArray[np.float64]:

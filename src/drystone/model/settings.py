@@ -38,21 +38,12 @@ def updated(settings: Settings, changes: Mapping[str, Any], prefix: str = "") ->
     for name, value in changes.items():
         where = f"{prefix}{name}"
         if name not in hints:
-            raise UsageError(
-                "E123",
-                f"there is no setting {where!r}.",
-                where="settings",
-                cure=f"Known here: {', '.join(hints)}.",
-            )
+            raise _refused(f"there is no setting {where!r}.", f"Known here: {', '.join(hints)}.")
         current = getattr(settings, name)
         if dataclasses.is_dataclass(current):
             if not isinstance(value, Mapping):
-                raise UsageError(
-                    "E123",
-                    f"{where!r} is a table of settings.",
-                    where="settings",
-                    cure=f"It holds {', '.join(get_type_hints(type(current)))}.",
-                )
+                inside = ", ".join(get_type_hints(type(current)))
+                raise _refused(f"{where!r} is a table of settings.", f"It holds {inside}.")
             values[name] = updated(current, value, f"{where}.")
         else:
             values[name] = _checked(value, hints[name], where)
@@ -138,50 +129,26 @@ def _checked(value: Any, hint: Any, where: str) -> Any:
     if get_origin(hint) is Literal:
         allowed = get_args(hint)
         if value not in allowed:
-            raise UsageError(
-                "E123", f"{where} = {value!r}.", where="settings", cure=f"Choose from {allowed}."
-            )
+            raise _refused(f"{where} = {value!r}.", f"Choose from {allowed}.")
         return value
     if isinstance(value, float) and not math.isfinite(value):
-        raise UsageError(
-            "E123", f"{where} = {value}.", where="settings", cure="Give a finite number."
-        )
-    if isinstance(value, int):
-        _check_size(value, where)
+        raise _refused(f"{where} = {value}.", "Give a finite number.")
+    if isinstance(value, int) and abs(value) > _MOST:
+        raise _refused(f"the number of {where} is too large.", f"Give one of at most {_MOST}.")
     if get_origin(hint) is tuple:
-        return _whole_numbers(value, where)
+        numbers = value if isinstance(value, list | tuple) else [None]
+        if any(not isinstance(one, int) or isinstance(one, bool) for one in numbers):
+            wrong = f"{where} = {value!r} has the wrong type."
+            raise _refused(wrong, "Give a list of whole numbers.")
+        return tuple(_checked(one, int, where) for one in numbers)
     kinds = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
     if float in kinds and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
         wanted = " or ".join(_KINDS[kind] for kind in kinds)
-        raise UsageError(
-            "E123",
-            f"{where} = {value!r} has the wrong type.",
-            where="settings",
-            cure=f"Give {wanted}.",
-        )
+        raise _refused(f"{where} = {value!r} has the wrong type.", f"Give {wanted}.")
     return value
 
 
-def _whole_numbers(value: Any, where: str) -> tuple[int, ...]:
-    """Return a list of whole numbers as a tuple, or raise UsageError."""
-    numbers = value if isinstance(value, list | tuple) else [None]
-    if any(not isinstance(one, int) or isinstance(one, bool) for one in numbers):
-        raise UsageError(
-            "E123",
-            f"{where} = {value!r} has the wrong type.",
-            where="settings",
-            cure="Give a list of whole numbers.",
-        )
-    return tuple(_checked(one, int, where) for one in numbers)
-
-
-def _check_size(value: int, where: str) -> None:
-    if abs(value) > _MOST:
-        raise UsageError(
-            "E123",
-            f"the number of {where} is too large.",
-            where="settings",
-            cure=f"Give one of at most {_MOST}.",
-        )
+def _refused(message: str, cure: str) -> UsageError:
+    return UsageError("E123", message, where="settings", cure=cure)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from drystone.kernels.polygons import Points, Polygons
+from drystone.model.settings import Ranged, ranged
 
 SLENDER = 1.0
 """Greatest height of a wedge over its width: it lies.
@@ -36,7 +37,7 @@ ROUNDING = 1e-5
 
 
 @dataclass(frozen=True, kw_only=True)
-class WedgeSettings:
+class WedgeSettings(Ranged):
     """Sizes of wedges that are outlines; `size` is the root of the median stone's area.
 
     Parameters
@@ -51,14 +52,10 @@ class WedgeSettings:
         Greatest area over that of the median stone.
     """
 
-    thickness: float = 0.04
-    thickness_mm: float = 5.0
-    height: float = 0.25
-    area: float = 0.1
-
-    def __post_init__(self) -> None:
-        if min(self.thickness, self.thickness_mm, self.height, self.area) <= 0.0:
-            raise ValueError("sizes of wedges must be positive")
+    thickness: float = ranged(0.04, above=0)
+    thickness_mm: float = ranged(5.0, above=0)
+    height: float = ranged(0.25, above=0)
+    area: float = ranged(0.1, above=0)
 
     def least_thickness(self, size: float, per_m: float | None) -> float:
         """Return the least thickness of a wedge, in the unit of the size.

@@ -15,7 +15,7 @@ from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.model.site import Site
 from drystone.model.wall import Wall
-from drystone.planner.build import Build, Candidate
+from drystone.planner.build import Build
 from drystone.planner.events import Stopped
 from drystone.planner.workshop import Workshop
 from drystone.statics.result import LateralResistance
@@ -61,16 +61,30 @@ def plan_steps(
     """Return the steps of a plan: each stone, right after it its wedges."""
     steps: list[StoneStep | WedgeStep] = []
     for action in build.actions:
-        wedges = action.stabilised.wedges
+        placement, wedges = action.stabilised.placement, action.stabilised.wedges
+        height = action.course_height_px
         alphas = (action.resistance.left.alpha, action.resistance.right.alpha)
         # The alphas of a group stand at its last step.
-        none = (None, None)
-        steps.append(
-            _stone_step(len(steps) + 1, action, frame, clusters, none if wedges else alphas)
+        left, right = (None, None) if wedges else alphas
+        stone = StoneStep(
+            step=len(steps) + 1,
+            stone=action.stone_id,
+            angle_deg=placement.posed.angle_deg,
+            source_centroid=placement.posed.stone.centroid,
+            centroid=frame.centroid(placement),
+            side=action.side,
+            cluster=clusters[action.stone_id],
+            rotation_moves=placement.rotation_moves,
+            indices=action.indices.as_dict(),
+            course_height=None if height is None else height * frame.site.units_per_px,
+            alpha_left=left,
+            alpha_right=right,
         )
+        steps.append(stone)
         for index, wedge in enumerate(wedges, 1):
-            own = alphas if index == len(wedges) else none
-            steps.append(_wedge_step(len(steps) + 1, wedge, frame, own))
+            left, right = alphas if index == len(wedges) else (None, None)
+            number, polygon = len(steps) + 1, frame.polygon(wedge)
+            steps.append(WedgeStep(number, wedge.id, wedge.under, polygon, left, right))
     return tuple(steps)
 
 
@@ -155,42 +169,4 @@ def assemble_plan(
         unused=tuple(stone.id for stone in stones if stone.id not in placed),
         stopped=stopped.text,
         metrics=metrics,
-    )
-
-
-def _stone_step(
-    number: int,
-    action: Candidate,
-    frame: Frame,
-    clusters: Mapping[int, int],
-    alphas: tuple[float | None, float | None],
-) -> StoneStep:
-    placement = action.stabilised.placement
-    height = action.course_height_px
-    return StoneStep(
-        step=number,
-        stone=action.stone_id,
-        angle_deg=placement.posed.angle_deg,
-        source_centroid=placement.posed.stone.centroid,
-        centroid=frame.centroid(placement),
-        side=action.side,
-        cluster=clusters[action.stone_id],
-        rotation_moves=placement.rotation_moves,
-        indices=action.indices.as_dict(),
-        course_height=None if height is None else height * frame.site.units_per_px,
-        alpha_left=alphas[0],
-        alpha_right=alphas[1],
-    )
-
-
-def _wedge_step(
-    number: int, wedge: Wedge, frame: Frame, alphas: tuple[float | None, float | None]
-) -> WedgeStep:
-    return WedgeStep(
-        step=number,
-        id=wedge.id,
-        under=wedge.under,
-        polygon=frame.polygon(wedge),
-        alpha_left=alphas[0],
-        alpha_right=alphas[1],
     )

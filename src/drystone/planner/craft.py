@@ -22,25 +22,22 @@ def action_craft(landscape: Landscape, stabilised: Group, stock: Stock, rest: Re
     """
     placement = stabilised.placement
     posed = landscape.view(placement.posed)
-    row, col = placement.row, landscape.view_col(placement.posed, placement.col)
-    box = view_box(posed, row, col, landscape.height_px)
-    under = int(free_below(landscape.occupied, posed.bottom, row, col).sum())
-    under -= sum(wedge.area_px for wedge in stabilised.wedges)
-    left, right_width = free_beside(landscape.occupied, posed.mask, row, col)
+    at = placement.row, landscape.view_col(placement.posed, placement.col)
+    box = view_box(posed, *at, landscape.height_px)
+    wedges_px = sum(wedge.area_px for wedge in stabilised.wedges)
+    height, void, gap, slot, headroom = _room(landscape, posed, at, stock, rest, wedges_px)
     neighbour = left_neighbour(landscape, box)
     step = 0.0 if neighbour is None else abs(box.top - neighbour.top) / stock.mean_height_px
     if is_boundary(landscape, box, stock.narrowest_px):
-        third = inward_slope(landscape, posed, col)
+        third = inward_slope(landscape, posed, at[1])
     else:
         third = interlocking_width_ratio(landscape, box, stock.narrowest_px)
     return Craft(
-        height=(box.bottom + posed.anchor[1]) / stock.mean_height_px,
-        void=under / stock.mean_area_px,
-        gap=min(1.0, left / stock.mean_area_px),
-        slot=int(rest.width_px[right_width]) * posed.height_px / stock.mean_area_px,
-        headroom=int(rest.height_px[landscape.height_px - box.top])
-        * posed.width_px
-        / stock.mean_area_px,
+        height=height,
+        void=void,
+        gap=gap,
+        slot=slot,
+        headroom=headroom,
         step=step,
         roughness=posed.top_roughness_px / stock.mean_height_px,
         upright=max(0.0, 1.0 - posed.width_px / posed.height_px),
@@ -65,21 +62,30 @@ def place_cost(
     at least this and its pose.  `posed` is the stone in the view of the landscape, `place` the row
     and column of the top-left corner of its mask.
     """
+    weights = score.height, score.void, score.gap, score.slot, score.headroom
+    terms = _room(landscape, posed, place, stock, rest)
+    return math.fsum(weight * term for weight, term in zip(weights, terms, strict=True))
+
+
+def _room(
+    landscape: Landscape,
+    posed: PosedStone,
+    place: tuple[int, int],
+    stock: Stock,
+    rest: Rest,
+    wedges_px: int = 0,
+) -> tuple[float, float, float, float, float]:
+    """Return height, void, gap, slot and headroom of :class:`Craft` at a place."""
     row, col = place
-    under = int(free_below(landscape.occupied, posed.bottom, row, col).sum())
-    left, right_width = free_beside(landscape.occupied, posed.mask, row, col)
     bottom = landscape.height_px - row - posed.height_px
-    slot = int(rest.width_px[right_width]) * posed.height_px
-    headroom = int(rest.height_px[row]) * posed.width_px
-    mean_area = stock.mean_area_px
-    return math.fsum(
-        [
-            score.height * (bottom + posed.anchor[1]) / stock.mean_height_px,
-            score.void * under / mean_area,
-            score.gap * min(1.0, left / mean_area),
-            score.slot * slot / mean_area,
-            score.headroom * headroom / mean_area,
-        ]
+    under = int(free_below(landscape.occupied, posed.bottom, row, col).sum()) - wedges_px
+    left, right_width = free_beside(landscape.occupied, posed.mask, row, col)
+    return (
+        (bottom + posed.anchor[1]) / stock.mean_height_px,
+        under / stock.mean_area_px,
+        min(1.0, left / stock.mean_area_px),
+        int(rest.width_px[right_width]) * posed.height_px / stock.mean_area_px,
+        int(rest.height_px[row]) * posed.width_px / stock.mean_area_px,
     )
 
 

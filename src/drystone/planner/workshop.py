@@ -113,8 +113,21 @@ def fitting_stones(
     )
     too_large = sorted({s.id for s in usable}.difference(fitting))
     if too_large and not settings.skip_too_large:
-        raise _too_large(too_large, site)
-    _leave_ids_for_wedges(stones)
+        raise UsageError(
+            "E120",
+            f"stones {', '.join(map(str, too_large))} fit into the wall of "
+            f"{site.width_px} x {site.height_px} working px in no orientation.",
+            where="--wall",
+            cure="Leave them out with --skip-too-large, or build a larger wall.",
+        )
+    largest = max(stone.id for stone in stones)
+    if largest + 2 * len(stones) >= 2**32 - 1:  # each stone may get two wedges
+        raise UsageError(
+            "E137",
+            f"stone {largest} leaves no ids for wedges, which are numbered after the largest id.",
+            where=stones.source.path,
+            cure="Renumber the stones with smaller ids.",
+        )
     return fitting
 
 
@@ -135,25 +148,3 @@ def _known(stones: StoneSet, settings: PlannerSettings) -> frozenset[int]:
                 cure="`drystone stones` lists the ids.",
             )
     return frozenset(settings.ban)
-
-
-def _leave_ids_for_wedges(stones: StoneSet) -> None:
-    """Raise UsageError (E137) when ids of 32 bits would run out: each stone may get two wedges."""
-    largest = max(stone.id for stone in stones)
-    if largest + 2 * len(stones) >= 2**32 - 1:
-        raise UsageError(
-            "E137",
-            f"stone {largest} leaves no ids for wedges, which are numbered after the largest id.",
-            where=stones.source.path,
-            cure="Renumber the stones with smaller ids.",
-        )
-
-
-def _too_large(stone_ids: list[int], site: Site) -> UsageError:
-    return UsageError(
-        "E120",
-        f"stones {', '.join(map(str, stone_ids))} fit into the wall of "
-        f"{site.width_px} x {site.height_px} working px in no orientation.",
-        where="--wall",
-        cure="Leave them out with --skip-too-large, or build a larger wall.",
-    )

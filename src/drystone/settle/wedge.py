@@ -22,24 +22,12 @@ from drystone.model.wedge_shape import ROUNDING, open_sides
 from drystone.settle.wedge_spans import (
     Slabs,
     Span,
-    WedgeLimits,
     all_spans,
     extent,
     fitted,
     parts,
 )
-
-__all__ = [
-    "WedgeLimits",
-    "falling_side",
-    "gridded",
-    "in_order",
-    "met_below",
-    "rests",
-    "squeezed_out",
-    "wedge_under",
-    "wedges_below",
-]
+from drystone.settle.wedge_spans import WedgeLimits as WedgeLimits
 
 PLACES = 4
 """How many places are tried in each part of the gap, from the nearest to the furthest."""
