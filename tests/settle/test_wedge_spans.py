@@ -7,8 +7,15 @@ from hypothesis import given
 
 from drystone.kernels.crevice import crevice
 from drystone.kernels.polygons import Points, Polygons, no_polygons, on_grid
-from drystone.settle.wedge import PLACES, gridded, rests, wedges_below
-from drystone.settle.wedge_spans import Slabs, WedgeLimits, all_spans
+from drystone.settle.wedge import (
+    PLACES,
+    Slabs,
+    WedgeLimits,
+    all_spans,
+    gridded,
+    rests,
+    wedges_below,
+)
 from tests.naive.wedge_shape import objections
 from tests.settle.piles import WIDTH, piles
 from tests.settle.test_wedge import SIZES, STRICT, box

@@ -54,16 +54,16 @@ def replayed(
     left_out: list[int] = []
     solves = Solves()
     for group in groups:
-        fitted = None
+        stood, fitted = build, None
         if not (strict and left_out) and _has_room(build.wall, group, limits):
             fitted = _fitted(build.wall, group, workshop.next_wedge(build))
-        action = fitted and judged(build, fitted, course_heights_px, evaluator)
-        if action is not None:
+        if fitted is not None:
+            action = judged(build, fitted, course_heights_px, evaluator)
             solves += Solves.of(action)
-        if action is None or not stands(action):
+            if stands(action):
+                build = build.add(action, keep=keep)
+        if build is stood:
             left_out.append(group.placement.stone_id)
-        else:
-            build = build.add(action, keep=keep)
     return Replayed(build, tuple(left_out), solves)
 
 

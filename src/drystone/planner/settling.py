@@ -145,8 +145,8 @@ class ExactProposer(Proposer):
     def _all_settled(self, drops: Sequence[Drop], apply: Apply) -> list[Proposal]:
         new = [drop for drop in drops if drop.key not in self._settled]
         groups = [new[k : k + TOGETHER] for k in range(0, len(new), TOGETHER)]
-        found = apply(partial(one_by_one, self._settle), groups)
-        self._settled.update(zip([drop.key for drop in new], chain(*found), strict=True))
+        settled = apply(partial(one_by_one, self._settle), groups)
+        self._settled.update(zip([drop.key for drop in new], chain(*settled), strict=True))
         return [found for drop in drops if (found := self._settled[drop.key]) is not None]
 
     def _first(self, drops: Sequence[Drop]) -> Proposal | None:
