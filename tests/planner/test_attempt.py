@@ -140,22 +140,6 @@ def test_orientations_are_candidates_or_the_rule_picks_one(
         assert len(calls.proposed) == tried
 
 
-def test_a_stone_that_turns_out_of_reach_from_above_is_not_proposed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """What can be lowered in before it is turned may end under an overhang."""
-    stones = blocks({1: (20, 10), 2: (20, 10)})
-    settings = greedy()
-    planner = Planner(stones, Site(60, 30), settings=settings)
-    proposer = RasterProposer(planner.workshop, settings, planner.build, Profile())
-    posed = planner.workshop.poses(1)[0]
-    landscape = Landscape.of(planner.build.wall)
-    trial = Trial((posed,), landscape)
-    assert proposer.stabilised(proposer.spotted(trial)) is not None
-    monkeypatch.setattr("drystone.planner.proposing.can_be_lowered", lambda *_: False)
-    assert proposer.stabilised(proposer.spotted(trial)) is None
-
-
 @pytest.mark.parametrize(("clearance_px", "proposed"), [(0, True), (1, True), (2, False)])
 def test_a_stone_that_turns_keeps_its_clearance(clearance_px: int, proposed: bool) -> None:
     """From where it is stabilised it moves into a slot with one px to spare on both sides."""

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -128,13 +127,3 @@ def test_resistance_counts_among_those_analysed(settings: dict[str, float], chos
     best, _ = _by_score({1: 0.0, 2: 0.3, 3: 0.4}, {1: 0.1, 2: 0.9, 3: 1.0}, **settings)
     assert best is not None
     assert best.stone_id == chosen
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_the_order_of_analysis_is_the_order_of_costs(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    costs = dict(enumerate(rng.uniform(0, 1, 9).tolist(), 1))
-    judge = _by_score(costs, dict.fromkeys(costs), analysed=3)[1]
-    asked = [stone for batch in judge.batches for stone in batch]
-    assert sorted(asked) == sorted(costs)
-    assert all(costs[one] <= costs[other] for one, other in pairwise(asked))

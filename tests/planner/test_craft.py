@@ -11,11 +11,10 @@ from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import Stone
 from drystone.model.wall import Group, Wall
-from drystone.planner.craft import action_craft, place_cost, pose_cost
+from drystone.planner.craft import PoseCosts, action_craft, place_cost, pose_cost
 from drystone.planner.stock import Rest, Stock
 from drystone.poses import PoseBook
-from drystone.selection.scored import Craft, ScoreSettings, craft_cost
-from tests.naive import planner as naive
+from drystone.selection.scored import PIN_BONUS, Craft, ScoreSettings, craft_cost
 from tests.strategies import posed_on_walls, repeatable
 
 STOCK = Stock(
@@ -121,20 +120,6 @@ def test_from_the_right_everything_is_mirrored() -> None:
 
 
 @repeatable(60)
-@given(posed_on_walls())
-def test_the_void_is_what_is_free_below(scene: tuple[Wall, PosedStone, int, int]) -> None:
-    wall, posed, row, col = scene
-    cells = [(row + r, col + c) for r, c in np.argwhere(posed.mask).tolist()]
-    # Pixels under the stone's lowest ones only: its own hollows are the stone's business.
-    lowest = {c: max(r for r, other in cells if other == c) for _, c in cells}
-    rest = Rest(np.zeros(wall.site.height_px + 1, int), np.zeros(wall.site.width_px + 1, int))
-    placement = Placement(posed, row, col)
-    craft = action_craft(Landscape.of(wall), Group(placement), STOCK, rest)
-    expected = naive.free_area_under(wall.occupied.tolist(), [(r, c) for c, r in lowest.items()])
-    assert craft.void == pytest.approx(expected / STOCK.mean_area_px)
-
-
-@repeatable(60)
 @given(posed_on_walls(), st.sampled_from(["left", "right"]))
 def test_place_and_pose_cost_what_the_action_costs_but_for_step_and_joint(
     scene: tuple[Wall, PosedStone, int, int], side: Side
@@ -150,3 +135,10 @@ def test_place_and_pose_cost_what_the_action_costs_but_for_step_and_joint(
     known = quick + pose_cost(posed, STOCK, score)
     others = score.step * craft.step + score.joint * craft.joint
     assert known + others == pytest.approx(craft_cost(craft, score), abs=1e-9)
+
+
+def test_costs_of_poses_are_those_of_the_weights_of_now() -> None:
+    poses, costs = [_block(1, 20, 5), _block(2, 4, 10)], PoseCosts(STOCK, frozenset({2}))
+    for score in (ScoreSettings(), ScoreSettings(area=9.0), ScoreSettings()):
+        first, second = (pose_cost(posed, STOCK, score) for posed in poses)
+        assert costs.of(poses, score).tolist() == [first, second - PIN_BONUS]

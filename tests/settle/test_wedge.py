@@ -71,15 +71,6 @@ def test_the_gap_beside_a_post_is_filled_from_the_centre_of_mass_on() -> None:
     assert wedge == pytest.approx(np.array(expected))
 
 
-def test_a_stone_that_falls_to_the_left_gets_its_wedge_there() -> None:
-    plank = box(5.0, 2.01, 15.0, 4.0)
-    wedge = wedge_for(plank, SCENE)
-    assert wedge is not None
-    left = 10.0 - 1.25 * 1.99
-    expected = [[10.0, 2.0], [left, 2.0], [left, 0.01], [10.0, 0.01]]
-    assert wedge == pytest.approx(np.array(expected))
-
-
 def test_the_margin_moves_the_wedge_outwards() -> None:
     wedge = wedge_for(
         PLANK, SCENE, WedgeLimits(least_thickness=0.5, greatest_height=6.0, margin=0.2)

@@ -117,22 +117,3 @@ def test_a_gap_higher_than_a_wedge_may_be_is_not_taken_for_the_ground(
     assert (result is not None) is held
     outcome = make_stable(occupied, trial, "left", PoseBook(), stock, settings)
     assert outcome.depth == trial[1] + 6 + 30 + 1
-
-
-def test_a_floating_stone_is_not_stabilised() -> None:
-    book = PoseBook()
-    posed, _, _ = bar_on_the_ledge(ledge(), book)
-    assert stabilise(ledge(), (posed, 2, 15), "left", book, STOCK, StabiliseSettings()) is None
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"method": "glue"}, {"margin": 0.5}, {"margin": -0.1}, {"step_deg": 0.0},
-        {"max_turn_deg": -1.0}, {"max_pivots": -1}, {"max_shift_px": -1}, {"min_wedge_px": 0},
-        {"max_wedge_height": 0.0},
-    ],
-)  # fmt: skip
-def test_settings_refuse_what_means_nothing(wrong: dict[str, object]) -> None:
-    with pytest.raises(ValueError, match=r"unknown|must be"):
-        StabiliseSettings(**wrong)  # type: ignore[arg-type]

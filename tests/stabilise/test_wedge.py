@@ -93,17 +93,6 @@ def test_smallest_and_largest_size(height: int, mean: float, smallest: int, foun
     assert (wedge is not None) is found
 
 
-def test_a_gap_narrower_than_a_wedge_takes_none() -> None:
-    occupied = ledge()
-    trial = bar_on_the_ledge(occupied, PoseBook())
-    occupied[-4:, 17:31] = False
-    occupied[:, 33:] = True
-    occupied = np.vstack([occupied, np.zeros((20, 50), bool)])
-    occupied[24:, :14] = True
-    occupied[22, 31] = True  # one column, the only one within reach
-    assert wedge_under(occupied, trial, ID, 12.0, StabiliseSettings()) is None
-
-
 def test_stable_and_floating_stones_get_none() -> None:
     occupied = ledge()
     settings = StabiliseSettings()
