@@ -14,7 +14,7 @@ from drystone.planner.build import Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import RasterProposer, Spotted, Trial
+from drystone.planner.proposing import RasterProposer, Spotted, StoneTrial
 from drystone.planner.settings import PlannerSettings
 from drystone.statics.incremental import IncrementalAnalysis
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
@@ -30,7 +30,7 @@ class _Calls:
         self.judged: Counter[Key] = Counter()
         spotted, judge = RasterProposer.spotted, Evaluator.judge
 
-        def spotted_once(this: RasterProposer, trial: Trial) -> Spotted:
+        def spotted_once(this: RasterProposer, trial: StoneTrial) -> Spotted:
             posed = trial.poses[0]
             self.proposed[posed.stone.id, posed.angle_deg, trial.landscape.side] += 1
             return spotted(this, trial)

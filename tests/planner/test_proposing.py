@@ -14,7 +14,7 @@ from drystone.planner.proposing import (
     Key,
     RasterProposer,
     Spotted,
-    Trial,
+    StoneTrial,
     one_by_one,
 )
 from drystone.planner.settings import PlannerSettings
@@ -36,7 +36,7 @@ class _Watched:
         self.analysed = settings.score.analysed
         view = Landscape.of(build.wall)
         self.trials = [
-            Trial((posed,), view)
+            StoneTrial((posed,), view)
             for stone_id in workshop.remaining(build)
             for posed in workshop.poses(stone_id)
         ]
@@ -44,7 +44,7 @@ class _Watched:
         self.stable: list[Key] = []
         spotted, stabilised = RasterProposer.spotted, RasterProposer.stabilised
 
-        def watched_spotted(this: RasterProposer, trial: Trial) -> Spotted:
+        def watched_spotted(this: RasterProposer, trial: StoneTrial) -> Spotted:
             self.placed.append(trial.key)
             return spotted(this, trial)
 
@@ -113,7 +113,7 @@ def test_what_is_proposed_is_of_the_trials_and_none_of_it_is_in_the_way(
     proposer = kind(workshop, settings, build, Profile())
     view = Landscape.of(build.wall, "right")
     stones = workshop.remaining(build)[::2]
-    trials = [Trial((p,), view) for i in stones for p in workshop.poses(i)]
+    trials = [StoneTrial((p,), view) for i in stones for p in workshop.poses(i)]
     found = [p for batch in proposer.proposals(trials, one_by_one) for p in batch]
     assert {p.stone_id for p in found} <= set(stones)
     assert len(found) > 2
@@ -131,6 +131,6 @@ def test_without_craft_there_is_no_cost() -> None:
         planner = Planner(rubble(), RUBBLE_SITE, settings=settings)
         proposer = kind(planner.workshop, settings, planner.build, Profile())
         view = Landscape.of(planner.build.wall)
-        trials = [Trial(planner.workshop.poses(i), view) for i in (1, 2, 3)]
+        trials = [StoneTrial(planner.workshop.poses(i), view) for i in (1, 2, 3)]
         (found,) = proposer.proposals(trials, one_by_one)
         assert [(p.stone_id, p.cost) for p in found] == [(1, 0.0), (2, 0.0), (3, 0.0)]

@@ -18,10 +18,10 @@ from drystone.planner.build import Build, Proposal
 from drystone.planner.dropping import Drop, Dropped, in_order, wedge_limits
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import Key, Trial, one_by_one
+from drystone.planner.proposing import Key, StoneTrial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
-from drystone.planner.stock import Sides, Stock
+from drystone.planner.stock import Stock
 from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, rubble
 
 BOTH_RULES = pytest.mark.parametrize("rule", ["score", "algorithm2"])
@@ -46,9 +46,9 @@ class _Step:
     def proposer(self) -> ExactProposer:
         return ExactProposer(self.workshop, self.settings, self.build, Profile())
 
-    def trials(self, sides: tuple[Side, ...] = ("left", "right")) -> list[Trial]:
+    def trials(self, sides: tuple[Side, ...] = ("left", "right")) -> list[StoneTrial]:
         return [
-            Trial((posed,), Landscape.of(self.build.wall, side))
+            StoneTrial((posed,), Landscape.of(self.build.wall, side))
             for side in sides
             for stone_id in self.workshop.remaining(self.build)
             for posed in self.workshop.poses(stone_id)
@@ -88,7 +88,7 @@ def test_algorithm_2_compares_each_trial_where_its_first_drop_rests(choice: str)
     trials = step.trials()
     if choice == "placement":
         trials = [
-            Trial(step.workshop.poses(stone_id), trials[0].landscape)
+            StoneTrial(step.workshop.poses(stone_id), trials[0].landscape)
             for stone_id in step.workshop.remaining(step.build)
         ]
     proposer = step.proposer()
@@ -312,7 +312,7 @@ def test_wedge_limits_are_in_source_px() -> None:
     settings = PlannerSettings().updated({"stabilise": {"margin": 0.1}, "wedge": {"area": 0.2}})
     stock = Stock(
         narrowest_px=4.0, mean_height_px=20.0, mean_area_px=400.0, median_area_px=400.0,
-        largest_id=9, sides=Sides(Counter({(7, 30): 2, (9, 9): 1})),
+        largest_id=9, sides=Counter({(7, 30): 2, (9, 9): 1}),
     )  # fmt: skip
     limits = wedge_limits(settings, stock, Site(100, 50, 0.5))
     # The median stone is 20 working px in size, 40 source px.

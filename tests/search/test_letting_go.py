@@ -13,7 +13,7 @@ from drystone.planner.dropping import wedge_limits
 from drystone.planner.laying_settings import LayingSettings
 from drystone.search.letting_go import Aim, Hand
 from drystone.search.views import View
-from drystone.settle.rest import Scene, Turned
+from drystone.settle.rest import SettlingScene, Turned
 from drystone.settle.wedged import wedged
 from tests.planner.scenes import RUBBLE_SITE, rubble
 from tests.search.yards import Yard
@@ -216,7 +216,7 @@ def test_a_view_grows_as_if_all_were_seen_at_once(side: Side) -> None:
         assert view.grown(outlines) is view
     outlines = laid.build.wall.outlines
     assert outlines is not None
-    scene = Scene.of(outlines.polygons, 100.0, side, 0.58)
+    scene = SettlingScene.of(outlines.polygons, 100.0, side, 0.58)
     profile = bare(77)
     for index in range(len(scene.polygons)):
         profile = raised(profile, scene.polygons.polygon(index), index, 1.3)

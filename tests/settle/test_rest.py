@@ -21,7 +21,7 @@ from drystone.kernels.settling import Status, settle
 from drystone.model.placement import Side
 from drystone.settle.rest import (
     Repose,
-    Scene,
+    SettlingScene,
     Turned,
     come_to_rest,
     lay,
@@ -52,10 +52,10 @@ def box(width: float, height: float) -> Points:
 BRICK = box(20.0, 10.0)
 
 
-def scene_of(others: list[Points], side: Side = "left", width: float = 200.0) -> Scene:
+def scene_of(others: list[Points], side: Side = "left", width: float = 200.0) -> SettlingScene:
     """The scene of outlines that are given as the side sees them."""
     seen = no_polygons().added(others)
-    return Scene.of(seen if side == "left" else seen.mirrored(width), width, side, MU)
+    return SettlingScene.of(seen if side == "left" else seen.mirrored(width), width, side, MU)
 
 
 def turned(outline: Points, angle_deg: float = 0.0, side: Side = "left") -> Turned:
@@ -283,8 +283,8 @@ def test_from_the_right_everything_is_mirrored(
     outline, start, around, angle_deg = scene
     settings = SettleSettings(method=method, margin=0.0, max_turn_deg=40.0)
     size = math.sqrt(area_and_centroid(outline)[0])
-    left = Scene.of(around, WIDTH, "left", MU)
-    right = Scene.of(around.mirrored(WIDTH), WIDTH, "right", MU)
+    left = SettlingScene.of(around, WIDTH, "left", MU)
+    right = SettlingScene.of(around.mirrored(WIDTH), WIDTH, "right", MU)
     one = Turned.of(outline, angle_deg, "left", size)
     other = Turned.of(mirrored_polygon(outline, 0.0), -angle_deg, "right", size)
     for first, second in (

@@ -19,7 +19,7 @@ from drystone.kernels.polygons import (
     no_polygons,
 )
 from drystone.settle.wedge import (
-    Slabs,
+    CreviceSlabs,
     WedgeLimits,
     _holds,
     _near,
@@ -298,7 +298,7 @@ def test_parts_are_where_upright_lines_are_as_long_as_a_wedge(
 ) -> None:
     stone, around = pile
     left, right = float(stone[:, 0].min()), float(stone[:, 0].max())
-    found = parts(Slabs.of(crevice(stone, around, 0.0)), LIMITS)
+    found = parts(CreviceSlabs.of(crevice(stone, around, 0.0)), LIMITS)
     corners = np.concatenate([stone, around.corners])[:, 0]
     for x in (left + share * (right - left) for share in shares):
         if np.abs(corners - x).min() > 1e-6:

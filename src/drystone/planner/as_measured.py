@@ -18,13 +18,13 @@ from drystone.model.wall import Group
 from drystone.planner.build import Build, Candidate
 from drystone.planner.dropping import wedge_limits
 from drystone.planner.evaluate import Evaluator
-from drystone.planner.measured import Place
+from drystone.planner.measured import MeasuredPlace
 from drystone.planner.replay import judged, replayed, stands
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settled import settled_in, stands_out_px
 from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
-from drystone.settle.rest import Repose, Scene, Turned, come_to_rest, lay, placed_outline
+from drystone.settle.rest import Repose, SettlingScene, Turned, come_to_rest, lay, placed_outline
 from drystone.settle.wedged import wedged
 from drystone.stabilise.stabilise import WedgeStock, stabilise
 
@@ -68,7 +68,7 @@ class Measured:
     """A stone that is to be put where it was measured."""
 
     stone: Stone
-    place: Place
+    place: MeasuredPlace
     side: Side  # the end of the wall from which it was placed
     planned: Group | None  # how it was planned: with wedges it gets one again
 
@@ -111,7 +111,7 @@ def rebuilt(
     before: Build,
     order: Sequence[int],
     added: Sequence[int],
-    places: Mapping[int, Place],
+    places: Mapping[int, MeasuredPlace],
     workshop: Workshop,
     settings: PlannerSettings,
 ) -> Build:
@@ -140,7 +140,7 @@ def rebuilt(
     return min(walls, key=lambda wall: _amiss(wall, places))
 
 
-def far_from(build: Build, places: Mapping[int, Place]) -> tuple[int, ...]:
+def far_from(build: Build, places: Mapping[int, MeasuredPlace]) -> tuple[int, ...]:
     """Return the stones that are far from where they were measured, in the order of placement."""
     far = []
     for placement in build.wall.placements:
@@ -151,7 +151,7 @@ def far_from(build: Build, places: Mapping[int, Place]) -> tuple[int, ...]:
     return tuple(far)
 
 
-def _amiss(build: Build, places: Mapping[int, Place]) -> tuple[int, int]:
+def _amiss(build: Build, places: Mapping[int, MeasuredPlace]) -> tuple[int, int]:
     """Return after how many stones a wall does not stand, and how many are far off."""
     return sum(not stands(action) for action in build.actions), len(far_from(build, places))
 
@@ -159,7 +159,7 @@ def _amiss(build: Build, places: Mapping[int, Place]) -> tuple[int, int]:
 def _built(
     start: Build,
     before: Build,
-    places: Mapping[int, Place],
+    places: Mapping[int, MeasuredPlace],
     workshop: Workshop,
     settings: PlannerSettings,
     order: Iterable[int],
@@ -218,7 +218,7 @@ def _on_outlines(
 ) -> Iterator[Group]:
     """List places where an outline rests, the nearest first, and one where it need not."""
     wall, settle = build.wall, settings.settle
-    scene = Scene.of(wall.exact.polygons, wall.site.extent_px[0], one.side, settings.mu)
+    scene = SettlingScene.of(wall.exact.polygons, wall.site.extent_px[0], one.side, settings.mu)
     turned = workshop.outlines.hung(one.stone, one.place.angle_deg, one.side).turned
     limits = wedge_limits(settings, workshop.stock, wall.site)
     starts = _starts(turned, one.place, scene, settle.clearance_px)
@@ -274,7 +274,7 @@ def _different(rested: Iterable[Rested]) -> Iterator[Rested]:
 
 
 def _starts(
-    turned: Turned, place: Place, scene: Scene, clearance_px: float
+    turned: Turned, place: MeasuredPlace, scene: SettlingScene, clearance_px: float
 ) -> list[tuple[float, float]]:
     """Return where a stone is let go, in the view: within the wall, nearest first."""
     low, high = turned.corners.min(axis=0), turned.corners.max(axis=0)
@@ -289,7 +289,7 @@ def _starts(
     return list(dict.fromkeys(inside))
 
 
-def _as_it_is(turned: Turned, scene: Scene, start: tuple[float, float]) -> Repose:
+def _as_it_is(turned: Turned, scene: SettlingScene, start: tuple[float, float]) -> Repose:
     """Return a stone where it was let go, which does not rest there."""
     x = start[0] if scene.side == "left" else scene.width_px - start[0]
     x, y = on_grid(np.array([x, start[1]])).tolist()
@@ -324,7 +324,7 @@ def _on_pixels(
 
 
 def _spots(
-    build: Build, posed: PosedStone, place: Place
+    build: Build, posed: PosedStone, place: MeasuredPlace
 ) -> list[tuple[float, PosedStone, int, int]]:
     """Return where a stone has room near a place, the nearest first.
 

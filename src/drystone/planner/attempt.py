@@ -24,7 +24,7 @@ from drystone.planner.choose import (
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import Proposer, RasterProposer, Trial, one_by_one
+from drystone.planner.proposing import Proposer, RasterProposer, StoneTrial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
 from drystone.planner.workshop import Workshop
@@ -148,7 +148,7 @@ class Attempt:
             groups = [poses(stone_id) for stone_id in stones]
         else:
             groups = [(posed,) for stone_id in stones for posed in poses(stone_id)]
-        trials = [Trial(poses, view) for view in landscapes for poses in groups]
+        trials = [StoneTrial(poses, view) for view in landscapes for poses in groups]
         heights = _course_heights(groups)
         for batch in self._proposer.proposals(trials, self._map):
             yield [

@@ -11,7 +11,7 @@ from drystone.kernels.drops import DropTerms
 from drystone.kernels.profiles import Floats
 from drystone.model.site import Site
 from drystone.model.wedge_shape import WedgeRule
-from drystone.planner.proposing import Key, Trial
+from drystone.planner.proposing import Key, StoneTrial
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, Stock
 from drystone.settle.book import OutlineBook
@@ -29,7 +29,7 @@ UNBALANCED = 2.0
 class Drop:
     """A place where a stone could be let go."""
 
-    trial: Trial
+    trial: StoneTrial
     spot: int  # which place of the trial's pose
     start: tuple[float, float]  # of its centroid, in the view, source px
     # estimated cost, and what tells it from the others of a step: sorts the cheapest first
@@ -45,7 +45,7 @@ class Drop:
 class Dropped:
     """Where the poses of a trial could be let go."""
 
-    trial: Trial
+    trial: StoneTrial
     places: tuple[Floats, ...]  # (n, 4): of each pose (`drops`)
     limit: float  # those that cost more may be missing
 

@@ -55,7 +55,7 @@ class MeasuredPose:
 
 
 @dataclass(frozen=True)
-class Place:
+class MeasuredPlace:
     """The same in source px."""
 
     # centroid, source px
@@ -65,7 +65,7 @@ class Place:
     as_planned: bool = False  # the picture shows the stone where it was planned
 
 
-def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Place]:
+def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, MeasuredPlace]:
     """Return measured poses in source px.
 
     InputError (E197): a pose is not a number, or its centroid is outside of the wall.
@@ -92,11 +92,13 @@ def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Place]
                 cure="Leave out what has fallen; poses are of the wall frame, from its left end "
                 "and the ground.",
             )
-        found[stone_id] = Place(x, y, wrap_deg(pose.angle_deg))
+        found[stone_id] = MeasuredPlace(x, y, wrap_deg(pose.angle_deg))
     return found
 
 
-def places_in(labels: NDArray[np.integer], wall: Wall, stones: StoneSet) -> dict[int, Place]:
+def places_in(
+    labels: NDArray[np.integer], wall: Wall, stones: StoneSet
+) -> dict[int, MeasuredPlace]:
     """Return where the stones of a picture of ids are.
 
     The picture has 0 for nothing, row 0 at the top; it shows the whole wall at the working or the
@@ -124,7 +126,9 @@ def places_in(labels: NDArray[np.integer], wall: Wall, stones: StoneSet) -> dict
             found[stone_id] = fitted(seen, stone.outline, scale, None)
             continue
         x, y = placement.centroid(wall.site.height_px)
-        there = Place(x / wall.site.scale, y / wall.site.scale, placement.posed.angle_deg, True)
+        there = MeasuredPlace(
+            x / wall.site.scale, y / wall.site.scale, placement.posed.angle_deg, True
+        )
         if _rim_share(seen, np.asarray(expected == stone_id)) <= SAME:
             found[stone_id] = there
         else:
@@ -148,7 +152,7 @@ def require_known(ids: Iterable[object], stones: StoneSet) -> None:
         )
 
 
-def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None) -> Place:
+def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None) -> MeasuredPlace:
     """Return the pose at which an outline covers the pixels of a stone best.
 
     `seen` are the pixels, row 0 at the top; the outline is about the centroid, source px; `scale`
@@ -174,7 +178,7 @@ def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None)
             other = _refined(misfit, (x, y, coarse), reach)
             best = other if other[0] < SHARPER * best[0] else best
     _, (x, y, angle) = best
-    return Place(x / scale, y / scale, wrap_deg(angle))
+    return MeasuredPlace(x / scale, y / scale, wrap_deg(angle))
 
 
 def _refined(misfit: Callable[[Fit], float], pose: Fit, reach: float) -> tuple[float, Fit]:

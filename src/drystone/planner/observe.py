@@ -12,9 +12,16 @@ from drystone.model.placement import Placement
 from drystone.model.site import Site
 from drystone.planner.as_measured import far_from, rebuilt
 from drystone.planner.build import Build
-from drystone.planner.measured import MeasuredPose, Place, places_in, places_of, require_known
+from drystone.planner.measured import (
+    MeasuredPlace,
+    MeasuredPose,
+    places_in,
+    places_of,
+    require_known,
+)
 from drystone.planner.replay import stands
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.stock import sides_of
 from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
 
@@ -149,12 +156,12 @@ def without(
     ban = tuple(sorted(gone.union(settings.ban)))
     pin = tuple(i for i in settings.pin if i not in gone)
     return (
-        replace(workshop, fitting=fitting, sides=workshop.sides.without(poses)),
+        replace(workshop, fitting=fitting, sides=workshop.sides - sides_of(poses)),
         replace(settings, ban=ban, pin=pin),
     )
 
 
-def _places(build: Build, measured: Measurement, workshop: Workshop) -> dict[int, Place]:
+def _places(build: Build, measured: Measurement, workshop: Workshop) -> dict[int, MeasuredPlace]:
     """Return where the stones are; those that are where they were planned are marked."""
     if not isinstance(measured, Mapping):
         return places_in(measured, build.wall, workshop.stones)
@@ -169,7 +176,9 @@ def _places(build: Build, measured: Measurement, workshop: Workshop) -> dict[int
     return places
 
 
-def _lost(lost: Iterable[int], places: Mapping[int, Place], workshop: Workshop) -> tuple[int, ...]:
+def _lost(
+    lost: Iterable[int], places: Mapping[int, MeasuredPlace], workshop: Workshop
+) -> tuple[int, ...]:
     """Return the stones that are lost; E195 for those that there are not, E199 in the wall."""
     gone = set(lost)
     require_known(gone, workshop.stones)
@@ -185,7 +194,9 @@ def _lost(lost: Iterable[int], places: Mapping[int, Place], workshop: Workshop) 
     return missing
 
 
-def _deviations(planned: Build, now: Build, places: Mapping[int, Place]) -> tuple[Deviation, ...]:
+def _deviations(
+    planned: Build, now: Build, places: Mapping[int, MeasuredPlace]
+) -> tuple[Deviation, ...]:
     site = planned.wall.site
     here = {placement.stone_id: placement for placement in now.wall.placements}
     found = []
@@ -200,7 +211,7 @@ def _deviations(planned: Build, now: Build, places: Mapping[int, Place]) -> tupl
     return tuple(found)
 
 
-def _less(place: Place, placement: Placement, site: Site) -> tuple[float, float, float]:
+def _less(place: MeasuredPlace, placement: Placement, site: Site) -> tuple[float, float, float]:
     """Return a place less that of a placement: x, y in source px, and the angle."""
     x, y = placement.centroid(site.height_px)
     angle = wrap_deg(place.angle_deg - placement.posed.angle_deg)

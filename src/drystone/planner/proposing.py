@@ -40,7 +40,7 @@ def one_by_one(work: Callable[[Any], Any], items: Sequence[Any]) -> list[Any]:
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
+class StoneTrial:
     """What is to be tried: one stone, from one side."""
 
     # the stone as it may be turned for the trial; the placement rule picks one
@@ -70,7 +70,7 @@ class Proposer(ABC):
         """How many candidates were looked at."""
 
     @abstractmethod
-    def proposals(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Proposal]]:
+    def proposals(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Proposal]]:
         """List where the stones of some trials, which are compared with each other, could stand.
 
         Proposals come in batches: whoever can use none of one batch asks for the next.  `apply`
@@ -82,7 +82,7 @@ class Proposer(ABC):
         """What the stones that are left could fill."""
         return self._workshop.rest(self._build)
 
-    def _cost(self, trial: Trial, stabilised: Group) -> float:
+    def _cost(self, trial: StoneTrial, stabilised: Group) -> float:
         """Return the weighted craft cost of an action; 0 when no choice depends on it."""
         settings = self._settings
         if not settings.weighs_craft:
@@ -97,7 +97,7 @@ class Proposer(ABC):
 class Spotted:
     """Where the stone of a trial could be put, before it is made stable."""
 
-    trial: Trial
+    trial: StoneTrial
     spots: tuple[Spot, ...]  # the best places by the placement rule, best first
     # where selection goes by cost: what the best of them costs at least, while the stone need
     # not be turned there; infinite when there is none
@@ -123,7 +123,7 @@ class RasterProposer(Proposer):
         """See :class:`Proposer`."""
         return len(self._spotted)
 
-    def proposals(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Proposal]]:
+    def proposals(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Proposal]]:
         """See :class:`Proposer`."""
         new = [trial for trial in trials if trial.key not in self._spotted]
         found = apply(self.spotted, new)
@@ -157,7 +157,7 @@ class RasterProposer(Proposer):
         mine = (self._proposed[one.trial.key] for one in spotted)
         return [proposal for proposal in mine if proposal is not None]
 
-    def spotted(self, trial: Trial) -> Spotted:
+    def spotted(self, trial: StoneTrial) -> Spotted:
         """Return where the stone of a trial could be put, and what that promises."""
         landscape, settings = trial.landscape, self._settings
         with self._profile.part("placement"):

@@ -22,11 +22,11 @@ from drystone.planner.dropping import (
     wedge_limits,
 )
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import Apply, Key, Proposer, Trial, one_by_one
+from drystone.planner.proposing import Apply, Key, Proposer, StoneTrial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settled import settled_in
 from drystone.planner.workshop import Workshop
-from drystone.settle.rest import Repose, Scene, come_to_rest
+from drystone.settle.rest import Repose, SettlingScene, come_to_rest
 from drystone.settle.wedged import wedged
 
 CHUNK = 256
@@ -49,7 +49,7 @@ class ExactProposer(Proposer):
         self, workshop: Workshop, settings: PlannerSettings, build: Build, profile: Profile
     ) -> None:
         super().__init__(workshop, settings, build, profile)
-        self._views: dict[Side, tuple[Scene, HeightProfile]] = {}
+        self._views: dict[Side, tuple[SettlingScene, HeightProfile]] = {}
         self._limits = wedge_limits(settings, workshop.stock, build.wall.site)
         self._dropped: dict[Key, Dropped] = {}
         self._settled: dict[tuple[Key, int], Proposal | None] = {}
@@ -59,7 +59,7 @@ class ExactProposer(Proposer):
         """See :class:`drystone.planner.proposing.Proposer`."""
         return len(self._dropped)
 
-    def proposals(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Proposal]]:
+    def proposals(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Proposal]]:
         """See :class:`drystone.planner.proposing.Proposer`."""
         if self._settings.selection_rule == "score":
             for batch in self.batches(trials, apply):
@@ -68,13 +68,13 @@ class ExactProposer(Proposer):
             drops = self.drops(trials, apply)
             yield [proposal for proposal in apply(self._first, drops) if proposal is not None]
 
-    def drops(self, trials: Sequence[Trial], apply: Apply) -> list[tuple[Drop, ...]]:
+    def drops(self, trials: Sequence[StoneTrial], apply: Apply) -> list[tuple[Drop, ...]]:
         """Return the best places of each trial, the cheapest first."""
         self._drop(trials, apply, math.inf)
         book = self._workshop.outlines
         return [tuple(in_order([self._dropped[trial.key]], book)) for trial in trials]
 
-    def batches(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Drop]]:
+    def batches(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Drop]]:
         """List the cheapest drops of all trials, then the next ones, and so on."""
         given: set[tuple[Key, int]] = set()
         settings, needed = self._settings.settle, -math.inf
@@ -90,12 +90,12 @@ class ExactProposer(Proposer):
             given.update(drop.key for drop in batch)
             yield batch
 
-    def view(self, side: Side) -> tuple[Scene, HeightProfile]:
+    def view(self, side: Side) -> tuple[SettlingScene, HeightProfile]:
         """Return what is built and how high it is, as it is seen from a side."""
         if side not in self._views:
             wall = self._build.wall
             view = self._workshop.views.of(wall.exact.polygons, side)
-            scene = Scene(view.seen, wall.site.extent_px[0], side, self._settings.mu)
+            scene = SettlingScene(view.seen, wall.site.extent_px[0], side, self._settings.mu)
             self._views[side] = scene, view.profile
         return self._views[side]
 
@@ -104,7 +104,7 @@ class ExactProposer(Proposer):
         site, stock = self._build.wall.site, self._workshop.stock
         return drop_terms(site, stock, self.rest, self._settings)
 
-    def _drop(self, trials: Sequence[Trial], apply: Apply, needed: float) -> None:
+    def _drop(self, trials: Sequence[StoneTrial], apply: Apply, needed: float) -> None:
         """Drop the stones of the trials of which not all drops up to a cost are known.
 
         At first, when none is needed yet, what may be among the cheapest is looked for; later all.
@@ -121,7 +121,7 @@ class ExactProposer(Proposer):
         for found in apply(partial(self._dropped_together, cheapest), chunks):
             known.update((one.trial.key, one) for one in found)
 
-    def _dropped_together(self, cheapest: int, trials: Sequence[Trial]) -> list[Dropped]:
+    def _dropped_together(self, cheapest: int, trials: Sequence[StoneTrial]) -> list[Dropped]:
         side, settings = trials[0].landscape.side, self._settings.settle
         poses = [posed for trial in trials for posed in trial.poses]
         with self._profile.part("placement"):

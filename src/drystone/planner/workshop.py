@@ -10,7 +10,7 @@ from drystone.model.stone import StoneSet
 from drystone.planner.build import Build
 from drystone.planner.craft import PoseCosts
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.stock import Rest, Sides, Stock
+from drystone.planner.stock import Rest, SideCounts, Stock, sides_of
 from drystone.planner.views import Views
 from drystone.poses import PoseBook, wrap_deg
 from drystone.settle.book import OutlineBook
@@ -30,7 +30,7 @@ class Workshop:
     # ascending
     fitting: tuple[int, ...]
     stock: Stock  # sizes of the set
-    sides: Sides  # of the stones that fit
+    sides: SideCounts  # of the stones that fit
     memory: StabiliseMemory  # stabilises stones that are pixels
     outlines: OutlineBook  # turned outlines, for stones that settle on them
     costs: PoseCosts  # of their poses, wherever they go
@@ -44,7 +44,7 @@ class Workshop:
         fitting = fitting_stones(stones, site, settings, book)
         stock = Stock.of(book.pose(s, book.initial_angle(s)) for s in stones)
         unfit = [stones.by_id(i) for i in sorted({s.id for s in stones}.difference(fitting))]
-        sides = stock.sides.without(book.pose(s, book.initial_angle(s)) for s in unfit)
+        sides = stock.sides - sides_of(book.pose(s, book.initial_angle(s)) for s in unfit)
         clusters = cluster_stones(stones, book, settings.clusters)
         memory = StabiliseMemory(book, stock.mean_height_px, settings.stabilise)
         outlines = OutlineBook(settings.settle.outline_px, 1.0 / site.scale)
@@ -83,7 +83,7 @@ class Workshop:
     def rest(self, build: Build) -> Rest:
         """Return what the stones that are left could still fill."""
         placed = (self.initial(action.stone_id) for action in build.actions)
-        return Rest.of(self.sides.without(placed), self.site)
+        return Rest.of(self.sides - sides_of(placed), self.site)
 
 
 def fitting_stones(

@@ -7,7 +7,7 @@ from drystone.kernels.polygons import mirrored_polygon, no_polygons
 from drystone.kernels.profiles import HeightProfile, bare, raised
 from drystone.model.outlines import Outlines
 from drystone.model.placement import Side
-from drystone.settle.rest import Scene
+from drystone.settle.rest import SettlingScene
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,7 +16,7 @@ class View:
 
     Parameters
     ----------
-    scene : Scene
+    scene : SettlingScene
         What is there.
     profile : HeightProfile
         How high it is.
@@ -24,7 +24,7 @@ class View:
         Width of the profile's columns, source px.
     """
 
-    scene: Scene
+    scene: SettlingScene
     profile: HeightProfile
     column_px: float
 
@@ -43,7 +43,7 @@ class View:
         column_px : float
             Width of the profile's columns, source px.
         """
-        scene = Scene(no_polygons(), width_px, side, mu)
+        scene = SettlingScene(no_polygons(), width_px, side, mu)
         return cls(scene, bare(math.ceil(width_px / column_px)), column_px)
 
     def grown(self, outlines: Outlines) -> "View":
@@ -58,4 +58,6 @@ class View:
         for index, corners in enumerate(new, seen):
             profile = raised(profile, corners, index, self.column_px)
         polygons = scene.polygons.added(new)
-        return View(Scene(polygons, scene.width_px, scene.side, scene.mu), profile, self.column_px)
+        return View(
+            SettlingScene(polygons, scene.width_px, scene.side, scene.mu), profile, self.column_px
+        )

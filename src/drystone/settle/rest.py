@@ -32,7 +32,7 @@ OVERLAP_PX = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class SettlingScene:
     """What a stone meets, seen so that the building side is on the left."""
 
     polygons: Polygons  # outlines of stones and wedges in the view, source px
@@ -41,7 +41,7 @@ class Scene:
     mu: float
 
     @classmethod
-    def of(cls, polygons: Polygons, width_px: float, side: Side, mu: float) -> "Scene":
+    def of(cls, polygons: Polygons, width_px: float, side: Side, mu: float) -> "SettlingScene":
         """Return the scene of outlines in the wall frame."""
         seen = polygons if side == "left" else polygons.mirrored(width_px)
         return cls(seen, width_px, side, mu)
@@ -81,7 +81,7 @@ class Repose:
 
 def come_to_rest(
     stone: Turned,
-    scene: Scene,
+    scene: SettlingScene,
     start: tuple[float, float],
     settings: SettleSettings,
     *,
@@ -95,7 +95,7 @@ def come_to_rest(
 
 def rests(
     stone: Turned,
-    scene: Scene,
+    scene: SettlingScene,
     start: tuple[float, float],
     settings: SettleSettings,
     *,
@@ -124,7 +124,7 @@ def _rests(found: Settling, settings: SettleSettings) -> bool:
 
 
 def touch_down(
-    stone: Turned, scene: Scene, start: tuple[float, float], settings: SettleSettings
+    stone: Turned, scene: SettlingScene, start: tuple[float, float], settings: SettleSettings
 ) -> Repose | None:
     """Lower a stone without turning it until nothing is gained; None when it slides away.
 
@@ -138,7 +138,7 @@ def touch_down(
 
 
 def lay(
-    stone: Turned, scene: Scene, start: tuple[float, float], settings: SettleSettings
+    stone: Turned, scene: SettlingScene, start: tuple[float, float], settings: SettleSettings
 ) -> Repose | None:
     """Lay a stone where it is planned, and move it no further than until it rests.
 
@@ -149,14 +149,16 @@ def lay(
     return repose(stone, scene, found) if found.status == Status.RESTS else None
 
 
-def let_go(stone: Turned, scene: Scene, start: tuple[float, float], rules: Rules) -> Settling:
+def let_go(
+    stone: Turned, scene: SettlingScene, start: tuple[float, float], rules: Rules
+) -> Settling:
     """Settle a stone in one way; one that may not turn has not turned, not even by rounding."""
     found = settle(stone.corners, stone.edges, (*start, 0.0), scene.polygons, scene.width_px, rules)
     return found if rules.turns else found._replace(angle=0.0)
 
 
 def ways(
-    stone: Turned, scene: Scene, settings: SettleSettings, *, turns: bool = True
+    stone: Turned, scene: SettlingScene, settings: SettleSettings, *, turns: bool = True
 ) -> tuple[Rules, ...]:
     """Return the ways of settling that are tried, one after the other."""
     size = stone.size_px
@@ -186,7 +188,7 @@ def ways(
     return plain, plain._replace(lean=0.0), plain._replace(lean=0.0, stop=settings.margin)
 
 
-def repose(stone: Turned, scene: Scene, found: Settling) -> Repose:
+def repose(stone: Turned, scene: SettlingScene, found: Settling) -> Repose:
     """Return where a settling ended, in the wall frame."""
     sign = 1.0 if scene.side == "left" else -1.0
     x = found.x if scene.side == "left" else scene.width_px - found.x

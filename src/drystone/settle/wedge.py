@@ -58,7 +58,7 @@ class WedgeLimits(WedgeRule):
             raise ValueError("clearance must be above 0, contact_px at least twice as much")
 
 
-class Slabs(NamedTuple):
+class CreviceSlabs(NamedTuple):
     """A crevice cut into slabs with straight floors and lids (:func:`slabs`)."""
 
     x: Points  # (n + 1,): where the slabs begin, and the end of the last
@@ -67,7 +67,7 @@ class Slabs(NamedTuple):
     high: Points
 
     @classmethod
-    def of(cls, space: Crevice) -> "Slabs":
+    def of(cls, space: Crevice) -> "CreviceSlabs":
         """Cut a crevice at all its corners, from its left end to its right end."""
         return cls(*slabs(space, *extent(space.lid)))
 
@@ -121,7 +121,7 @@ def wedges_below(polygons: Polygons, stone: int, limits: WedgeLimits) -> Iterato
     """
     corners = polygons.polygon(stone)
     space = crevice(corners, _near(corners, polygons, limits, stone), limits.clearance_px)
-    for span in all_spans(Slabs.of(space), PLACES, limits):
+    for span in all_spans(CreviceSlabs.of(space), PLACES, limits):
         wedge = between(space, *span)
         if wedge is not None:
             yield gridded(wedge)
@@ -207,7 +207,7 @@ def _wedges(
 
 def _spans(space: Crevice, x_c: float, limits: WedgeLimits) -> Iterator[Span]:
     """List where a wedge may be that holds a stone which falls to the right, the nearest first."""
-    table = Slabs.of(space)
+    table = CreviceSlabs.of(space)
     least = x_c + limits.margin * float(table.x[-1] - table.x[0])
     for part in parts(table, limits):
         last = part[1] - limits.least_width
@@ -255,7 +255,7 @@ def in_order(polygons: Polygons, chosen: list[int]) -> Polygons:
     )
 
 
-def all_spans(table: Slabs, places: int, limits: WedgeLimits) -> list[Span]:
+def all_spans(table: CreviceSlabs, places: int, limits: WedgeLimits) -> list[Span]:
     """List where wedges may be anywhere in a crevice, from left to right.
 
     At so many places, from one end to the other of each part of it: as wide as high there; and
@@ -275,7 +275,7 @@ def all_spans(table: Slabs, places: int, limits: WedgeLimits) -> list[Span]:
     return found
 
 
-def fitted(table: Slabs, narrowest: Span, part: Span, limits: WedgeLimits) -> Span | None:
+def fitted(table: CreviceSlabs, narrowest: Span, part: Span, limits: WedgeLimits) -> Span | None:
     """Make a span as wide as it is high: outwards, then inwards; None when that is no wedge."""
     left, right = narrowest
     for _ in range(WIDENINGS):
@@ -287,7 +287,7 @@ def fitted(table: Slabs, narrowest: Span, part: Span, limits: WedgeLimits) -> Sp
     return (left, right) if limits.allows(table.shape((left, right)), SAME) else None
 
 
-def parts(table: Slabs, limits: WedgeLimits) -> list[Span]:
+def parts(table: CreviceSlabs, limits: WedgeLimits) -> list[Span]:
     """List the parts of a crevice that are neither too thin nor too thick; steps end a part."""
     x, low, high = table
     thick = high - low

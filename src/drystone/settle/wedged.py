@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from drystone.kernels.polygons import Points, mirrored_polygon
-from drystone.settle.rest import Repose, Scene, Turned, touch_down
+from drystone.settle.rest import Repose, SettlingScene, Turned, touch_down
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import WedgeLimits, gridded, wedge_under
 
@@ -18,7 +18,7 @@ class Wedged:
 
 def wedged(
     stone: Turned,
-    scene: Scene,
+    scene: SettlingScene,
     start: tuple[float, float],
     settings: SettleSettings,
     limits: WedgeLimits,
@@ -31,7 +31,7 @@ def wedged(
     return None if repose is None else held(repose, scene, limits)
 
 
-def held(repose: Repose, scene: Scene, limits: WedgeLimits) -> Wedged | None:
+def held(repose: Repose, scene: SettlingScene, limits: WedgeLimits) -> Wedged | None:
     """Wedge a stone where `touch_down` lowered it; None when no wedge holds it."""
     x, corners = repose.settled.x_px, repose.settled.corners
     if scene.side == "right":
