@@ -3,7 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -53,16 +53,14 @@ class StoneTrial:
         return self.poses[0].stone.id, self.poses[0].angle_deg, self.landscape.side
 
 
+@dataclass(frozen=True, eq=False)
 class Proposer(ABC):
     """Places and stabilises candidates on one state of construction; remembers what it tried."""
 
-    def __init__(
-        self, workshop: Workshop, settings: PlannerSettings, build: Build, profile: Profile
-    ) -> None:
-        self._workshop = workshop
-        self._settings = settings
-        self._build = build
-        self._profile = profile
+    workshop: Workshop
+    settings: PlannerSettings
+    build: Build
+    profile: Profile
 
     @property
     @abstractmethod
@@ -80,15 +78,15 @@ class Proposer(ABC):
     @cached_property
     def rest(self) -> Rest:
         """What the stones that are left could fill."""
-        return self._workshop.rest(self._build)
+        return self.workshop.rest(self.build)
 
     def _cost(self, trial: StoneTrial, stabilised: Group) -> float:
         """Return the weighted craft cost of an action; 0 when no choice depends on it."""
-        settings = self._settings
+        settings = self.settings
         if not settings.weighs_craft:
             return 0.0
-        with self._profile.part("indices"):
-            craft = action_craft(trial.landscape, stabilised, self._workshop.stock, self.rest)
+        with self.profile.part("indices"):
+            craft = action_craft(trial.landscape, stabilised, self.workshop.stock, self.rest)
         bonus = PIN_BONUS if trial.poses[0].stone.id in settings.pin else 0.0
         return craft_cost(craft, settings.score) - bonus
 
@@ -104,6 +102,7 @@ class Spotted:
     promise: float
 
 
+@dataclass(frozen=True, eq=False)
 class RasterProposer(Proposer):
     """Stones are their pixels at the working resolution.
 
@@ -111,12 +110,8 @@ class RasterProposer(Proposer):
     others only while they promise less than enough of those cost; Algorithm 2 compares all.
     """
 
-    def __init__(
-        self, workshop: Workshop, settings: PlannerSettings, build: Build, profile: Profile
-    ) -> None:
-        super().__init__(workshop, settings, build, profile)
-        self._spotted: dict[Key, Spotted] = {}
-        self._proposed: dict[Key, Proposal | None] = {}
+    _spotted: dict[Key, Spotted] = field(default_factory=dict, init=False)
+    _proposed: dict[Key, Proposal | None] = field(default_factory=dict, init=False)
 
     @property
     def tried(self) -> int:
@@ -129,7 +124,7 @@ class RasterProposer(Proposer):
         found = apply(self.spotted, new)
         self._spotted.update(zip([trial.key for trial in new], found, strict=True))
         mine = [self._spotted[trial.key] for trial in trials]
-        if self._settings.selection_rule == "score":
+        if self.settings.selection_rule == "score":
             yield from self._by_promise(mine, apply)
         else:
             yield self._all(mine, apply)
@@ -140,7 +135,7 @@ class RasterProposer(Proposer):
             (one for one in spotted if one.spots),
             key=lambda one: (round(one.promise, 12), one.trial.key),
         )
-        wanted, batch = SPARE * self._settings.score.analysed, []
+        wanted, batch = SPARE * self.settings.score.analysed, []
         for start in range(0, len(order), TOGETHER):
             batch += self._all(order[start : start + TOGETHER], apply)
             later = order[start + TOGETHER : start + TOGETHER + 1]
@@ -159,15 +154,15 @@ class RasterProposer(Proposer):
 
     def spotted(self, trial: StoneTrial) -> Spotted:
         """Return where the stone of a trial could be put, and what that promises."""
-        landscape, settings = trial.landscape, self._settings
-        with self._profile.part("placement"):
+        landscape, settings = trial.landscape, self.settings
+        with self.profile.part("placement"):
             views = [landscape.view(posed) for posed in trial.poses]
             spots = best_spots(landscape, views, settings.placement)
         if settings.selection_rule != "score" or not spots:
             return Spotted(trial, tuple(spots), math.inf)
-        with self._profile.part("indices"):
-            constants = self._workshop.costs.of(trial.poses, settings.score)
-            stock, rest, score = self._workshop.stock, self.rest, settings.score
+        with self.profile.part("indices"):
+            constants = self.workshop.costs.of(trial.poses, settings.score)
+            stock, rest, score = self.workshop.stock, self.rest, settings.score
             costs = [
                 constants[spot.pose]
                 + place_cost(landscape, views[spot.pose], spot.at, stock, rest, score)
@@ -182,23 +177,23 @@ class RasterProposer(Proposer):
         stable is taken; with `tries` = 1 that is the paper's single trial.  With `compare` = True
         all of them are stabilised, and the one of the least craft cost is taken.
         """
-        trial, build = spotted.trial, self._build
+        trial, build = spotted.trial, self.build
         landscape = trial.landscape
         best: Proposal | None = None
         for spot in spotted.spots:
             posed = trial.poses[spot.pose]
-            with self._profile.part("stabilisation"):
-                stabilised = self._workshop.memory.stabilise(
+            with self.profile.part("stabilisation"):
+                stabilised = self.workshop.memory.stabilise(
                     build.wall.occupied,
                     (posed, spot.row, landscape.view_col(posed, spot.col)),
                     landscape.side,
-                    self._workshop.next_wedge(build),
+                    self.workshop.next_wedge(build),
                 )
             if stabilised is None or not self._reached(landscape, stabilised):
                 continue
             cost = self._cost(trial, stabilised)
             proposal = Proposal(stabilised, posed.angle_deg, cost=cost)
-            if not self._settings.placement.compare:
+            if not self.settings.placement.compare:
                 return proposal
             if best is None or proposal.cost < best.cost - 1e-12:
                 best = proposal
@@ -206,7 +201,7 @@ class RasterProposer(Proposer):
 
     def _reached(self, landscape: Landscape, stabilised: Group) -> bool:
         """Say whether a stone that was turned can still be put where it is."""
-        settings = self._settings.placement
+        settings = self.settings.placement
         if settings.reach == "any":
             return True
         placement = stabilised.placement

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from itertools import chain, islice
 
@@ -12,7 +13,7 @@ from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import OVER, HeightProfile, StoneProfile, in_a_row
 from drystone.model.placement import Side
 from drystone.model.wall import Group
-from drystone.planner.build import Build, Proposal
+from drystone.planner.build import Proposal
 from drystone.planner.dropping import (
     Drop,
     Dropped,
@@ -21,12 +22,10 @@ from drystone.planner.dropping import (
     shortlist,
     wedge_limits,
 )
-from drystone.planner.profile import Profile
 from drystone.planner.proposing import Apply, Key, Proposer, StoneTrial, one_by_one
-from drystone.planner.settings import PlannerSettings
 from drystone.planner.settled import settled_in
-from drystone.planner.workshop import Workshop
 from drystone.settle.rest import Repose, SettlingScene, come_to_rest
+from drystone.settle.wedge import WedgeLimits
 from drystone.settle.wedged import wedged
 
 CHUNK = 256
@@ -37,6 +36,7 @@ TOGETHER = 6
 hand it over more often lose more than they gain."""
 
 
+@dataclass(frozen=True, eq=False)
 class ExactProposer(Proposer):
     """Stones settle on the outlines of others.
 
@@ -45,14 +45,11 @@ class ExactProposer(Proposer):
     rests.
     """
 
-    def __init__(
-        self, workshop: Workshop, settings: PlannerSettings, build: Build, profile: Profile
-    ) -> None:
-        super().__init__(workshop, settings, build, profile)
-        self._views: dict[Side, tuple[SettlingScene, HeightProfile]] = {}
-        self._limits = wedge_limits(settings, workshop.stock, build.wall.site)
-        self._dropped: dict[Key, Dropped] = {}
-        self._settled: dict[tuple[Key, int], Proposal | None] = {}
+    _views: dict[Side, tuple[SettlingScene, HeightProfile]] = field(
+        default_factory=dict, init=False
+    )
+    _dropped: dict[Key, Dropped] = field(default_factory=dict, init=False)
+    _settled: dict[tuple[Key, int], Proposal | None] = field(default_factory=dict, init=False)
 
     @property
     def tried(self) -> int:
@@ -61,7 +58,7 @@ class ExactProposer(Proposer):
 
     def proposals(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Proposal]]:
         """See :class:`drystone.planner.proposing.Proposer`."""
-        if self._settings.selection_rule == "score":
+        if self.settings.selection_rule == "score":
             for batch in self.batches(trials, apply):
                 yield self._all_settled(batch, apply)
         else:
@@ -71,16 +68,16 @@ class ExactProposer(Proposer):
     def drops(self, trials: Sequence[StoneTrial], apply: Apply) -> list[tuple[Drop, ...]]:
         """Return the best places of each trial, the cheapest first."""
         self._drop(trials, apply, math.inf)
-        book = self._workshop.outlines
+        book = self.workshop.outlines
         return [tuple(in_order([self._dropped[trial.key]], book)) for trial in trials]
 
     def batches(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Drop]]:
         """List the cheapest drops of all trials, then the next ones, and so on."""
         given: set[tuple[Key, int]] = set()
-        settings, needed = self._settings.settle, -math.inf
+        settings, needed = self.settings.settle, -math.inf
         while True:
             self._drop(trials, apply, needed)
-            known = in_order([self._dropped[t.key] for t in trials], self._workshop.outlines)
+            known = in_order([self._dropped[t.key] for t in trials], self.workshop.outlines)
             batch = shortlist((drop for drop in known if drop.key not in given), settings)
             needed = batch[-1].rank[0] if len(batch) == settings.shortlist else math.inf
             if any(self._dropped[trial.key].limit < needed for trial in trials):
@@ -93,16 +90,20 @@ class ExactProposer(Proposer):
     def view(self, side: Side) -> tuple[SettlingScene, HeightProfile]:
         """Return what is built and how high it is, as it is seen from a side."""
         if side not in self._views:
-            wall = self._build.wall
-            view = self._workshop.views.of(wall.exact.polygons, side)
-            scene = SettlingScene(view.seen, wall.site.extent_px[0], side, self._settings.mu)
+            wall = self.build.wall
+            view = self.workshop.views.of(wall.exact.polygons, side)
+            scene = SettlingScene(view.seen, wall.site.extent_px[0], side, self.settings.mu)
             self._views[side] = scene, view.profile
         return self._views[side]
 
     @cached_property
+    def _limits(self) -> WedgeLimits:
+        return wedge_limits(self.settings, self.workshop.stock, self.build.wall.site)
+
+    @cached_property
     def _terms(self) -> DropTerms:
-        site, stock = self._build.wall.site, self._workshop.stock
-        return drop_terms(site, stock, self.rest, self._settings)
+        site, stock = self.build.wall.site, self.workshop.stock
+        return drop_terms(site, stock, self.rest, self.settings)
 
     def _drop(self, trials: Sequence[StoneTrial], apply: Apply, needed: float) -> None:
         """Drop the stones of the trials of which not all drops up to a cost are known.
@@ -111,7 +112,7 @@ class ExactProposer(Proposer):
         """
         known = self._dropped
         lacking = [t for t in trials if t.key not in known or known[t.key].limit < needed]
-        cheapest = self._settings.settle.shortlist if needed == -math.inf else 0
+        cheapest = self.settings.settle.shortlist if needed == -math.inf else 0
         chunks = []
         for side in dict.fromkeys(trial.landscape.side for trial in lacking):
             self.view(side)
@@ -122,10 +123,10 @@ class ExactProposer(Proposer):
             known.update((one.trial.key, one) for one in found)
 
     def _dropped_together(self, cheapest: int, trials: Sequence[StoneTrial]) -> list[Dropped]:
-        side, settings = trials[0].landscape.side, self._settings.settle
+        side, settings = trials[0].landscape.side, self.settings.settle
         poses = [posed for trial in trials for posed in trial.poses]
-        with self._profile.part("placement"):
-            book = self._workshop.outlines
+        with self.profile.part("placement"):
+            book = self.workshop.outlines
             hung = [book.hung(posed.stone, posed.angle_deg, side) for posed in poses]
             wanted = Wanted(
                 settings.spots,
@@ -135,7 +136,7 @@ class ExactProposer(Proposer):
                 settings.per_stone,
             )
             stones = in_a_row([one.profile for one in hung])
-            constants = self._workshop.costs.of(poses, self._settings.score)
+            constants = self.workshop.costs.of(poses, self.settings.score)
             places, limit = drops(self.view(side)[1], stones, self._terms, constants, wanted)
         next_ones = iter(places)
         return [
@@ -162,10 +163,10 @@ class ExactProposer(Proposer):
         """Let a stone go where it was dropped; None when it does not rest inside the wall."""
         side, posed = drop.trial.landscape.side, drop.trial.poses[0]
         scene, profile = self.view(side)
-        hung = self._workshop.outlines.hung(posed.stone, posed.angle_deg, side)
+        hung = self.workshop.outlines.hung(posed.stone, posed.angle_deg, side)
         start = self._beside(drop.start, hung.profile, profile)
-        method, settings = self._settings.stabilise.method, self._settings.settle
-        with self._profile.part("stabilisation"):
+        method, settings = self.settings.stabilise.method, self.settings.settle
+        with self.profile.part("stabilisation"):
             stabilised = None
             repose = come_to_rest(
                 hung.turned, scene, start, settings, turns=method in ("both", "rotation")
@@ -190,19 +191,19 @@ class ExactProposer(Proposer):
         """
         x, y = start
         left = x + stone.left
-        reach = left + OVER / self._build.wall.site.scale
+        reach = left + OVER / self.build.wall.site.scale
         beside = [
             right
             for _, bottom, right, top in profile.boxes.tolist()
             if left < right < reach and bottom < y + stone.top and top > y + stone.bottom
         ]
-        clear = 2.0 * self._settings.settle.clearance_px
+        clear = 2.0 * self.settings.settle.clearance_px
         return (max(beside) + clear - stone.left, y) if beside else start
 
     def _stabilised(self, drop: Drop, repose: Repose, wedge: Points | None = None) -> Group | None:
         """Return a stone that rests, with the pixels that it fills; None when it is too high."""
-        wall, posed = self._build.wall, drop.trial.poses[0]
-        beyond_px = self._settings.settle.beyond_px
+        wall, posed = self.build.wall, drop.trial.poses[0]
+        beyond_px = self.settings.settle.beyond_px
         if repose.settled.corners[:, 1].max() > wall.site.extent_px[1] + beyond_px:
             return None
         return settled_in(
@@ -211,5 +212,5 @@ class ExactProposer(Proposer):
             drop.trial.landscape.side,
             repose,
             wedge,
-            wedge_id=self._workshop.next_wedge(self._build),
+            wedge_id=self.workshop.next_wedge(self.build),
         )
