@@ -130,28 +130,6 @@ def test_the_same_surroundings_elsewhere_are_not_worked_out_again(
     assert len(depths) == 2, "another ledge is another scene"
 
 
-@pytest.mark.parametrize(("max_turn_deg", "again"), [(15.0, 1), (45.0, 3)])
-def test_what_is_below_all_that_was_looked_at_has_no_say(
-    monkeypatch: pytest.MonkeyPatch, max_turn_deg: float, again: int
-) -> None:
-    """A bar that turns further comes deeper, and finds the shelf or the ground there or not."""
-    depths = worked_out(monkeypatch)
-    settings = StabiliseSettings(method="rotation", max_turn_deg=max_turn_deg)
-    memory = StabiliseMemory(BOOK, 12.0, settings)
-    cliff = ledge(height=60, site=(90, 60))
-    shelf = cliff.copy()
-    shelf[46, 30:] = True
-    # The window starts 16 rows above the bar; as many below it are what is looked up at first.
-    shallow = cliff[: 24 + 6 + 16]
-    trial = (BAR, 24, 2)
-    for wall in (cliff, shelf, shallow):
-        expected = told(afresh(wall, trial, settings))
-        for _ in range(2):
-            assert told(memory.stabilise(wall, trial, "left", 50)) == expected
-    assert len(depths) == again
-    assert (max(depths) > 16 + 6 + 16) == (again > 1)
-
-
 def test_the_place_in_a_window_that_is_cut_off_at_the_ends_matters() -> None:
     site = ledge(site=(24, 40))
     memory = StabiliseMemory(BOOK, 12.0, StabiliseSettings(method="wedge"))
@@ -168,16 +146,3 @@ def test_two_wedges_have_ids_one_after_the_other() -> None:
     found = StabiliseMemory(BOOK, 12.0, settings).stabilise(pillar, (BAR, 14, 2), "left", 70)
     assert found is not None
     assert [wedge.id for wedge in found.wedges] == [70, 71]
-
-
-def test_forgetting_changes_nothing() -> None:
-    book = PoseBook()
-    keeps = StabiliseMemory(book, 12.0, SETTINGS)
-    forgets = StabiliseMemory(PoseBook(budget_bytes=0), 12.0, SETTINGS, budget_bytes=2000)
-    posed, row, _ = bar_on_the_ledge(ledge(), book)
-    for offset in (60, 70, 60, 2, 60):
-        trial = (posed, row, offset + 2)
-        found = [m.stabilise(far_apart(offset), trial, "left", 9) for m in (keeps, forgets)]
-        assert told(found[0]) == told(found[1])
-        assert forgets._outcomes.held_bytes <= 2000
-    assert len(keeps._outcomes) > len(forgets._outcomes)

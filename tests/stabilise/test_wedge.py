@@ -93,15 +93,6 @@ def test_smallest_and_largest_size(height: int, mean: float, smallest: int, foun
     assert (wedge is not None) is found
 
 
-def test_stable_and_floating_stones_get_none() -> None:
-    occupied = ledge()
-    settings = StabiliseSettings()
-    stable = bar_on_the_ledge(occupied, PoseBook(), col=0, length=20)
-    assert wedge_under(occupied, stable, ID, 12.0, settings) is None
-    floating = PoseBook().pose(Stone(3, np.ones((4, 9), bool)), 0.0), 3, 20
-    assert wedge_under(occupied, floating, ID, 12.0, settings) is None
-
-
 def test_columns_that_do_not_help_are_not_wedged() -> None:
     """A low shelf just beside the support but short of the centre of mass holds nothing."""
     occupied = ledge()
