@@ -14,11 +14,11 @@ from drystone.kernels.settling import Rules, Settling, Status, settle
 from drystone.model.landscape import Landscape
 from drystone.planner.dropping import Drop
 from drystone.planner.planner import Planner
-from drystone.planner.proposing import Trial, one_by_one
+from drystone.planner.proposing import StoneTrial, one_by_one
 from drystone.planner.settings import method_settings
 from drystone.planner.settling import ExactProposer
 from drystone.settle.book import Hung
-from drystone.settle.rest import Scene, placed_outline, ways
+from drystone.settle.rest import SettlingScene, placed_outline, ways
 from drystone.settle.settings import SettleSettings
 
 CELL = 2.0
@@ -52,7 +52,7 @@ class OutlineScene:
     ----------
     name : str
         In words.
-    scene : Scene
+    scene : SettlingScene
         What is built.
     profile : HeightProfile
         How high it is.
@@ -65,7 +65,7 @@ class OutlineScene:
     """
 
     name: str
-    scene: Scene
+    scene: SettlingScene
     profile: HeightProfile
     terms: DropTerms
     settings: SettleSettings
@@ -110,7 +110,7 @@ def outline_scene(stones: Stock) -> OutlineScene:
     scene, profile = proposer.view("left")
     landscape = Landscape.of(build.wall)
     trials = [
-        Trial((posed,), landscape, workshop.rest(build))
+        StoneTrial((posed,), landscape)
         for stone in workshop.remaining(build)
         for posed in workshop.poses(stone)
     ]

@@ -72,7 +72,7 @@ def test_distance_decides() -> None:
     assert (
         len(set(cluster_stones(stones, PoseBook(), ClusterSettings(distance=1e-9)).values())) == 4
     )
-    with pytest.raises(ValueError, match="distance must be positive"):
+    with pytest.raises(ValueError, match="distance must be above 0"):
         ClusterSettings(distance=0)
 
 

@@ -102,18 +102,6 @@ def test_nhr_is_that_of_the_label_image(
     ) == pytest.approx(naive.neighbour_height_ratio(wall.labels, stone, others))
 
 
-def landscape_of(*boxes: Box) -> Landscape:
-    return Landscape(Wall.empty(Site(60, 30)).occupied, boxes)
-
-
-def test_the_neighbour_is_the_nearest_to_the_left_at_least_half_level() -> None:
-    far, near, high = Box(0, 10, 0, 10), Box(10, 20, 0, 10), Box(12, 22, 6, 20)
-    landscape = landscape_of(far, near, high, Box(40, 50, 0, 10))
-    assert left_neighbour(landscape, Box(22, 30, 0, 10)) == near
-    assert left_neighbour(landscape, Box(22, 30, 5, 15)) == high
-    assert left_neighbour(landscape, Box(22, 30, 20, 30)) is None
-
-
 def test_level_tops_are_best_and_the_first_of_a_course_is_compared_with_the_mean() -> None:
     box = Box(20, 30, 0, 10)
     assert neighbour_height_ratio(box, Box(0, 10, 0, 10), 99.0) == 0.0
@@ -150,15 +138,6 @@ def test_the_ends_of_the_wall_are_no_joints() -> None:
     assert interlocking_width_ratio(course(40, 60), Box(36, 56, 10, 20), 5) == pytest.approx(0.8)
     # Below is one stone from the wall's left end on.
     assert interlocking_width_ratio(course(0, 20), Box(4, 24, 10, 20), 5) == pytest.approx(0.8)
-
-
-def test_only_one_joint_stands_alone() -> None:
-    assert interlocking_width_ratio(course(0, 30), Box(24, 44, 10, 20), 5) == 0.2
-
-
-def test_on_the_ground_and_over_nothing_lower_there_is_no_joint() -> None:
-    assert interlocking_width_ratio(course(0, 20, 40), Box(40, 50, 0, 10), 5) == 0.5
-    assert interlocking_width_ratio(course(0, 20), Box(30, 40, 1, 6), 5) == 0.5
 
 
 EMPTY = Landscape.of(Wall.empty(Site(40, 20)))

@@ -48,15 +48,6 @@ def test_initial_angle_maximises_shape_factor_over_whole_degrees(mask: Mask) -> 
     assert abs(angle) == min(abs(a) for a in level)
 
 
-@pytest.mark.parametrize("tilt", [-40, -17, 8, 30])
-def test_a_tilted_block_is_turned_upright(tilt: int) -> None:
-    y, x = np.mgrid[40:-41:-1, -40:41].astype(float)
-    t = math.radians(tilt)
-    along, across = x * math.cos(t) + y * math.sin(t), y * math.cos(t) - x * math.sin(t)
-    block = Stone(1, (abs(along) < 30) & (abs(across) < 12))
-    assert initial_angle_deg(block) == pytest.approx(-tilt, abs=1)
-
-
 @pytest.mark.parametrize("quarters", [0, 1, 2, 3])
 @pytest.mark.parametrize("scale", [1.0, 0.5])
 def test_quarter_turns_of_a_pose_are_exact_and_not_mirrored(quarters: int, scale: float) -> None:
@@ -140,23 +131,6 @@ def test_the_book_makes_each_pose_once() -> None:
     book, stone = PoseBook(), Stone(1, L_MASK)
     assert book.pose(stone, 190.0) is book.pose(stone, -170.0)
     assert book.pose(stone, 190.0).angle_deg == -170.0
-
-
-def test_a_book_without_memory_gives_the_same_poses() -> None:
-    stone = Stone(1, np.kron(L_MASK, np.ones((5, 5), bool)))
-    keeps, forgets = PoseBook(0.5), PoseBook(0.5, budget_bytes=20_000)
-    for angle in (0.0, 13.0, -90.0, 13.0, 40.0, 50.0, 60.0, 0.0):
-        one, other = keeps.pose(stone, angle), forgets.pose(stone, angle)
-        assert np.array_equal(one.mask, other.mask)
-        assert (one.anchor, one.angle_deg) == (other.anchor, other.angle_deg)
-        assert forgets._poses.held_bytes <= 20_000
-    assert keeps.pose(stone, 0.0) is keeps.pose(stone, 360.0)
-    assert 0 < len(forgets._poses) < len(keeps._poses) == 6
-    # Whoever still has a forgotten pose keeps it; the book makes another one.
-    first = forgets.pose(stone, 0.0)
-    for angle in range(1, 40):
-        forgets.pose(stone, float(angle))
-    assert forgets.pose(stone, 0.0) is not first
 
 
 def test_threads_share_the_poses_of_a_book() -> None:

@@ -7,12 +7,13 @@ from numpy.typing import NDArray
 from scipy.cluster.hierarchy import fcluster, ward
 
 from drystone.kernels.raster import turn
+from drystone.model.settings import Ranged, ranged
 from drystone.model.stone import StoneSet
 from drystone.poses import PoseBook
 
 
 @dataclass(frozen=True, kw_only=True)
-class ClusterSettings:
+class ClusterSettings(Ranged):
     """How stones are grouped.
 
     Parameters
@@ -21,22 +22,14 @@ class ClusterSettings:
         Ward distance above which clusters stay apart; the paper uses 0.2.
     """
 
-    distance: float = 0.2
-
-    def __post_init__(self) -> None:
-        if self.distance <= 0:
-            raise ValueError("distance must be positive")
+    distance: float = ranged(0.2, above=0)
 
 
 def stone_features(stones: StoneSet, book: PoseBook) -> NDArray[np.float64]:
-    """Return what stones are grouped by (§3.4, Fig. 5).
+    """Return what stones are grouped by, (n, 2), in the order of the set (§3.4, Fig. 5).
 
-    Returns
-    -------
-    features : (n, 2) float array
-        Of each stone, in the order of the set: the eccentricity of the ellipse of equal second
-        moments, in [0, 1), and the area of the bounding box of its initial pose over the largest
-        in the set, in (0, 1].
+    The eccentricity of the ellipse of equal second moments, in [0, 1), and the area of the bounding
+    box of the initial pose over the largest in the set, in (0, 1].
     """
     return _features(stones, _box_areas(stones, book))
 
@@ -46,10 +39,7 @@ def cluster_stones(
 ) -> dict[int, int]:
     """Group stones of similar eccentricity and size (:func:`stone_features`) by Ward linkage.
 
-    Returns
-    -------
-    clusters : dict of int to int
-        Cluster of each stone's id; clusters are numbered from 1 by falling mean size.
+    Cluster of each stone's id; clusters are numbered from 1 by falling mean size.
     """
     settings = settings or ClusterSettings()
     ids = [stone.id for stone in stones]

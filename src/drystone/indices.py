@@ -61,16 +61,8 @@ def local_filling_ratio_at(landscape: Landscape, posed: PosedStone, row: int, co
     """Return LFR of a stone at a position, in [0, 1]; 1 where the rays sweep nothing (Eq. 4).
 
     Counted are the pixels of the site outside the stone that lie left of it in one of its rows or
-    below it in one of its columns; rays pass through stones; wedges count as filled.
-
-    Parameters
-    ----------
-    landscape : Landscape
-        Before the stone is placed.
-    posed : PosedStone
-        In the landscape's view.
-    row, col : int
-        Top-left corner of the mask.
+    below it in one of its columns; rays pass through stones; wedges count as filled.  The stone is
+    in the view of the landscape; row and column are those of its mask's top-left corner.
     """
     return landscape.rays.filled_share_at(posed.silhouette, row, col)
 
@@ -78,15 +70,7 @@ def local_filling_ratio_at(landscape: Landscape, posed: PosedStone, row: int, co
 def swept_pixels(landscape: Landscape, posed: PosedStone, row: int, col: int) -> Mask:
     """Return the pixels that the rays of :func:`local_filling_ratio_at` sweep (Fig. 7).
 
-    Parameters
-    ----------
-    landscape, posed, row, col
-        As there.
-
-    Returns
-    -------
-    swept : (h, w) bool array
-        As large as the landscape.
+    A mask as large as the landscape.
     """
     stone = np.zeros(landscape.occupied.shape, bool)
     stone[row : row + posed.height_px, col : col + posed.width_px] = posed.mask
@@ -96,21 +80,12 @@ def swept_pixels(landscape: Landscape, posed: PosedStone, row: int, col: int) ->
 
 
 def geometrical_dice_score_at(landscape: Landscape, posed: PosedStone, row: int) -> float:
-    """Return GDS of a stone at a row, in [0, 1] (Eq. 5).
+    """Return GDS of a stone at a row of its mask's top edge, in [0, 1] (Eq. 5).
 
     GDS = (|S n B| / A_S) (A_B / |S u B|), B the box over the full width of the wall up to the top
     of what is placed.  1: inside B; 0: outside, and before the first stone.
 
     For all rows at once it is :func:`drystone.kernels.merits.dice_score`, to the last bit.
-
-    Parameters
-    ----------
-    landscape : Landscape
-        Before the stone is placed.
-    posed : PosedStone
-        The stone.
-    row : int
-        Row of the mask's top edge.
     """
     mask, box_area = posed.silhouette, float(landscape.width_px * landscape.built_height_px)
     # Pixels of the stone from its row k downwards lie in B when B's top row is k rows below its.
@@ -134,15 +109,8 @@ def neighbour_height_ratio(
 ) -> float:
     """Return NHR, 0 or larger; 0 is best (Eq. 6-8).
 
-    Parameters
-    ----------
-    box : Box
-        Of the stone where it is placed.
-    neighbour : Box or None
-        From :func:`left_neighbour`.
-    course_height_px : float or None
-        Mean height of the other candidates, which the first stone of a course is compared with;
-        None when there are none.
+    The first stone of a course has no :func:`left_neighbour` and is compared with the mean height
+    of the other candidates; None when there are none.
     """
     if neighbour is not None:
         return abs(box.top - neighbour.top) / box.height
@@ -157,11 +125,6 @@ def joints_below(landscape: Landscape, box: Box, end_px: float) -> tuple[Box | N
     below1 is the stone whose top right corner is closest to the box's bottom left corner, below2
     the one whose top left corner is closest to its bottom right corner, both among the stones
     whose top is not above the stone's vertical centre.
-
-    Parameters
-    ----------
-    landscape, box, end_px
-        As for :func:`interlocking_width_ratio`.
     """
     boxes, last = landscape.boxes, landscape.width_px - end_px
     below1, below2 = nearest_joints(landscape.box_table, box, end_px, last)
@@ -172,17 +135,9 @@ def interlocking_width_ratio(landscape: Landscape, box: Box, end_px: float) -> f
     """Return IWR in [0, 1]; high where head joints are far from those of the course below (Eq. 9).
 
     Each term is the horizontal distance from the stone's end to the joint below
-    (:func:`joints_below`), over the width of the stone that ends there; IWR is the mean of the
-    terms that exist, each clipped to [0, 1].
-
-    Parameters
-    ----------
-    landscape : Landscape
-        Before the stone is placed.
-    box : Box
-        Of the stone where it is placed.
-    end_px : float
-        A corner nearer to an end of the wall than this is the wall's end, no joint.
+    (:func:`joints_below`) over the width of the stone that ends there; IWR is the mean of the
+    terms that exist, each clipped to [0, 1].  A corner nearer than `end_px` to the wall's end is
+    that end, not a joint.
     """
     if box.bottom == 0:
         return NO_JOINT
@@ -216,16 +171,8 @@ def peak_columns(posed: PosedStone) -> tuple[int, int] | None:
 def inward_slope(landscape: Landscape, posed: PosedStone, col: int) -> float:
     """Return IS in [-1, 1], positive when the top falls towards the middle of the wall (Eq. 10).
 
-    The slope is that between the highest points of the halves (:func:`peak_columns`).
-
-    Parameters
-    ----------
-    landscape : Landscape
-        Gives the width of the wall.
-    posed : PosedStone
-        In the landscape's view.
-    col : int
-        Column of the mask's left edge.
+    The slope is that between the highest points of the halves (:func:`peak_columns`) of a stone in
+    the landscape's view, whose mask has its left edge at a column.
     """
     peaks = peak_columns(posed)
     if peaks is None or peaks[0] == peaks[1]:

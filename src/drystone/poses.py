@@ -79,10 +79,7 @@ def orientation_step_deg(orientations: str) -> float | None:
 class RecentlyUsed(Generic[Key, Value]):
     """Values that were used last, as many as a budget of bytes holds; threads may share it.
 
-    Parameters
-    ----------
-    budget_bytes : int
-        When the sizes of the values exceed it, those not used for longest are forgotten.
+    When the sizes of the values exceed it, those not used for longest are forgotten.
     """
 
     def __init__(self, budget_bytes: int) -> None:
@@ -118,15 +115,10 @@ class RecentlyUsed(Generic[Key, Value]):
 
 
 class PoseBook:
-    """Turned, rasterised stones at one working resolution, each made once.
+    """Turned, rasterised stones at one working resolution (over source resolution), each made once.
 
-    Parameters
-    ----------
-    scale : float
-        Working resolution over source resolution.
-    budget_bytes : int
-        Memory for poses.  Those not asked for for longest are forgotten and made again when they
-        are: no result depends on it.
+    Poses not asked for for longest are forgotten and made again when they are: no result depends
+    on the budget of memory.
     """
 
     def __init__(self, scale: float = 1.0, budget_bytes: int = BOOK_BYTES) -> None:
@@ -163,20 +155,10 @@ class PoseBook:
         return [wrap_deg(first + quarter) for quarter in turns]
 
     def orientations(self, stone: Stone, orientations: str) -> tuple[PosedStone, ...]:
-        """Return the poses of a stone that are candidates (DESIGN 4.2).
+        """Return the poses of a stone that are candidates (DESIGN 4.2); the same pixels only once.
 
-        Parameters
-        ----------
-        stone : Stone
-            The stone.
-        orientations : str
-            ``"sf"``: the pose of largest SF; ``"quarter"``: that and its quarter turns;
-            ``"10deg"`` or any step: [-180, 180) in steps from the source pose.
-
-        Returns
-        -------
-        poses : tuple of PosedStone
-            Poses whose pixels are the same are given once.
+        ``"sf"``: the pose of largest SF; ``"quarter"``: that and its quarter turns; ``"10deg"`` or
+        any step: [-180, 180) in steps from the source pose.
         """
         different: dict[tuple[tuple[int, ...], bytes], PosedStone] = {}
         for angle in self.angles(stone, orientations):
@@ -190,23 +172,8 @@ def pose_at(
 ) -> tuple[PosedStone, int, int]:
     """Rasterise a stone with its centroid at a given sub-pixel position.
 
-    Parameters
-    ----------
-    stone : Stone
-        The stone.
-    angle_deg : float
-        Counter-clockwise from the source image.
-    scale : float
-        Working resolution over source resolution.
-    phase : (float, float)
-        Centroid right of and above a pixel corner, multiples of 1/64 in [0, 1).
-
-    Returns
-    -------
-    posed : PosedStone
-        The stone.
-    left, bottom : int
-        Its mask's bottom-left corner relative to that pixel corner.
+    `phase` is the centroid right of and above a pixel corner, multiples of 1/64 in [0, 1); with the
+    stone comes its mask's bottom-left corner, left and bottom, relative to that pixel corner.
     """
     mask, left, bottom = rasterise(stone.mask, stone.local_centroid, angle_deg, scale, phase)
     anchor = (phase[0] - left, phase[1] - bottom)

@@ -18,7 +18,7 @@ from drystone.model.overlap import (
     shape_of,
 )
 from tests.naive import overlap as naive
-from tests.polygons import outlines_along_a_line, simple_polygons
+from tests.polygons import simple_polygons
 from tests.strategies import repeatable
 
 RIGHT = 1e-6
@@ -99,14 +99,6 @@ def stacked(draw: st.DrawFn) -> Stacked:
     return Stacked(below * size, above * size, size)
 
 
-def test_a_common_line_is_no_overlap() -> None:
-    """In floats GEOS finds three of a hundred such pairs to overlap by up to its whole area."""
-    rng = np.random.default_rng(3)
-    for _ in range(2000):
-        above, below = map(shape_of, outlines_along_a_line(rng))
-        assert common_parts(above, below) == ()
-
-
 ANYWHERE = st.tuples(st.floats(-180, 180), st.floats(-1, 1), st.sampled_from([0.0, 1.0, 1e3, 1e8]))
 
 
@@ -135,17 +127,6 @@ def test_what_is_pushed_in_overlaps(
     assert depth == overlap_depth(shape_of(above), shape_of(below))
     assert depth <= (10.0**exponent + RIGHT) * pair.size
     assert depth >= naive.depth(below, above, 4) - RIGHT * pair.size
-
-
-@repeatable(60)
-@given(st.floats(0.1, 1e4), st.floats(-180, 180), st.floats(-5.5, -1.0), st.floats(0.3, 1.7))
-def test_a_brick_that_sinks_in_lies_as_deep_as_it_sank(
-    size: float, angle_deg: float, exponent: float, aside: float
-) -> None:
-    brick = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]) * size
-    above = brick + np.array([aside, 1.0 - 10.0**exponent]) * size
-    depth = overlap_depth(shape_of(turn(brick, angle_deg)), shape_of(turn(above, angle_deg)))
-    assert depth == pytest.approx(10.0**exponent * size, abs=RIGHT * size)
 
 
 def test_deepest_overlap_names_the_pair() -> None:

@@ -4,14 +4,11 @@ from collections import defaultdict
 
 import numpy as np
 import pytest
-import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drystone.kernels.coverage import Grid, coverage
-from drystone.kernels.polygons import Points
+from drystone.kernels.coverage import Grid
 from drystone.model.shares import Shares
-from tests.polygons import simple_polygons
 from tests.strategies import repeatable
 
 Block = tuple[int, Grid, int, int]
@@ -87,24 +84,6 @@ def test_fresh_cells_are_those_that_become_part_of_the_image(
     np.testing.assert_array_equal(image, appear)
 
 
-@repeatable(40)
-@given(first=simple_polygons(max_size=12.0), second=simple_polygons(max_size=12.0))
-def test_labels_of_polygons_follow_their_areas(first: Points, second: Points) -> None:
-    placed = [(7, first + np.array([6.0, 6.0])), (8, second + np.array([19.2, 5.7]))]
-    shares = Shares.empty(12, 25)
-    for block_id, corners in placed:
-        shares = shares.added(block_id, *coverage(corners))
-    shapes = {block_id: shapely.Polygon(corners) for block_id, corners in placed}
-    for (row, col), label in np.ndenumerate(shares.labels):
-        cell = shapely.box(col, 11 - row, col + 1, 12 - row)
-        areas = {block_id: shape.intersection(cell).area for block_id, shape in shapes.items()}
-        if abs(sum(areas.values()) - 0.5) < 1e-9:
-            continue
-        most = max(areas.values())
-        expected = {i for i, area in areas.items() if area > most - 1e-9}
-        assert label in (expected if sum(areas.values()) > 0.5 else {0})
-
-
 def test_of_equal_shares_the_first_keeps_the_cell_whatever_the_rounding() -> None:
     first = Shares.empty(1, 2).added(9, np.array([[0.5, 0.3]]), 0, 0)
     both = first.added(3, np.array([[0.5 + 1e-14, 0.3 + 1e-9]]), 0, 0)
@@ -141,10 +120,3 @@ def test_fresh_cells_are_cropped_to_the_site() -> None:
     fresh = shares.fresh(np.array([[0.7, 0.9, 0.8], [0.6, 0.2, 1.0]]), 2, 1)
     assert fresh is not None
     assert (fresh[0].tolist(), fresh[1:]) == ([[True]], (0, 2))
-
-
-def test_fresh_is_in_rows_from_the_top() -> None:
-    shares = Shares.empty(5, 6)
-    fresh = shares.fresh(np.array([[0.1, 0.7], [0.6, 0.2]]), 2, 1)
-    assert fresh is not None
-    assert (fresh[0].tolist(), fresh[1:]) == ([[False, True], [True, False]], (2, 2))

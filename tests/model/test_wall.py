@@ -127,4 +127,8 @@ def test_outlined_are_the_stone_and_its_wedges() -> None:
 
 def test_a_wall_of_pixels_has_no_outlines() -> None:
     assert Wall.empty(Site(3, 1)).outlines is None
-    assert Wall.empty(Site(6, 4)).add(Placement(POSED, 2, 0)).outlines is None
+    pixels = Wall.empty(Site(6, 4)).add(Placement(POSED, 2, 0))
+    assert pixels.outlines is None
+    for asked in (pixels, pixels.placements[0]):
+        with pytest.raises(ValueError, match="pixels"):
+            _ = asked.exact

@@ -80,7 +80,7 @@ def test_limits_by_the_stones_and_by_the_scale() -> None:
 
 def test_settings_and_limits_are_checked() -> None:
     for name in ("thickness", "thickness_mm", "height", "area"):
-        with pytest.raises(ValueError, match="positive"):
+        with pytest.raises(ValueError, match="above 0"):
             WedgeSettings(**{name: 0.0})
     good = {"least_thickness": 1.0, "greatest_height": 2.0, "greatest_area": 9.0}
     for name, value in (

@@ -62,37 +62,6 @@ def test_clearance_is_free_on_both_sides_of_the_stone(
     assert found(occupied, mask, "above", clearance) == wide
 
 
-def test_a_closed_cavity_can_be_reached_by_any_but_not_from_above() -> None:
-    occupied = np.zeros((6, 8), bool)
-    occupied[2, 2:] = True
-    block = np.ones((2, 2), bool)
-    assert [4, 4] in found(occupied, block)
-    assert [4, 4] not in found(occupied, block, "above")
-    assert [0, 4] in found(occupied, block, "above")
-
-
-def test_touching_only_a_side_is_floating() -> None:
-    occupied = np.zeros((8, 8), bool)
-    occupied[:, 4:] = True
-    block = np.ones((2, 4), bool)
-    assert (3, 0) in naive.touching_positions(occupied, block)
-    assert found(occupied, block) == [[6, 0]]
-
-
-def test_under_an_overhang_means_floating_too() -> None:
-    occupied = np.zeros((8, 4), bool)
-    occupied[2] = True
-    assert found(occupied, np.ones((2, 4), bool)) == [[0, 0], [6, 0]]
-
-
-def test_a_slot_of_the_stones_own_width_has_no_clearance() -> None:
-    occupied = np.zeros((12, 9), bool)
-    occupied[4:, :3] = occupied[4:, 6:] = True
-    block = np.ones((2, 3), bool)
-    assert [10, 3] in found(occupied, block, "above", 0)
-    assert [10, 3] not in found(occupied, block, "above", 1)
-
-
 def test_clearance_counts_at_every_height_of_the_stone() -> None:
     stone = np.array([[1, 1], [0, 1], [0, 1]], bool)
     occupied = np.zeros((12, 6), bool)

@@ -8,15 +8,14 @@ import pytest
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Placement
 from drystone.model.site import Site
-from drystone.model.wall import Wall
+from drystone.model.wall import Group, Wall
 from drystone.planner.attempt import Attempt
 from drystone.planner.build import Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import RasterProposer, Spotted, Trial
+from drystone.planner.proposing import RasterProposer, Spotted, StoneTrial
 from drystone.planner.settings import PlannerSettings
-from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.incremental import IncrementalAnalysis
 from tests.planner.scenes import RUBBLE_SITE, blocks, greedy, rubble
 
@@ -31,7 +30,7 @@ class _Calls:
         self.judged: Counter[Key] = Counter()
         spotted, judge = RasterProposer.spotted, Evaluator.judge
 
-        def spotted_once(this: RasterProposer, trial: Trial) -> Spotted:
+        def spotted_once(this: RasterProposer, trial: StoneTrial) -> Spotted:
             posed = trial.poses[0]
             self.proposed[posed.stone.id, posed.angle_deg, trial.landscape.side] += 1
             return spotted(this, trial)
@@ -141,22 +140,6 @@ def test_orientations_are_candidates_or_the_rule_picks_one(
         assert len(calls.proposed) == tried
 
 
-def test_a_stone_that_turns_out_of_reach_from_above_is_not_proposed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """What can be lowered in before it is turned may end under an overhang."""
-    stones = blocks({1: (20, 10), 2: (20, 10)})
-    settings = greedy()
-    planner = Planner(stones, Site(60, 30), settings=settings)
-    proposer = RasterProposer(planner.workshop, settings, planner.build, Profile())
-    posed = planner.workshop.poses(1)[0]
-    landscape = Landscape.of(planner.build.wall)
-    trial = Trial((posed,), landscape, planner.workshop.rest(planner.build))
-    assert proposer.stabilised(proposer.spotted(trial)) is not None
-    monkeypatch.setattr("drystone.planner.proposing.can_be_lowered", lambda *_: False)
-    assert proposer.stabilised(proposer.spotted(trial)) is None
-
-
 @pytest.mark.parametrize(("clearance_px", "proposed"), [(0, True), (1, True), (2, False)])
 def test_a_stone_that_turns_keeps_its_clearance(clearance_px: int, proposed: bool) -> None:
     """From where it is stabilised it moves into a slot with one px to spare on both sides."""
@@ -168,5 +151,5 @@ def test_a_stone_that_turns_keeps_its_clearance(clearance_px: int, proposed: boo
     assert posed.mask.shape == (10, 20)
     slot = np.zeros((40, 60), bool)
     slot[10:, :19] = slot[10:, 41:] = True
-    turned = Stabilised(Placement(posed, 30, 20, "left", 1))
+    turned = Group(Placement(posed, 30, 20, "left", 1))
     assert proposer._reached(Landscape(slot, ()), turned) is proposed

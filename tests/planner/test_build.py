@@ -1,6 +1,5 @@
 """The state of construction, and the analysis that grows with it."""
 
-from collections import Counter
 from itertools import pairwise
 from typing import Any
 
@@ -76,22 +75,6 @@ def test_the_analysis_of_a_state_gives_what_its_last_action_was_judged_by(
         assert analysis.model.blocks is step.build.model.blocks
         assert analysis.model.interfaces is step.build.model.interfaces
         assert _alphas(analysis.result.resistance) == _alphas(step.action.resistance)
-
-
-def test_no_state_is_analysed_twice(monkeypatch: pytest.MonkeyPatch) -> None:
-    models: list[RigidBlockModel] = []
-    extended = IncrementalAnalysis.extended
-
-    def watched(analysis: IncrementalAnalysis, model: RigidBlockModel) -> IncrementalAnalysis:
-        models.append(model)
-        return extended(analysis, model)
-
-    monkeypatch.setattr(IncrementalAnalysis, "extended", watched)
-    settings = greedy({"search": {"budget": 4}})
-    planner = finish(Planner(rubble(seed=1), RUBBLE_SITE, seed=1, settings=settings))
-    # `models` keeps them alive, so an id is one model.
-    assert max(Counter(id(model) for model in models if model.blocks).values()) == 1
-    assert len(models) > len(planner.build.actions)
 
 
 def test_states_are_kept_only_to_go_back_to_them() -> None:

@@ -10,14 +10,11 @@ from drystone.model.placement import Placement, Side, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import Stone
-from drystone.model.wall import Wall
-from drystone.planner.craft import action_craft, place_cost
-from drystone.planner.pose_costs import pose_cost
+from drystone.model.wall import Group, Wall
+from drystone.planner.craft import PoseCosts, action_craft, place_cost, pose_cost
 from drystone.planner.stock import Rest, Stock
 from drystone.poses import PoseBook
-from drystone.selection.scored import Craft, ScoreSettings, craft_cost
-from drystone.stabilise.stabilise import Stabilised
-from tests.naive import planner as naive
+from drystone.selection.scored import PIN_BONUS, Craft, ScoreSettings, craft_cost
 from tests.strategies import posed_on_walls, repeatable
 
 STOCK = Stock(
@@ -47,7 +44,7 @@ def _wall(*placements: Placement) -> Wall:
 
 
 def _craft(wall: Wall, placement: Placement, rest: Rest | None = None) -> Craft:
-    return action_craft(Landscape.of(wall), Stabilised(placement), STOCK, rest or _rest())
+    return action_craft(Landscape.of(wall), Group(placement), STOCK, rest or _rest())
 
 
 def test_a_block_in_the_corner() -> None:
@@ -75,7 +72,7 @@ def test_a_wedge_fills_its_part_of_the_void() -> None:
     wall = _wall(_at(_block(1, 10, 5), 0, 0))
     placement = _at(_block(2, 8, 4), 6, 5)
     wedge = Wedge(10, 2, np.ones((5, 3), bool), 15, 11)
-    craft = action_craft(Landscape.of(wall), Stabilised(placement, (wedge,)), STOCK, _rest())
+    craft = action_craft(Landscape.of(wall), Group(placement, (wedge,)), STOCK, _rest())
     assert craft.void == pytest.approx((4 * 5 - 15) / 50)
 
 
@@ -118,22 +115,8 @@ def test_from_the_right_everything_is_mirrored() -> None:
     left = _craft(_wall(_at(pillar, 0, 0)), _at(stone, 6, 5), _rest(2))
     mirrored = Placement(stone, SITE.height_px - 9, SITE.width_px - 6 - 8, "right")
     wall = _wall(_at(pillar, 30, 0))
-    right = action_craft(Landscape.of(wall, "right"), Stabilised(mirrored), STOCK, _rest(2))
+    right = action_craft(Landscape.of(wall, "right"), Group(mirrored), STOCK, _rest(2))
     assert right == left
-
-
-@repeatable(60)
-@given(posed_on_walls())
-def test_the_void_is_what_is_free_below(scene: tuple[Wall, PosedStone, int, int]) -> None:
-    wall, posed, row, col = scene
-    cells = [(row + r, col + c) for r, c in np.argwhere(posed.mask).tolist()]
-    # Pixels under the stone's lowest ones only: its own hollows are the stone's business.
-    lowest = {c: max(r for r, other in cells if other == c) for _, c in cells}
-    rest = Rest(np.zeros(wall.site.height_px + 1, int), np.zeros(wall.site.width_px + 1, int))
-    placement = Placement(posed, row, col)
-    craft = action_craft(Landscape.of(wall), Stabilised(placement), STOCK, rest)
-    expected = naive.free_area_under(wall.occupied.tolist(), [(r, c) for c, r in lowest.items()])
-    assert craft.void == pytest.approx(expected / STOCK.mean_area_px)
 
 
 @repeatable(60)
@@ -145,10 +128,17 @@ def test_place_and_pose_cost_what_the_action_costs_but_for_step_and_joint(
     rest = Rest(np.arange(wall.site.height_px + 1), np.arange(wall.site.width_px + 1) // 2)
     score = ScoreSettings(thickness=1.5)
     landscape = Landscape.of(wall, side)
-    craft = action_craft(landscape, Stabilised(Placement(posed, row, col, side)), STOCK, rest)
+    craft = action_craft(landscape, Group(Placement(posed, row, col, side)), STOCK, rest)
     assert min(craft.step, craft.joint) >= 0
     place = row, landscape.view_col(posed, col)
     quick = place_cost(landscape, landscape.view(posed), place, STOCK, rest, score)
     known = quick + pose_cost(posed, STOCK, score)
     others = score.step * craft.step + score.joint * craft.joint
     assert known + others == pytest.approx(craft_cost(craft, score), abs=1e-9)
+
+
+def test_costs_of_poses_are_those_of_the_weights_of_now() -> None:
+    poses, costs = [_block(1, 20, 5), _block(2, 4, 10)], PoseCosts(STOCK, frozenset({2}))
+    for score in (ScoreSettings(), ScoreSettings(area=9.0), ScoreSettings()):
+        first, second = (pose_cost(posed, STOCK, score) for posed in poses)
+        assert costs.of(poses, score).tolist() == [first, second - PIN_BONUS]

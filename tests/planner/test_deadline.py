@@ -22,10 +22,8 @@ from tests.planner.scenes import (
 
 WAYS: dict[str, dict[str, Any]] = {
     "best": {},
-    "pixels": {"geometry": "raster"},
     "given order": {"order": "given"},
     "policy": {"selection_rule": "lowest"},
-    "pinned": {"pin": [3]},
 }
 
 

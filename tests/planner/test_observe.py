@@ -380,33 +380,6 @@ def test_pictures_that_make_no_sense_are_refused() -> None:
             assert raised.value.code == code
 
 
-def test_two_stones_in_the_same_place_are_refused() -> None:
-    one = planner(EXACT)
-    steps = one.steps()
-    next(steps)
-    next(steps)
-    first, second = planned(one)
-    poses = in_metres(planned(one))
-    with pytest.raises(InputError) as raised:
-        one.observe({first: poses[first], second: poses[first]})
-    assert raised.value.code == "E198"
-    with pytest.raises(UsageError) as lost:
-        one.observe(poses, lost=[first])
-    assert lost.value.code == "E199"
-
-
-def test_a_wall_that_cannot_stand_is_said_to() -> None:
-    one = planner(EXACT)
-    finish(one)
-    poses = in_metres(planned(one))
-    # All but the one on top are gone: it hangs in the air, and nothing is near that it falls on.
-    top = max(poses, key=lambda i: poses[i].y)
-    found = one.observe({top: poses[top]})
-    assert not found.stands
-    assert [notice.code for notice in found.notices] == ["W124"]
-    assert str(top) in found.notices[0].message
-
-
 def test_poses_of_steps_are_in_metres() -> None:
     one = planner(RASTER)
     step = next(one.steps())

@@ -1,7 +1,5 @@
 """Algorithm 1: the loop, its ways to stop, and that it can be left and taken up again."""
 
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 import pytest
 
@@ -212,14 +210,6 @@ def test_a_lost_stone_is_one_fewer_to_stop_for() -> None:
     assert planner.stopped is None
 
 
-def test_the_result_does_not_depend_on_the_executor() -> None:
-    settings = greedy()
-    alone = finish(Planner(rubble(), RUBBLE_SITE, seed=2, settings=settings))
-    with ThreadPoolExecutor(2) as pool:
-        helped = finish(Planner(rubble(), RUBBLE_SITE, seed=2, settings=settings, executor=pool))
-    assert same(helped, alone)
-
-
 def test_seeds_matter_only_for_random_samples() -> None:
     def built(sampling: str, seed: int) -> list[tuple[int, float, int, int, str]]:
         settings = PlannerSettings().updated({"sampling": sampling})
@@ -227,14 +217,6 @@ def test_seeds_matter_only_for_random_samples() -> None:
 
     assert built("full", 1) == built("full", 2)
     assert built("uniform", 1) != built("uniform", 2)
-
-
-def test_every_step_stands() -> None:
-    for settings in (PlannerSettings(two_sided=True), greedy()):
-        for step in Planner(rubble(), RUBBLE_SITE, settings=settings).steps():
-            assert step.action.resistance.stable
-            assert step.action.indices.LLC is not None
-            assert step.action.indices.LLC > 0
 
 
 def test_what_cannot_be_planned() -> None:

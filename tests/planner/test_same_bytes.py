@@ -71,8 +71,8 @@ def parted(plan: Any) -> tuple[Any, list[float]]:
 
 @pytest.mark.parametrize("method", METHODS)
 def test_threads_do_not_shape_the_plan(method: str, tmp_path: Path) -> None:
-    one, *more = (planned(method, tmp_path / str(jobs), n_jobs=jobs) for jobs in (1, 2, 4))
-    assert more == [one, one]
+    one, *more = (planned(method, tmp_path / str(jobs), n_jobs=jobs) for jobs in (1, 3))
+    assert more == [one]
 
 
 @pytest.mark.parametrize("name", WALLS)

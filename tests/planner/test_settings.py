@@ -57,14 +57,6 @@ def test_values_of_the_wrong_type_are_refused(changes: dict[str, Any]) -> None:
     assert caught.value.cure
 
 
-@pytest.mark.parametrize("name", ["polish", "wedges", "wedge_below"])
-def test_a_search_takes_no_negative_shares_and_counts(name: str) -> None:
-    for value in (-1, 2) if name == "polish" else (-1,):
-        with pytest.raises(UsageError, match=name) as caught:
-            PlannerSettings().updated({"search": {name: value}})
-        assert caught.value.code == "E123"
-
-
 @pytest.mark.parametrize(
     ("changes", "named", "cure"),
     [

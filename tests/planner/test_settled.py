@@ -7,22 +7,21 @@ from drystone.kernels.polygons import no_polygons
 from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.model.stone import Stone
-from drystone.model.wall import Wall
+from drystone.model.wall import Group, Wall
 from drystone.planner.settled import settled_in, stands_out_px
-from drystone.settle.rest import Scene, Turned, come_to_rest
+from drystone.settle.rest import SettlingScene, Turned, come_to_rest
 from drystone.settle.settings import SettleSettings
-from drystone.stabilise.stabilise import Stabilised
 
 BRICK = Stone(1, np.ones((6, 10), bool))
 
 
 def pushed_to_an_end(
     site: Site, side: Side, settings: SettleSettings | None = None
-) -> Stabilised | None:
+) -> Group | None:
     """The brick, settled at the end of an empty wall from which it is placed."""
     settings = settings or SettleSettings()
     turned = Turned.of(BRICK.outline_within(0.35), 0.0, side, BRICK.area_px**0.5)
-    scene = Scene.of(no_polygons(), site.extent_px[0], side, 0.58)
+    scene = SettlingScene.of(no_polygons(), site.extent_px[0], side, 0.58)
     found = come_to_rest(turned, scene, (5.0, 3.02), settings)
     assert found is not None
     out_px = stands_out_px(found.settled.corners, site)

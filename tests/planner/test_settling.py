@@ -2,7 +2,6 @@
 
 from collections import Counter
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,18 +13,15 @@ from drystone.model.landscape import Landscape
 from drystone.model.placement import Side
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
-from drystone.planner import settling
 from drystone.planner.attempt import Attempt
 from drystone.planner.build import Build, Proposal
-from drystone.planner.dropping import Drop, Dropped, in_order, shortlist, wedge_limits
+from drystone.planner.dropping import Drop, Dropped, in_order, wedge_limits
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import Key, Trial, one_by_one
+from drystone.planner.proposing import Key, StoneTrial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
-from drystone.planner.stock import Sides, Stock
-from drystone.settle.rest import Scene, Turned, come_to_rest
-from drystone.settle.settings import SettleSettings
+from drystone.planner.stock import Stock
 from tests.planner.scenes import RUBBLE_SITE, blocks, bricks, finish, greedy, rubble
 
 BOTH_RULES = pytest.mark.parametrize("rule", ["score", "algorithm2"])
@@ -50,10 +46,9 @@ class _Step:
     def proposer(self) -> ExactProposer:
         return ExactProposer(self.workshop, self.settings, self.build, Profile())
 
-    def trials(self, sides: tuple[Side, ...] = ("left", "right")) -> list[Trial]:
-        rest = self.workshop.rest(self.build)
+    def trials(self, sides: tuple[Side, ...] = ("left", "right")) -> list[StoneTrial]:
         return [
-            Trial((posed,), Landscape.of(self.build.wall, side), rest)
+            StoneTrial((posed,), Landscape.of(self.build.wall, side))
             for side in sides
             for stone_id in self.workshop.remaining(self.build)
             for posed in self.workshop.poses(stone_id)
@@ -66,59 +61,6 @@ class _Step:
 def _key(proposal: Proposal) -> tuple[Key, int]:
     """What tells a proposal from others, as that of the drop from which it comes."""
     return (proposal.stone_id, proposal.trial_angle_deg, proposal.side), proposal.spot
-
-
-class _Calls:
-    """How often trials were dropped, some of their drops or all, and drops were settled."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.dropped: Counter[tuple[Key, bool]] = Counter()
-        self.settled: Counter[object] = Counter()
-        dropped, settle = ExactProposer._dropped_together, ExactProposer._settle
-
-        def watched(this: ExactProposer, cheapest: int, trials: list[Trial]) -> Any:
-            self.dropped.update((trial.key, cheapest > 0) for trial in trials)
-            return dropped(this, cheapest, trials)
-
-        def settled(this: ExactProposer, drop: Drop) -> Any:
-            self.settled[drop.key] += 1
-            return settle(this, drop)
-
-        monkeypatch.setattr(ExactProposer, "_dropped_together", watched)
-        monkeypatch.setattr(ExactProposer, "_settle", settled)
-
-
-@BOTH_RULES
-@pytest.mark.parametrize("choice", ["candidates", "placement"])
-def test_nothing_is_dropped_or_settled_twice(
-    rule: str, choice: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    changes = {"selection_rule": rule, "orientation_choice": choice, "sampling": "twofold"}
-    step = _Step(rubble(), RUBBLE_SITE, 2, changes)
-    attempt = Attempt(step.workshop, step.settings, step.build)
-    calls = _Calls(monkeypatch)
-    for seed in range(4):
-        attempt.choose(np.random.default_rng(seed))
-    assert max(calls.dropped.values()) == 1
-    assert max(calls.settled.values()) == 1
-    assert len(calls.settled) > 4
-
-
-def test_by_cost_every_drop_comes_in_batches_until_one_can_be_used() -> None:
-    step = _Step(rubble(), RUBBLE_SITE, 2, {"settle": {"shortlist": 5, "per_stone": 2}})
-    proposer = step.proposer()
-    drops = [drop for mine in proposer.drops(step.trials(), one_by_one) for drop in mine]
-    by_rank = {drop.key: drop.rank for drop in drops}
-    batches = list(proposer.proposals(step.trials(), one_by_one))
-    assert sum(len(batch) > 1 for batch in batches) > 4
-    assert all(len(batch) <= 5 for batch in batches)
-    assert len(batches) >= len(drops) / 5
-    keys = [[_key(p) for p in batch] for batch in batches]
-    # Nothing comes twice, the cheapest of a batch first.
-    assert max(Counter(key for batch in keys for key in batch).values()) == 1
-    for batch in keys:
-        assert batch == sorted(batch, key=by_rank.__getitem__)
-        assert max(Counter(key[0][0] for key in batch).values(), default=0) <= 2
 
 
 def test_a_first_batch_that_cannot_be_used_is_not_the_last(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -146,7 +88,7 @@ def test_algorithm_2_compares_each_trial_where_its_first_drop_rests(choice: str)
     trials = step.trials()
     if choice == "placement":
         trials = [
-            Trial(step.workshop.poses(stone_id), trials[0].landscape, trials[0].rest)
+            StoneTrial(step.workshop.poses(stone_id), trials[0].landscape)
             for stone_id in step.workshop.remaining(step.build)
         ]
     proposer = step.proposer()
@@ -212,26 +154,6 @@ def test_drops_whose_costs_are_equal_but_for_rounding_are_in_the_order_of_their_
     assert list(in_order([], book)) == []
 
 
-def _drops(ranks: list[tuple[float, int]]) -> list[Drop]:
-    """Drops of some costs and stones, told from each other by their spots."""
-    trial = SimpleNamespace()
-    return [
-        Drop(trial, k, (0.0, 0.0), (cost, ((stone_id, 0.0, "left"), k)))  # type: ignore[arg-type]
-        for k, (cost, stone_id) in enumerate(ranks)
-    ]
-
-
-def test_the_shortlist_takes_the_first_but_only_so_many_of_one_stone() -> None:
-    ranks = [(0.1, 1), (0.1, 2), (0.2, 2), (0.3, 2), (0.4, 3), (0.5, 1), (0.9, 3)]
-    settings = SettleSettings(shortlist=4, per_stone=2)
-    asked = iter(_drops(ranks))
-    taken = shortlist(asked, settings)
-    assert [(d.rank[0], d.key[0][0]) for d in taken] == [(0.1, 1), (0.1, 2), (0.2, 2), (0.4, 3)]
-    assert [d.spot for d in asked] == [5, 6]  # no further than needed
-    assert [d.spot for d in shortlist(_drops(ranks[3:5]), settings)] == [0, 1]
-    assert shortlist([], settings) == []
-
-
 def test_drops_are_above_what_is_there_and_inside_the_wall() -> None:
     step = _Step(rubble(), RUBBLE_SITE, 3)
     proposer = step.proposer()
@@ -250,16 +172,6 @@ def test_drops_are_above_what_is_there_and_inside_the_wall() -> None:
             other = shapely.Polygon(scene.polygons.polygon(k))
             over = shapely.intersection(shape, other)
             assert over.is_empty or over.bounds[2] - over.bounds[0] <= 0.51
-
-
-def test_a_scene_from_the_right_is_mirrored() -> None:
-    step = _Step(rubble(), RUBBLE_SITE, 3)
-    (left, low), (right, high) = (step.proposer().view(side) for side in ("left", "right"))
-    assert (left.side, right.side, right.width_px) == ("left", "right", 100.0)
-    for k in range(3):
-        mirrored = right.polygons.polygon(k)[::-1] * (-1.0, 1.0) + (100.0, 0.0)
-        assert mirrored == pytest.approx(left.polygons.polygon(k))
-    assert high.boxes[:, [0, 2]] == pytest.approx(100.0 - low.boxes[:, [2, 0]])
 
 
 # A slab, and the post that it may lie on.
@@ -375,29 +287,6 @@ def test_bricks_fill_a_wall_exactly(width: float, changes: dict[str, Any]) -> No
     assert Counter(planner.build.wall.labels.ravel().tolist()) == dict.fromkeys(range(1, 7), 200)
 
 
-def test_stones_are_let_go_beside_their_neighbours(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Columns of 2 to 5 px count as free when a neighbour is over them by less than a quarter."""
-    let_go = []
-
-    def watched(
-        stone: Turned, scene: Scene, start: tuple[float, float], *args: Any, **kw: Any
-    ) -> Any:
-        shape = shapely.Polygon(stone.corners + np.array(start))
-        others = [shapely.Polygon(scene.polygons.polygon(k)) for k in range(len(scene.polygons))]
-        beside = [o for o in others if o.bounds[0] < shape.bounds[0]]
-        let_go.append(min((shape.distance(other) for other in beside), default=1.0))
-        return come_to_rest(stone, scene, start, *args, **kw)
-
-    monkeypatch.setattr(settling, "come_to_rest", watched)
-    stones = blocks({i: (15 + i, 10) for i in range(1, 6)})
-    settings = greedy({"orientations": "sf", "vary": 0.0})
-    for scale in (0.22, 0.34, 0.5):
-        planner = finish(Planner(stones, Site.from_source(94, 12, scale), settings=settings))
-        assert len(planner.build.actions) == 5
-    assert len(let_go) > 10
-    assert min(let_go) == pytest.approx(0.02, abs=1e-6)
-
-
 @BOTH_RULES
 def test_what_was_asked_before_does_not_matter(rule: str) -> None:
     """A proposer that was asked before for some of the trials gives the same."""
@@ -423,7 +312,7 @@ def test_wedge_limits_are_in_source_px() -> None:
     settings = PlannerSettings().updated({"stabilise": {"margin": 0.1}, "wedge": {"area": 0.2}})
     stock = Stock(
         narrowest_px=4.0, mean_height_px=20.0, mean_area_px=400.0, median_area_px=400.0,
-        largest_id=9, sides=Sides(Counter({(7, 30): 2, (9, 9): 1})),
+        largest_id=9, sides=Counter({(7, 30): 2, (9, 9): 1}),
     )  # fmt: skip
     limits = wedge_limits(settings, stock, Site(100, 50, 0.5))
     # The median stone is 20 working px in size, 40 source px.

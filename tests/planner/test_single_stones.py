@@ -6,8 +6,8 @@ import pytest
 
 from drystone.errors import UsageError
 from drystone.model.site import Site
+from drystone.planner.craft import PoseCosts
 from drystone.planner.planner import Planner
-from drystone.planner.pose_costs import PoseCosts
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.workshop import Workshop
 from drystone.selection.scored import PIN_BONUS, ScoreSettings
@@ -49,7 +49,7 @@ def test_a_banned_stone_may_be_too_large() -> None:
     workshop = Workshop.prepare(stones, site, PlannerSettings(ban=(2,)))
     assert workshop.fitting == (1, 3)
     # Nobody waits for its sides, and wedges are numbered after all stones, banned ones too.
-    assert sum(workshop.sides.counts.values()) == 2
+    assert sum(workshop.sides.values()) == 2
     assert Workshop.prepare(stones, site, PlannerSettings(ban=(2, 3))).stock.largest_id == 3
 
 

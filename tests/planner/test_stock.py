@@ -5,7 +5,7 @@ import pytest
 
 from drystone.model.site import Site
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.stock import Rest, Sides, Stock
+from drystone.planner.stock import Rest, Stock, sides_of
 from drystone.planner.workshop import Workshop
 from tests.planner.scenes import blocks
 
@@ -17,7 +17,7 @@ def test_stock() -> None:
     assert (stock.narrowest_px, stock.largest_id) == (8.0, 300)
     assert stock.mean_height_px == pytest.approx(20 / 3)
     assert stock.mean_area_px == pytest.approx((200 + 32 + 72) / 3)
-    assert stock.sides.counts == {(10, 20): 1, (4, 8): 1, (6, 12): 1}
+    assert stock.sides == {(10, 20): 1, (4, 8): 1, (6, 12): 1}
     # One pose at a time is enough.
     assert Stock.of(map(workshop.initial, (7, 12, 300))) == stock
 
@@ -39,12 +39,12 @@ def test_sides_that_are_left() -> None:
     workshop = Workshop.prepare(stones, Site(40, 20), PlannerSettings())
     poses = {i: workshop.initial(i) for i in (1, 2, 3, 4)}
     sides = workshop.sides
-    assert sides.counts == {(10, 20): 2, (4, 8): 2}
-    left = sides.without([poses[1], poses[2]])
-    assert left.counts == {(10, 20): 1, (4, 8): 1}
-    assert sides.counts == {(10, 20): 2, (4, 8): 2}
-    assert left.without([poses[4]]).counts == {(10, 20): 1}
-    rest = Rest.of(Sides.of([poses[3], poses[4]]), workshop.site)
+    assert sides == {(10, 20): 2, (4, 8): 2}
+    left = sides - sides_of([poses[1], poses[2]])
+    assert left == {(10, 20): 1, (4, 8): 1}
+    assert sides == {(10, 20): 2, (4, 8): 2}
+    assert left - sides_of([poses[4]]) == {(10, 20): 1}
+    rest = Rest.of(sides_of([poses[3], poses[4]]), workshop.site)
     assert rest.width_px.tolist() == Rest.of(left, workshop.site).width_px.tolist()
     assert rest.height_px.tolist() == Rest.of(left, workshop.site).height_px.tolist()
 

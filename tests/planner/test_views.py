@@ -1,7 +1,6 @@
 """What each side sees grows with the wall, and is the same as seen at once."""
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -9,7 +8,6 @@ from drystone.kernels.polygons import Points, Polygons, no_polygons
 from drystone.kernels.profiles import bare, raised
 from drystone.model.placement import Side
 from drystone.model.site import Site
-from drystone.planner import views
 from drystone.planner.views import OutlineView, Views
 from tests.polygons import random_polygon
 from tests.strategies import repeatable
@@ -52,22 +50,6 @@ def test_a_view_does_not_depend_on_what_was_asked_for_before(
         built = no_polygons().added(polygons[:count])
         side: Side = "left" if from_left else "right"
         assert bits(found.of(built, side)) == bits(at_once(built, side))
-
-
-@pytest.mark.parametrize("side", ["left", "right"])
-def test_only_what_is_new_is_added(side: Side, monkeypatch: pytest.MonkeyPatch) -> None:
-    polygons, new = heap(3, 4), []
-
-    def watched(*args: object) -> object:
-        new.append(args[2])
-        return raised(*args)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(views, "raised", watched)
-    found = Views(SITE)
-    for count, expected in ((2, [0, 1]), (2, []), (4, [2, 3]), (3, [0, 1, 2]), (4, [3])):
-        new.clear()
-        found.of(no_polygons().added(polygons[:count]), side)
-        assert new == expected
 
 
 def test_a_wall_that_differs_in_the_last_bit_of_a_corner_is_another_one() -> None:

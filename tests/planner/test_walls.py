@@ -17,7 +17,7 @@ from drystone.planner.build import Build, Candidate, Proposal
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.planner import Planner
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import RasterProposer, Trial
+from drystone.planner.proposing import RasterProposer, StoneTrial
 from drystone.planner.settings import PlannerSettings
 from drystone.search.plan_result import mean_top
 from drystone.search.plan_wall import plan_wall, working_scale
@@ -93,9 +93,9 @@ def _judged(evaluator: Evaluator, build: Build, proposal: Proposal) -> Candidate
     return evaluator.judge(build, Landscape.of(build.wall, proposal.side), proposal)
 
 
-def _trial(planner: Planner, stone_id: int) -> Trial:
+def _trial(planner: Planner, stone_id: int) -> StoneTrial:
     workshop, build = planner.workshop, planner.build
-    return Trial(workshop.poses(stone_id), Landscape.of(build.wall), workshop.rest(build))
+    return StoneTrial(workshop.poses(stone_id), Landscape.of(build.wall))
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from drystone.kernels.profiles import bare, hanging, raised
 from drystone.model.placement import Side
 from drystone.planner.laying_settings import LayingSettings
 from drystone.search.letting_go import Aim, Hand, Resting, SideView
-from drystone.settle.rest import Scene, Turned
+from drystone.settle.rest import SettlingScene, Turned
 from drystone.settle.wedged import wedged
 from tests.planner.scenes import RUBBLE_SITE, rubble
 from tests.search.yards import Plot
@@ -189,7 +189,7 @@ def test_a_view_grows_as_if_all_were_seen_at_once(side: Side) -> None:
         assert outlines is not None
         view = view.grown(outlines)
         assert view.grown(outlines) is view
-    scene = Scene.of(outlines.polygons, 100.0, side, 0.58)
+    scene = SettlingScene.of(outlines.polygons, 100.0, side, 0.58)
     profile = bare(77)
     for index in range(len(scene.polygons)):
         profile = raised(profile, scene.polygons.polygon(index), index, 1.3)

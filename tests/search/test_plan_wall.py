@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import drystone as ds
-from drystone.cli.resuming import course_heights
 from drystone.model.wall import Wall
 from drystone.planner.deadline import Deadline
 from drystone.planner.events import OUT_OF_TIME
@@ -100,7 +99,7 @@ def planned(until: Deadline | None, **options: Any) -> PlanResult:
 
 def gone_on_with(result: PlanResult) -> dict[str, Any]:
     """What `--resume` hands over."""
-    return {"built": result.wall, "course_heights_px": course_heights(result.plan)}
+    return {"built": result.wall, "course_heights_px": result.plan.course_heights_px}
 
 
 def steps_of(result: PlanResult) -> list[Any]:

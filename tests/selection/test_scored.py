@@ -22,5 +22,5 @@ def test_equal_costs_go_by_their_keys() -> None:
 
 
 def test_at_least_one_action_is_analysed() -> None:
-    with pytest.raises(ValueError, match="analysed must be positive"):
+    with pytest.raises(ValueError, match="analysed must be at least 1"):
         ScoreSettings(analysed=0)

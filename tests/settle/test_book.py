@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from drystone.kernels.polygons import Points, mirrored_polygon, polygon_edges
-from drystone.kernels.profiles import StoneProfile, hanging
+from drystone.kernels.polygons import mirrored_polygon, polygon_edges
+from drystone.kernels.profiles import hanging
 from drystone.kernels.raster import turn
 from drystone.model.outline import stone_outline
 from drystone.model.stone import Stone
@@ -35,33 +35,3 @@ def test_hung_outlines_are_turned_then_mirrored_for_the_right(angle_deg: float) 
         for mine, expected in zip(hung.profile, hanging(hung.turned.corners, 2.0), strict=True):
             assert np.array_equal(mine, expected)
     assert (left.profile.left, left.profile.right) == (-right.profile.right, -right.profile.left)
-
-
-def test_each_is_made_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    made = []
-
-    def watched(corners: Points, cell_px: float) -> StoneProfile:
-        made.append(corners)
-        return hanging(corners, cell_px)
-
-    monkeypatch.setattr("drystone.settle.book.hanging", watched)
-    book = OutlineBook(0.35, 1.0)
-    first = book.hung(TRAPEZE, 90.0, "left")
-    assert book.hung(TRAPEZE, 90.0, "left") is first
-    others = [
-        book.hung(TRAPEZE, 90.0, "right"),
-        book.hung(TRAPEZE, -90.0, "left"),
-        book.hung(Stone(8, TRAPEZE.mask), 90.0, "left"),
-    ]
-    assert len({id(hung) for hung in (first, *others)}) == len(made) == 4
-
-
-def test_what_was_not_asked_for_for_longest_is_made_again() -> None:
-    book = OutlineBook(0.35, 1.0, budget_bytes=8000)  # one takes 3000 and its corners
-    first, second = book.hung(TRAPEZE, 0.0, "left"), book.hung(TRAPEZE, 1.0, "left")
-    assert book.hung(TRAPEZE, 0.0, "left") is first
-    book.hung(TRAPEZE, 2.0, "left")
-    assert book.hung(TRAPEZE, 0.0, "left") is first
-    again = book.hung(TRAPEZE, 1.0, "left")
-    assert again is not second
-    assert again.turned.corners.tobytes() == second.turned.corners.tobytes()

@@ -88,24 +88,6 @@ def test_over_the_edge_there_are_no_pixels(over: float) -> None:
     assert made.posed.anchor == pytest.approx((6.0, 4.0 + over / 2.0))
 
 
-@pytest.mark.parametrize(
-    ("corners", "at", "shape"),
-    [
-        (box(-0.6, 0.0, 4.0, 3.0), (5, 0), (3, 4)),
-        (box(8.0, 0.0, 12.6, 3.0), (5, 8), (3, 4)),
-        (box(2.0, 5.0, 4.0, 8.6), (0, 2), (3, 2)),
-    ],
-    ids=["left", "right", "top"],
-)
-def test_pixels_are_cropped_to_the_wall(
-    corners: Points, at: tuple[int, int], shape: tuple[int, int]
-) -> None:
-    made = placed(Site(12, 8), corners)
-    assert made is not None
-    assert ((made.row, made.col), made.posed.mask.shape) == (at, shape)
-    assert made.posed.mask.all()
-
-
 def test_wedges() -> None:
     site = Site(12, 8, 0.5)
     corners = box(4.0, 0.0, 8.0, 2.0)

@@ -21,7 +21,7 @@ from drystone.kernels.settling import Status, settle
 from drystone.model.placement import Side
 from drystone.settle.rest import (
     Repose,
-    Scene,
+    SettlingScene,
     Turned,
     come_to_rest,
     lay,
@@ -52,10 +52,10 @@ def box(width: float, height: float) -> Points:
 BRICK = box(20.0, 10.0)
 
 
-def scene_of(others: list[Points], side: Side = "left", width: float = 200.0) -> Scene:
+def scene_of(others: list[Points], side: Side = "left", width: float = 200.0) -> SettlingScene:
     """The scene of outlines that are given as the side sees them."""
     seen = no_polygons().added(others)
-    return Scene.of(seen if side == "left" else seen.mirrored(width), width, side, MU)
+    return SettlingScene.of(seen if side == "left" else seen.mirrored(width), width, side, MU)
 
 
 def turned(outline: Points, angle_deg: float = 0.0, side: Side = "left") -> Turned:
@@ -264,20 +264,6 @@ def test_poses_are_on_a_grid_and_angles_in_one_turn(side: Side) -> None:
         found.settled.corners[0] = 0.0
 
 
-def test_the_pose_of_a_scene_from_the_right_is_the_stones_own() -> None:
-    """A stone is turned and seen mirrored; it is never mirrored itself."""
-    outline = np.array([[-6.0, -4.0], [8.0, -4.0], [-2.0, 8.0]])
-    scene = scene_of([], "right", 100.0)
-    stone = Turned.of(outline, 30.0, "right", 9.0)
-    assert (stone.corners == mirrored_polygon(turn(outline, 30.0), 0.0)).all()
-    found = come_to_rest(stone, scene, (30.0, 12.0), energy(max_turn_deg=40.0))
-    assert found is not None
-    corners = found.settled.corners
-    assert area_and_centroid(corners)[0] == pytest.approx(84.0)
-    assert (found.settled.x_px, found.settled.y_px) == pytest.approx((70.0, 4.01), abs=0.5)
-    assert corners[:, 1].min() == pytest.approx(CLEAR, abs=1e-3)
-
-
 @st.composite
 def released(draw: st.DrawFn) -> tuple[Points, tuple[float, float], Polygons, float]:
     """A stone from its centroid, where it is let go among others on the grid, and its angle."""
@@ -297,8 +283,8 @@ def test_from_the_right_everything_is_mirrored(
     outline, start, around, angle_deg = scene
     settings = SettleSettings(method=method, margin=0.0, max_turn_deg=40.0)
     size = math.sqrt(area_and_centroid(outline)[0])
-    left = Scene.of(around, WIDTH, "left", MU)
-    right = Scene.of(around.mirrored(WIDTH), WIDTH, "right", MU)
+    left = SettlingScene.of(around, WIDTH, "left", MU)
+    right = SettlingScene.of(around.mirrored(WIDTH), WIDTH, "right", MU)
     one = Turned.of(outline, angle_deg, "left", size)
     other = Turned.of(mirrored_polygon(outline, 0.0), -angle_deg, "right", size)
     for first, second in (
@@ -321,23 +307,6 @@ def test_from_the_right_everything_is_mirrored(
         assert mirrored == pytest.approx(first.settled.corners, abs=2e-6)
 
 
-@repeatable(60)
-@given(scene=released(), method=st.sampled_from(METHODS), side=st.sampled_from(SIDES))
-def test_what_may_not_turn_has_the_angle_of_its_pose(
-    scene: tuple[Points, tuple[float, float], Polygons, float], method: Method, side: Side
-) -> None:
-    outline, start, around, angle_deg = scene
-    settings = SettleSettings(method=method, margin=0.0)
-    view = Scene(around, WIDTH, side, MU)
-    stone = turned(outline, angle_deg, side)
-    for found in (
-        come_to_rest(stone, view, start, settings, turns=False),
-        touch_down(stone, view, start, settings),
-    ):
-        if found is not None:
-            assert (found.angle_deg, found.turned) == (stone.angle_deg, False)
-
-
 def test_rounding_is_no_turn(monkeypatch: pytest.MonkeyPatch) -> None:
     """The linear programs of a stone that may not turn leave turns of about 1e-18."""
     slightly = "drystone.settle.rest.settle"
@@ -352,20 +321,6 @@ def test_rounding_is_no_turn(monkeypatch: pytest.MonkeyPatch) -> None:
     free = come_to_rest(stone, scene, (50.0, 12.0), energy())
     assert free is not None
     assert free.turned
-
-
-def test_a_repose_is_made_from_what_settling_found() -> None:
-    scene, stone = scene_of([], "right", 100.0), turned(BRICK, side="right")
-    rules = ways(stone, scene, energy())[1]
-    found = settle(stone.corners, stone.edges, (30.0, 12.0, 0.1), no_polygons(), 100.0, rules)
-    made = repose(stone, scene, found)
-    assert made.angle_deg == pytest.approx(-math.degrees(found.angle))
-    assert made.settled.x_px == pytest.approx(100.0 - found.x, abs=1.0 / GRID)
-    assert (made.turned, made.margin) == (True, found.margin)
-    # Angles are between half turns.
-    for angle_deg, expected in ((177.0, -177.0), (-177.0, -171.0), (180.0, -174.0)):
-        over = repose(turned(BRICK, angle_deg), scene_of([]), found._replace(angle=math.radians(6)))
-        assert over.angle_deg == pytest.approx(expected)
 
 
 def test_a_stone_that_rests_where_it_is_laid_stays_there() -> None:

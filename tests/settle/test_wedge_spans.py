@@ -7,8 +7,15 @@ from hypothesis import given
 
 from drystone.kernels.crevice import crevice
 from drystone.kernels.polygons import Points, Polygons, no_polygons, on_grid
-from drystone.settle.wedge import PLACES, gridded, rests, wedges_below
-from drystone.settle.wedge_spans import Slabs, WedgeLimits, all_spans
+from drystone.settle.wedge import (
+    PLACES,
+    CreviceSlabs,
+    WedgeLimits,
+    all_spans,
+    gridded,
+    rests,
+    wedges_below,
+)
 from tests.naive.wedge_shape import objections
 from tests.settle.piles import WIDTH, piles
 from tests.settle.test_wedge import SIZES, STRICT, box
@@ -20,7 +27,7 @@ LIMITS = WedgeLimits(least_thickness=0.6, greatest_height=2.5)
 
 def spans(limits: WedgeLimits) -> list[tuple[float, float]]:
     space = crevice(PLANK, no_polygons().added([POST]), limits.clearance_px)
-    return all_spans(Slabs.of(space), PLACES, limits)
+    return all_spans(CreviceSlabs.of(space), PLACES, limits)
 
 
 def test_each_part_of_a_crevice_has_its_places_and_itself() -> None:
@@ -48,11 +55,11 @@ def test_limits_hold_for_whole_parts_as_well() -> None:
     # The gap rises by 4 in 10: too high over its whole length, and at the end.
     ramp = np.array([[10.0, 1.0], [20.0, 5.0], [20.0, 8.0], [10.0, 8.0]])
     space = crevice(ramp, no_polygons(), 0.01)
-    for start, stop in all_spans(Slabs.of(space), PLACES, LIMITS):
+    for start, stop in all_spans(CreviceSlabs.of(space), PLACES, LIMITS):
         assert 1.0 + 0.4 * (stop - 10.0) <= 2.5 + 0.05
         assert stop - start >= 1.0 - 1e-9
     steep = WedgeLimits(least_thickness=1.0, greatest_height=2.5, mu=0.39)
-    assert all_spans(Slabs.of(space), PLACES, steep) == []
+    assert all_spans(CreviceSlabs.of(space), PLACES, steep) == []
 
 
 def test_the_stone_is_no_obstacle_to_its_own_wedges() -> None:

@@ -14,7 +14,7 @@ from drystone.kernels.polygons import (
     no_polygons,
 )
 from drystone.model.placement import Side
-from drystone.settle.rest import Scene, Turned
+from drystone.settle.rest import SettlingScene, Turned
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import WedgeLimits
 from drystone.settle.wedged import Wedged, wedged
@@ -35,7 +35,7 @@ def lowered(
     """The plank let go as the side sees it, in a scene that it sees the same from either side."""
     around = no_polygons().added(others)
     around = around if side == "left" else around.mirrored(WIDTH)
-    scene = Scene.of(around, WIDTH, side, 0.58)
+    scene = SettlingScene.of(around, WIDTH, side, 0.58)
     return wedged(Turned.of(PLANK, 0.0, side, 20.0**0.5), scene, start, SettleSettings(), limits)
 
 

@@ -51,30 +51,6 @@ def test_a_stone_that_bridges_two_pillars_is_stable() -> None:
     assert support.falls(5.0) == 0
 
 
-def test_supports_of_different_heights_count_together() -> None:
-    stone = np.ones((3, 8), bool)
-    stone[2, :6] = False
-    occupied = scene("........", "........", "##......", "##....##")
-    posed = PoseBook().pose(Stone(1, stone), 0.0)
-    support = support_polyline(occupied, posed, 0, 0)
-    assert support == Support(left_x=0, right_x=8, left_row=2, right_row=3)
-
-
-def test_a_touch_at_the_side_or_from_above_carries_nothing() -> None:
-    occupied = scene("#######", "#..##..", "...#...", ".......")
-    assert support_polyline(occupied, block(2, 3), 1, 4) is None
-    assert support_polyline(occupied[:, ::-1], block(1, 3), 2, 4) is None
-
-
-def test_the_ends_of_the_wall_carry_nothing() -> None:
-    assert support_polyline(np.zeros((6, 3), bool), block(2, 3), 1, 0) is None
-
-
-def test_the_ground_carries() -> None:
-    support = support_polyline(np.zeros((6, 9), bool), block(2, 3), 4, 3)
-    assert support == Support(left_x=3, right_x=6, left_row=6, right_row=6)
-
-
 @pytest.mark.parametrize(
     ("x_c", "margin", "falls"),
     [

@@ -93,26 +93,6 @@ def test_smallest_and_largest_size(height: int, mean: float, smallest: int, foun
     assert (wedge is not None) is found
 
 
-def test_a_gap_narrower_than_a_wedge_takes_none() -> None:
-    occupied = ledge()
-    trial = bar_on_the_ledge(occupied, PoseBook())
-    occupied[-4:, 17:31] = False
-    occupied[:, 33:] = True
-    occupied = np.vstack([occupied, np.zeros((20, 50), bool)])
-    occupied[24:, :14] = True
-    occupied[22, 31] = True  # one column, the only one within reach
-    assert wedge_under(occupied, trial, ID, 12.0, StabiliseSettings()) is None
-
-
-def test_stable_and_floating_stones_get_none() -> None:
-    occupied = ledge()
-    settings = StabiliseSettings()
-    stable = bar_on_the_ledge(occupied, PoseBook(), col=0, length=20)
-    assert wedge_under(occupied, stable, ID, 12.0, settings) is None
-    floating = PoseBook().pose(Stone(3, np.ones((4, 9), bool)), 0.0), 3, 20
-    assert wedge_under(occupied, floating, ID, 12.0, settings) is None
-
-
 def test_columns_that_do_not_help_are_not_wedged() -> None:
     """A low shelf just beside the support but short of the centre of mass holds nothing."""
     occupied = ledge()

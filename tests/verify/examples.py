@@ -18,7 +18,6 @@ from drystone.planner.build import Build
 from drystone.planner.evaluate import action_indices
 from drystone.planner.settings import PlannerSettings
 from drystone.poses import PoseBook
-from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.limit import lateral_resistance
 
 SETTINGS = PlannerSettings(orientations="quarter", two_sided=True)
@@ -93,7 +92,7 @@ def true_plan(built: Wall, stones: StoneSet) -> Plan:
         carried = lateral_resistance(model_from_labels(wall.labels, settings.mu).model)
         indices, course_height = action_indices(
             Landscape.of(before, placement.side),
-            Stabilised(placement, group.wedges),
+            group,
             carried,
             11.5 * site.scale,
             NARROWEST_PX * site.scale,

@@ -26,7 +26,7 @@ from drystone.cli.keeping import Keeper
 from drystone.cli.output import print_json, print_table, working_in
 from drystone.cli.progress import step_bar
 from drystone.cli.request import PlanOutput, PlanRequest
-from drystone.cli.resuming import course_heights, earlier_run, made_of, tell_finished
+from drystone.cli.resuming import earlier_run, made_of, tell_finished
 from drystone.cli.scale import picture_size_px, refuse_outside, scale_notice
 from drystone.drawing.words.planned import ending, rows, summary
 from drystone.drawing.words.times import profile_rows, profile_summary
@@ -82,6 +82,7 @@ def plan_and_write(request: PlanRequest, output: PlanOutput, *, prepared: bool =
         return _EXIT[tell_finished(earlier.plan, request, output)]
     earlier.tell()
     begin = plan_to_begin_with(request)
+    begun = earlier.plan or begin
     _check_stones(request)
     # What would stop the report after the search is refused before it: E129, E189.
     check_place(photo, folder)
@@ -111,7 +112,7 @@ def plan_and_write(request: PlanRequest, output: PlanOutput, *, prepared: bool =
                 n_jobs=request.jobs,
                 callbacks=callbacks,
                 built=None if earlier.plan is None else rebuild_wall(earlier.plan, stones),
-                course_heights_px=course_heights(earlier.plan or begin),
+                course_heights_px=None if begun is None else begun.course_heights_px,
                 begin=None if begin is None else rebuild_wall(begin, stones),
                 choice=output.pareto,
                 keep=keeper,

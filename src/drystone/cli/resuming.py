@@ -140,7 +140,7 @@ def tell_finished(plan: Plan, request: PlanRequest, output: PlanOutput) -> str:
     )
     wall = rebuild_wall(plan, request.stones)
     planner = Planner(request.stones, wall.site, seed=plan.seed, settings=request.settings)
-    planner.restore(wall, course_heights(plan))
+    planner.restore(wall, plan.course_heights_px)
     # A plan keeps why it ended in words only, and the words are all that is asked for.
     planner.stopped = Stopped("search", plan.stopped)
     result = result_of(planner)
@@ -157,15 +157,3 @@ def _without_budget(settings: Mapping[str, Any]) -> dict[str, Any]:
     search = dict(settings.get("search", {}))
     search.pop("budget", None)
     return {**settings, "search": search}
-
-
-def course_heights(plan: Plan | None) -> dict[int, float]:
-    """Return the heights that the courses of a plan were begun with, by their first stone; px."""
-    if plan is None:
-        return {}
-    to_px = plan.working_scale * (plan.px_per_m or 1.0)
-    return {
-        step.stone: step.course_height * to_px
-        for step in plan.stone_steps
-        if step.course_height is not None
-    }

@@ -97,17 +97,10 @@ class Pose3d:
 
 
 def wall_pose(x_m: float, z_m: float, thickness_m: float, angle_deg: float) -> Pose3d:
-    """Return where a part stands in the wall.
+    """Return where a part stands in a wall of some thickness.
 
-    Parameters
-    ----------
-    x_m, z_m : float
-        Its centroid along the wall and above the ground.
-    thickness_m : float
-        Of the wall.
-    angle_deg : float
-        How far it is turned, counter-clockwise as seen from the front.  Who looks at the front
-        looks along +Y, so this is a turn by -angle_deg about +Y.
+    It is turned counter-clockwise as seen from the front.  Who looks at the front looks along +Y,
+    so this is a turn by -angle_deg about +Y.
     """
     half = math.radians(angle_deg) / 2.0
     turn = Quaternion(0.0, -math.sin(half), 0.0, math.cos(half))
@@ -115,39 +108,13 @@ def wall_pose(x_m: float, z_m: float, thickness_m: float, angle_deg: float) -> P
 
 
 def photo_pose(x_m: float, y_m: float, thickness_m: float) -> Pose3d:
-    """Return where a part lies in the photo's frame, its front face up.
-
-    Parameters
-    ----------
-    x_m, y_m : float
-        Its centroid in the photo, y up.
-    thickness_m : float
-        Of the part.
-    """
+    """Return where a part of some thickness lies in the photo's frame (y up), its front face up."""
     half = math.sqrt(0.5)
     return Pose3d(x_m, y_m, thickness_m / 2.0, Quaternion(-half, 0.0, 0.0, half))
 
 
 def metres_of(length_px: float, px_per_m: float | None) -> float:
-    """Turn a length in source px into metres.
-
-    Parameters
-    ----------
-    length_px : float
-        The length.
-    px_per_m : float or None
-        Source px in a metre.
-
-    Raises
-    ------
-    UsageError
-        E131: there is no scale.
-
-    Examples
-    --------
-    >>> metres_of(50.0, 200.0)
-    0.25
-    """
+    """Turn a length in source px into metres; UsageError (E131) where there is no scale."""
     if px_per_m is None:
         raise UsageError(
             "E131",

@@ -44,20 +44,11 @@ class Landscape:
 
     Placing from the right is placing from the left in a mirror: the view is mirrored, and so are
     the masks that are tried in it; the positions that come out are mirrored back.  No stone is.
-
-    Parameters
-    ----------
-    occupied : (height_px, width_px) bool array
-        Stones and wedges, row 0 at the top, in view columns.
-    boxes : tuple of Box
-        Of the stones (not the wedges), in order of placement.
-    side : {"left", "right"}
-        Building side: which end of the wall is on the left of the view.
     """
 
-    occupied: Mask
-    boxes: tuple[Box, ...]
-    side: Side = "left"
+    occupied: Mask  # (height_px, width_px): stones and wedges, row 0 at the top, in view columns
+    boxes: tuple[Box, ...]  # of the stones (not the wedges), in order of placement
+    side: Side = "left"  # building side: which end of the wall is on the left of the view
 
     @classmethod
     def of(cls, wall: Wall, side: Side = "left") -> "Landscape":

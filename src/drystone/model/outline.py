@@ -26,29 +26,14 @@ STRAIGHT = 1e-9
 def stone_outline(mask: Mask, tolerance_px: float) -> Points:
     """Return the outline of some pixels as a simple polygon about their centroid.
 
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        One 8-connected piece, row 0 at the top.  What counts is its :func:`solid`: what lies in a
-        stone meets no other.
-    tolerance_px : float
-        How far the polygon may stay away from the contour of the pixels, 0 or more, before it is
-        shifted and scaled.
+    The mask has row 0 at the top and is one 8-connected piece.  What counts is its :func:`solid`:
+    what lies in a stone meets no other.  The tolerance says how far the polygon may stay away from
+    the contour of the pixels before it is shifted and scaled.
 
-    Returns
-    -------
-    corners : (n, 2) float array
-        x to the right and y up from the centroid of the solid, counter-clockwise, not closed; it
-        neither crosses nor touches itself, and no corner is repeated or on a line with its
-        neighbours.  Every point of the contour is within :func:`reach_px` of it.
+    The corners have x to the right and y up, are counter-clockwise and not closed; the polygon
+    neither crosses nor touches itself, and no corner is repeated or on a line with its neighbours.
+    Every point of the contour is within :func:`reach_px` of it.
 
-    Raises
-    ------
-    ValueError
-        When there is no pixel, or the tolerance is below 0.
-
-    Notes
-    -----
     The contour at level 1/2 goes through the midpoints of pixel edges.  It cuts off every corner
     of a pixel, so a brick would get eight corners: where the cut is between two sides along pixel
     edges the corner (√2/4 px from the contour) is put back.  Steps of one pixel, of which slopes
@@ -63,11 +48,6 @@ def stone_outline(mask: Mask, tolerance_px: float) -> Points:
     there are only a few pixels, so that its area and its centroid are those of the pixels.  A
     stone then has one weight and one centre of mass: images, outlines and statics agree on
     where it balances, and no pose has to carry two centroids.
-
-    Examples
-    --------
-    >>> stone_outline(np.ones((2, 4), bool), 0.35).tolist()
-    [[2.0, 1.0], [-2.0, 1.0], [-2.0, -1.0], [2.0, -1.0]]
     """
     if tolerance_px < 0.0:
         raise ValueError(f"the tolerance must be 0 or more, not {tolerance_px}")
@@ -92,15 +72,7 @@ def reach_px(tolerance_px: float) -> float:
 
 
 def solid(mask: Mask) -> Mask:
-    """Return the largest 8-connected piece of some pixels, its holes filled.
-
-    Examples
-    --------
-    >>> solid(np.array([[1, 1, 1, 0, 1], [1, 0, 1, 0, 1], [1, 1, 1, 0, 1]], bool)).astype(int)
-    array([[1, 1, 1, 0, 0],
-           [1, 1, 1, 0, 0],
-           [1, 1, 1, 0, 0]])
-    """
+    """Return the largest 8-connected piece of some pixels, its holes filled."""
     filled = ndimage.binary_fill_holes(mask)
     pieces, count = ndimage.label(filled, np.ones((3, 3)))
     if count > 1:
@@ -109,13 +81,7 @@ def solid(mask: Mask) -> Mask:
 
 
 def centroid_of(mask: Mask) -> tuple[float, float]:
-    """Return the centroid of some pixel squares, (x, y) from the mask's bottom-left corner, y up.
-
-    Examples
-    --------
-    >>> centroid_of(np.array([[1, 0], [1, 1]], bool))
-    (0.8333333333333334, 0.8333333333333334)
-    """
+    """Return the centroid (x, y) of pixel squares from the mask's bottom-left corner, y up."""
     height, width = mask.shape
     count = int(mask.sum())
     x = float(mask.sum(axis=0) @ (np.arange(width) + 0.5)) / count
@@ -124,35 +90,15 @@ def centroid_of(mask: Mask) -> tuple[float, float]:
 
 
 def farthest_px(points: Points, outline: Points) -> float:
-    """Return the largest distance of a point to an outline, whichever side it is on.
-
-    Examples
-    --------
-    >>> square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
-    >>> farthest_px(np.array([[1.0, 0.5], [3.0, 1.0]]), square)
-    1.0
-    """
+    """Return the largest distance of a point to an outline, whichever side it is on."""
     ring = shapely.LinearRing(outline)
     return float(shapely.distance(shapely.points(points), ring).max())
 
 
 def second_moments(corners: Points) -> tuple[float, float, float]:
-    """Return the second moments of area of a simple polygon about its centroid.
+    """Return the second moments of area xx, yy and xy of a simple polygon about its centroid.
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        Counter-clockwise.
-
-    Returns
-    -------
-    xx, yy, xy : float
-        Integrals of x x, y y and x y over the area, from the centroid; xx + yy is the polar one.
-
-    Examples
-    --------
-    >>> second_moments(np.array([[0.0, 0.0], [6.0, 0.0], [6.0, 2.0], [0.0, 2.0]]))
-    (36.0, 4.0, 0.0)
+    The corners are counter-clockwise; xx + yy is the polar moment.
     """
     _, *centre = area_and_centroid(corners)
     x, y = (corners - np.array(centre)).T

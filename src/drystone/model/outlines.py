@@ -14,21 +14,11 @@ Outlined = tuple[int, Points]
 
 @dataclass(frozen=True, eq=False)
 class Outlines:
-    """Outlines in the wall frame, source px; immutable.
+    """Outlines in the wall frame, source px; immutable."""
 
-    Parameters
-    ----------
-    polygons : Polygons
-        Of stones and wedges, in the order of placement.
-    ids : tuple of int
-        Of each.
-    shares : Shares
-        How much of each working px they cover.
-    """
-
-    polygons: Polygons
+    polygons: Polygons  # of stones and wedges, in the order of placement
     ids: tuple[int, ...]
-    shares: Shares
+    shares: Shares  # how much of each working px they cover
 
     @classmethod
     def empty(cls, site: Site) -> "Outlines":
@@ -41,15 +31,7 @@ class Outlines:
         return [(block, self.polygons.polygon(i)) for i, block in enumerate(self.ids)]
 
     def added(self, blocks: Sequence[Outlined], scale: float) -> "Outlines":
-        """Return these outlines with a stone and its wedges.
-
-        Parameters
-        ----------
-        blocks : sequence of (int, (n, 2) float array)
-            Id and corners of each.
-        scale : float
-            Working resolution over source resolution.
-        """
+        """Return these outlines with a stone and its wedges; scale: working over source px."""
         shares = self.shares
         for block_id, corners in blocks:
             shares = shares.added(block_id, *coverage(corners * scale))

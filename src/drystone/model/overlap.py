@@ -35,42 +35,18 @@ def shape_of(corners: Points) -> shapely.Geometry:
 
 
 def common_parts(first: shapely.Geometry, second: shapely.Geometry) -> tuple[shapely.Polygon, ...]:
-    """Return the areas that two shapes have in common; none when they only touch.
-
-    Parameters
-    ----------
-    first, second : shapely geometry
-        Areas, in any unit of length.
-
-    Examples
-    --------
-    >>> square = shapely.box(0, 0, 2, 2)
-    >>> [part.area for part in common_parts(square, shapely.box(1, 1, 3, 3))]
-    [1.0]
-    >>> common_parts(square, shapely.box(2, 0, 4, 2))
-    ()
-    """
+    """Return the areas that two shapes have in common; none when they only touch."""
     one, other, origin = _near(first, second)
     return tuple(shapely.transform(part, lambda xy: xy + origin) for part in _common(one, other))
 
 
 def overlap_depth(first: shapely.Geometry, second: shapely.Geometry) -> float:
-    """Return how deep two areas lie in each other.
+    """Return how deep two areas lie in each other; 0 when they touch or stay apart.
 
     The depth is how far the surface of one reaches below the surface of the other: the largest
     distance of a point on the rim of the common area to the boundary of either area.  It is at
     least the radius of the largest circle in the common area, which counts when two areas are
-    almost the same.  0 when they touch or stay apart.
-
-    Parameters
-    ----------
-    first, second : shapely geometry
-        Areas, in any unit of length.
-
-    Examples
-    --------
-    >>> overlap_depth(shapely.box(0, 0, 4, 2), shapely.box(0, 1.75, 4, 4))
-    0.25
+    almost the same.
     """
     one, other, _ = _near(first, second)
     parts = _common(one, other)
@@ -87,19 +63,9 @@ def overlap_depth(first: shapely.Geometry, second: shapely.Geometry) -> float:
 def deepest_overlap(
     outlines: Sequence[tuple[int, shapely.Geometry]],
 ) -> tuple[float, tuple[int, int] | None]:
-    """Return the largest overlap depth of two of many outlines.
+    """Return the largest overlap depth of two of many outlines, and the ids of the two, if any do.
 
-    Parameters
-    ----------
-    outlines : sequence of (int, shapely geometry)
-        Id and area of each, in the order of placement.
-
-    Returns
-    -------
-    depth : float
-        In the unit of the outlines.
-    at : (int, int) or None
-        Ids of the two, the one placed first coming first; None when no two overlap.
+    Outlines are ids and areas in the order of placement; the one placed first comes first.
     """
     if len(outlines) < 2:
         return 0.0, None

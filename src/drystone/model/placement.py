@@ -15,19 +15,12 @@ Side = Literal["left", "right"]
 
 @dataclass(frozen=True, eq=False)
 class Settled:
-    """Where a stone lies exactly, on its outline (DESIGN 4.9).
+    """Where a stone lies exactly, on its outline (DESIGN 4.9)."""
 
-    Parameters
-    ----------
-    x_px, y_px : float
-        Its centroid in the wall frame, *source* px.
-    corners : (n, 2) float array
-        Its outline there, counter-clockwise, source px.
-    """
-
+    # its centroid in the wall frame, *source* px
     x_px: float
     y_px: float
-    corners: Points
+    corners: Points  # (n, 2): its outline there, counter-clockwise, source px
 
     def __post_init__(self) -> None:
         self.corners.flags.writeable = False
@@ -35,33 +28,30 @@ class Settled:
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """A posed stone at a place in the wall.
+    """A posed stone at a place in the wall."""
 
-    Parameters
-    ----------
-    posed : PosedStone
-        The stone, turned.  Of a settled stone its pixels are those of the wall that it fills.
-    row, col : int
-        Top-left corner of its mask in the wall image (row 0 at the top of the site).
-    side : {"left", "right"}
-        The end of the wall from which it was placed.
-    rotation_moves : int
-        How many pivots stabilisation turned it about; 1 for a stone that turned as it settled.
-    settled : Settled or None
-        Where it lies exactly; None when the stones of the wall are their pixels.
-    """
-
+    # the stone, turned.  Of a settled stone its pixels are those of the wall that it fills.
     posed: PosedStone
+    # top-left corner of its mask in the wall image (row 0 at the top of the site)
     row: int
     col: int
-    side: Side = "left"
+    side: Side = "left"  # the end of the wall from which it was placed
+    # how many pivots stabilisation turned it about; 1 for a stone that turned as it settled
     rotation_moves: int = 0
+    # where it lies exactly; None when the stones of the wall are their pixels
     settled: Settled | None = None
 
     @property
     def stone_id(self) -> int:
         """Id of the stone in the source image."""
         return self.posed.stone.id
+
+    @property
+    def exact(self) -> Settled:
+        """Where it lies exactly; ValueError for a stone that is its pixels."""
+        if self.settled is None:
+            raise ValueError(f"stone {self.stone_id} is its pixels")
+        return self.settled
 
     @property
     def window(self) -> tuple[slice, slice]:
@@ -82,28 +72,16 @@ class Placement:
 
 @dataclass(frozen=True, eq=False)
 class Wedge:
-    """A small stone cut to fill the gap under a stone's free side (§3.7).
+    """A small stone cut to fill the gap under a stone's free side (§3.7)."""
 
-    Parameters
-    ----------
-    id : int
-        Its value in the wall image; larger than every stone's id.
-    under : int
-        Id of the stone that it supports.
-    mask : (h, w) bool array
-        Its pixels, cropped, row 0 at the top.
-    row, col : int
-        Top-left corner of the mask in the wall image.
-    corners : (n, 2) float array or None
-        Its outline in the wall frame, counter-clockwise, *source* px, when stones are outlines;
-        it may then fill no pixel.
-    """
-
-    id: int
-    under: int
-    mask: Mask
+    id: int  # its value in the wall image; larger than every stone's id
+    under: int  # id of the stone that it supports
+    mask: Mask  # (h, w): its pixels, cropped, row 0 at the top
+    # top-left corner of the mask in the wall image
     row: int
     col: int
+    # (n, 2): its outline in the wall frame, counter-clockwise, *source* px, when stones are
+    # outlines; it may then fill no pixel
     corners: Points | None = None
 
     def __post_init__(self) -> None:

@@ -190,3 +190,13 @@ class Plan:
     def wedge_steps(self) -> tuple[WedgeStep, ...]:
         """The steps that push in a wedge."""
         return tuple(step for step in self.steps if isinstance(step, WedgeStep))
+
+    @property
+    def course_heights_px(self) -> dict[int, float]:
+        """What Eq. 8 compared the stones with that began a course, by their ids; working px."""
+        to_px = self.working_scale * (self.px_per_m or 1.0)
+        return {
+            step.stone: step.course_height * to_px
+            for step in self.stone_steps
+            if step.course_height is not None
+        }

@@ -14,27 +14,14 @@ from drystone.model.stone import Stone
 
 @dataclass(frozen=True, eq=False)
 class PosedStone:
-    """A rigid copy of a stone, turned and rasterised; where it goes is not decided yet.
-
-    Parameters
-    ----------
-    stone : Stone
-        The stone itself.
-    angle_deg : float
-        Counter-clockwise from the source image, in [-180, 180).
-    scale : float
-        Working resolution over source resolution.
-    mask : (h, w) bool array
-        At the working resolution, cropped, row 0 at the top.
-    anchor : (float, float)
-        The stone's centroid (x, y) from the mask's bottom-left corner, working px, y up;
-        multiples of 1/64.
-    """
+    """A rigid copy of a stone, turned and rasterised; where it goes is not decided yet."""
 
     stone: Stone
-    angle_deg: float
-    scale: float
-    mask: Mask
+    angle_deg: float  # counter-clockwise from the source image, in [-180, 180)
+    scale: float  # working resolution over source resolution
+    mask: Mask  # (h, w): at the working resolution, cropped, row 0 at the top
+    # the stone's centroid (x, y) from the mask's bottom-left corner, working px, y up;
+    # multiples of 1/64
     anchor: tuple[float, float]
 
     def __post_init__(self) -> None:

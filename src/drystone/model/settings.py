@@ -29,40 +29,21 @@ _MOST = 2**63 - 1
 def updated(settings: Settings, changes: Mapping[str, Any], prefix: str = "") -> Settings:
     """Return settings with some values replaced, checked against the declared types.
 
-    Parameters
-    ----------
-    settings : dataclass instance
-        Frozen settings, which may contain settings.
-    changes : mapping
-        Nested in the same way; missing keys stay as they are.
-    prefix : str
-        Where the settings stand in larger ones, for messages.
-
-    Raises
-    ------
-    UsageError
-        E123: an unknown name, a wrong type, or a value out of range.
+    Frozen settings may contain settings; `changes` is nested in the same way, and missing keys stay
+    as they are.  `prefix` says where the settings stand in larger ones.  UsageError (E123): an
+    unknown name, a wrong type, or a value out of range.
     """
     hints = get_type_hints(type(settings))
     values = {}
     for name, value in changes.items():
         where = f"{prefix}{name}"
         if name not in hints:
-            raise UsageError(
-                "E123",
-                f"there is no setting {where!r}.",
-                where="settings",
-                cure=f"Known here: {', '.join(hints)}.",
-            )
+            raise _refused(f"there is no setting {where!r}.", f"Known here: {', '.join(hints)}.")
         current = getattr(settings, name)
         if dataclasses.is_dataclass(current):
             if not isinstance(value, Mapping):
-                raise UsageError(
-                    "E123",
-                    f"{where!r} is a table of settings.",
-                    where="settings",
-                    cure=f"It holds {', '.join(get_type_hints(type(current)))}.",
-                )
+                inside = ", ".join(get_type_hints(type(current)))
+                raise _refused(f"{where!r} is a table of settings.", f"It holds {inside}.")
             values[name] = updated(current, value, f"{where}.")
         else:
             values[name] = _checked(value, hints[name], where)
@@ -84,14 +65,8 @@ def ranged(
 ) -> Any:
     """Return the field of a number with its range, which :class:`Ranged` checks.
 
-    Parameters
-    ----------
-    default : float
-        Its value where none is given; an int for a whole number.
-    least, above : float, optional
-        Its lower end, itself allowed or not.
-    most, below : float, optional
-        Its upper end, likewise.
+    The ends `least` and `most` are allowed themselves, `above` and `below` are not.  A default that
+    is an int is that of a whole number.
     """
     ends = {"least": least, "above": above, "most": most, "below": below}
     allowed = {name: end for name, end in ends.items() if end is not None}
@@ -99,13 +74,7 @@ def ranged(
 
 
 def range_text(allowed: Mapping[str, float]) -> str:
-    """Write a range as in mathematics, or as a bound where it has one end.
-
-    Examples
-    --------
-    >>> range_text({"above": 0, "most": 0.5}), range_text({"least": 1})
-    ('in (0, 0.5]', 'at least 1')
-    """
+    """Write a range as in mathematics, or as a bound where it has one end."""
     low = allowed.get("least", allowed.get("above"))
     high = allowed.get("most", allowed.get("below"))
     if low is None or high is None:
@@ -118,10 +87,7 @@ def range_text(allowed: Mapping[str, float]) -> str:
 class Ranged:
     """Settings that check themselves: choices by their types, numbers by their ranges.
 
-    Raises
-    ------
-    ValueError
-        A value is none of the choices, or out of its range.
+    ValueError: a value is not one of the choices, or out of its range.
     """
 
     def __post_init__(self) -> None:
@@ -163,50 +129,26 @@ def _checked(value: Any, hint: Any, where: str) -> Any:
     if get_origin(hint) is Literal:
         allowed = get_args(hint)
         if value not in allowed:
-            raise UsageError(
-                "E123", f"{where} = {value!r}.", where="settings", cure=f"Choose from {allowed}."
-            )
+            raise _refused(f"{where} = {value!r}.", f"Choose from {allowed}.")
         return value
     if isinstance(value, float) and not math.isfinite(value):
-        raise UsageError(
-            "E123", f"{where} = {value}.", where="settings", cure="Give a finite number."
-        )
-    if isinstance(value, int):
-        _check_size(value, where)
+        raise _refused(f"{where} = {value}.", "Give a finite number.")
+    if isinstance(value, int) and abs(value) > _MOST:
+        raise _refused(f"the number of {where} is too large.", f"Give one of at most {_MOST}.")
     if get_origin(hint) is tuple:
-        return _whole_numbers(value, where)
+        numbers = value if isinstance(value, list | tuple) else [None]
+        if any(not isinstance(one, int) or isinstance(one, bool) for one in numbers):
+            wrong = f"{where} = {value!r} has the wrong type."
+            raise _refused(wrong, "Give a list of whole numbers.")
+        return tuple(_checked(one, int, where) for one in numbers)
     kinds = get_args(hint) if get_origin(hint) in (Union, types.UnionType) else (hint,)
     if float in kinds and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
         wanted = " or ".join(_KINDS[kind] for kind in kinds)
-        raise UsageError(
-            "E123",
-            f"{where} = {value!r} has the wrong type.",
-            where="settings",
-            cure=f"Give {wanted}.",
-        )
+        raise _refused(f"{where} = {value!r} has the wrong type.", f"Give {wanted}.")
     return value
 
 
-def _whole_numbers(value: Any, where: str) -> tuple[int, ...]:
-    """Return a list of whole numbers as a tuple, or raise UsageError."""
-    numbers = value if isinstance(value, list | tuple) else [None]
-    if any(not isinstance(one, int) or isinstance(one, bool) for one in numbers):
-        raise UsageError(
-            "E123",
-            f"{where} = {value!r} has the wrong type.",
-            where="settings",
-            cure="Give a list of whole numbers.",
-        )
-    return tuple(_checked(one, int, where) for one in numbers)
-
-
-def _check_size(value: int, where: str) -> None:
-    if abs(value) > _MOST:
-        raise UsageError(
-            "E123",
-            f"the number of {where} is too large.",
-            where="settings",
-            cure=f"Give one of at most {_MOST}.",
-        )
+def _refused(message: str, cure: str) -> UsageError:
+    return UsageError("E123", message, where="settings", cure=cure)

@@ -12,26 +12,14 @@ from drystone.kernels.raster import Mask
 
 @dataclass(frozen=True, eq=False)
 class Shares:
-    """What exact outlines cover of the cells of a site, immutable; :meth:`added` gives the next.
+    """What exact outlines cover of the cells of a site, immutable; :meth:`added` gives the next."""
 
-    Parameters
-    ----------
-    total : (height_px, width_px) float64 array
-        Share of each cell that all blocks together cover, row 0 at the top.
-    largest : (height_px, width_px) float64 array
-        The largest share that one block covers.
-    owners : (height_px, width_px) uint32 array
-        The id of that block, of equals the one placed first; 0 where there is none.
-
-    Examples
-    --------
-    >>> shares = Shares.empty(1, 3).added(7, np.array([[1.0, 0.3]]), 0, 0)
-    >>> shares.added(8, np.array([[0.2, 1.0]]), 1, 0).labels.tolist()
-    [[7, 7, 8]]
-    """
-
+    # (height_px, width_px): share of each cell that all blocks together cover, row 0 at the
+    # top
     total: Grid
-    largest: Grid
+    largest: Grid  # (height_px, width_px): the largest share that one block covers
+    # (height_px, width_px): the id of that block, of equals the one placed first; 0 where
+    # there is none
     owners: NDArray[np.uint32]
 
     def __post_init__(self) -> None:
@@ -47,15 +35,8 @@ class Shares:
     def added(self, block_id: int, shares: Grid, left: int, bottom: int) -> "Shares":
         """Return the shares with one more block.
 
-        Parameters
-        ----------
-        block_id : int
-            Id of the stone or wedge, positive.
-        shares : (h, w) float array
-            What it covers, of :func:`drystone.kernels.coverage.coverage`; cells outside of the
-            site do not count.
-        left, bottom : int
-            The cell corner of their bottom-left corner, from the site's own.
+        What it covers is of :func:`drystone.kernels.coverage.coverage`: cells outside of the site
+        do not count; `left` and `bottom` are its bottom-left corner, in cells from the site's own.
         """
         inside, part = windows(self.total.shape, shares.shape, self._row(shares, bottom), left)
         total, largest, owners = self.total.copy(), self.largest.copy(), self.owners.copy()
@@ -74,21 +55,11 @@ class Shares:
         return labels
 
     def fresh(self, shares: Grid, left: int, bottom: int) -> tuple[Mask, int, int] | None:
-        """Return the cells that a new block would fill, as it becomes part of the image.
+        """Return the cells that a new block would fill in the image; None where there are none.
 
-        Parameters
-        ----------
-        shares, left, bottom
-            As for :meth:`added`.
-
-        Returns
-        -------
-        mask : (h, w) bool array
-            Cropped: cells of which less than half was covered, and now at least half is.
-        row, col : int
-            Its top-left corner in the site image.
-
-        None when there is none.
+        A cropped mask of the cells of which less than half was covered, and now at least half is,
+        with the row and column of its top-left corner in the site image; arguments as for
+        :meth:`added`.
         """
         # A site that is no whole number of cells may lack one that a stone at its end half fills.
         inside, part = windows(self.total.shape, shares.shape, self._row(shares, bottom), left)

@@ -62,11 +62,8 @@ class Site:
     ) -> "Site":
         """Make the site of a wall given in source px: working size floor(size * scale + .5).
 
-        Raises
-        ------
-        UsageError
-            E121: it is too small or too large at this scale; E127: its size is no finite number;
-            E138: the px in a metre are not positive.
+        UsageError: E121: it is too small or too large at this scale; E127: its size is not a finite
+        number; E138: the px in a metre are not positive.
         """
         if not (math.isfinite(width) and math.isfinite(height)):
             raise UsageError(

@@ -10,20 +10,10 @@ Step = StoneStep | WedgeStep
 
 @dataclass(frozen=True)
 class Fault:
-    """A step that cannot be where it is, or cannot have its id.
+    """A step that cannot be where it is, or cannot have its id."""
 
-    Parameters
-    ----------
-    code : {"E213", "E214"}
-        An id; the order.
-    step : int
-        Number that the step gives itself.
-    message : str
-        What is wrong.
-    """
-
-    code: str
-    step: int
+    code: str  # an id; the order
+    step: int  # number that the step gives itself
     message: str
 
 
@@ -33,13 +23,7 @@ def piece_id(step: Step) -> int:
 
 
 def piece_name(step: Step) -> str:
-    """Return what messages call it.
-
-    Examples
-    --------
-    >>> piece_name(WedgeStep(2, 301, 7, (), None, None))
-    'wedge 301'
-    """
+    """Return what messages call it, such as "wedge 301"."""
     return f"{step.kind} {piece_id(step)}"
 
 
@@ -69,16 +53,9 @@ def grouped(steps: Sequence[Step]) -> tuple[list[list[Step]], list[Fault]]:
 
 
 def id_fault(step: Step, used: set[int], largest: int) -> Fault | None:
-    """Note an id as used; say when it was, or is none of a wedge (E213).
+    """Note the id of a step as used; say when it was, or is not one of a wedge (E213).
 
-    Parameters
-    ----------
-    step : StoneStep or WedgeStep
-        The step.
-    used : set of int
-        Ids of the steps before it; this one's is added.
-    largest : int
-        Id of a stone; those of wedges are larger.
+    The ids of wedges are larger than `largest`, that of a stone.
     """
     name, its_id = piece_name(step), piece_id(step)
     if its_id in used:

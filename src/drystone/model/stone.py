@@ -92,20 +92,11 @@ class Stone:
         return self.outline_within(OUTLINE_TOLERANCE_PX)
 
     def outline_within(self, tolerance_px: float) -> Points:
-        """Return the outline that stays within a tolerance of the contour of the pixels.
+        """Return the outline, (n, 2), that stays within a tolerance of the contour of the pixels.
 
-        Parameters
-        ----------
-        tolerance_px : float
-            How far it may stay away from the contour, 0 or more.
-
-        Returns
-        -------
-        corners : (n, 2) float array
-            A simple polygon (x, y) relative to the stone's centroid, counter-clockwise; area and
-            centroid are those of its solid (:func:`drystone.model.outline.stone_outline`), which
-            of a stone with a hole are others than its own.  It is worked out once for each
-            tolerance.
+        A simple polygon (x, y) relative to the stone's centroid, counter-clockwise; area and
+        centroid are those of its solid (:func:`drystone.model.outline.stone_outline`), which of a
+        stone with a hole are others than its own.  It is worked out once for each tolerance.
         """
         outline = self._outlines.get(tolerance_px)
         if outline is None:

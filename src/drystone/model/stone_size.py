@@ -14,37 +14,18 @@ from drystone.kernels.raster import Mask
 
 @dataclass(frozen=True)
 class StoneSize:
-    """Size of a stone.
-
-    Parameters
-    ----------
-    id : int
-        Its number.
-    at_px : (float, float)
-        Its middle, column and row.
-    length_px, width_px : float
-        Longer and shorter side of the smallest rectangle around it, turned in any way.
-    area_px : int
-        Number of its px.
-    """
+    """Size of a stone."""
 
     id: int
-    at_px: tuple[float, float]
+    at_px: tuple[float, float]  # its middle, column and row
+    # longer and shorter side of the smallest rectangle around it, turned in any way
     length_px: float
     width_px: float
     area_px: int
 
 
 def sizes_of(labels: NDArray[np.uint16]) -> tuple[StoneSize, ...]:
-    """Return the sizes of the stones of a label image, in the order of their numbers.
-
-    Examples
-    --------
-    >>> labels = np.zeros((9, 9), np.uint16)
-    >>> labels[2:4, 1:7] = 1
-    >>> sizes_of(labels)
-    (StoneSize(id=1, at_px=(4.0, 3.0), length_px=6.0, width_px=2.0, area_px=12),)
-    """
+    """Return the sizes of the stones of a label image, in the order of their numbers."""
     sizes = []
     for number, box in enumerate(ndimage.find_objects(labels), start=1):
         if box is None:
@@ -59,18 +40,7 @@ def sizes_of(labels: NDArray[np.uint16]) -> tuple[StoneSize, ...]:
 
 
 def sides_px(mask: Mask) -> tuple[float, float]:
-    """Return the longer and the shorter side of the smallest rectangle around a stone.
-
-    Parameters
-    ----------
-    mask : (h, w) bool array
-        Its px, one or more.
-
-    Examples
-    --------
-    >>> sides_px(np.ones((2, 5), bool)), sides_px(np.eye(4, dtype=bool))
-    ((5.0, 2.0), (5.242641, 1.0))
-    """
+    """Return the longer and the shorter side of the smallest rectangle around a stone."""
     rows = np.flatnonzero(mask.any(axis=1))
     # The ends of the rows have all corners of the stone.
     first = mask[rows].argmax(axis=1)
@@ -85,12 +55,6 @@ def sides_px(mask: Mask) -> tuple[float, float]:
 
 
 def median_sides(sides: Iterable[tuple[float, float]]) -> tuple[float, float]:
-    """Return the median of the longer and that of the shorter sides of one stone or more.
-
-    Examples
-    --------
-    >>> median_sides([(6.0, 2.0), (9.0, 1.0), (7.0, 5.0)])
-    (7.0, 2.0)
-    """
+    """Return the median of the longer and that of the shorter sides of one stone or more."""
     longer, shorter = zip(*sides, strict=True)
     return median(longer), median(shorter)

@@ -16,39 +16,22 @@ Labels = NDArray[np.uint32]
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """One step of construction: a stone and the wedges under it, judged together.
-
-    Parameters
-    ----------
-    placement : Placement
-        The stone.
-    wedges : tuple of Wedge
-        The wedges under it, in the order in which they are pushed in.
-    """
+    """One step of construction: a stone and the wedges under it, judged together."""
 
     placement: Placement
-    wedges: tuple[Wedge, ...] = ()
+    wedges: tuple[Wedge, ...] = ()  # the wedges under it, in the order in which they are pushed in
 
 
 @dataclass(frozen=True, eq=False)
 class Wall:
-    """An immutable wall; :meth:`add` returns the next one (Eq. 1).
-
-    Parameters
-    ----------
-    site : Site
-        Its place.
-    labels : (height_px, width_px) uint32 array
-        0 where nothing is, otherwise the id of a stone or wedge; row 0 at the top.
-    groups : tuple of Group
-        What was placed, in order.
-    outlines : Outlines or None
-        Of what was placed; None when the stones of the wall are their pixels.
-    """
+    """An immutable wall; :meth:`add` returns the next one (Eq. 1)."""
 
     site: Site
+    # (height_px, width_px): 0 where nothing is, otherwise the id of a stone or wedge; row 0
+    # at the top
     labels: Labels
     groups: tuple[Group, ...] = ()
+    # of what was placed; None when the stones of the wall are their pixels
     outlines: Outlines | None = None
 
     def __post_init__(self) -> None:
@@ -60,15 +43,7 @@ class Wall:
 
     @classmethod
     def empty(cls, site: Site, *, exact: bool = False) -> "Wall":
-        """Return the wall before the first stone.
-
-        Parameters
-        ----------
-        site : Site
-            Its place.
-        exact : bool
-            Stones are their outlines, and all placements settled ones.
-        """
+        """Return the wall before the first stone; exact: stones are their outlines."""
         outlines = Outlines.empty(site) if exact else None
         return cls(site, np.zeros((site.height_px, site.width_px), np.uint32), outlines=outlines)
 
@@ -76,12 +51,8 @@ class Wall:
         """Return the wall with one more stone and its wedges.
 
         With outlines, a pixel belongs to the stone or wedge that covers most of it, where all
-        together cover at least half (DESIGN 4.9).
-
-        Raises
-        ------
-        ValueError
-            When pixels overlap or leave the site.
+        together cover at least half (DESIGN 4.9).  ValueError when pixels overlap or leave the
+        site.
         """
         groups = (*self.groups, Group(placement, wedges))
         if self.outlines is not None:
@@ -92,6 +63,13 @@ class Wall:
         for wedge in wedges:
             _paint(labels, wedge.window, wedge.mask, wedge.id)
         return Wall(self.site, labels, groups)
+
+    @property
+    def exact(self) -> Outlines:
+        """Its outlines; ValueError where the stones are their pixels."""
+        if self.outlines is None:
+            raise ValueError("the stones of this wall are their pixels")
+        return self.outlines
 
     @property
     def placements(self) -> tuple[Placement, ...]:
@@ -125,8 +103,7 @@ class Wall:
 
 def outlined(placement: Placement, wedges: tuple[Wedge, ...]) -> list[Outlined]:
     """Return ids and outlines of a settled stone and its wedges."""
-    assert placement.settled is not None  # noqa: S101 - all stones of the wall are outlines
-    blocks = [(placement.stone_id, placement.settled.corners)]
+    blocks = [(placement.stone_id, placement.exact.corners)]
     return blocks + [(wedge.id, wedge.corners) for wedge in wedges if wedge.corners is not None]
 
 

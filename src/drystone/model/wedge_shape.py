@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from drystone.kernels.polygons import Points, Polygons
+from drystone.model.settings import Ranged, ranged
 
 SLENDER = 1.0
 """Greatest height of a wedge over its width: it lies.
@@ -36,7 +37,7 @@ ROUNDING = 1e-5
 
 
 @dataclass(frozen=True, kw_only=True)
-class WedgeSettings:
+class WedgeSettings(Ranged):
     """Sizes of wedges that are outlines; `size` is the root of the median stone's area.
 
     Parameters
@@ -51,69 +52,39 @@ class WedgeSettings:
         Greatest area over that of the median stone.
     """
 
-    thickness: float = 0.04
-    thickness_mm: float = 5.0
-    height: float = 0.25
-    area: float = 0.1
-
-    def __post_init__(self) -> None:
-        if min(self.thickness, self.thickness_mm, self.height, self.area) <= 0.0:
-            raise ValueError("sizes of wedges must be positive")
+    thickness: float = ranged(0.04, above=0)
+    thickness_mm: float = ranged(5.0, above=0)
+    height: float = ranged(0.25, above=0)
+    area: float = ranged(0.1, above=0)
 
     def least_thickness(self, size: float, per_m: float | None) -> float:
         """Return the least thickness of a wedge, in the unit of the size.
 
-        Parameters
-        ----------
-        size : float
-            Root of the median stone's area.
-        per_m : float or None
-            Units of length in a metre, when that is known.
-
-        Examples
-        --------
-        >>> sizes = WedgeSettings()
-        >>> sizes.least_thickness(125.0, None), sizes.least_thickness(125.0, 1032.0)
-        (5.0, 5.16)
+        `size` is the root of the median stone's area, `per_m` units of length in a metre, if known.
         """
         return self.thickness * size if per_m is None else self.thickness_mm * per_m / 1000.0
 
 
 class WedgeShape(NamedTuple):
-    """Measures of a wedge, in the unit of its corners.
+    """Measures of a wedge, in the unit of its corners."""
 
-    Parameters
-    ----------
-    width, height : float
-        Of its upright box.
-    thickness : float
-        Of the thinnest place: length of an upright line inside.
-    area : float
-        Square units.
-    bed, top : float
-        Slopes (rise over run) of the lower and of the upper face, from end to end.
-    bend : float
-        Largest distance of a face from the line between its ends, upright, over the width.
-    """
-
+    # of its upright box
     width: float
     height: float
-    thickness: float
+    thickness: float  # of the thinnest place: length of an upright line inside
     area: float
+    # slopes (rise over run) of the lower and of the upper face, from end to end
     bed: float
     top: float
+    # largest distance of a face from the line between its ends, upright, over the width
     bend: float
 
     @classmethod
     def of_slabs(cls, x: Points, low: Points, high: Points) -> "WedgeShape":
         """Measure what lies between a floor and a lid.
 
-        Parameters
-        ----------
-        x : (n + 1,) float array
-            Where the slabs begin, from left to right, and the end of the last.
-        low, high : (n, 2) float arrays
-            y of floor and lid at the left and at the right of each slab.
+        `x`, (n + 1,), is where the slabs begin, from left to right, and the end of the last; `low`
+        and `high`, (n, 2), are y of floor and lid at the left and at the right of each slab.
         """
         width, thick = float(x[-1] - x[0]), high - low
         # Straight lines between the ends, at both ends of each slab.
@@ -134,16 +105,7 @@ class WedgeShape(NamedTuple):
 
     @classmethod
     def of(cls, corners: Points) -> "WedgeShape":
-        """Measure a polygon, counter-clockwise.
-
-        Examples
-        --------
-        >>> shape = WedgeShape.of(np.array([[0.0, 0.0], [4.0, 1.0], [4.0, 3.0], [0.0, 4.0]]))
-        >>> shape.width, shape.height, shape.thickness, shape.area
-        (4.0, 4.0, 2.0, 12.0)
-        >>> shape.bed, shape.top, shape.bend
-        (0.25, -0.25, 0.0)
-        """
+        """Measure a polygon, counter-clockwise."""
         starts, ends = corners, np.roll(corners, -1, axis=0)
         x = np.unique(corners[:, 0])
         low, high, thin, area = [], [], [], 0.0
@@ -167,24 +129,13 @@ class WedgeShape(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class WedgeRule:
-    """What a wedge may be, in the unit of its corners.
+    """What a wedge may be, in the unit of its corners."""
 
-    Parameters
-    ----------
-    least_thickness : float
-        At any place; a wedge does not end in an edge.
-    greatest_height : float
-        Of its upright box.
-    greatest_area : float
-        Square units.
-    mu : float
-        Coefficient of friction: no face is steeper, nor do the two open wider, or the load would
-        push the wedge out.
-    """
-
-    least_thickness: float
-    greatest_height: float
+    least_thickness: float  # at any place; a wedge does not end in an edge
+    greatest_height: float  # of its upright box
     greatest_area: float = math.inf
+    # coefficient of friction: no face is steeper, nor do the two open wider, or the load
+    # would push the wedge out
     mu: float = 0.58
 
     def __post_init__(self) -> None:
@@ -199,18 +150,9 @@ class WedgeRule:
     def of(
         cls, sizes: WedgeSettings, mu: float, size: float, per_m: float | None = None
     ) -> "WedgeRule":
-        """Return the rule for a set of stones.
+        """Return the rule for stones of which `size` is the root of the median area.
 
-        Parameters
-        ----------
-        sizes : WedgeSettings
-            Shares and millimetres.
-        mu : float
-            Coefficient of friction.
-        size : float
-            Root of the median stone's area.
-        per_m : float, optional
-            Units of length in a metre, when that is known.
+        `per_m` is units of length in a metre, when that is known.
         """
         least = sizes.least_thickness(size, per_m)
         return cls(
@@ -264,21 +206,7 @@ def open_sides(wedge: Points, others: Polygons) -> tuple[bool, bool]:
     """Say whether nothing is beside a wedge at its left, and at its right, up to the wall's end.
 
     Beside it is what lies further out in the same rows, in half of its height or more: then the
-    wedge cannot be squeezed out of its place.
-
-    Parameters
-    ----------
-    wedge : (n, 2) float array
-        Its corners.
-    others : Polygons
-        Stones and other wedges; the wedge itself may be among them.
-
-    Examples
-    --------
-    >>> from drystone.kernels.polygons import no_polygons
-    >>> wedge = np.array([[4.0, 0.0], [6.0, 0.0], [6.0, 1.0], [4.0, 1.0]])
-    >>> open_sides(wedge, no_polygons().added([wedge + [3.0, 0.4]]))
-    (True, False)
+    wedge cannot be squeezed out of its place.  The wedge itself may be among the others.
     """
     (left, low), (right, high) = wedge.min(axis=0).tolist(), wedge.max(axis=0).tolist()
     after = np.arange(1, len(others.corners) + 1)

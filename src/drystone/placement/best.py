@@ -15,17 +15,10 @@ from drystone.placement.settings import PlacementSettings
 
 @dataclass(frozen=True)
 class Spot:
-    """A feasible place for one of several poses.
+    """A feasible place for one of several poses."""
 
-    Parameters
-    ----------
-    pose : int
-        Which of the poses.
-    row, col : int
-        Top-left corner of its mask, in the landscape's view.
-    """
-
-    pose: int
+    pose: int  # which of the poses
+    # top-left corner of its mask, in the landscape's view
     row: int
     col: int
 
@@ -40,20 +33,9 @@ def best_spots(
 ) -> list[Spot]:
     """Return feasible places of a stone, the best by the chosen rule first (§3.6).
 
-    Parameters
-    ----------
-    landscape : Landscape
-        What is built, in its view.
-    poses : sequence of PosedStone
-        Poses of the stone among which the rule may choose, in the same view.
-    settings : PlacementSettings
-        Rule, reach, and how many places are wanted.
-
-    Returns
-    -------
-    spots : list of Spot
-        At most `settings.tries`; empty when the stone fits nowhere.  Ties of the rule go to the
-        lower place, then to the one further to the building side, then to the earlier pose.
+    The rule may choose among the poses, which are in the view of the landscape.  At most
+    `settings.tries` places; none when the stone fits nowhere.  Ties of the rule go to the lower
+    place, then to the one further to the building side, then to the earlier pose.
     """
     spots: list[tuple[tuple[float, ...], Spot]] = []
     for index, posed in enumerate(poses):

@@ -17,26 +17,12 @@ def feasible_positions(
 ) -> Positions:
     """Return all positions where a stone overlaps nothing and rests on something.
 
-    Parameters
-    ----------
-    landscape : Landscape
-        What is built, in its view.
-    posed : PosedStone
-        The stone, in the same view.
-    reach : {"any", "above"}
-        ``"any"``: every position of the image, closed cavities too, as in the paper; ``"above"``:
-        only where the stone can be lowered in from above.
-    clearance_px : int
-        For ``"above"``: free working px on both sides of the stone on its way down to one own
-        height above its place; the last part may slide along a neighbour.
+    Row and column, (n, 2), of the mask's top-left corner, by row, then column; landscape and
+    stone are in one view.  Reach ``"any"``: every position of the image, closed cavities too, as in
+    the paper; ``"above"``: only where the stone can be lowered in from above, with `clearance_px`
+    free on both sides of it on its way down to one own height above its place; the last part may
+    slide along a neighbour.
 
-    Returns
-    -------
-    positions : (n, 2) int array
-        Row and column of the mask's top-left corner, by row, then column.
-
-    Notes
-    -----
     The paper convolves the landscape and the landscape dilated by one pixel with the stone: no
     overlap with the first, overlap with the second.  Resting from below (DESIGN 4.4) is narrower:
     no overlap here, overlap one pixel lower, or the ground.  The same map answers both.
@@ -52,16 +38,8 @@ def can_be_lowered(
 ) -> bool:
     """Say whether nothing stands above a place, so that the stone can be lowered in from above.
 
-    Parameters
-    ----------
-    landscape : Landscape
-        What is built, in its view.
-    posed : PosedStone
-        The stone, in the same view.
-    row, col : int
-        Of its mask's top-left corner.
-    clearance_px : int
-        As for :func:`feasible_positions`.
+    Row and column are those of its mask's top-left corner; `clearance_px` as for
+    :func:`feasible_positions`.
     """
     tops = landscape.skyline[col : col + posed.width_px]
     free = bool(np.all(tops > row + posed.bottom))

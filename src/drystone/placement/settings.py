@@ -3,13 +3,14 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from drystone.model.settings import Ranged, ranged
 from drystone.placement.feasible import Reach
 
 Rule = Literal["eq12", "lowest", "snug"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlacementSettings:
+class PlacementSettings(Ranged):
     """How the best position of a stone is found (§3.6).
 
     Parameters
@@ -34,19 +35,11 @@ class PlacementSettings:
 
     rule: Rule = "eq12"
     reach: Reach = "any"
-    clearance_px: int = 0
+    clearance_px: int = ranged(0, least=0)
     beta: float = 0.7
-    tries: int = 1
+    tries: int = ranged(1, least=1)
     compare: bool = False
     height_weight: float = 1.6
     void_weight: float = 0.5
     gap_weight: float = 0.7
     end_weight: float = 0.25
-
-    def __post_init__(self) -> None:
-        if self.rule not in ("eq12", "lowest", "snug"):
-            raise ValueError(f"unknown placement rule {self.rule!r}")
-        if self.reach not in ("any", "above"):
-            raise ValueError(f"unknown reach {self.reach!r}")
-        if self.tries < 1 or self.clearance_px < 0:
-            raise ValueError("tries must be positive, clearance_px not negative")

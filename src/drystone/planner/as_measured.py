@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import islice
 from operator import itemgetter
 
@@ -19,15 +18,15 @@ from drystone.model.wall import Group
 from drystone.planner.build import Build, Candidate
 from drystone.planner.dropping import wedge_limits
 from drystone.planner.evaluate import Evaluator
-from drystone.planner.measured import Place
+from drystone.planner.measured import MeasuredPlace
 from drystone.planner.replay import judged, replayed, stands
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settled import settled_in, stands_out_px
 from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
-from drystone.settle.rest import Repose, Scene, Turned, come_to_rest, lay, placed_outline
+from drystone.settle.rest import Repose, SettlingScene, Turned, come_to_rest, lay, placed_outline
 from drystone.settle.wedged import wedged
-from drystone.stabilise.stabilise import Stabilised, WedgeStock, stabilise
+from drystone.stabilise.stabilise import WedgeStock, stabilise
 
 FAR = 0.1
 """A stone that is moved so far, over its size, from where it was measured is named (W127)."""
@@ -66,29 +65,12 @@ Rested = tuple[Repose, Points | None]
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """A stone that is to be put where it was measured.
-
-    Parameters
-    ----------
-    stone : Stone
-        The stone.
-    place : Place
-        Where it was measured.
-    side : {"left", "right"}
-        The end of the wall from which it was placed.
-    planned : Group or None
-        How it was planned: with wedges it gets one again.
-    """
+    """A stone that is to be put where it was measured."""
 
     stone: Stone
-    place: Place
-    side: Side
-    planned: Group | None
-
-    @property
-    def on_wedges(self) -> bool:
-        """Whether it was planned on wedges."""
-        return self.planned is not None and bool(self.planned.wedges)
+    place: MeasuredPlace
+    side: Side  # the end of the wall from which it was placed
+    planned: Group | None  # how it was planned: with wedges it gets one again
 
     def moved_px(self, x_px: float, y_px: float, angle_deg: float) -> float:
         """Return how far the rim of the stone is from where it was measured, about."""
@@ -97,12 +79,23 @@ class Measured:
         shift = math.hypot(x_px - place.x_px, y_px - place.y_px)
         return shift + 0.5 * turned * math.sqrt(self.stone.area_px)
 
+    def placed_px(self, placement: Placement, build: Build) -> float:
+        """Return the same for a placement in a wall, source px."""
+        site = build.wall.site
+        x, y = placement.centroid(site.height_px)
+        return self.moved_px(x / site.scale, y / site.scale, placement.posed.angle_deg)
+
+    def rested_px(self, rested: Rested) -> float:
+        """Return the same for a place where it rests."""
+        at = rested[0].settled
+        return self.moved_px(at.x_px, at.y_px, rested[0].angle_deg)
+
     @property
     def reach_px(self) -> float:
         """How far that may be."""
         return REACH * math.sqrt(self.stone.area_px)
 
-    def marked(self, stabilised: Stabilised) -> Stabilised:
+    def marked(self, stabilised: Group) -> Group:
         """Return a place of the stone that says when it is not turned as planned."""
         placement = stabilised.placement
         if self.planned is None:
@@ -113,7 +106,91 @@ class Measured:
         return replace(stabilised, placement=replace(placement, rotation_moves=moves))
 
 
-def _put_as_measured(
+def rebuilt(
+    start: Build,
+    before: Build,
+    order: Sequence[int],
+    added: Sequence[int],
+    places: Mapping[int, MeasuredPlace],
+    workshop: Workshop,
+    settings: PlannerSettings,
+) -> Build:
+    """Build the wall of `before` again as it was measured, from an empty `start`.
+
+    `order` are the planned stones that are in the wall, in their order of placement, `added` the
+    others that are.  These come after all planned ones; from below where stones then do not stand,
+    or are far from where they were measured: one may lie under a stone that was planned.
+    InputError (E198) where a stone overlaps others wherever it is moved to.
+    """
+    orders = [[*order, *added]]
+    if added:
+        orders.append(sorted(orders[0], key=lambda i: (places[i].y_px, i)))
+    walls: list[Build] = []
+    errors: list[InputError] = []
+    for stone_ids in orders:
+        try:
+            walls.append(_built(start, before, places, workshop, settings, stone_ids))
+        except InputError as error:
+            errors.append(error)
+            continue
+        if not any(_amiss(walls[-1], places)):
+            break
+    if not walls:
+        raise errors[0]
+    return min(walls, key=lambda wall: _amiss(wall, places))
+
+
+def far_from(build: Build, places: Mapping[int, MeasuredPlace]) -> tuple[int, ...]:
+    """Return the stones that are far from where they were measured, in the order of placement."""
+    far = []
+    for placement in build.wall.placements:
+        stone = placement.posed.stone
+        one = Measured(stone, places[stone.id], placement.side, None)
+        if one.placed_px(placement, build) > FAR * math.sqrt(stone.area_px):
+            far.append(stone.id)
+    return tuple(far)
+
+
+def _amiss(build: Build, places: Mapping[int, MeasuredPlace]) -> tuple[int, int]:
+    """Return after how many stones a wall does not stand, and how many are far off."""
+    return sum(not stands(action) for action in build.actions), len(far_from(build, places))
+
+
+def _built(
+    start: Build,
+    before: Build,
+    places: Mapping[int, MeasuredPlace],
+    workshop: Workshop,
+    settings: PlannerSettings,
+    order: Iterable[int],
+) -> Build:
+    keep = settings.search.budget > 1
+    groups = {group.placement.stone_id: group for group in before.wall.groups}
+    heights = before.course_heights_px()
+    build = start
+    for stone_id in order:
+        planned, place = groups.get(stone_id), places[stone_id]
+        if planned is not None and place.as_planned:
+            again = replayed(build, [planned], heights, workshop, settings, keep=keep)
+            if not again.left_out:
+                build = again.build
+                continue
+        side = "left" if planned is None else planned.placement.side
+        one = Measured(workshop.stones.by_id(stone_id), place, side, planned)
+        action = _put(build, one, workshop, settings, heights)
+        if action is None:
+            raise InputError(
+                "E198",
+                f"stone {stone_id}, measured at ({place.x_px:.1f}, {place.y_px:.1f}) source px, "
+                f"{place.angle_deg:.1f} degrees, overlaps others, and there is no room near it.",
+                where="observe",
+                cure="Measure again; poses that are this far off are of another stone or frame.",
+            )
+        build = build.add(action, keep=keep)
+    return build
+
+
+def _put(
     build: Build,
     one: Measured,
     workshop: Workshop,
@@ -124,31 +201,12 @@ def _put_as_measured(
 
     Of the places where it rests, by itself or on a wedge, the nearest is taken after which the
     wall stands; if there is none, the nearest at which it overlaps nothing.
-
-    Parameters
-    ----------
-    build : Build
-        What is below and beside it.
-    one : Measured
-        The stone.
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        All parameters.
-    course_heights_px : mapping of int to float
-        For stones that began a course: the height that Eq. 8 compared with.
-
-    Returns
-    -------
-    action : Candidate or None
-        None when it overlaps others wherever it is moved to.
     """
-    options = _on_outlines if build.wall.outlines is not None else _on_pixels
+    options = _on_pixels if build.wall.outlines is None else _on_outlines
     evaluator = Evaluator(settings, workshop.stock)
     fallback: Candidate | None = None
     for found in islice(options(build, one, workshop, settings), JUDGED):
-        group = Group(found.placement, found.wedges)
-        candidate = judged(build, group, course_heights_px, evaluator)
+        candidate = judged(build, found, course_heights_px, evaluator)
         if stands(candidate):
             return candidate
         fallback = fallback or candidate
@@ -157,15 +215,13 @@ def _put_as_measured(
 
 def _on_outlines(
     build: Build, one: Measured, workshop: Workshop, settings: PlannerSettings
-) -> Iterator[Stabilised]:
+) -> Iterator[Group]:
     """List places where an outline rests, the nearest first, and one where it need not."""
     wall, settle = build.wall, settings.settle
-    assert wall.outlines is not None  # noqa: S101 - its caller knows
-    scene = Scene.of(wall.outlines.polygons, wall.site.extent_px[0], one.side, settings.mu)
+    scene = SettlingScene.of(wall.exact.polygons, wall.site.extent_px[0], one.side, settings.mu)
     turned = workshop.outlines.hung(one.stone, one.place.angle_deg, one.side).turned
     limits = wedge_limits(settings, workshop.stock, wall.site)
     starts = _starts(turned, one.place, scene, settle.clearance_px)
-    taken_in = partial(_taken_in, build, one, workshop, settle.beyond_px)
 
     def held(start: tuple[float, float]) -> Rested | None:
         found = wedged(turned, scene, start, settle, limits)
@@ -179,14 +235,25 @@ def _on_outlines(
         found = come_to_rest(turned, scene, start, settle)
         return None if found is None else (found, None)
 
-    first = (held if one.on_wedges else laid)(starts[0])
-    if first is not None and _moved(one, first) <= ENOUGH_PX:
+    def taken_in(repose: Repose, wedge: Points | None) -> Iterator[Group]:
+        """Give a stone with the pixels that it fills, unless it fills none or leaves the wall."""
+        # Measured stones are not where they were planned: half a working px is allowed at least.
+        allowed_px = max(settle.beyond_px, 0.5 / wall.site.scale)
+        if stands_out_px(repose.settled.corners, wall.site) < allowed_px:
+            number = workshop.next_wedge(build)
+            found = settled_in(wall, one.stone, one.side, repose, wedge, wedge_id=number)
+            if found is not None:
+                yield one.marked(found)
+
+    on_wedges = one.planned is not None and bool(one.planned.wedges)
+    first = (held if on_wedges else laid)(starts[0])
+    if first is not None and one.rested_px(first) <= ENOUGH_PX:
         yield from taken_in(*first)
     tried = [way(start) for way in (laid, settled) for start in starts]
     tried += [held(start) for start in starts[:WEDGED]]
     rested = [found for found in tried if found is not None]
-    for found in _different(sorted(rested, key=partial(_moved, one))):
-        if _moved(one, found) <= one.reach_px:
+    for found in _different(sorted(rested, key=one.rested_px)):
+        if one.rested_px(found) <= one.reach_px:
             yield from taken_in(*found)
     for start in starts:
         if not crosses_any(turned.corners + np.array(start), scene.polygons):
@@ -206,27 +273,8 @@ def _different(rested: Iterable[Rested]) -> Iterator[Rested]:
             yield found
 
 
-def _taken_in(
-    build: Build,
-    one: Measured,
-    workshop: Workshop,
-    beyond_px: float,
-    repose: Repose,
-    wedge: Points | None,
-) -> Iterator[Stabilised]:
-    """Give a stone with the pixels that it fills, unless it fills none or leaves the wall."""
-    # Measured stones are not where they were planned: half a working px is allowed at least.
-    allowed_px = max(beyond_px, 0.5 / build.wall.site.scale)
-    if stands_out_px(repose.settled.corners, build.wall.site) >= allowed_px:
-        return
-    number = workshop.next_wedge(build)
-    found = settled_in(build.wall, one.stone, one.side, repose, wedge, wedge_id=number)
-    if found is not None:
-        yield one.marked(found)
-
-
 def _starts(
-    turned: Turned, place: Place, scene: Scene, clearance_px: float
+    turned: Turned, place: MeasuredPlace, scene: SettlingScene, clearance_px: float
 ) -> list[tuple[float, float]]:
     """Return where a stone is let go, in the view: within the wall, nearest first."""
     low, high = turned.corners.min(axis=0), turned.corners.max(axis=0)
@@ -241,12 +289,7 @@ def _starts(
     return list(dict.fromkeys(inside))
 
 
-def _moved(one: Measured, rested: Rested) -> float:
-    found = rested[0]
-    return one.moved_px(found.settled.x_px, found.settled.y_px, found.angle_deg)
-
-
-def _as_it_is(turned: Turned, scene: Scene, start: tuple[float, float]) -> Repose:
+def _as_it_is(turned: Turned, scene: SettlingScene, start: tuple[float, float]) -> Repose:
     """Return a stone where it was let go, which does not rest there."""
     x = start[0] if scene.side == "left" else scene.width_px - start[0]
     x, y = on_grid(np.array([x, start[1]])).tolist()
@@ -256,7 +299,7 @@ def _as_it_is(turned: Turned, scene: Scene, start: tuple[float, float]) -> Repos
 
 def _on_pixels(
     build: Build, one: Measured, workshop: Workshop, settings: PlannerSettings
-) -> Iterator[Stabilised]:
+) -> Iterator[Group]:
     """List places of a stone that is pixels, the nearest first."""
     book, occupied = workshop.book, build.wall.occupied
     stock = WedgeStock(workshop.next_wedge(build), workshop.stock.mean_height_px)
@@ -271,22 +314,22 @@ def _on_pixels(
         trial = posed, row, col
         there = stabilise(occupied, trial, one.side, book, stock, settings.stabilise)
         if there is not None:
-            moved = _moved_on_pixels(one, there.placement, build)
-            found.append((moved, there))
+            found.append((one.placed_px(there.placement, build), there))
     allowed = max(one.reach_px, (ROOM + 2) / build.wall.site.scale)
     for moved, there in sorted(found, key=itemgetter(0)):
         if moved <= allowed:
             yield one.marked(there)
     for _, posed, row, col in spots[:1]:
-        yield one.marked(Stabilised(Placement(posed, row, col, one.side)))
+        yield one.marked(Group(Placement(posed, row, col, one.side)))
 
 
-Spot = tuple[float, PosedStone, int, int]
-"""How far it is from the measured place, working px; the stone, and the corner of its mask."""
+def _spots(
+    build: Build, posed: PosedStone, place: MeasuredPlace
+) -> list[tuple[float, PosedStone, int, int]]:
+    """Return where a stone has room near a place, the nearest first.
 
-
-def _spots(build: Build, posed: PosedStone, place: Place) -> list[Spot]:
-    """Return where a stone has room near a place, the nearest first."""
+    How far it is from the measured place, working px; the stone, and the corner of its mask.
+    """
     site, occupied = build.wall.site, build.wall.occupied
     left = place.x_px * site.scale - posed.anchor[0]
     top = site.height_px - (place.y_px * site.scale - posed.anchor[1]) - posed.height_px
@@ -300,126 +343,3 @@ def _spots(build: Build, posed: PosedStone, place: Place) -> list[Spot]:
             if not (window & posed.mask).any():
                 found.append((float(np.hypot(row - top, col - left)), posed, row, col))
     return sorted(found, key=itemgetter(0))
-
-
-def _moved_on_pixels(one: Measured, placement: Placement, build: Build) -> float:
-    site = build.wall.site
-    x, y = placement.centroid(site.height_px)
-    return one.moved_px(x / site.scale, y / site.scale, placement.posed.angle_deg)
-
-
-def rebuilt(
-    start: Build,
-    before: Build,
-    order: Sequence[int],
-    added: Sequence[int],
-    places: Mapping[int, Place],
-    workshop: Workshop,
-    settings: PlannerSettings,
-) -> Build:
-    """Build the wall again as it was measured.
-
-    Stones that were not planned come after all others; from below where stones then do not stand,
-    or are far from where they were measured: one may lie under a stone that was planned.
-
-    Parameters
-    ----------
-    start : Build
-        Nothing is built.
-    before : Build
-        What was planned.
-    order : sequence of int
-        The planned stones that are in the wall, in their order of placement.
-    added : sequence of int
-        The others that are.
-    places : mapping of int to Place
-        Where all of them are.
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        All parameters.
-
-    Returns
-    -------
-    build : Build
-        With all of them.
-
-    Raises
-    ------
-    InputError
-        E198: a stone overlaps others wherever it is moved to.
-    """
-    build = partial(_built, start, before, places, workshop, settings)
-    orders = [[*order, *added]]
-    if added:
-        orders.append(sorted(orders[0], key=lambda i: (places[i].y_px, i)))
-    walls: list[Build] = []
-    errors: list[InputError] = []
-    for stone_ids in orders:
-        try:
-            walls.append(build(stone_ids))
-        except InputError as error:
-            errors.append(error)
-            continue
-        if not any(_amiss(walls[-1], places)):
-            break
-    if not walls:
-        raise errors[0]
-    return min(walls, key=lambda wall: _amiss(wall, places))
-
-
-def far_from(wall: Build, places: Mapping[int, Place]) -> tuple[int, ...]:
-    """Return the stones that are far from where they were measured, in the order of placement."""
-    site, far = wall.wall.site, []
-    for group in wall.wall.groups:
-        placement, stone = group.placement, group.placement.posed.stone
-        x, y = placement.centroid(site.height_px)
-        one = Measured(stone, places[stone.id], placement.side, None)
-        moved = one.moved_px(x / site.scale, y / site.scale, placement.posed.angle_deg)
-        if moved > FAR * math.sqrt(stone.area_px):
-            far.append(stone.id)
-    return tuple(far)
-
-
-def _amiss(wall: Build, places: Mapping[int, Place]) -> tuple[int, int]:
-    """Return after how many stones a wall does not stand, and how many are far off."""
-    return sum(not stands(action) for action in wall.actions), len(far_from(wall, places))
-
-
-def _built(
-    start: Build,
-    before: Build,
-    places: Mapping[int, Place],
-    workshop: Workshop,
-    settings: PlannerSettings,
-    order: Iterable[int],
-) -> Build:
-    keep = settings.search.budget > 1
-    groups = {group.placement.stone_id: group for group in before.wall.groups}
-    heights = before.course_heights_px()
-    build = start
-    for stone_id in order:
-        planned, place = groups.get(stone_id), places[stone_id]
-        if planned is not None and place.as_planned:
-            again = replayed(build, [planned], heights, workshop, settings, keep=keep)
-            if not again.left_out:
-                build = again.build
-                continue
-        side = "left" if planned is None else planned.placement.side
-        one = Measured(workshop.stones.by_id(stone_id), place, side, planned)
-        action = _put_as_measured(build, one, workshop, settings, heights)
-        if action is None:
-            raise _no_room(one)
-        build = build.add(action, keep=keep)
-    return build
-
-
-def _no_room(one: Measured) -> InputError:
-    place = one.place
-    return InputError(
-        "E198",
-        f"stone {one.stone.id}, measured at ({place.x_px:.1f}, {place.y_px:.1f}) source px, "
-        f"{place.angle_deg:.1f} degrees, overlaps others, and there is no room near it.",
-        where="observe",
-        cure="Measure again; poses that are this far off are of another stone or frame.",
-    )

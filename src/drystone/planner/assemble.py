@@ -15,7 +15,7 @@ from drystone.model.placement import Placement, Wedge
 from drystone.model.plan import Plan, PlanMetrics, StoneStep, WedgeStep
 from drystone.model.site import Site
 from drystone.model.wall import Wall
-from drystone.planner.build import Build, Candidate
+from drystone.planner.build import Build
 from drystone.planner.events import Stopped
 from drystone.planner.workshop import Workshop
 from drystone.statics.result import LateralResistance
@@ -23,19 +23,12 @@ from drystone.statics.result import LateralResistance
 
 @dataclass(frozen=True)
 class Frame:
-    """Lengths of the plan: the wall in source px, and how working px become plan units.
+    """Lengths of the plan: the wall in source px, and how working px become plan units."""
 
-    Parameters
-    ----------
-    width, height : float
-        Of the wall, source px.
-    site : Site
-        The same at the working resolution.
-    """
-
+    # of the wall, source px
     width: float
     height: float
-    site: Site
+    site: Site  # the same at the working resolution
 
     def point(self, x: float, y: float) -> tuple[float, float]:
         """Turn a point of the wall frame in working px into plan units."""
@@ -68,16 +61,30 @@ def plan_steps(
     """Return the steps of a plan: each stone, right after it its wedges."""
     steps: list[StoneStep | WedgeStep] = []
     for action in build.actions:
-        wedges = action.stabilised.wedges
+        placement, wedges = action.stabilised.placement, action.stabilised.wedges
+        height = action.course_height_px
         alphas = (action.resistance.left.alpha, action.resistance.right.alpha)
         # The alphas of a group stand at its last step.
-        none = (None, None)
-        steps.append(
-            _stone_step(len(steps) + 1, action, frame, clusters, none if wedges else alphas)
+        left, right = (None, None) if wedges else alphas
+        stone = StoneStep(
+            step=len(steps) + 1,
+            stone=action.stone_id,
+            angle_deg=placement.posed.angle_deg,
+            source_centroid=placement.posed.stone.centroid,
+            centroid=frame.centroid(placement),
+            side=action.side,
+            cluster=clusters[action.stone_id],
+            rotation_moves=placement.rotation_moves,
+            indices=action.indices.as_dict(),
+            course_height=None if height is None else height * frame.site.units_per_px,
+            alpha_left=left,
+            alpha_right=right,
         )
+        steps.append(stone)
         for index, wedge in enumerate(wedges, 1):
-            own = alphas if index == len(wedges) else none
-            steps.append(_wedge_step(len(steps) + 1, wedge, frame, own))
+            left, right = alphas if index == len(wedges) else (None, None)
+            number, polygon = len(steps) + 1, frame.polygon(wedge)
+            steps.append(WedgeStep(number, wedge.id, wedge.under, polygon, left, right))
     return tuple(steps)
 
 
@@ -89,16 +96,7 @@ def plan_metrics(
 ) -> PlanMetrics:
     """Return the figures of merit of what is built (DESIGN 5).
 
-    Parameters
-    ----------
-    build : Build
-        The wall.
-    frame : Frame
-        Lengths.
-    resistance : LateralResistance
-        Of the wall.
-    others : mapping of str to float or None
-        F_LR by other rules, by the names of :class:`drystone.model.plan.PlanMetrics`.
+    `others` are F_LR by other rules, by the names of :class:`drystone.model.plan.PlanMetrics`.
     """
     scale = frame.site.scale
     wall = build.wall
@@ -142,23 +140,7 @@ def assemble_plan(
     metrics: PlanMetrics,
     provenance: Mapping[str, Any],
 ) -> Plan:
-    """Return the plan of what is built.
-
-    Parameters
-    ----------
-    workshop : Workshop
-        The stones and their clusters.
-    frame : Frame
-        Lengths.
-    build : Build
-        What is built.
-    stopped : Stopped
-        Why construction ended.
-    metrics : PlanMetrics
-        Of the wall.
-    provenance : mapping
-        version, method, seed and settings.
-    """
+    """Return the plan of what is built; `provenance`: version, method, seed and settings."""
     stones, source = workshop.stones, workshop.stones.source
     described: dict[str, Any] = {
         "path": source.path,
@@ -187,42 +169,4 @@ def assemble_plan(
         unused=tuple(stone.id for stone in stones if stone.id not in placed),
         stopped=stopped.text,
         metrics=metrics,
-    )
-
-
-def _stone_step(
-    number: int,
-    action: Candidate,
-    frame: Frame,
-    clusters: Mapping[int, int],
-    alphas: tuple[float | None, float | None],
-) -> StoneStep:
-    placement = action.stabilised.placement
-    height = action.course_height_px
-    return StoneStep(
-        step=number,
-        stone=action.stone_id,
-        angle_deg=placement.posed.angle_deg,
-        source_centroid=placement.posed.stone.centroid,
-        centroid=frame.centroid(placement),
-        side=action.side,
-        cluster=clusters[action.stone_id],
-        rotation_moves=placement.rotation_moves,
-        indices=action.indices.as_dict(),
-        course_height=None if height is None else height * frame.site.units_per_px,
-        alpha_left=alphas[0],
-        alpha_right=alphas[1],
-    )
-
-
-def _wedge_step(
-    number: int, wedge: Wedge, frame: Frame, alphas: tuple[float | None, float | None]
-) -> WedgeStep:
-    return WedgeStep(
-        step=number,
-        id=wedge.id,
-        under=wedge.under,
-        polygon=frame.polygon(wedge),
-        alpha_left=alphas[0],
-        alpha_right=alphas[1],
     )

@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
+from functools import partial
+from itertools import chain
 from statistics import fmean
 from typing import TypeVar
 
@@ -22,7 +24,7 @@ from drystone.planner.choose import (
 from drystone.planner.deadline import NEVER, Deadline
 from drystone.planner.evaluate import Evaluator
 from drystone.planner.profile import Profile
-from drystone.planner.proposing import Proposer, RasterProposer, Trial
+from drystone.planner.proposing import Proposer, RasterProposer, StoneTrial, one_by_one
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.settling import ExactProposer
 from drystone.planner.workshop import Workshop
@@ -42,22 +44,8 @@ class Attempt:
     """Attempts at the next action on one state of construction.
 
     Nothing is evaluated twice: the second fold, and attempts after a failure, meet stones that
-    were tried on this very landscape before.
-
-    Parameters
-    ----------
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        All parameters.
-    build : Build
-        What is built.
-    executor : concurrent.futures.Executor or None
-        Evaluates candidates; the result does not depend on it.
-    profile : Profile or None
-        Told where the time goes.
-    until : Deadline
-        Looked at for every candidate: :class:`TimeIsUp` leaves the attempt.
+    were tried on this very landscape before.  Neither the executor nor `until`, which is looked at
+    for every candidate (TimeIsUp), shapes the result.
     """
 
     def __init__(
@@ -80,15 +68,13 @@ class Attempt:
         self._policy: Policy | None = None
         if settings.by_policy:
             # A new one for each step: what one remembers would be lost when a plan is resumed.
-            self._policy = policy_named(
-                settings.selection_rule, settings.policy, settings.selection
-            )
+            rule = settings.selection_rule
+            self._policy = policy_named(rule, settings.policy, settings.selection)
         kind = RasterProposer if settings.geometry == "raster" else ExactProposer
         self._proposer: Proposer = kind(workshop, settings, build, self._profile)
         self._evaluator = Evaluator(settings, workshop.stock, self._profile)
         sides: tuple[Side, ...] = ("left", "right") if settings.two_sided else ("left",)
         self._landscapes = {side: Landscape.of(build.wall, side) for side in sides}
-        self._rest = workshop.rest(build) if settings.weighs_craft else None
         self._judged: dict[Key, Candidate] = {}
 
     @property
@@ -96,42 +82,11 @@ class Attempt:
         """How many candidates were looked at."""
         return self._proposer.tried
 
-    def choose(
-        self, rng: np.random.Generator, among: Sequence[int] | None = None
-    ) -> Candidate | None:
-        """Sample a candidate set and return the best action; None when there is none.
-
-        Parameters
-        ----------
-        rng : numpy.random.Generator
-            Draws the sample.
-        among : sequence of int, optional
-            Ids of stones to sample from; all that are left when missing.
-
-        Raises
-        ------
-        UsageError
-            E147: the policy of another package failed.
-        """
-        if among is not None:
-            return self._choose(rng, tuple(among))
-        remaining = self._workshop.remaining(self.build)
-        pinned = tuple(i for i in remaining if i in self._settings.pin)
-        if self._policy is not None and pinned:
-            # A policy knows nothing of pins, as Algorithm 2 does not.
-            return self._choose(rng, pinned) or self._choose(rng, remaining)
-        return self._choose(rng, remaining)
-
     def standing(self, among: Sequence[int]) -> list[Candidate]:
         """Return the actions of some stones, from all sides, after which the wall stands.
 
         They are what a policy is offered; of proposals that come in batches the first of which
         any stands.
-
-        Parameters
-        ----------
-        among : sequence of int
-            Ids of stones that are left.
         """
         for proposals in self._proposals(tuple(self._landscapes.values()), among):
             judged = self._judge(proposals)
@@ -140,7 +95,14 @@ class Attempt:
                 return found
         return []
 
-    def _choose(self, rng: np.random.Generator, remaining: tuple[int, ...]) -> Candidate | None:
+    def choose(
+        self, rng: np.random.Generator, among: Sequence[int] | None = None
+    ) -> Candidate | None:
+        """Sample a candidate set of some stones, or of all that are left; return the best action.
+
+        None when there is none.  UsageError (E147): the policy of another package failed.
+        """
+        remaining = tuple(self._workshop.remaining(self.build) if among is None else among)
         clusters = self._workshop.clusters
         sample = sample_stones(self._settings.sampling, remaining, clusters, rng)
 
@@ -186,7 +148,7 @@ class Attempt:
             groups = [poses(stone_id) for stone_id in stones]
         else:
             groups = [(posed,) for stone_id in stones for posed in poses(stone_id)]
-        trials = [Trial(poses, view, self._rest) for view in landscapes for poses in groups]
+        trials = [StoneTrial(poses, view) for view in landscapes for poses in groups]
         heights = _course_heights(groups)
         for batch in self._proposer.proposals(trials, self._map):
             yield [
@@ -223,24 +185,21 @@ class Attempt:
             return work(item)
 
         if self._executor is None or len(items) == 1:
-            return [in_time(item) for item in items]
+            return one_by_one(in_time, items)
         # Handing over a candidate costs as much as a part of it: a few tasks, many candidates.
         size = math.ceil(len(items) / TASKS)
         chunks = [items[k : k + size] for k in range(0, len(items), size)] if items else []
-        done = self._executor.map(lambda chunk: [in_time(item) for item in chunk], chunks)
+        done = self._executor.map(partial(one_by_one, in_time), chunks)
         return [result for results in done for result in results]
 
 
 def _course_heights(groups: Sequence[tuple[PosedStone, ...]]) -> dict[int, float | None]:
     """Return for each stone the mean height of the candidates that are other stones (Eq. 8)."""
-    heights = [(group[0].stone.id, fmean(posed.height_px for posed in group)) for group in groups]
-    total = math.fsum(height for _, height in heights)
     own: dict[int, list[float]] = {}
-    for stone_id, height in heights:
-        own.setdefault(stone_id, []).append(height)
+    for group in groups:
+        own.setdefault(group[0].stone.id, []).append(fmean(posed.height_px for posed in group))
+    total, count = math.fsum(chain(*own.values())), len(groups)
     return {
-        stone_id: (total - math.fsum(mine)) / (len(heights) - len(mine))
-        if len(heights) > len(mine)
-        else None
+        stone_id: (total - math.fsum(mine)) / (count - len(mine)) if count > len(mine) else None
         for stone_id, mine in own.items()
     }

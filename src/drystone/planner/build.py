@@ -7,8 +7,7 @@ from drystone.contacts.interfaces import PointContacts
 from drystone.indices import Indices
 from drystone.model.placement import Side
 from drystone.model.site import Site
-from drystone.model.wall import Wall
-from drystone.stabilise.stabilise import Stabilised
+from drystone.model.wall import Group, Wall
 from drystone.statics.incremental import IncrementalAnalysis, incremental_analysis
 from drystone.statics.lp.program import Units
 from drystone.statics.model import RigidBlockModel
@@ -17,27 +16,14 @@ from drystone.statics.result import LateralResistance
 
 @dataclass(frozen=True, eq=False)
 class Proposal:
-    """A stone, stabilised somewhere; whether the wall then stands is not known yet.
+    """A stone, stabilised somewhere; whether the wall then stands is not known yet."""
 
-    Parameters
-    ----------
-    stabilised : Stabilised
-        Placement and wedges.
-    trial_angle_deg : float
-        Angle of the pose that was tried, before stabilisation.
-    course_height_px : float or None
-        Mean height of the other candidates of the step (Eq. 8); None when there are none.
-    cost : float
-        Weighted craft cost (:mod:`drystone.selection.scored`); 0 when no rule asks for it.
-    spot : int
-        Which of the places that were tried with this pose.
-    """
-
-    stabilised: Stabilised
-    trial_angle_deg: float
+    stabilised: Group
+    trial_angle_deg: float  # angle of the pose that was tried, before stabilisation
+    # mean height of the other candidates of the step (Eq. 8); None when there are none
     course_height_px: float | None = None
-    cost: float = 0.0
-    spot: int = 0
+    cost: float = 0.0  # weighted craft cost (`scored`); 0 when no rule asks for it
+    spot: int = 0  # which of the places that were tried with this pose
 
     @property
     def stone_id(self) -> int:
@@ -52,41 +38,22 @@ class Proposal:
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """One evaluated action (M_m, S_m).
-
-    Parameters
-    ----------
-    proposal : Proposal
-        The action.
-    indices : Indices
-        Of the action.
-    course_height_px : float or None
-        Mean height of the other candidates when the stone begins a course (Eq. 8).
-    model : RigidBlockModel
-        Of the wall with the action done.
-    resistance : LateralResistance
-        Of that model.
-    solved_cold : bool
-        True when an answer found from the bases of the wall had no certificate, and a model was
-        solved from the start.
-    sturdy_model : RigidBlockModel or None
-        The model of outlines with fewer and less able contacts, in which the wall must stand as
-        well (:mod:`drystone.planner.sturdy`); None for pixels.
-    sturdy : bool
-        Whether it does.
-    failed : bool
-        True when the solver gave up on one of the models.
-    """
+    """One evaluated action (M_m, S_m)."""
 
     proposal: Proposal
     indices: Indices
+    # mean height of the other candidates when the stone begins a course (Eq. 8)
     course_height_px: float | None
     model: RigidBlockModel
     resistance: LateralResistance
+    # True when an answer found from the bases of the wall had no certificate, and a model was
+    # solved from the start
     solved_cold: bool = False
+    # the model of outlines with fewer and less able contacts, in which the wall must stand as
+    # well (`sturdy`); None for pixels
     sturdy_model: RigidBlockModel | None = None
-    sturdy: bool = True
-    failed: bool = False
+    sturdy: bool = True  # whether it does
+    failed: bool = False  # True when the solver gave up on one of the models
 
     def __repr__(self) -> str:
         return f"<Candidate: {self.said}>"
@@ -99,7 +66,7 @@ class Candidate:
         return f"stone {self.stone_id} turned by {angle_deg:.1f} deg, {wedges} wedges"
 
     @property
-    def stabilised(self) -> Stabilised:
+    def stabilised(self) -> Group:
         """Placement and wedges."""
         return self.proposal.stabilised
 
@@ -116,49 +83,23 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Build:
-    """What is built after some steps; immutable.
-
-    Parameters
-    ----------
-    wall : Wall
-        Stones and wedges placed.
-    model : RigidBlockModel
-        Of the wall.
-    actions : tuple of Candidate
-        The chosen actions, in order.
-    grown_from : IncrementalAnalysis or None
-        Of the wall before the last action; None when nothing will be built on the wall.
-    before : Build or None
-        The state before the last action, if it was kept.
-    sturdy_model : RigidBlockModel or None
-        Of a wall of outlines: see :class:`Candidate`.
-    sturdy_from : IncrementalAnalysis or None
-        Of its sturdy model before the last action.
-    """
+    """What is built after some steps; immutable."""
 
     wall: Wall
     model: RigidBlockModel
     actions: tuple[Candidate, ...] = ()
+    # of the wall before the last action; None when nothing will be built on the wall
     grown_from: IncrementalAnalysis | None = None
-    before: "Build | None" = None
-    sturdy_model: RigidBlockModel | None = None
-    sturdy_from: IncrementalAnalysis | None = None
+    before: "Build | None" = None  # the state before the last action, if it was kept
+    sturdy_model: RigidBlockModel | None = None  # of a wall of outlines: see `Candidate`
+    sturdy_from: IncrementalAnalysis | None = None  # of its sturdy model before the last action
 
     @classmethod
     def empty(cls, site: Site, mu: float, stone_area_px: float, *, exact: bool = False) -> "Build":
-        """Return the state before the first stone.
+        """Return the state before the first stone; exact: stones are their outlines, source px.
 
-        Parameters
-        ----------
-        site : Site
-            Where.
-        mu : float
-            Coefficient of friction.
-        stone_area_px : float
-            Mean area of the stones of the set, working px: the unit of weight of the limit
-            analysis, whatever is built.
-        exact : bool
-            Stones are their outlines, in source px, instead of pixels.
+        `stone_area_px` is the mean area of the stones of the set, working px: the unit of weight
+        of the limit analysis, whatever is built.
         """
         area = stone_area_px / site.scale**2 if exact else stone_area_px
         model = RigidBlockModel((), (), mu)
@@ -192,19 +133,12 @@ class Build:
     def add(self, action: Candidate, *, keep: bool = False) -> "Build":
         """Return the state after one more action (Eq. 1).
 
-        Parameters
-        ----------
-        action : Candidate
-            What is done.
-        keep : bool
-            Whether the new state knows this one, to go back to it.
+        `keep`: the new state knows this one, to go back to it.
         """
         wall = self.wall.add(action.stabilised.placement, action.stabilised.wedges)
-        before = self if keep else None
-        actions = (*self.actions, action)
         return Build(
-            wall, action.model, actions, self.analysis, before, action.sturdy_model,
-            self.sturdy_analysis,
+            wall, action.model, (*self.actions, action), self.analysis, self if keep else None,
+            action.sturdy_model, self.sturdy_analysis,
         )  # fmt: skip
 
     def states(self) -> "tuple[Build, ...]":

@@ -89,27 +89,8 @@ def choose_by_policy(
 ) -> Candidate | None:
     """Return the action that a policy chooses among those after which the wall stands.
 
-    All proposals are analysed; as with the other rules LLC must be positive.
-
-    Parameters
-    ----------
-    proposals : sequence of Proposal
-        Of all sides.
-    judge : callable
-        Turns proposals into candidates.
-    policy : Policy
-        What chooses.
-    name : str
-        Its name, for messages.
-    site : Site
-        Where.
-    rng : numpy.random.Generator
-        For the policy.
-
-    Raises
-    ------
-    UsageError
-        E147: the policy failed.
+    All proposals, those of all sides, are analysed; as with the other rules LLC must be positive.
+    UsageError (E147): the policy failed.
     """
     standing = [c for c in judge(proposals) if c.sturdy and (c.indices.LLC or 0.0) > 0]
     position = choice_of(name, policy, [offer(one, site) for one in standing], rng)

@@ -16,17 +16,10 @@ class TimeIsUp(Exception):  # noqa: N818 - no error: the work ends here because 
 
 @dataclass(frozen=True, eq=False)
 class Deadline:
-    """When time is up.
+    """When time is up."""
 
-    Parameters
-    ----------
-    at : float
-        By the clock, s; infinite for no limit.
-    clock : callable
-        Gives seconds; the same in all processes, where there are several.
-    """
-
-    at: float = math.inf
+    at: float = math.inf  # by the clock, s; infinite for no limit
+    # gives seconds; the same in all processes, where there are several
     clock: Callable[[], float] = time.time
 
     @classmethod
@@ -35,13 +28,7 @@ class Deadline:
         return cls(clock() + seconds, clock)
 
     def look(self) -> None:
-        """Look at the clock.
-
-        Raises
-        ------
-        TimeIsUp
-            The limit has struck.
-        """
+        """Raise TimeIsUp when the limit has struck."""
         if self.clock() > self.at:
             raise TimeIsUp
 

@@ -9,10 +9,9 @@ import numpy as np
 
 from drystone.kernels.drops import DropTerms
 from drystone.kernels.profiles import Floats
-from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.wedge_shape import WedgeRule
-from drystone.planner.proposing import Key, Trial
+from drystone.planner.proposing import Key, StoneTrial
 from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest, Stock
 from drystone.settle.book import OutlineBook
@@ -28,23 +27,12 @@ UNBALANCED = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Drop:
-    """A place where a stone could be let go.
+    """A place where a stone could be let go."""
 
-    Parameters
-    ----------
-    trial : Trial
-        Stone and side.
-    spot : int
-        Which place of the trial's pose.
-    start : (float, float)
-        Of its centroid, in the view, source px.
-    rank : (float, tuple)
-        Estimated cost, and what tells it from the others of a step: sorts the cheapest first.
-    """
-
-    trial: Trial
-    spot: int
-    start: tuple[float, float]
+    trial: StoneTrial
+    spot: int  # which place of the trial's pose
+    start: tuple[float, float]  # of its centroid, in the view, source px
+    # estimated cost, and what tells it from the others of a step: sorts the cheapest first
     rank: tuple[float, tuple[Key, int]]
 
     @property
@@ -55,37 +43,15 @@ class Drop:
 
 @dataclass(frozen=True, eq=False)
 class Dropped:
-    """Where the poses of a trial could be let go.
+    """Where the poses of a trial could be let go."""
 
-    Parameters
-    ----------
-    trial : Trial
-        One stone and side.
-    places : tuple of (n, 4) float arrays
-        Of each pose (:func:`drystone.kernels.drops.drops`).
-    limit : float
-        Those that cost more may be missing.
-    """
-
-    trial: Trial
-    places: tuple[Floats, ...]
-    limit: float
+    trial: StoneTrial
+    places: tuple[Floats, ...]  # (n, 4): of each pose (`drops`)
+    limit: float  # those that cost more may be missing
 
 
 def drop_terms(site: Site, stock: Stock, rest: Rest, settings: PlannerSettings) -> DropTerms:
-    """Return what drops cost in a state of construction.
-
-    Parameters
-    ----------
-    site : Site
-        Of the wall.
-    stock : Stock
-        Sizes of the stones.
-    rest : Rest
-        What the stones that are left could fill.
-    settings : PlannerSettings
-        Weights and clearances.
-    """
+    """Return what drops cost in a state of construction."""
     score, settle = settings.score, settings.settle
     return DropTerms(
         cell_px=1.0 / site.scale,
@@ -123,7 +89,9 @@ def in_order(dropped: Sequence[Dropped], book: OutlineBook) -> Iterator[Drop]:
         owner[order].tolist(), spot[order].tolist(), rows[order].tolist(), strict=True
     ):
         trial, posed = owners[at]
-        drop = _drop(trial, posed, spot_at, (x, y, round(cost, 12)), book)
+        one = trial if len(trial.poses) == 1 else replace(trial, poses=(posed,))
+        left = book.hung(posed.stone, posed.angle_deg, trial.landscape.side).profile.left
+        drop = Drop(one, spot_at, (x - left, y), (round(cost, 12), (one.key, spot_at)))
         # Rounding keeps the order of costs, except that it makes some equal.
         if equal and equal[-1].rank[0] != drop.rank[0]:
             yield from sorted(equal, key=attrgetter("rank"))
@@ -132,28 +100,10 @@ def in_order(dropped: Sequence[Dropped], book: OutlineBook) -> Iterator[Drop]:
     yield from sorted(equal, key=attrgetter("rank"))
 
 
-def _drop(
-    trial: Trial,
-    posed: PosedStone,
-    spot: int,
-    place: tuple[float, float, float],
-    book: OutlineBook,
-) -> Drop:
-    one = trial if len(trial.poses) == 1 else replace(trial, poses=(posed,))
-    x, y, cost = place
-    left = book.hung(posed.stone, posed.angle_deg, trial.landscape.side).profile.left
-    return Drop(one, spot, (x - left, y), (cost, (one.key, spot)))
-
-
 def shortlist(drops: Iterable[Drop], settings: SettleSettings) -> list[Drop]:
     """Take the first drops, only so many of one stone.
 
-    Parameters
-    ----------
-    drops : iterable of Drop
-        The cheapest first; asked for no further than needed.
-    settings : SettleSettings
-        How many.
+    `drops` has the cheapest first, and is asked for no further than needed.
     """
     taken: list[Drop] = []
     counts: Counter[int] = Counter()
@@ -168,17 +118,7 @@ def shortlist(drops: Iterable[Drop], settings: SettleSettings) -> list[Drop]:
 
 
 def wedge_limits(settings: PlannerSettings, stock: Stock, site: Site) -> WedgeLimits:
-    """Return what wedges may be, in source px.
-
-    Parameters
-    ----------
-    settings : PlannerSettings
-        Sizes of wedges, and how a wedged stone must rest.
-    stock : Stock
-        Sizes of the stones, working px.
-    site : Site
-        Its resolution, and its scale.
-    """
+    """Return what wedges may be, in source px; the stock is in working px."""
     settle, size_px = settings.settle, stock.median_area_px**0.5 / site.scale
     rule = WedgeRule.of(settings.wedge, settings.mu, size_px, site.px_per_m)
     return WedgeLimits(

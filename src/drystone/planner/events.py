@@ -52,15 +52,8 @@ class Step:
     def place_pose(self, thickness_m: float = 0.0) -> Pose3d:
         """Return where the centroid of the stone goes in the wall (frame W), and how it is turned.
 
-        Parameters
-        ----------
-        thickness_m : float
-            Of the wall; the centroid is half of it behind the front face.
-
-        Raises
-        ------
-        UsageError
-            E131: the site has no scale.
+        The centroid is half of the wall's thickness behind the front face.  UsageError (E131): the
+        site has no scale.
         """
         site, placement = self.build.wall.site, self.action.stabilised.placement
         x, y = placement.centroid(site.height_px)
@@ -70,15 +63,8 @@ class Step:
     def pick_pose(self, thickness_m: float = 0.0) -> Pose3d:
         """Return where the stone lies in the picture that it was read from (frame P).
 
-        Parameters
-        ----------
-        thickness_m : float
-            Of the stone; its centroid is half of it above the ground.
-
-        Raises
-        ------
-        UsageError
-            E131: the site has no scale.
+        Its centroid is half of its thickness above the ground.  UsageError (E131): the site has no
+        scale.
         """
         x, y = self.action.stabilised.placement.posed.stone.centroid
         metres = metres_of(1.0, self.build.wall.site.px_per_m)
@@ -87,17 +73,10 @@ class Step:
 
 @dataclass(frozen=True)
 class Stopped:
-    """Why construction ended.
+    """Why construction ended."""
 
-    Parameters
-    ----------
-    reason : {"filled", "stones", "failures", "search", "interrupted", "time"}
-        Design goal reached, all stones placed, too many failures in a row, left so by a search,
-        stopped by the user, or by the time limit.
-    text : str
-        The same in words.
-    """
-
+    # design goal reached, all stones placed, too many failures in a row, left so by a search,
+    # stopped by the user, or by the time limit
     reason: Literal["filled", "stones", "failures", "search", "interrupted", "time"]
     text: str
 
@@ -111,23 +90,12 @@ UNFINISHED = (INTERRUPTED.text, OUT_OF_TIME.text)
 
 @dataclass(frozen=True)
 class Incumbent:
-    """The best wall of a search so far (:mod:`drystone.search`).
+    """The best wall of a search so far (:mod:`drystone.search`)."""
 
-    Parameters
-    ----------
-    walls : int
-        How many have been built: the budget that repeats it.
-    stones : int
-        Placed in the best one.
-    merit : float
-        What the goal makes of it; higher is better.
-    F_SF, F_LR, F_AV, F_AH : float
-        Its figures of merit at the working resolution.
-    """
-
-    walls: int
-    stones: int
-    merit: float
+    walls: int  # how many have been built: the budget that repeats it
+    stones: int  # placed in the best one
+    merit: float  # what the goal makes of it; higher is better
+    # its figures of merit at the working resolution
     F_SF: float
     F_LR: float
     F_AV: float

@@ -32,7 +32,7 @@ SAME = 0.15
 with fewer it is where it was planned, as far as the picture can tell."""
 
 
-Pose = tuple[float, float, float]
+Fit = tuple[float, float, float]
 """x, y in px of a picture, y up, and an angle in degrees."""
 
 
@@ -55,32 +55,20 @@ class MeasuredPose:
 
 
 @dataclass(frozen=True)
-class Place:
-    """The same in source px.
+class MeasuredPlace:
+    """The same in source px."""
 
-    Parameters
-    ----------
-    x_px, y_px : float
-        Centroid, source px.
-    angle_deg : float
-        In [-180, 180).
-    as_planned : bool
-        The picture shows the stone where it was planned.
-    """
-
+    # centroid, source px
     x_px: float
     y_px: float
-    angle_deg: float
-    as_planned: bool = False
+    angle_deg: float  # in [-180, 180)
+    as_planned: bool = False  # the picture shows the stone where it was planned
 
 
-def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Place]:
+def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, MeasuredPlace]:
     """Return measured poses in source px.
 
-    Raises
-    ------
-    InputError
-        E197: a pose is no number, or its centroid is outside of the wall.
+    InputError (E197): a pose is not a number, or its centroid is outside of the wall.
     """
     px = site.px_per_m or 1.0
     width, height = site.extent_px
@@ -104,32 +92,24 @@ def places_of(poses: Mapping[int, MeasuredPose], site: Site) -> dict[int, Place]
                 cure="Leave out what has fallen; poses are of the wall frame, from its left end "
                 "and the ground.",
             )
-        found[stone_id] = Place(x, y, wrap_deg(pose.angle_deg))
+        found[stone_id] = MeasuredPlace(x, y, wrap_deg(pose.angle_deg))
     return found
 
 
-def places_in(labels: NDArray[np.integer], wall: Wall, stones: StoneSet) -> dict[int, Place]:
+def places_in(
+    labels: NDArray[np.integer], wall: Wall, stones: StoneSet
+) -> dict[int, MeasuredPlace]:
     """Return where the stones of a picture of ids are.
+
+    The picture has 0 for nothing, row 0 at the top; it shows the whole wall at the working or the
+    source resolution of the site.  Ids of the wedges of the planned `wall` are not looked at.
 
     Each stone is matched with its outline: its centroid is that of its pixels, its angle the one
     at which the outline covers them best, and both are refined together until the squared
     difference of pixels and coverage is least.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        Ids, 0 for nothing, row 0 at the top: of the whole wall, at the working or the source
-        resolution of the site.  Ids of the wedges of `wall` are not looked at.
-    wall : Wall
-        As it was planned.
-    stones : StoneSet
-        All stones.
-
-    Raises
-    ------
-    InputError
-        E196: the picture is none, or of another size; E195: an id is none of a stone; E197: much
-        of a stone is not to be seen, or more than there is of it.
+    InputError: E196: the picture is not one of the wall; E195: an id is not that of a stone; E197:
+    much of a stone is not to be seen, or more than there is of it.
     """
     scale = _scale_of(np.asarray(labels), wall.site)
     planned = {p.stone_id: p for p in wall.placements}
@@ -146,7 +126,9 @@ def places_in(labels: NDArray[np.integer], wall: Wall, stones: StoneSet) -> dict
             found[stone_id] = fitted(seen, stone.outline, scale, None)
             continue
         x, y = placement.centroid(wall.site.height_px)
-        there = Place(x / wall.site.scale, y / wall.site.scale, placement.posed.angle_deg, True)
+        there = MeasuredPlace(
+            x / wall.site.scale, y / wall.site.scale, placement.posed.angle_deg, True
+        )
         if _rim_share(seen, np.asarray(expected == stone_id)) <= SAME:
             found[stone_id] = there
         else:
@@ -170,27 +152,20 @@ def require_known(ids: Iterable[object], stones: StoneSet) -> None:
         )
 
 
-def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None) -> Place:
+def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None) -> MeasuredPlace:
     """Return the pose at which an outline covers the pixels of a stone best.
 
-    Parameters
-    ----------
-    seen : (h, w) bool array
-        The pixels, row 0 at the top.
-    outline : (n, 2) float array
-        About the centroid, source px.
-    scale : float
-        Of the picture over the source.
-    planned_deg : float or None
-        The angle to begin with.  All others are tried as well, but one that is far from it is
-        taken only if it is clearly better: some stones look the same upside down.
+    `seen` are the pixels, row 0 at the top; the outline is about the centroid, source px; `scale`
+    that of the picture over the source.  `planned_deg` is the angle to begin with, if any.  All
+    others are tried as well, but one that is far from it is taken only if it is clearly better:
+    some stones look the same upside down.
     """
     rows, cols = np.nonzero(seen)
     x, y = float(cols.mean()) + 0.5, len(seen) - float(rows.mean()) - 0.5
     shape = np.asarray(outline * scale)
     reach = float(np.hypot(*shape.T).max())
 
-    def misfit(pose: Pose) -> float:
+    def misfit(pose: Fit) -> float:
         return _misfit(seen, len(rows), shape, pose)
 
     angles = np.arange(0.0, 360.0, COARSE_DEG).tolist()
@@ -203,10 +178,10 @@ def fitted(seen: Mask, outline: Points, scale: float, planned_deg: float | None)
             other = _refined(misfit, (x, y, coarse), reach)
             best = other if other[0] < SHARPER * best[0] else best
     _, (x, y, angle) = best
-    return Place(x / scale, y / scale, wrap_deg(angle))
+    return MeasuredPlace(x / scale, y / scale, wrap_deg(angle))
 
 
-def _refined(misfit: Callable[[Pose], float], pose: Pose, reach: float) -> tuple[float, Pose]:
+def _refined(misfit: Callable[[Fit], float], pose: Fit, reach: float) -> tuple[float, Fit]:
     """Go down from a pose along x, y and the angle, with steps that get shorter."""
     least = misfit(pose)
     step = 8.0 * FIRST_STEP
@@ -227,7 +202,7 @@ def _refined(misfit: Callable[[Pose], float], pose: Pose, reach: float) -> tuple
     return least, pose
 
 
-def _misfit(seen: Mask, count: int, shape: Points, pose: Pose) -> float:
+def _misfit(seen: Mask, count: int, shape: Points, pose: Fit) -> float:
     """Return the sum of squares of what an outline covers of each pixel, less what is seen."""
     corners = turn(shape, pose[2])
     corners[:, 0] += pose[0]

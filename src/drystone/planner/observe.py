@@ -1,6 +1,6 @@
 """Going on from the wall as it was really built (Johns et al. 2020 plan on the fly so)."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -13,14 +13,15 @@ from drystone.model.site import Site
 from drystone.planner.as_measured import far_from, rebuilt
 from drystone.planner.build import Build
 from drystone.planner.measured import (
+    MeasuredPlace,
     MeasuredPose,
-    Place,
     places_in,
     places_of,
     require_known,
 )
 from drystone.planner.replay import stands
 from drystone.planner.settings import PlannerSettings
+from drystone.planner.stock import sides_of
 from drystone.planner.workshop import Workshop
 from drystone.poses import wrap_deg
 
@@ -115,37 +116,10 @@ def observed(
     workshop: Workshop,
     settings: PlannerSettings,
 ) -> tuple[Build, Observation]:
-    """Return the state of construction of a wall as it was measured.
+    """Return the state of construction of a wall as it was measured, and what was found.
 
-    Parameters
-    ----------
-    start : Build
-        Nothing is built.
-    build : Build
-        What was planned so far.
-    measured : mapping of int to MeasuredPose, or (h, w) integer array
-        Where every stone in the wall is.
-    lost : iterable of int
-        Stones that cannot be used any more.
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        All parameters.
-
-    Returns
-    -------
-    build : Build
-        The very one that was given when nothing was measured elsewhere.
-    observation : Observation
-        What was found.
-
-    Raises
-    ------
-    InputError
-        E195, E196, E197: see :mod:`drystone.planner.measured`; E198: a stone overlaps others
-        wherever it is moved to.
-    UsageError
-        E199: a stone is lost and in the wall.
+    `start` is the empty wall, `build` what was planned so far: the very one is returned when
+    nothing was measured elsewhere.  Errors: see :meth:`drystone.planner.planner.Planner.observe`.
     """
     places = _places(build, measured, workshop)
     missing = _lost(lost, places, workshop)
@@ -167,7 +141,7 @@ def observed(
         lost=missing,
         added=tuple(added),
         stands=not unsteady,
-        notices=(*_unsteady(unsteady), *_moved(far_from(now, places))),
+        notices=tuple(_notices(unsteady, far_from(now, places))),
     )
     return now, observation
 
@@ -182,12 +156,12 @@ def without(
     ban = tuple(sorted(gone.union(settings.ban)))
     pin = tuple(i for i in settings.pin if i not in gone)
     return (
-        replace(workshop, fitting=fitting, sides=workshop.sides.without(poses)),
+        replace(workshop, fitting=fitting, sides=workshop.sides - sides_of(poses)),
         replace(settings, ban=ban, pin=pin),
     )
 
 
-def _places(build: Build, measured: Measurement, workshop: Workshop) -> dict[int, Place]:
+def _places(build: Build, measured: Measurement, workshop: Workshop) -> dict[int, MeasuredPlace]:
     """Return where the stones are; those that are where they were planned are marked."""
     if not isinstance(measured, Mapping):
         return places_in(measured, build.wall, workshop.stones)
@@ -202,7 +176,9 @@ def _places(build: Build, measured: Measurement, workshop: Workshop) -> dict[int
     return places
 
 
-def _lost(lost: Iterable[int], places: Mapping[int, Place], workshop: Workshop) -> tuple[int, ...]:
+def _lost(
+    lost: Iterable[int], places: Mapping[int, MeasuredPlace], workshop: Workshop
+) -> tuple[int, ...]:
     """Return the stones that are lost; E195 for those that there are not, E199 in the wall."""
     gone = set(lost)
     require_known(gone, workshop.stones)
@@ -218,7 +194,9 @@ def _lost(lost: Iterable[int], places: Mapping[int, Place], workshop: Workshop) 
     return missing
 
 
-def _deviations(planned: Build, now: Build, places: Mapping[int, Place]) -> tuple[Deviation, ...]:
+def _deviations(
+    planned: Build, now: Build, places: Mapping[int, MeasuredPlace]
+) -> tuple[Deviation, ...]:
     site = planned.wall.site
     here = {placement.stone_id: placement for placement in now.wall.placements}
     found = []
@@ -233,37 +211,27 @@ def _deviations(planned: Build, now: Build, places: Mapping[int, Place]) -> tupl
     return tuple(found)
 
 
-def _less(place: Place, placement: Placement, site: Site) -> tuple[float, float, float]:
+def _less(place: MeasuredPlace, placement: Placement, site: Site) -> tuple[float, float, float]:
     """Return a place less that of a placement: x, y in source px, and the angle."""
     x, y = placement.centroid(site.height_px)
     angle = wrap_deg(place.angle_deg - placement.posed.angle_deg)
     return place.x_px - x / site.scale, place.y_px - y / site.scale, angle
 
 
-def _unsteady(unsteady: tuple[int, ...]) -> tuple[Notice, ...]:
-    if not unsteady:
-        return ()
-    named = ", ".join(map(str, unsteady))
-    return (
-        Notice(
+def _notices(unsteady: tuple[int, ...], far: tuple[int, ...]) -> Iterator[Notice]:
+    if unsteady:
+        yield Notice(
             "W124",
-            f"as measured, the wall does not stand after stones {named}.",
+            f"as measured, the wall does not stand after stones {', '.join(map(str, unsteady))}.",
             "Measure again, or take down the first of them and what lies on it: nothing is "
             "planned on a wall that does not stand.",
-        ),
-    )
-
-
-def _moved(far: tuple[int, ...]) -> tuple[Notice, ...]:
-    if not far:
-        return ()
-    named = ", ".join(map(str, far))
-    return (
-        Notice(
+        )
+    if far:
+        yield Notice(
             "W127",
-            f"stones {named} are taken to be more than a tenth of their size from where they were "
-            "measured: there they overlap others, hang in the air or would fall.",
+            f"stones {', '.join(map(str, far))} are taken to be more than a tenth of their size "
+            "from where they were measured: there they overlap others, hang in the air or would "
+            "fall.",
             "Measure again, or see whether they would fall: planning goes on from where they are "
             "taken to be.",
-        ),
-    )
+        )

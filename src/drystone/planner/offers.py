@@ -13,15 +13,7 @@ upright face does not."""
 
 
 def offer(candidate: Candidate, site: Site) -> Offer:
-    """Return what a policy sees of a candidate.
-
-    Parameters
-    ----------
-    candidate : Candidate
-        After which the wall stands.
-    site : Site
-        Where.
-    """
+    """Return what a policy sees of a candidate after which the wall stands."""
     placement = candidate.stabilised.placement
     settled, posed = placement.settled, placement.posed
     left, bottom, right, top = (
@@ -56,35 +48,18 @@ def offer(candidate: Candidate, site: Site) -> Offer:
 
 
 def turned_deg(before_deg: float, after_deg: float) -> float:
-    """Return the angle between two poses, in [0, 180].
-
-    Examples
-    --------
-    >>> turned_deg(-179.0, 178.0)
-    3.0
-    """
+    """Return the angle between two poses, in [0, 180]."""
     return abs(wrap_deg(after_deg - before_deg))
 
 
 def support_px(
     model: RigidBlockModel, stone_id: int, scale: float = 1.0
 ) -> tuple[Point, Point] | None:
-    """Return the ends of the line on which a stone is borne; None when nothing bears it.
+    """Return the ends of the line on which the last stone of a model is borne, if anything does.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Of the wall in which the stone is the last one.
-    stone_id : int
-        Id of the stone.
-    scale : float
-        Working px in a unit of the model.
-
-    Returns
-    -------
-    ends : ((float, float), (float, float)) or None
-        The leftmost and the rightmost of the bearing points (x, y) of all its supports, wedges
-        among them; of points above each other the lower one; working px.
+    The leftmost and the rightmost of the bearing points (x, y) of all its supports, wedges among
+    them; of points above each other the lower one; working px.  `scale` is the working px in a
+    unit of the model.
     """
     interfaces = model.interfaces if model.added is None else model.added.interfaces
     bearing: list[Points] = []

@@ -138,8 +138,8 @@ class Planner:
             aside.update(left[:1] if action is None else ())
             return action
         pinned = [i for i in left if i in self.settings.pin]
-        if pinned and self.settings.selection_rule == "algorithm2":
-            # No cost prefers them there.
+        if pinned and self.settings.selection_rule != "score":
+            # No cost prefers them there: neither Algorithm 2 nor a policy knows of pins.
             return attempt.choose(rng, pinned) or attempt.choose(rng)
         return attempt.choose(rng)
 
@@ -162,11 +162,8 @@ class Planner:
         self.cold_solves += attempt.cold_solves
 
     def _empty(self) -> Build:
-        workshop = self.workshop
-        exact = self.settings.geometry == "exact"
-        return Build.empty(
-            workshop.site, self.settings.mu, workshop.stock.mean_area_px, exact=exact
-        )
+        exact, mean_area_px = self.settings.geometry == "exact", self.workshop.stock.mean_area_px
+        return Build.empty(self.workshop.site, self.settings.mu, mean_area_px, exact=exact)
 
     def _added(self, build: Build, action: Candidate) -> Build:
         """Return the state after an action; a search goes back to those before."""
@@ -180,7 +177,9 @@ class Planner:
         if not self.workshop.remaining(self.build):
             banned = len(set(self.settings.ban))
             left = len(self.workshop.stones) - len(self.build.actions) - banned
-            return Stopped("stones", _all_placed(left, banned))
+            which = [text for text, there in (("are not banned", banned), ("fit", left)) if there]
+            those = f" that {' and '.join(which)}" if which else ""
+            return Stopped("stones", f"all stones{those} placed")
         if self.settings.order == "given":
             if self._left(aside):
                 return None
@@ -191,14 +190,9 @@ class Planner:
         return None
 
     def restore(self, wall: Wall, course_heights_px: Mapping[int, float]) -> None:
-        """Go on from a wall that is built already, as from a partial plan.
+        """Go on from a wall, on the planner's site and of its stones, that is built already.
 
-        Parameters
-        ----------
-        wall : Wall
-            On the planner's site, of its stones.
-        course_heights_px : mapping of int to float
-            For stones that began a course: the height that Eq. 8 compared with.
+        `course_heights_px` is the height that Eq. 8 compared with, for stones that began a course.
         """
         evaluator = Evaluator(self.settings, self.workshop.stock, self.profile)
         build = self._empty()
@@ -265,8 +259,3 @@ class Planner:
             self.stopped = None  # that was of another wall, or of more stones
         self.build = build
         return observation
-
-
-def _all_placed(left: int, banned: int) -> str:
-    which = [text for text, there in (("are not banned", banned), ("fit", left)) if there]
-    return " that ".join(["all stones", *([" and ".join(which)] if which else [])]) + " placed"

@@ -1,7 +1,8 @@
 """Where the time of a plan goes: by step, and by part of the work."""
 
 import time
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal
 
@@ -21,24 +22,13 @@ PARTS: tuple[Part, ...] = (
 
 @dataclass(frozen=True)
 class StepTime:
-    """What one step took.
+    """What one step took."""
 
-    Parameters
-    ----------
-    stones : int
-        Stones that were there before it.
-    candidates : int
-        How many candidates were evaluated.
-    seconds : float
-        From its first attempt to its action.
-    parts : dict of str to float
-        Seconds by part of the work; what is missing to `seconds` is sampling, selection and
-        keeping books.  With several threads the parts of all of them, waiting included.
-    """
-
-    stones: int
-    candidates: int
-    seconds: float
+    stones: int  # stones that were there before it
+    candidates: int  # how many candidates were evaluated
+    seconds: float  # from its first attempt to its action
+    # seconds by part of the work; what is missing to `seconds` is sampling, selection and
+    # keeping books.  With several threads the parts of all of them, waiting included.
     parts: dict[Part, float]
 
 
@@ -66,9 +56,14 @@ class Profile:
         self._since = time.perf_counter()
         self._candidates_in_vain = 0
 
-    def part(self, name: Part) -> AbstractContextManager[object]:
+    @contextmanager
+    def part(self, name: Part) -> Iterator[None]:
         """Return a context whose duration counts for a part."""
-        return _Timing(name, self._pending)
+        since, into = time.perf_counter(), self._pending
+        try:
+            yield
+        finally:
+            into.append((name, time.perf_counter() - since))
 
     def begin_step(self) -> None:
         """Say that an attempt at a new action begins; what came before belongs to no step."""
@@ -95,21 +90,6 @@ class Profile:
         """Return the seconds of a part, all steps and what is outside of steps together."""
         rest = _sums(self._other + self._pending)
         return sum(step.parts.get(part, 0.0) for step in self.steps) + rest.get(part, 0.0)
-
-
-class _Timing:
-    """Measures a block."""
-
-    __slots__ = ("_into", "_name", "_since")
-
-    def __init__(self, name: Part, into: list[tuple[Part, float]]) -> None:
-        self._name, self._into = name, into
-
-    def __enter__(self) -> None:
-        self._since = time.perf_counter()
-
-    def __exit__(self, *_: object) -> None:
-        self._into.append((self._name, time.perf_counter() - self._since))
 
 
 def _sums(times: list[tuple[Part, float]]) -> dict[Part, float]:

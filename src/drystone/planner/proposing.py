@@ -1,13 +1,16 @@
 """Trial placement and stabilisation of candidates (Algorithm 1, lines 8-15)."""
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any, Protocol
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
 
 from drystone.model.landscape import Landscape
 from drystone.model.placement import Side
 from drystone.model.pose import PosedStone
+from drystone.model.wall import Group
 from drystone.placement.best import Spot, best_spots
 from drystone.placement.feasible import can_be_lowered
 from drystone.planner.build import Build, Proposal
@@ -17,7 +20,6 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Rest
 from drystone.planner.workshop import Workshop
 from drystone.selection.scored import PIN_BONUS, craft_cost
-from drystone.stabilise.stabilise import Stabilised
 
 TOGETHER = 16
 """So many trials are stabilised before it is looked whether these are enough."""
@@ -38,22 +40,12 @@ def one_by_one(work: Callable[[Any], Any], items: Sequence[Any]) -> list[Any]:
 
 
 @dataclass(frozen=True, eq=False)
-class Trial:
-    """What is to be tried: one stone, from one side.
+class StoneTrial:
+    """What is to be tried: one stone, from one side."""
 
-    Parameters
-    ----------
-    poses : tuple of PosedStone
-        The stone as it may be turned for the trial; the placement rule picks one.
-    landscape : Landscape
-        What is built, seen from the side.
-    rest : Rest or None
-        What the stones that are left could fill; None when no choice depends on it.
-    """
-
+    # the stone as it may be turned for the trial; the placement rule picks one
     poses: tuple[PosedStone, ...]
-    landscape: Landscape
-    rest: Rest | None
+    landscape: Landscape  # what is built, seen from the side
 
     @property
     def key(self) -> Key:
@@ -61,101 +53,78 @@ class Trial:
         return self.poses[0].stone.id, self.poses[0].angle_deg, self.landscape.side
 
 
-def action_cost(
-    trial: Trial, stabilised: Stabilised, workshop: Workshop, settings: PlannerSettings
-) -> float:
-    """Return the weighted craft cost of an action; 0 when no choice depends on it."""
-    if not settings.weighs_craft:
-        return 0.0
-    assert trial.rest is not None  # noqa: S101 - the attempt gives it then
-    craft = action_craft(trial.landscape, stabilised, workshop.stock, trial.rest)
-    bonus = PIN_BONUS if trial.poses[0].stone.id in settings.pin else 0.0
-    return craft_cost(craft, settings.score) - bonus
-
-
-class Proposer(Protocol):
+@dataclass(frozen=True, eq=False)
+class Proposer(ABC):
     """Places and stabilises candidates on one state of construction; remembers what it tried."""
 
+    workshop: Workshop
+    settings: PlannerSettings
+    build: Build
+    profile: Profile
+
     @property
+    @abstractmethod
     def tried(self) -> int:
         """How many candidates were looked at."""
-        ...
 
-    def proposals(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Proposal]]:
-        """List where the stones of some trials could stand.
+    @abstractmethod
+    def proposals(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Proposal]]:
+        """List where the stones of some trials, which are compared with each other, could stand.
 
-        Proposals come in batches: whoever can use none of one batch asks for the next.
-
-        Parameters
-        ----------
-        trials : sequence of Trial
-            Candidates that are compared with each other.
-        apply : callable
-            Does independent work, on several threads if there are any.
+        Proposals come in batches: whoever can use none of one batch asks for the next.  `apply`
+        does independent work, on several threads if there are any.
         """
-        ...
+
+    @cached_property
+    def rest(self) -> Rest:
+        """What the stones that are left could fill."""
+        return self.workshop.rest(self.build)
+
+    def _cost(self, trial: StoneTrial, stabilised: Group) -> float:
+        """Return the weighted craft cost of an action; 0 when no choice depends on it."""
+        settings = self.settings
+        if not settings.weighs_craft:
+            return 0.0
+        with self.profile.part("indices"):
+            craft = action_craft(trial.landscape, stabilised, self.workshop.stock, self.rest)
+        bonus = PIN_BONUS if trial.poses[0].stone.id in settings.pin else 0.0
+        return craft_cost(craft, settings.score) - bonus
 
 
 @dataclass(frozen=True, eq=False)
 class Spotted:
-    """Where the stone of a trial could be put, before it is made stable.
+    """Where the stone of a trial could be put, before it is made stable."""
 
-    Parameters
-    ----------
-    trial : Trial
-        One stone and side.
-    spots : tuple of Spot
-        The best places by the placement rule, best first.
-    promise : float
-        Where selection goes by cost: what the best of them costs at least, while the stone need
-        not be turned there; infinite when there is none.
-    """
-
-    trial: Trial
-    spots: tuple[Spot, ...]
+    trial: StoneTrial
+    spots: tuple[Spot, ...]  # the best places by the placement rule, best first
+    # where selection goes by cost: what the best of them costs at least, while the stone need
+    # not be turned there; infinite when there is none
     promise: float
 
 
-class RasterProposer:
+@dataclass(frozen=True, eq=False)
+class RasterProposer(Proposer):
     """Stones are their pixels at the working resolution.
 
     Where selection goes by cost, the stones that promise to be cheapest are stabilised first, and
     others only while they promise less than enough of those cost; Algorithm 2 compares all.
-
-    Parameters
-    ----------
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        All parameters.
-    build : Build
-        What is built.
-    profile : Profile
-        Told where the time goes.
     """
 
-    def __init__(
-        self, workshop: Workshop, settings: PlannerSettings, build: Build, profile: Profile
-    ) -> None:
-        self._workshop = workshop
-        self._settings = settings
-        self._build = build
-        self._profile = profile
-        self._spotted: dict[Key, Spotted] = {}
-        self._proposed: dict[Key, Proposal | None] = {}
+    _spotted: dict[Key, Spotted] = field(default_factory=dict, init=False)
+    _proposed: dict[Key, Proposal | None] = field(default_factory=dict, init=False)
 
     @property
     def tried(self) -> int:
         """See :class:`Proposer`."""
         return len(self._spotted)
 
-    def proposals(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Proposal]]:
+    def proposals(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Proposal]]:
         """See :class:`Proposer`."""
         new = [trial for trial in trials if trial.key not in self._spotted]
         found = apply(self.spotted, new)
         self._spotted.update(zip([trial.key for trial in new], found, strict=True))
         mine = [self._spotted[trial.key] for trial in trials]
-        if self._settings.selection_rule == "score":
+        if self.settings.selection_rule == "score":
             yield from self._by_promise(mine, apply)
         else:
             yield self._all(mine, apply)
@@ -166,7 +135,7 @@ class RasterProposer:
             (one for one in spotted if one.spots),
             key=lambda one: (round(one.promise, 12), one.trial.key),
         )
-        wanted, batch = SPARE * self._settings.score.analysed, []
+        wanted, batch = SPARE * self.settings.score.analysed, []
         for start in range(0, len(order), TOGETHER):
             batch += self._all(order[start : start + TOGETHER], apply)
             later = order[start + TOGETHER : start + TOGETHER + 1]
@@ -183,18 +152,17 @@ class RasterProposer:
         mine = (self._proposed[one.trial.key] for one in spotted)
         return [proposal for proposal in mine if proposal is not None]
 
-    def spotted(self, trial: Trial) -> Spotted:
+    def spotted(self, trial: StoneTrial) -> Spotted:
         """Return where the stone of a trial could be put, and what that promises."""
-        landscape, settings = trial.landscape, self._settings
-        with self._profile.part("placement"):
+        landscape, settings = trial.landscape, self.settings
+        with self.profile.part("placement"):
             views = [landscape.view(posed) for posed in trial.poses]
             spots = best_spots(landscape, views, settings.placement)
         if settings.selection_rule != "score" or not spots:
             return Spotted(trial, tuple(spots), math.inf)
-        assert trial.rest is not None  # noqa: S101 - the attempt gives it then
-        with self._profile.part("indices"):
-            constants = self._workshop.costs.of(trial.poses, settings.score)
-            stock, rest, score = self._workshop.stock, trial.rest, settings.score
+        with self.profile.part("indices"):
+            constants = self.workshop.costs.of(trial.poses, settings.score)
+            stock, rest, score = self.workshop.stock, self.rest, settings.score
             costs = [
                 constants[spot.pose]
                 + place_cost(landscape, views[spot.pose], spot.at, stock, rest, score)
@@ -209,32 +177,31 @@ class RasterProposer:
         stable is taken; with `tries` = 1 that is the paper's single trial.  With `compare` = True
         all of them are stabilised, and the one of the least craft cost is taken.
         """
-        trial, build = spotted.trial, self._build
+        trial, build = spotted.trial, self.build
         landscape = trial.landscape
         best: Proposal | None = None
         for spot in spotted.spots:
             posed = trial.poses[spot.pose]
-            with self._profile.part("stabilisation"):
-                stabilised = self._workshop.memory.stabilise(
+            with self.profile.part("stabilisation"):
+                stabilised = self.workshop.memory.stabilise(
                     build.wall.occupied,
                     (posed, spot.row, landscape.view_col(posed, spot.col)),
                     landscape.side,
-                    self._workshop.next_wedge(build),
+                    self.workshop.next_wedge(build),
                 )
             if stabilised is None or not self._reached(landscape, stabilised):
                 continue
-            with self._profile.part("indices"):
-                cost = action_cost(trial, stabilised, self._workshop, self._settings)
+            cost = self._cost(trial, stabilised)
             proposal = Proposal(stabilised, posed.angle_deg, cost=cost)
-            if not self._settings.placement.compare:
+            if not self.settings.placement.compare:
                 return proposal
             if best is None or proposal.cost < best.cost - 1e-12:
                 best = proposal
         return best
 
-    def _reached(self, landscape: Landscape, stabilised: Stabilised) -> bool:
+    def _reached(self, landscape: Landscape, stabilised: Group) -> bool:
         """Say whether a stone that was turned can still be put where it is."""
-        settings = self._settings.placement
+        settings = self.settings.placement
         if settings.reach == "any":
             return True
         placement = stabilised.placement

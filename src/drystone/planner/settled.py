@@ -1,13 +1,14 @@
 """A stone where it came to rest on outlines, as the wall takes it in (DESIGN 4.9)."""
 
+from collections.abc import Iterable
+
 from drystone.kernels.polygons import Points
-from drystone.model.placement import Side
+from drystone.model.placement import Placement, Side, Wedge
 from drystone.model.site import Site
 from drystone.model.stone import Stone
-from drystone.model.wall import Wall, outlined
+from drystone.model.wall import Group, Wall, outlined
 from drystone.settle.placing import settled_placement, settled_wedge
 from drystone.settle.rest import Repose
-from drystone.stabilise.stabilise import Stabilised
 
 
 def settled_in(
@@ -18,63 +19,41 @@ def settled_in(
     wedge: Points | None = None,
     *,
     wedge_id: int,
-) -> Stabilised | None:
-    """Return a stone and its wedge with the pixels that they fill; None when it fills none.
+) -> Group | None:
+    """Return a stone and its wedge, (n, 2) corners in the wall frame, with what they fill.
 
-    Whether it leaves the wall is not asked: :func:`stands_out_px` says it.
-
-    Parameters
-    ----------
-    wall : Wall
-        Of outlines, without it.
-    stone : Stone
-        The stone.
-    side : {"left", "right"}
-        The end of the wall from which it was placed.
-    repose : Repose
-        Where it came to rest.
-    wedge : (n, 2) float array, optional
-        Corners of the wedge that holds it, in the wall frame, source px.
-    wedge_id : int
-        Of the wedge, if there is one.
+    None when the stone fills no pixel.  Whether it leaves the wall :func:`stands_out_px` says.
     """
-    assert wall.outlines is not None  # noqa: S101 - it settled on outlines
-    placement = settled_placement(
-        wall.outlines,
-        wall.site,
-        stone,
-        repose.angle_deg,
-        repose.settled,
-        side,
-        int(repose.turned),
-    )
-    if placement is None or wedge is None:
-        return None if placement is None else Stabilised(placement)
-    with_stone = wall.outlines.added(outlined(placement, ()), wall.site.scale)
-    under = settled_wedge(with_stone, wall.site, wedge_id, stone.id, wedge)
-    return Stabilised(placement, (under,))
+    at = repose.angle_deg, repose.settled, side, int(repose.turned)
+    placement = settled_placement(wall.exact, wall.site, stone, *at)
+    return _with_wedges(wall, placement, [] if wedge is None else [wedge], wedge_id)
+
+
+def settled_again(wall: Wall, group: Group, wedge_id: int) -> Group | None:
+    """Return a settled step with the pixels that it fills in another wall, wedges renumbered."""
+    old, corners = group.placement, (wedge.corners for wedge in group.wedges)
+    at = old.posed.angle_deg, old.exact, old.side, old.rotation_moves
+    placement = settled_placement(wall.exact, wall.site, old.posed.stone, *at)
+    return _with_wedges(wall, placement, (c for c in corners if c is not None), wedge_id)
+
+
+def _with_wedges(
+    wall: Wall, placement: Placement | None, wedges: Iterable[Points], wedge_id: int
+) -> Group | None:
+    if placement is None:
+        return None
+    outlines, new = outlined(placement, ()), list[Wedge]()
+    for number, corners in enumerate(wedges, wedge_id):
+        below = wall.exact.added(outlines, wall.site.scale)
+        new.append(settled_wedge(below, wall.site, number, placement.stone_id, corners))
+        outlines.append((number, corners))
+    return Group(placement, tuple(new))
 
 
 def stands_out_px(corners: Points, site: Site) -> float:
     """Return how far an outline stands out over the ends or the top of a wall, source px.
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        In the wall frame, source px.
-    site : Site
-        Of the wall.
-
-    Returns
-    -------
-    out_px : float
-        Below 0 where it stays within them.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> stands_out_px(np.array([[1.0, 0.0], [8.5, 0.0], [8.5, 3.0]]), Site(8, 4))
-    0.5
+    Below 0 where it stays within them.
     """
     (left, _), (right, top) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
     width, height = site.extent_px

@@ -2,8 +2,9 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from functools import partial
-from itertools import islice
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from itertools import chain, islice
 
 import numpy as np
 
@@ -11,7 +12,8 @@ from drystone.kernels.drops import DropTerms, Wanted, drops
 from drystone.kernels.polygons import Points
 from drystone.kernels.profiles import OVER, HeightProfile, StoneProfile, in_a_row
 from drystone.model.placement import Side
-from drystone.planner.build import Build, Proposal
+from drystone.model.wall import Group
+from drystone.planner.build import Proposal
 from drystone.planner.dropping import (
     Drop,
     Dropped,
@@ -20,14 +22,11 @@ from drystone.planner.dropping import (
     shortlist,
     wedge_limits,
 )
-from drystone.planner.profile import Profile
-from drystone.planner.proposing import Apply, Key, Trial, action_cost
-from drystone.planner.settings import PlannerSettings
+from drystone.planner.proposing import Apply, Key, Proposer, StoneTrial, one_by_one
 from drystone.planner.settled import settled_in
-from drystone.planner.workshop import Workshop
-from drystone.settle.rest import Repose, Scene, come_to_rest
+from drystone.settle.rest import Repose, SettlingScene, come_to_rest
+from drystone.settle.wedge import WedgeLimits
 from drystone.settle.wedged import wedged
-from drystone.stabilise.stabilise import Stabilised
 
 CHUNK = 256
 """So many trials of one side are dropped together."""
@@ -37,65 +36,48 @@ TOGETHER = 6
 hand it over more often lose more than they gain."""
 
 
-class ExactProposer:
+@dataclass(frozen=True, eq=False)
+class ExactProposer(Proposer):
     """Stones settle on the outlines of others.
 
     Where selection goes by cost, the cheapest drops of all trials are settled, and where none of
     them can be used the next ones; Algorithm 2 compares all trials, each where its first drop
     rests.
-
-    Parameters
-    ----------
-    workshop : Workshop
-        Stones and site.
-    settings : PlannerSettings
-        All parameters.
-    build : Build
-        What is built.
-    profile : Profile
-        Told where the time goes.
     """
 
-    def __init__(
-        self, workshop: Workshop, settings: PlannerSettings, build: Build, profile: Profile
-    ) -> None:
-        self._workshop = workshop
-        self._settings = settings
-        self._build = build
-        self._profile = profile
-        self._views: dict[Side, tuple[Scene, HeightProfile]] = {}
-        self._limits = wedge_limits(settings, workshop.stock, build.wall.site)
-        self._terms: DropTerms | None = None
-        self._dropped: dict[Key, Dropped] = {}
-        self._settled: dict[tuple[Key, int], Proposal | None] = {}
+    _views: dict[Side, tuple[SettlingScene, HeightProfile]] = field(
+        default_factory=dict, init=False
+    )
+    _dropped: dict[Key, Dropped] = field(default_factory=dict, init=False)
+    _settled: dict[tuple[Key, int], Proposal | None] = field(default_factory=dict, init=False)
 
     @property
     def tried(self) -> int:
         """See :class:`drystone.planner.proposing.Proposer`."""
         return len(self._dropped)
 
-    def proposals(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Proposal]]:
+    def proposals(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Proposal]]:
         """See :class:`drystone.planner.proposing.Proposer`."""
-        if self._settings.selection_rule == "score":
+        if self.settings.selection_rule == "score":
             for batch in self.batches(trials, apply):
-                yield [proposal for proposal in self._all_settled(batch, apply) if proposal]
+                yield self._all_settled(batch, apply)
         else:
             drops = self.drops(trials, apply)
             yield [proposal for proposal in apply(self._first, drops) if proposal is not None]
 
-    def drops(self, trials: Sequence[Trial], apply: Apply) -> list[tuple[Drop, ...]]:
+    def drops(self, trials: Sequence[StoneTrial], apply: Apply) -> list[tuple[Drop, ...]]:
         """Return the best places of each trial, the cheapest first."""
         self._drop(trials, apply, math.inf)
-        book = self._workshop.outlines
+        book = self.workshop.outlines
         return [tuple(in_order([self._dropped[trial.key]], book)) for trial in trials]
 
-    def batches(self, trials: Sequence[Trial], apply: Apply) -> Iterator[list[Drop]]:
+    def batches(self, trials: Sequence[StoneTrial], apply: Apply) -> Iterator[list[Drop]]:
         """List the cheapest drops of all trials, then the next ones, and so on."""
         given: set[tuple[Key, int]] = set()
-        settings, needed = self._settings.settle, -math.inf
+        settings, needed = self.settings.settle, -math.inf
         while True:
             self._drop(trials, apply, needed)
-            known = in_order([self._dropped[t.key] for t in trials], self._workshop.outlines)
+            known = in_order([self._dropped[t.key] for t in trials], self.workshop.outlines)
             batch = shortlist((drop for drop in known if drop.key not in given), settings)
             needed = batch[-1].rank[0] if len(batch) == settings.shortlist else math.inf
             if any(self._dropped[trial.key].limit < needed for trial in trials):
@@ -105,41 +87,46 @@ class ExactProposer:
             given.update(drop.key for drop in batch)
             yield batch
 
-    def view(self, side: Side) -> tuple[Scene, HeightProfile]:
+    def view(self, side: Side) -> tuple[SettlingScene, HeightProfile]:
         """Return what is built and how high it is, as it is seen from a side."""
         if side not in self._views:
-            site, outlines = self._build.wall.site, self._build.wall.outlines
-            assert outlines is not None  # noqa: S101 - the planner builds on outlines
-            view = self._workshop.views.of(outlines.polygons, side)
-            scene = Scene(view.seen, site.extent_px[0], side, self._settings.mu)
+            wall = self.build.wall
+            view = self.workshop.views.of(wall.exact.polygons, side)
+            scene = SettlingScene(view.seen, wall.site.extent_px[0], side, self.settings.mu)
             self._views[side] = scene, view.profile
         return self._views[side]
 
-    def _drop(self, trials: Sequence[Trial], apply: Apply, needed: float) -> None:
+    @cached_property
+    def _limits(self) -> WedgeLimits:
+        return wedge_limits(self.settings, self.workshop.stock, self.build.wall.site)
+
+    @cached_property
+    def _terms(self) -> DropTerms:
+        site, stock = self.build.wall.site, self.workshop.stock
+        return drop_terms(site, stock, self.rest, self.settings)
+
+    def _drop(self, trials: Sequence[StoneTrial], apply: Apply, needed: float) -> None:
         """Drop the stones of the trials of which not all drops up to a cost are known.
 
         At first, when none is needed yet, what may be among the cheapest is looked for; later all.
         """
         known = self._dropped
         lacking = [t for t in trials if t.key not in known or known[t.key].limit < needed]
-        cheapest = self._settings.settle.shortlist if needed == -math.inf else 0
+        cheapest = self.settings.settle.shortlist if needed == -math.inf else 0
         chunks = []
         for side in dict.fromkeys(trial.landscape.side for trial in lacking):
             self.view(side)
             mine = [trial for trial in lacking if trial.landscape.side == side]
             chunks += [mine[k : k + CHUNK] for k in range(0, len(mine), CHUNK)]
-        if lacking and self._terms is None:
-            rest = lacking[0].rest or self._workshop.rest(self._build)
-            site, stock = self._build.wall.site, self._workshop.stock
-            self._terms = drop_terms(site, stock, rest, self._settings)
+        _ = lacking and self._terms  # before the threads ask for them, all at once
         for found in apply(partial(self._dropped_together, cheapest), chunks):
             known.update((one.trial.key, one) for one in found)
 
-    def _dropped_together(self, cheapest: int, trials: Sequence[Trial]) -> list[Dropped]:
-        side, settings = trials[0].landscape.side, self._settings.settle
+    def _dropped_together(self, cheapest: int, trials: Sequence[StoneTrial]) -> list[Dropped]:
+        side, settings = trials[0].landscape.side, self.settings.settle
         poses = [posed for trial in trials for posed in trial.poses]
-        with self._profile.part("placement"):
-            book = self._workshop.outlines
+        with self.profile.part("placement"):
+            book = self.workshop.outlines
             hung = [book.hung(posed.stone, posed.angle_deg, side) for posed in poses]
             wanted = Wanted(
                 settings.spots,
@@ -149,23 +136,19 @@ class ExactProposer:
                 settings.per_stone,
             )
             stones = in_a_row([one.profile for one in hung])
-            constants = self._workshop.costs.of(poses, self._settings.score)
-            assert self._terms is not None  # noqa: S101 - they are there before the threads are
+            constants = self.workshop.costs.of(poses, self.settings.score)
             places, limit = drops(self.view(side)[1], stones, self._terms, constants, wanted)
         next_ones = iter(places)
         return [
             Dropped(trial, tuple(islice(next_ones, len(trial.poses))), limit) for trial in trials
         ]
 
-    def _all_settled(self, drops: Sequence[Drop], apply: Apply) -> list[Proposal | None]:
+    def _all_settled(self, drops: Sequence[Drop], apply: Apply) -> list[Proposal]:
         new = [drop for drop in drops if drop.key not in self._settled]
         groups = [new[k : k + TOGETHER] for k in range(0, len(new), TOGETHER)]
-        found = [one for group in apply(self._settle_all, groups) for one in group]
-        self._settled.update(zip([drop.key for drop in new], found, strict=True))
-        return [self._settled[drop.key] for drop in drops]
-
-    def _settle_all(self, drops: Sequence[Drop]) -> list[Proposal | None]:
-        return [self._settle(drop) for drop in drops]
+        settled = apply(partial(one_by_one, self._settle), groups)
+        self._settled.update(zip([drop.key for drop in new], chain(*settled), strict=True))
+        return [found for drop in drops if (found := self._settled[drop.key]) is not None]
 
     def _first(self, drops: Sequence[Drop]) -> Proposal | None:
         """Settle the drops of a trial until one rests."""
@@ -180,10 +163,10 @@ class ExactProposer:
         """Let a stone go where it was dropped; None when it does not rest inside the wall."""
         side, posed = drop.trial.landscape.side, drop.trial.poses[0]
         scene, profile = self.view(side)
-        hung = self._workshop.outlines.hung(posed.stone, posed.angle_deg, side)
+        hung = self.workshop.outlines.hung(posed.stone, posed.angle_deg, side)
         start = self._beside(drop.start, hung.profile, profile)
-        method, settings = self._settings.stabilise.method, self._settings.settle
-        with self._profile.part("stabilisation"):
+        method, settings = self.settings.stabilise.method, self.settings.settle
+        with self.profile.part("stabilisation"):
             stabilised = None
             repose = come_to_rest(
                 hung.turned, scene, start, settings, turns=method in ("both", "rotation")
@@ -196,8 +179,7 @@ class ExactProposer:
                     stabilised = self._stabilised(drop, found.repose, found.wedge)
         if stabilised is None:
             return None
-        with self._profile.part("indices"):
-            cost = action_cost(drop.trial, stabilised, self._workshop, self._settings)
+        cost = self._cost(drop.trial, stabilised)
         return Proposal(stabilised, posed.angle_deg, cost=cost, spot=drop.spot)
 
     def _beside(
@@ -209,21 +191,19 @@ class ExactProposer:
         """
         x, y = start
         left = x + stone.left
-        reach = left + OVER / self._build.wall.site.scale
+        reach = left + OVER / self.build.wall.site.scale
         beside = [
             right
             for _, bottom, right, top in profile.boxes.tolist()
             if left < right < reach and bottom < y + stone.top and top > y + stone.bottom
         ]
-        clear = 2.0 * self._settings.settle.clearance_px
+        clear = 2.0 * self.settings.settle.clearance_px
         return (max(beside) + clear - stone.left, y) if beside else start
 
-    def _stabilised(
-        self, drop: Drop, repose: Repose, wedge: Points | None = None
-    ) -> Stabilised | None:
+    def _stabilised(self, drop: Drop, repose: Repose, wedge: Points | None = None) -> Group | None:
         """Return a stone that rests, with the pixels that it fills; None when it is too high."""
-        wall, posed = self._build.wall, drop.trial.poses[0]
-        beyond_px = self._settings.settle.beyond_px
+        wall, posed = self.build.wall, drop.trial.poses[0]
+        beyond_px = self.settings.settle.beyond_px
         if repose.settled.corners[:, 1].max() > wall.site.extent_px[1] + beyond_px:
             return None
         return settled_in(
@@ -232,5 +212,5 @@ class ExactProposer:
             drop.trial.landscape.side,
             repose,
             wedge,
-            wedge_id=self._workshop.next_wedge(self._build),
+            wedge_id=self.workshop.next_wedge(self.build),
         )

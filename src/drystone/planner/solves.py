@@ -7,18 +7,10 @@ from drystone.planner.build import Candidate
 
 @dataclass(frozen=True)
 class Solves:
-    """How often the solver had trouble with a candidate while walls were built.
+    """How often the solver had trouble with a candidate while walls were built."""
 
-    Parameters
-    ----------
-    failed : int
-        It gave up, and the candidate was passed over.
-    cold : int
-        It had to start anew, which costs time alone.
-    """
-
-    failed: int = 0
-    cold: int = 0
+    failed: int = 0  # it gave up, and the candidate was passed over
+    cold: int = 0  # it had to start anew, which costs time alone
 
     @classmethod
     def of(cls, candidate: Candidate) -> "Solves":

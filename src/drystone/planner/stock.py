@@ -11,53 +11,26 @@ from drystone.kernels.sums import unfillable
 from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 
+SideCounts = Counter[tuple[int, ...]]
+"""How many stones in their initial poses have a box of these sides, working px, ascending."""
 
-@dataclass(frozen=True, eq=False)
-class Sides:
-    """The shorter and the longer sides of some stones, counted.
 
-    Parameters
-    ----------
-    counts : Counter of pairs of int
-        How many stones in their initial poses have a box of these sides, working px.
-    """
-
-    counts: Counter[tuple[int, ...]] = field(default_factory=Counter)
-
-    @classmethod
-    def of(cls, initial: Iterable[PosedStone]) -> "Sides":
-        """Count the sides of stones in their initial poses."""
-        return cls(Counter(_sorted(posed.height_px, posed.width_px) for posed in initial))
-
-    def without(self, gone: Iterable[PosedStone]) -> "Sides":
-        """Return the sides of the stones that are left when some are gone."""
-        return Sides(self.counts - Sides.of(gone).counts)
+def sides_of(initial: Iterable[PosedStone]) -> SideCounts:
+    """Count the sides of stones in their initial poses."""
+    return Counter(_sorted(posed.height_px, posed.width_px) for posed in initial)
 
 
 @dataclass(frozen=True)
 class Stock:
-    """Sizes of the stones in their initial poses, working px.
+    """Sizes of the stones in their initial poses, working px."""
 
-    Parameters
-    ----------
-    narrowest_px : float
-        Width of the narrowest, which tells boundary stones from inner ones.
-    mean_height_px, mean_area_px : float
-        Means over the set.
-    median_area_px : float
-        Of the stones themselves, whatever their pixels.
-    largest_id : int
-        Wedges are numbered after it.
-    sides : Sides
-        Of the stones.
-    """
-
-    narrowest_px: float
+    narrowest_px: float  # width of the narrowest, which tells boundary stones from inner ones
+    # means over the set
     mean_height_px: float
     mean_area_px: float
-    median_area_px: float
-    largest_id: int
-    sides: Sides = field(default_factory=Sides, compare=False)
+    median_area_px: float  # of the stones themselves, whatever their pixels
+    largest_id: int  # wedges are numbered after it
+    sides: SideCounts = field(default_factory=Counter, compare=False)
 
     @classmethod
     def of(cls, initial: Iterable[PosedStone]) -> "Stock":
@@ -76,37 +49,32 @@ class Stock:
             mean_area_px=sum(areas) / len(found),
             median_area_px=float(np.median(own)),
             largest_id=max(ids),
-            sides=Sides(Counter(map(_sorted, heights, widths))),
+            sides=Counter(map(_sorted, heights, widths)),
         )
 
     @property
     def least_side_px(self) -> int:
         """Shortest side of a stone: where there is less room, none comes."""
-        return min((shorter for shorter, _ in self.sides.counts), default=0)
+        return min((shorter for shorter, _ in self.sides), default=0)
 
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """What the stones that are left could still fill.
+    """What the stones that are left could still fill."""
 
-    Parameters
-    ----------
-    height_px, width_px : int arrays
-        For every free height over a stone, and every free width beside it: what is left over when
-        the remaining stones fill it as well as they can, lying flat on top of each other or side
-        by side in any of two orientations.
-    """
-
+    # for every free height over a stone, and every free width beside it: what is left over
+    # when the remaining stones fill it as well as they can, lying flat on top of each other
+    # or side by side in any of two orientations
     height_px: NDArray[np.int64]
     width_px: NDArray[np.int64]
 
     @classmethod
-    def of(cls, sides: Sides, site: Site) -> "Rest":
+    def of(cls, sides: SideCounts, site: Site) -> "Rest":
         """Return it for the sides of the stones that are left."""
         low: Counter[tuple[int, ...]] = Counter()
-        for (shorter, _), count in sides.counts.items():
+        for (shorter, _), count in sides.items():
             low[(shorter,)] += count
-        return cls(unfillable(low, site.height_px), unfillable(sides.counts, site.width_px))
+        return cls(unfillable(low, site.height_px), unfillable(sides, site.width_px))
 
 
 def _sorted(height: int, width: int) -> tuple[int, ...]:

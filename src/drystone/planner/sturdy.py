@@ -35,16 +35,7 @@ def sturdy_model_with(
 ) -> RigidBlockModel:
     """Return the sturdy model of a wall with one more stone and its wedges.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The sturdy model of the wall without them.
-    blocks : list of (int, (n, 2) float array)
-        Ids and outlines of the stone and its wedges.
-    outlines : Outlines
-        Of the wall.
-    settings : SettleSettings
-        Contact tolerance, and which faces are upright.
+    `model` is that of the wall without them, `blocks` are theirs, source px.
     """
     added = model_with_outlines(
         model, blocks, outlines, 0.5 * settings.contact_px, settings.setback
@@ -56,17 +47,7 @@ def sturdy_model_with(
 
 
 def sturdy_model_of(outlines: Outlines, mu: float, settings: SettleSettings) -> RigidBlockModel:
-    """Return the sturdy model of a whole wall.
-
-    Parameters
-    ----------
-    outlines : Outlines
-        Of the wall.
-    mu : float
-        Coefficient of friction.
-    settings : SettleSettings
-        Contact tolerance, and which faces are upright.
-    """
+    """Return the sturdy model of a whole wall."""
     model = model_of_outlines(outlines, mu, 0.5 * settings.contact_px, settings.setback)
     return replace(model, interfaces=slippery(model.interfaces, mu, settings.steep, GRIP))
 
@@ -74,18 +55,7 @@ def sturdy_model_of(outlines: Outlines, mu: float, settings: SettleSettings) -> 
 def falls_when_let_go(model: RigidBlockModel) -> bool:
     """Return whether the last stone of a wall starts to fall from between the others.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Of a wall, made by adding a stone and its wedges, which are let go; all else is held.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> jammed = model_from_json({"blocks_xywh": [[0, 0, 1, 4], [2, 0, 1, 4], [1, 1.5, 1, 1]]})
-    >>> piers = replace(jammed, blocks=jammed.blocks[:2], interfaces=jammed.interfaces[:2])
-    >>> falls_when_let_go(piers.with_added(jammed.blocks[2:], jammed.interfaces[2:]))
-    True
+    The model is made by adding the stone and its wedges, which are let go; all else is held.
     """
     assert model.added is not None  # noqa: S101 - it was made by adding
     touching = {interface.block for interface in model.added.interfaces}

@@ -12,19 +12,8 @@ from drystone.selection.scored import ScoreSettings
 def varied(settings: PlannerSettings, spread: float, rng: np.random.Generator) -> PlannerSettings:
     """Return settings with every craft weight multiplied by a random factor.
 
-    Parameters
-    ----------
-    settings : PlannerSettings
-        With the weights themselves.
-    spread : float
-        Standard deviation of the logarithm of the factors; 0 changes nothing.
-    rng : numpy.random.Generator
-        Draws the factors.
-
-    Returns
-    -------
-    PlannerSettings
-        They are not varied again by the planner that gets them.
+    `spread` is the standard deviation of the logarithm of the factors; 0 changes nothing.  The
+    planner that gets them does not vary them again.
     """
     score = settings.score
     weights = {

@@ -9,32 +9,17 @@ from drystone.model.site import Site
 
 
 class OutlineView(NamedTuple):
-    """What is built, seen so that the building side is on the left.
+    """What is built, seen so that the building side is on the left."""
 
-    Parameters
-    ----------
-    built : Polygons
-        In the wall frame.
-    seen : Polygons
-        In the view.
-    profile : HeightProfile
-        Their height in the view.
-    """
-
-    built: Polygons
-    seen: Polygons
-    profile: HeightProfile
+    built: Polygons  # in the wall frame
+    seen: Polygons  # in the view
+    profile: HeightProfile  # their height in the view
 
 
 class Views:
     """The last view from each side; only what is new is added to it.
 
     A view depends on what is built alone, not on what was asked for before.
-
-    Parameters
-    ----------
-    site : Site
-        Of the wall.
     """
 
     def __init__(self, site: Site) -> None:

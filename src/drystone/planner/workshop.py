@@ -8,9 +8,9 @@ from drystone.model.pose import PosedStone
 from drystone.model.site import Site
 from drystone.model.stone import StoneSet
 from drystone.planner.build import Build
-from drystone.planner.pose_costs import PoseCosts
+from drystone.planner.craft import PoseCosts
 from drystone.planner.settings import PlannerSettings
-from drystone.planner.stock import Rest, Sides, Stock
+from drystone.planner.stock import Rest, SideCounts, Stock, sides_of
 from drystone.planner.views import Views
 from drystone.poses import PoseBook, wrap_deg
 from drystone.settle.book import OutlineBook
@@ -19,64 +19,32 @@ from drystone.stabilise.memory import StabiliseMemory
 
 @dataclass(frozen=True, eq=False)
 class Workshop:
-    """Stones clustered and measured; their poses are made when they are asked for.
-
-    Parameters
-    ----------
-    stones : StoneSet
-        To build with.
-    site : Site
-        Where.
-    book : PoseBook
-        Turned stones.
-    clusters : dict of int to int
-        Cluster of each stone (§3.4).
-    orientations : str
-        Which poses of a stone are candidates (DESIGN 4.2).
-    fitting : tuple of int
-        Ids of the stones that fit into the wall in a candidate pose and are not banned, ascending.
-    stock : Stock
-        Sizes of the set.
-    sides : Sides
-        Of the stones that fit.
-    memory : StabiliseMemory
-        Stabilises stones that are pixels.
-    outlines : OutlineBook
-        Turned outlines, for stones that settle on them.
-    costs : PoseCosts
-        Of their poses, wherever they go.
-    views : Views
-        Of walls of outlines.
-    """
+    """Stones clustered and measured; their poses are made when they are asked for."""
 
     stones: StoneSet
     site: Site
-    book: PoseBook
-    clusters: dict[int, int]
-    orientations: str
+    book: PoseBook  # turned stones
+    clusters: dict[int, int]  # cluster of each stone (§3.4)
+    orientations: str  # which poses of a stone are candidates (DESIGN 4.2)
+    # ids of the stones that fit into the wall in a candidate pose and are not banned,
+    # ascending
     fitting: tuple[int, ...]
-    stock: Stock
-    sides: Sides
-    memory: StabiliseMemory
-    outlines: OutlineBook
-    costs: PoseCosts
-    views: Views
+    stock: Stock  # sizes of the set
+    sides: SideCounts  # of the stones that fit
+    memory: StabiliseMemory  # stabilises stones that are pixels
+    outlines: OutlineBook  # turned outlines, for stones that settle on them
+    costs: PoseCosts  # of their poses, wherever they go
+    views: Views  # of walls of outlines
     _angles: dict[int, tuple[float, ...]] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
     def prepare(cls, stones: StoneSet, site: Site, settings: PlannerSettings) -> "Workshop":
-        """Prepare stones for a site.
-
-        Raises
-        ------
-        UsageError
-            Those of :func:`fitting_stones`.
-        """
+        """Prepare stones for a site; UsageErrors are those of :func:`fitting_stones`."""
         book = PoseBook(site.scale)
         fitting = fitting_stones(stones, site, settings, book)
         stock = Stock.of(book.pose(s, book.initial_angle(s)) for s in stones)
         unfit = [stones.by_id(i) for i in sorted({s.id for s in stones}.difference(fitting))]
-        sides = stock.sides.without(book.pose(s, book.initial_angle(s)) for s in unfit)
+        sides = stock.sides - sides_of(book.pose(s, book.initial_angle(s)) for s in unfit)
         clusters = cluster_stones(stones, book, settings.clusters)
         memory = StabiliseMemory(book, stock.mean_height_px, settings.stabilise)
         outlines = OutlineBook(settings.settle.outline_px, 1.0 / site.scale)
@@ -115,7 +83,7 @@ class Workshop:
     def rest(self, build: Build) -> Rest:
         """Return what the stones that are left could still fill."""
         placed = (self.initial(action.stone_id) for action in build.actions)
-        return Rest.of(self.sides.without(placed), self.site)
+        return Rest.of(self.sides - sides_of(placed), self.site)
 
 
 def fitting_stones(
@@ -123,23 +91,9 @@ def fitting_stones(
 ) -> tuple[int, ...]:
     """Return the ids of the stones that can be built with: not banned, and the wall has room.
 
-    Parameters
-    ----------
-    stones : StoneSet
-        To build with.
-    site : Site
-        Where.
-    settings : PlannerSettings
-        Which stones are banned, and in which poses the others are candidates.
-    book : PoseBook, optional
-        At the resolution of the site; keeps the poses that are looked at.
-
-    Raises
-    ------
-    UsageError
-        E120: a stone fits into the wall in no orientation, and is not to be skipped; E126: there
-        are no stones; E137: no ids are left for wedges; E145: a stone is banned or pinned that
-        does not exist.
+    `book`, at the resolution of the site, keeps the poses that are looked at.  UsageError: E120: a
+    stone fits into the wall in no orientation, and is not to be skipped; E126: there are no
+    stones; E137: no ids are left for wedges; E145: a stone is banned or pinned that does not exist.
     """
     if not len(stones):
         raise UsageError(
@@ -159,8 +113,21 @@ def fitting_stones(
     )
     too_large = sorted({s.id for s in usable}.difference(fitting))
     if too_large and not settings.skip_too_large:
-        raise _too_large(too_large, site)
-    _leave_ids_for_wedges(stones)
+        raise UsageError(
+            "E120",
+            f"stones {', '.join(map(str, too_large))} fit into the wall of "
+            f"{site.width_px} x {site.height_px} working px in no orientation.",
+            where="--wall",
+            cure="Leave them out with --skip-too-large, or build a larger wall.",
+        )
+    largest = max(stone.id for stone in stones)
+    if largest + 2 * len(stones) >= 2**32 - 1:  # each stone may get two wedges
+        raise UsageError(
+            "E137",
+            f"stone {largest} leaves no ids for wedges, which are numbered after the largest id.",
+            where=stones.source.path,
+            cure="Renumber the stones with smaller ids.",
+        )
     return fitting
 
 
@@ -181,25 +148,3 @@ def _known(stones: StoneSet, settings: PlannerSettings) -> frozenset[int]:
                 cure="`drystone stones` lists the ids.",
             )
     return frozenset(settings.ban)
-
-
-def _leave_ids_for_wedges(stones: StoneSet) -> None:
-    """Raise UsageError (E137) when ids of 32 bits would run out: each stone may get two wedges."""
-    largest = max(stone.id for stone in stones)
-    if largest + 2 * len(stones) >= 2**32 - 1:
-        raise UsageError(
-            "E137",
-            f"stone {largest} leaves no ids for wedges, which are numbered after the largest id.",
-            where=stones.source.path,
-            cure="Renumber the stones with smaller ids.",
-        )
-
-
-def _too_large(stone_ids: list[int], site: Site) -> UsageError:
-    return UsageError(
-        "E120",
-        f"stones {', '.join(map(str, stone_ids))} fit into the wall of "
-        f"{site.width_px} x {site.height_px} working px in no orientation.",
-        where="--wall",
-        cure="Leave them out with --skip-too-large, or build a larger wall.",
-    )

@@ -13,7 +13,7 @@ from drystone.model.outlines import Outlines
 from drystone.model.placement import Side
 from drystone.planner.laying_settings import LayingSettings
 from drystone.poses import wrap_deg
-from drystone.settle.rest import Repose, Scene, Turned, repose, rests, touch_down
+from drystone.settle.rest import Repose, SettlingScene, Turned, repose, rests, touch_down
 from drystone.settle.settings import SettleSettings
 from drystone.settle.wedge import WedgeLimits
 from drystone.settle.wedged import held
@@ -32,14 +32,14 @@ SAME_PX, SAME_DEG = 1.0, 0.05
 class SideView:
     """What is built and how high it is, seen so that the building side is on the left."""
 
-    scene: Scene
+    scene: SettlingScene
     profile: HeightProfile
     column_px: float  # width of the profile's columns, source px
 
     @classmethod
     def bare(cls, width_px: float, side: Side, mu: float, column_px: float) -> "SideView":
         """Look at the bare ground."""
-        scene = Scene(no_polygons(), width_px, side, mu)
+        scene = SettlingScene(no_polygons(), width_px, side, mu)
         return cls(scene, bare(math.ceil(width_px / column_px)), column_px)
 
     def grown(self, outlines: Outlines) -> "SideView":
@@ -55,7 +55,7 @@ class SideView:
             profile = raised(profile, corners, index, self.column_px)
         polygons = scene.polygons.added(new)
         return SideView(
-            Scene(polygons, scene.width_px, scene.side, scene.mu), profile, self.column_px
+            SettlingScene(polygons, scene.width_px, scene.side, scene.mu), profile, self.column_px
         )
 
 

@@ -38,20 +38,10 @@ class SelectionSettings:
 
 @dataclass(frozen=True)
 class Action:
-    """What selection sees of a candidate.
-
-    Parameters
-    ----------
-    stone_id : int
-        Id of the stone.
-    angle_deg : float
-        Angle of the trial pose.
-    indices : Indices
-        Of the action.
-    """
+    """What selection sees of a candidate."""
 
     stone_id: int
-    angle_deg: float
+    angle_deg: float  # angle of the trial pose
     indices: Indices
 
     @property
@@ -68,18 +58,10 @@ class Action:
 
 @dataclass(frozen=True)
 class Selected:
-    """The best action.
+    """The best action."""
 
-    Parameters
-    ----------
-    position : int
-        Its place among the actions given.
-    survivors : tuple of int
-        How many actions passed each filter: K_1, K_2, ...
-    """
-
-    position: int
-    survivors: tuple[int, ...]
+    position: int  # its place among the actions given
+    survivors: tuple[int, ...]  # how many actions passed each filter: K_1, K_2, ...
 
 
 def select_action(

@@ -112,21 +112,8 @@ def choice_of(
 ) -> int | None:
     """Return what a policy chooses; None when there is nothing to choose from, or it takes none.
 
-    Parameters
-    ----------
-    name : str
-        Its name, for messages.
-    policy : Policy
-        May be of another package.
-    candidates : sequence of Offer
-        To choose from.
-    rng : numpy.random.Generator
-        Of this attempt.
-
-    Raises
-    ------
-    UsageError
-        E147: it raised an error, or returned what is neither None nor a position.
+    UsageError (E147): it, which may be of another package, raised an error, or returned what is
+    neither None nor a position.
     """
     if not candidates:
         return None

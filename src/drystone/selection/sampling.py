@@ -14,25 +14,12 @@ def sample_stones(
     clusters: Mapping[int, int],
     rng: np.random.Generator,
 ) -> tuple[int, ...]:
-    """Return the ids of the stones to try first in a step, in ascending order.
+    """Return the ids of the stones to try first in a step; these and those that are left ascend.
 
-    Parameters
-    ----------
-    sampling : {"variant", "uniform", "twofold", "full"}
-        ``"variant"``: one at random from each cluster that is not empty; ``"uniform"``: as many as
-        there were clusters at the start, at random; ``"twofold"``: as variant, then
-        :func:`second_fold`; ``"full"``: all.
-    remaining : sequence of int
-        Ids of the stones that are left, ascending.
-    clusters : mapping of int to int
-        Cluster of every stone of the set.
-    rng : numpy.random.Generator
-        Used by all but ``"full"``.
-
-    Examples
-    --------
-    >>> sample_stones("full", [1, 2], {1: 1, 2: 1}, np.random.default_rng(0))
-    (1, 2)
+    ``"variant"``: one at random from each cluster that is not empty; ``"uniform"``: as many as
+    there were clusters at the start, at random; ``"twofold"``: as variant, then
+    :func:`second_fold`; ``"full"``: all, and nothing is drawn.  `clusters` has every stone of the
+    set.
     """
     if sampling == "full" or not remaining:
         return tuple(remaining)

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from operator import attrgetter
 
+from drystone.model.settings import Ranged, ranged
+
 PIN_BONUS = 2.0
 """Bonus of an action that places a pinned stone: so it goes in early where it fits about as well as
 others."""
@@ -61,7 +63,7 @@ class Craft:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ScoreSettings:
+class ScoreSettings(Ranged):
     """Weights of the costs of :class:`Craft`, and how many actions are analysed.
 
     Parameters
@@ -90,11 +92,7 @@ class ScoreSettings:
     area: float = 1.8
     thickness: float = 0.0
     llc: float = 1.3
-    analysed: int = 4
-
-    def __post_init__(self) -> None:
-        if self.analysed < 1:
-            raise ValueError("analysed must be positive")
+    analysed: int = ranged(4, least=1)
 
 
 _costs = attrgetter(*(one.name for one in fields(Craft) if one.name not in ("area", "thickness")))

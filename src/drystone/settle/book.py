@@ -15,31 +15,17 @@ BOOK_BYTES = 1 << 28
 
 @dataclass(frozen=True, eq=False)
 class Hung:
-    """A turned outline, ready to be dropped.
+    """A turned outline, ready to be dropped."""
 
-    Parameters
-    ----------
-    turned : Turned
-        As a scene sees it.
-    profile : StoneProfile
-        Its lowest and highest points over columns of a working px.
-    """
-
-    turned: Turned
-    profile: StoneProfile
+    turned: Turned  # as a scene sees it
+    profile: StoneProfile  # its lowest and highest points over columns of a working px
 
 
 class OutlineBook:
     """Outlines of stones within a tolerance, turned to the angles of poses.
 
-    Parameters
-    ----------
-    tolerance_px : float
-        How far outlines may stay away from the contour of the pixels, source px.
-    cell_px : float
-        A working px in source px.
-    budget_bytes : int
-        Memory for turned outlines; those not asked for for longest are made again.
+    `tolerance_px` is how far outlines may stay away from the contour of the pixels, `cell_px` a
+    working px, both in source px.  Outlines not asked for for longest are made again.
     """
 
     def __init__(self, tolerance_px: float, cell_px: float, budget_bytes: int = BOOK_BYTES) -> None:

@@ -26,25 +26,9 @@ def settled_placement(
 ) -> Placement | None:
     """Return the placement of a settled stone; None when it fills no pixel of the wall.
 
-    Its pixels are those that become half full by it (DESIGN 4.9): they depend on what is there.
-    Whether it leaves the wall is not asked: where it stands out, it has no pixels.
-
-    Parameters
-    ----------
-    outlines : Outlines
-        Of the wall without it.
-    site : Site
-        Of the wall.
-    stone : Stone
-        The stone.
-    angle_deg : float
-        Counter-clockwise from the source image.
-    settled : Settled
-        Where it lies.
-    side : {"left", "right"}
-        The end of the wall from which it was placed.
-    rotation_moves : int
-        1 when it turned while it settled, otherwise 0.
+    `outlines` are those of the wall without it; `rotation_moves` is 1 when it turned while it
+    settled.  Its pixels are those that become half full by it (DESIGN 4.9): they depend on what is
+    there.  Whether it leaves the wall is not asked: where it stands out, it has no pixels.
     """
     fresh = outlines.shares.fresh(*coverage(settled.corners * site.scale))
     if fresh is None:
@@ -76,18 +60,8 @@ def settled_wedge(
 ) -> Wedge:
     """Return a wedge with the pixels that it fills, which may be none.
 
-    Parameters
-    ----------
-    outlines : Outlines
-        Of the wall without it, but with what was placed before it.
-    site : Site
-        Of the wall.
-    wedge_id : int
-        Its id.
-    under : int
-        Id of the stone that it supports.
-    corners : (n, 2) float array
-        Counter-clockwise, source px.
+    `outlines` are those of the wall with what was placed before it; `corners` are in source px,
+    counter-clockwise.
     """
     fresh = outlines.shares.fresh(*coverage(corners * site.scale))
     mask, row, col = (NOTHING.copy(), site.height_px, 0) if fresh is None else fresh

@@ -32,28 +32,16 @@ OVERLAP_PX = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
-    """What a stone meets, seen so that the building side is on the left.
+class SettlingScene:
+    """What a stone meets, seen so that the building side is on the left."""
 
-    Parameters
-    ----------
-    polygons : Polygons
-        Outlines of stones and wedges in the view, source px.
-    width_px : float
-        Of the wall, source px; its ends block but carry nothing.
-    side : {"left", "right"}
-        Which end of the wall is on the left of the view.
-    mu : float
-        Coefficient of friction.
-    """
-
-    polygons: Polygons
-    width_px: float
-    side: Side
+    polygons: Polygons  # outlines of stones and wedges in the view, source px
+    width_px: float  # of the wall, source px; its ends block but carry nothing
+    side: Side  # which end of the wall is on the left of the view
     mu: float
 
     @classmethod
-    def of(cls, polygons: Polygons, width_px: float, side: Side, mu: float) -> "Scene":
+    def of(cls, polygons: Polygons, width_px: float, side: Side, mu: float) -> "SettlingScene":
         """Return the scene of outlines in the wall frame."""
         seen = polygons if side == "left" else polygons.mirrored(width_px)
         return cls(seen, width_px, side, mu)
@@ -61,30 +49,14 @@ class Scene:
 
 @dataclass(frozen=True, eq=False)
 class Turned:
-    """The outline of a stone in a pose, as a scene sees it; the pose itself is the stone's.
+    """The outline of a stone in a pose, as a scene sees it; the pose itself is the stone's."""
 
-    Parameters
-    ----------
-    outline : (n, 2) float array
-        Of the stone, not turned, relative to its centroid, source px.
-    angle_deg : float
-        By which it is turned in the wall frame.
-    side : {"left", "right"}
-        Of the scene.
-    corners : (n, 2) float array
-        Turned, and mirrored where the scene is.
-    edges : (n, 3) float array
-        Of the corners.
-    size_px : float
-        Root of the stone's area.
-    """
-
-    outline: Points
-    angle_deg: float
+    outline: Points  # (n, 2): of the stone, not turned, relative to its centroid, source px
+    angle_deg: float  # by which it is turned in the wall frame
     side: Side
-    corners: Points
-    edges: Points
-    size_px: float
+    corners: Points  # (n, 2): turned, and mirrored where the scene is
+    edges: Points  # (n, 3): of the corners
+    size_px: float  # root of the stone's area
 
     @classmethod
     def of(cls, outline: Points, angle_deg: float, side: Side, size_px: float) -> "Turned":
@@ -97,50 +69,25 @@ class Turned:
 
 @dataclass(frozen=True, eq=False)
 class Repose:
-    """Where a stone came to rest.
+    """Where a stone came to rest."""
 
-    Parameters
-    ----------
-    settled : Settled
-        Where, in the wall frame.
-    angle_deg : float
-        Turned by so much from the source image.
-    turned : bool
-        Whether it turned while it settled.
-    margin : float
-        How far gravity may lean until it moves, over mu; below the least margin of the settings
-        it does not rest.
-    """
-
-    settled: Settled
-    angle_deg: float
-    turned: bool
+    settled: Settled  # where, in the wall frame
+    angle_deg: float  # turned by so much from the source image
+    turned: bool  # whether it turned while it settled
+    # how far gravity may lean until it moves, over mu; below the least margin of the settings
+    # it does not rest
     margin: float
 
 
 def come_to_rest(
     stone: Turned,
-    scene: Scene,
+    scene: SettlingScene,
     start: tuple[float, float],
     settings: SettleSettings,
     *,
     turns: bool = True,
 ) -> Repose | None:
-    """Let a stone go, and return where it rests; None when it does not rest nearby.
-
-    Parameters
-    ----------
-    stone : Turned
-        As the scene sees it.
-    scene : Scene
-        What is there.
-    start : (float, float)
-        Centroid where it is let go, in the view.
-    settings : SettleSettings
-        How it settles.
-    turns : bool
-        Whether it may turn.
-    """
+    """Let a stone go with its centroid at a start of the view; None where it does not rest."""
     for found in rests(stone, scene, start, settings, turns=turns):
         return repose(stone, scene, found)
     return None
@@ -148,19 +95,13 @@ def come_to_rest(
 
 def rests(
     stone: Turned,
-    scene: Scene,
+    scene: SettlingScene,
     start: tuple[float, float],
     settings: SettleSettings,
     *,
     turns: bool = True,
 ) -> Iterator[Settling]:
-    """List where a stone rests that is let go in all ways (:func:`ways`), in their order.
-
-    Parameters
-    ----------
-    stone, scene, start, settings, turns
-        As for :func:`come_to_rest`.
-    """
+    """List where a stone rests that is let go in all ways (:func:`ways`), in their order."""
     *earlier, last = ways(stone, scene, settings, turns=turns)
     stopped = None
     for rules in earlier:
@@ -183,7 +124,7 @@ def _rests(found: Settling, settings: SettleSettings) -> bool:
 
 
 def touch_down(
-    stone: Turned, scene: Scene, start: tuple[float, float], settings: SettleSettings
+    stone: Turned, scene: SettlingScene, start: tuple[float, float], settings: SettleSettings
 ) -> Repose | None:
     """Lower a stone without turning it until nothing is gained; None when it slides away.
 
@@ -197,35 +138,27 @@ def touch_down(
 
 
 def lay(
-    stone: Turned, scene: Scene, start: tuple[float, float], settings: SettleSettings
+    stone: Turned, scene: SettlingScene, start: tuple[float, float], settings: SettleSettings
 ) -> Repose | None:
     """Lay a stone where it is planned, and move it no further than until it rests.
 
-    What it overlaps a little there it is brought apart from.
-
-    Parameters
-    ----------
-    stone, scene, start, settings
-        As for :func:`come_to_rest`.
-
-    Returns
-    -------
-    repose : Repose or None
-        None when it does not rest nearby.
+    What it overlaps a little there it is brought apart from.  None when it does not rest nearby.
     """
     rules = ways(stone, scene, replace(settings, method="energy"))[-1]._replace(stop=0.0)
     found = let_go(stone, scene, start, rules)
     return repose(stone, scene, found) if found.status == Status.RESTS else None
 
 
-def let_go(stone: Turned, scene: Scene, start: tuple[float, float], rules: Rules) -> Settling:
+def let_go(
+    stone: Turned, scene: SettlingScene, start: tuple[float, float], rules: Rules
+) -> Settling:
     """Settle a stone in one way; one that may not turn has not turned, not even by rounding."""
     found = settle(stone.corners, stone.edges, (*start, 0.0), scene.polygons, scene.width_px, rules)
     return found if rules.turns else found._replace(angle=0.0)
 
 
 def ways(
-    stone: Turned, scene: Scene, settings: SettleSettings, *, turns: bool = True
+    stone: Turned, scene: SettlingScene, settings: SettleSettings, *, turns: bool = True
 ) -> tuple[Rules, ...]:
     """Return the ways of settling that are tried, one after the other."""
     size = stone.size_px
@@ -255,7 +188,7 @@ def ways(
     return plain, plain._replace(lean=0.0), plain._replace(lean=0.0, stop=settings.margin)
 
 
-def repose(stone: Turned, scene: Scene, found: Settling) -> Repose:
+def repose(stone: Turned, scene: SettlingScene, found: Settling) -> Repose:
     """Return where a settling ended, in the wall frame."""
     sign = 1.0 if scene.side == "left" else -1.0
     x = found.x if scene.side == "left" else scene.width_px - found.x

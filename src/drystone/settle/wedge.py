@@ -5,11 +5,13 @@ below it all along.
 """
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from drystone.kernels.crevice import Crevice, between, crevice, slabs
+from drystone.kernels.crevice import SAME, Crevice, between, crevice, slabs
 from drystone.kernels.firmness import rest_margin
 from drystone.kernels.polygons import (
     Points,
@@ -18,31 +20,71 @@ from drystone.kernels.polygons import (
     mirrored_polygon,
     on_grid,
 )
-from drystone.model.wedge_shape import ROUNDING, open_sides
-from drystone.settle.wedge_spans import (
-    Slabs,
-    Span,
-    WedgeLimits,
-    all_spans,
-    extent,
-    fitted,
-    parts,
-)
+from drystone.model.wedge_shape import ROUNDING, WedgeRule, WedgeShape, open_sides
 
-__all__ = [
-    "WedgeLimits",
-    "falling_side",
-    "gridded",
-    "in_order",
-    "met_below",
-    "rests",
-    "squeezed_out",
-    "wedge_under",
-    "wedges_below",
-]
+Span = tuple[float, float]
+"""A wedge or a part of a crevice from one x to another."""
+
+ASPECT = 1.25
+"""Width of a wedge over its height, where there is room and the least width is less."""
+WIDENINGS = 8
+"""How often a wedge is made wider whose height grows with its width."""
 
 PLACES = 4
 """How many places are tried in each part of the gap, from the nearest to the furthest."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class WedgeLimits(WedgeRule):
+    """What a wedge may be, and how it must hold a stone; source px."""
+
+    # distance of the centre of mass from the end of the support, as a share of the stone's
+    # width
+    margin: float = 0.0
+    clearance_px: float = 0.01  # gap that is left above and below
+    contact_px: float = 0.1  # gaps up to this one touch
+    setback: float = 0.01  # see `SettleSettings`
+    # between a stone and the end of the wall, in which another one may come to stand beside
+    # its wedge
+    room_px: float = 0.0
+    rest: float = 0.0  # how far gravity may lean until the wedged stone moves, over mu, at least
+    steep: float = -1.0  # see `SettleSettings`
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0 <= self.margin < 0.5:
+            raise ValueError("margin must be in [0, 0.5)")
+        if not 0 < 2 * self.clearance_px <= self.contact_px:
+            raise ValueError("clearance must be above 0, contact_px at least twice as much")
+
+
+class CreviceSlabs(NamedTuple):
+    """A crevice cut into slabs with straight floors and lids (:func:`slabs`)."""
+
+    x: Points  # (n + 1,): where the slabs begin, and the end of the last
+    # (n, 2): y of floor and lid at the left and at the right of each slab
+    low: Points
+    high: Points
+
+    @classmethod
+    def of(cls, space: Crevice) -> "CreviceSlabs":
+        """Cut a crevice at all its corners, from its left end to its right end."""
+        return cls(*slabs(space, *extent(space.lid)))
+
+    def shape(self, span: Span) -> WedgeShape:
+        """Measure what fills a span."""
+        first = int(np.searchsorted(self.x, span[0], side="right")) - 1
+        last = int(np.searchsorted(self.x, span[1]))
+        x = self.x[first : last + 1].copy()
+        shares = (np.array(span) - x[[0, -2]]) / (x[[1, -1]] - x[[0, -2]])
+        faces = []
+        for line in (self.low, self.high):
+            face = line[first:last].copy()
+            ends = face[[0, -1], 0] + (face[[0, -1], 1] - face[[0, -1], 0]) * shares
+            face[0, 0], face[-1, 1] = ends
+            faces.append(face)
+        x[[0, -1]] = span
+        return WedgeShape.of_slabs(x, *faces)
 
 
 def wedge_under(
@@ -51,37 +93,16 @@ def wedge_under(
     around: Polygons,
     width: float,
     limits: WedgeLimits,
-    falls: int | None = None,
 ) -> Points | None:
-    """Cut the wedge that keeps a stone where it is (§3.7, Fig. 9c).
+    """Cut the wedge, (m, 2) counter-clockwise, that keeps a stone where it is (§3.7, Fig. 9c).
 
     Of the free space under the side to which the stone falls, the nearest piece is taken that is
     far enough out to bring the centre of mass inside the support, is a wedge that a mason would
     cut, has something beside it or room for it, rests by itself on what is below, and holds the
-    stone.
-
-    Parameters
-    ----------
-    stone : (n, 2) float array
-        The stone where it touches something below, counter-clockwise, in the wall frame.
-    centroid : (float, float)
-        Its centre of mass.
-    around : Polygons
-        The stones and wedges that are there.
-    width : float
-        Of the wall.
-    limits : WedgeLimits
-        What a wedge may be.
-    falls : {-1, 1}, optional
-        To which side the stone falls, left or right; found from its contacts when it is not given.
-
-    Returns
-    -------
-    wedge : (m, 2) float array or None
-        Its corners, counter-clockwise.  None when no wedge within the limits holds the stone.
+    stone.  None when there is none.  The stone touches something below, in the wall frame; `width`
+    is that of the wall.
     """
-    if falls is None:
-        falls = falling_side(stone, centroid[0], around, limits)
+    falls = falling_side(stone, centroid[0], around, limits)
     if falls == 0:
         return None
     near = _near(stone, around, limits)
@@ -94,66 +115,26 @@ def wedge_under(
 
 
 def wedges_below(polygons: Polygons, stone: int, limits: WedgeLimits) -> Iterator[Points]:
-    """List wedges in the free space under a stone of a wall, whatever they shall hold.
+    """List wedges, (m, 2) on the grid, in the free space under a stone, whatever they shall hold.
 
-    Parameters
-    ----------
-    polygons : Polygons
-        Stones and wedges of the wall.
-    stone : int
-        Which of them is the stone.
-    limits : WedgeLimits
-        What a wedge may be.
-
-    Yields
-    ------
-    wedge : (m, 2) float array
-        Its corners, counter-clockwise, on the grid.
+    `stone` says which of the polygons it is.
     """
     corners = polygons.polygon(stone)
     space = crevice(corners, _near(corners, polygons, limits, stone), limits.clearance_px)
-    for span in all_spans(Slabs.of(space), PLACES, limits):
+    for span in all_spans(CreviceSlabs.of(space), PLACES, limits):
         wedge = between(space, *span)
         if wedge is not None:
             yield gridded(wedge)
 
 
 def gridded(wedge: Points) -> Points:
-    """Return a wedge with its corners on the grid, of which no two in a row are the same.
-
-    Parameters
-    ----------
-    wedge : (n, 2) float array
-        Its corners.
-
-    Returns
-    -------
-    wedge : (m, 2) float array
-        Those that are less than a step of the grid apart may have become one.
-
-    Examples
-    --------
-    >>> gridded(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1e-7], [2.0, 1.0]])).tolist()
-    [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]]
-    """
+    """Return a wedge with its corners on the grid, of which no two in a row are the same."""
     corners = on_grid(wedge)
     return np.asarray(corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)])
 
 
 def rests(wedge: Points, around: Polygons, width: float, limits: WedgeLimits) -> bool:
-    """Say whether a wedge rests on what is below it, without the stone on it.
-
-    Parameters
-    ----------
-    wedge : (n, 2) float array
-        Its corners.
-    around : Polygons
-        What is there, rigid.
-    width : float
-        Of the wall.
-    limits : WedgeLimits
-        Friction and contact tolerance.
-    """
+    """Say whether a wedge rests on what is below it, rigid, without the stone on it."""
     _, x, y = area_and_centroid(wedge)
     mu, contact_px, steep = limits.mu, limits.contact_px, limits.steep
     return rest_margin(wedge, (x, y), around, width, mu, contact_px, steep=steep) >= 0.0
@@ -164,18 +145,7 @@ def squeezed_out(
 ) -> bool:
     """Say whether nothing is beside a wedge at a side, and no other stone can come there.
 
-    Parameters
-    ----------
-    wedge : (n, 2) float array
-        Its corners.
-    stone : (n, 2) float array
-        The stone that lies on it.
-    around : Polygons
-        What else is there, or will be; the wedge and the stone may be among them.
-    width : float
-        Of the wall.
-    limits : WedgeLimits
-        How much room another stone needs between the stone and the end of the wall.
+    `stone` lies on it; `around` is what else is there, or will be: both may be among it.
     """
     left = stone[:, 0].min() < limits.room_px - ROUNDING
     right = stone[:, 0].max() > width - limits.room_px + ROUNDING
@@ -188,15 +158,8 @@ def squeezed_out(
 def falling_side(stone: Points, x_c: float, around: Polygons, limits: WedgeLimits) -> int:
     """Say to which side a stone on its contacts falls: -1 left, +1 right.
 
-    0 when its centre of mass lies over the support, as far inside as `limits.margin` says, and
-    when nothing supports it.
-
-    Parameters
-    ----------
-    stone, around, limits
-        As for :func:`wedge_under`.
-    x_c : float
-        x of its centre of mass.
+    0 when its centre of mass, at `x_c`, lies over the support, as far inside as `limits.margin`
+    says, and when nothing supports it.
     """
     x, low, high = slabs(crevice(stone, around, 0.0), *extent(stone))
     run = (x[1:] - x[:-1])[:, None]
@@ -244,7 +207,7 @@ def _wedges(
 
 def _spans(space: Crevice, x_c: float, limits: WedgeLimits) -> Iterator[Span]:
     """List where a wedge may be that holds a stone which falls to the right, the nearest first."""
-    table = Slabs.of(space)
+    table = CreviceSlabs.of(space)
     least = x_c + limits.margin * float(table.x[-1] - table.x[0])
     for part in parts(table, limits):
         last = part[1] - limits.least_width
@@ -258,21 +221,9 @@ def _spans(space: Crevice, x_c: float, limits: WedgeLimits) -> Iterator[Span]:
 
 
 def met_below(stone: Points, around: Points, limits: WedgeLimits) -> NDArray[np.bool_]:
-    """Say which polygons a stone, or a wedge under it, could meet.
+    """Say which polygons, by their (k, 4) boxes, a stone, or a wedge under it, could meet.
 
-    Parameters
-    ----------
-    stone : (n, 2) float array
-        Corners of the stone.
-    around : (k, 4) float array
-        Boxes of the polygons: left, bottom, right and top of each.
-    limits : WedgeLimits
-        What a wedge may be.
-
-    Returns
-    -------
-    met : (k,) bool array
-        The stone itself is met, if it is one of them.
+    A box is left, bottom, right and top.  The stone itself is met, if it is one of them.
     """
     reach = limits.contact_px + 4.0 * limits.clearance_px
     left, low = stone.min(axis=0) - reach
@@ -302,3 +253,72 @@ def in_order(polygons: Polygons, chosen: list[int]) -> Polygons:
         polygons.boxes[chosen],
         np.concatenate([polygons.edges[:0], *(polygons.edges[part] for part in ends)]),
     )
+
+
+def all_spans(table: CreviceSlabs, places: int, limits: WedgeLimits) -> list[Span]:
+    """List where wedges may be anywhere in a crevice, from left to right.
+
+    At so many places, from one end to the other of each part of it: as wide as high there; and
+    over the whole part.
+    """
+    found: list[Span] = []
+    for part in parts(table, limits):
+        last = part[1] - limits.least_width
+        if last < part[0]:
+            continue
+        spans = [
+            fitted(table, (left, min(left + limits.least_width, part[1])), part, limits)
+            for left in np.linspace(part[0], last, places).tolist()
+        ]
+        spans.append(part if limits.allows(table.shape(part), SAME) else None)
+        found += [span for span in dict.fromkeys(spans) if span is not None]
+    return found
+
+
+def fitted(table: CreviceSlabs, narrowest: Span, part: Span, limits: WedgeLimits) -> Span | None:
+    """Make a span as wide as it is high: outwards, then inwards; None when that is no wedge."""
+    left, right = narrowest
+    for _ in range(WIDENINGS):
+        height = table.shape((left, right)).height
+        if height <= right - left:
+            break
+        right = min(left + ASPECT * height, part[1])
+        left = max(min(left, right - ASPECT * height), part[0])
+    return (left, right) if limits.allows(table.shape((left, right)), SAME) else None
+
+
+def parts(table: CreviceSlabs, limits: WedgeLimits) -> list[Span]:
+    """List the parts of a crevice that are neither too thin nor too thick; steps end a part."""
+    x, low, high = table
+    thick = high - low
+    fits = thick.max(axis=1) >= limits.least_thickness
+    fits &= thick.min(axis=1) <= limits.greatest_height
+    step = np.maximum(np.abs(low[1:, 0] - low[:-1, 1]), np.abs(high[1:, 0] - high[:-1, 1]))
+    joined = np.append(False, step <= SAME)
+    found: list[Span] = []
+    for i in np.flatnonzero(fits).tolist():
+        start, stop = _fitting((float(x[i]), float(x[i + 1])), thick[i].tolist(), limits)
+        if joined[i] and found and found[-1][1] == start:
+            start = found.pop()[0]
+        found.append((start, stop))
+    return found
+
+
+def _fitting(slab: Span, thick: list[float], limits: WedgeLimits) -> Span:
+    """Return the part of a slab where its thickness, which is linear, is that of a wedge."""
+    if thick[0] == thick[1]:
+        return slab
+    ends = sorted(
+        (limit - thick[0]) / (thick[1] - thick[0])
+        for limit in (limits.least_thickness, limits.greatest_height)
+    )
+    run = slab[1] - slab[0]
+    return (
+        slab[0] if ends[0] <= 0.0 else slab[0] + run * ends[0],
+        slab[1] if ends[1] >= 1.0 else slab[0] + run * ends[1],
+    )
+
+
+def extent(points: Points) -> Span:
+    """Return the least and the largest x."""
+    return float(points[:, 0].min()), float(points[:, 0].max())

@@ -8,9 +8,10 @@ from drystone.kernels.raster import Mask
 from drystone.model.placement import Placement, Side, Wedge
 from drystone.model.pose import PosedStone
 from drystone.model.stone import Stone
+from drystone.model.wall import Group
 from drystone.poses import PoseBook, RecentlyUsed, memory_bytes
 from drystone.stabilise.settings import StabiliseSettings
-from drystone.stabilise.stabilise import Outcome, Stabilised, WedgeStock, falls_to, make_stable
+from drystone.stabilise.stabilise import Outcome, WedgeStock, falls_to, make_stable
 from drystone.stabilise.support import Pose
 
 Key = tuple[Stone, float, int, int, int, tuple[int, ...], bytes]
@@ -27,17 +28,8 @@ class StabiliseMemory:
     the outcome can be used again whenever the window looks the same, in a later step or in
     another wall: as far down, that is, as was looked at to make the stone stable.
 
-    Parameters
-    ----------
-    book : PoseBook
-        Gives turned stones.
-    mean_height_px : float
-        Mean height of the stones, which limits the wedges.
-    settings : StabiliseSettings
-        Which methods, with which limits.
-    budget_bytes : int
-        Memory for outcomes.  Those not asked for for longest are forgotten and worked out again
-        when they are: no result depends on it.
+    Outcomes not asked for for longest are forgotten and worked out again when they are: no result
+    depends on the budget.  The mean height of the stones limits the wedges.
     """
 
     def __init__(
@@ -52,31 +44,17 @@ class StabiliseMemory:
         self._settings = settings
         self._outcomes = RecentlyUsed[Key, Outcome](budget_bytes)
 
-    def stabilise(
-        self, occupied: Mask, trial: Pose, side: Side, next_wedge: int
-    ) -> Stabilised | None:
+    def stabilise(self, occupied: Mask, trial: Pose, side: Side, next_wedge: int) -> Group | None:
         """Return a stable placement from a trial one; None when there is none (§3.7).
 
-        Parameters
-        ----------
-        occupied : (h, w) bool array
-            The landscape without the stone.
-        trial : (PosedStone, int, int)
-            The stone and the row and column of its mask.
-        side : {"left", "right"}
-            End of the wall from which it is placed.
-        next_wedge : int
-            Id of the next wedge.
-
-        Notes
-        -----
-        A stone that would turn or slide out of the window counts as not stable.
+        `occupied` is the landscape without the stone, `next_wedge` the id of the next wedge.  A
+        stone that would turn or slide out of the window counts as not stable.
         """
         falls = falls_to(occupied, trial, self._settings)
         if falls is None:
             return None
         if falls == 0:  # most are: quicker seen than remembered
-            return Stabilised(Placement(*trial, side))
+            return Group(Placement(*trial, side))
         posed, row, col = trial
         reach = _reach_px(posed)
         top, left = max(0, row - reach), max(0, col - reach)
@@ -124,8 +102,8 @@ def _memory_bytes(key: Key, outcome: Outcome) -> int:
 
 
 def _moved(
-    stabilised: Stabilised | None, top: int, left: int, side: Side, next_wedge: int
-) -> Stabilised | None:
+    stabilised: Group | None, top: int, left: int, side: Side, next_wedge: int
+) -> Group | None:
     """Return an outcome in the rows and columns of the whole wall, with wedge ids of its own."""
     if stabilised is None:
         return None
@@ -135,4 +113,4 @@ def _moved(
         for k, wedge in enumerate(stabilised.wedges)
     )
     placement = Placement(at.posed, at.row + top, at.col + left, side, at.rotation_moves)
-    return Stabilised(placement, wedges)
+    return Group(placement, wedges)

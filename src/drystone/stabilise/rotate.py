@@ -12,20 +12,13 @@ from drystone.stabilise.support import Pose, Support, falling_side, support_poly
 
 @dataclass(frozen=True, eq=False)
 class Rotation:
-    """What became of a stone that was turned.
+    """What became of a stone that was turned."""
 
-    Parameters
-    ----------
-    pose : (PosedStone, int, int) or None
-        Where it rests; None when it meets the landscape before it does, or a limit is reached.
-    pivots : int
-        How many points it was turned about.
-    depth : int
-        Rows of the landscape, from the top, that were looked at: what is further down has no say.
-    """
-
+    # where it rests; None when it meets the landscape before it does, or a limit is reached
     pose: Pose | None
-    pivots: int
+    pivots: int  # how many points it was turned about
+    # rows of the landscape, from the top, that were looked at: what is further down has no
+    # say
     depth: int
 
 
@@ -37,18 +30,7 @@ def rotate_to_rest(
     The stone turns towards the side to which it falls, in steps of a degree.  Each step takes the
     turned stone from its source pixels, keeps point A in place to the nearest pixel, and seats it
     on the landscape again; new contacts give a new support polyline and, when that does not hold
-    either, a new point A.
-
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape.
-    trial : (PosedStone, int, int)
-        The stone and the row and column of its mask; overlapping nothing, supported somewhere.
-    book : PoseBook
-        Gives the turned stones.
-    settings : StabiliseSettings
-        Margin, steps and limits.
+    either, a new point A.  At first it overlaps nothing, and is supported somewhere.
     """
     pose, depth = trial, trial[1] + trial[0].height_px + 1
     support = support_polyline(occupied, *trial)

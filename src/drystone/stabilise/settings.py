@@ -3,11 +3,13 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from drystone.model.settings import Ranged, ranged
+
 Method = Literal["both", "rotation", "wedge", "none"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class StabiliseSettings:
+class StabiliseSettings(Ranged):
     """How a trial placement that is not stable is made so (§3.7, Fig. 20).
 
     Parameters
@@ -34,25 +36,11 @@ class StabiliseSettings:
     """
 
     method: Method = "both"
-    margin: float = 0.0
-    step_deg: float = 1.0
-    max_turn_deg: float = 15.0
-    max_pivots: int = 4
-    new_pivot_px: int = 3
-    max_shift_px: int = 3
-    min_wedge_px: int = 2
-    max_wedge_height: float = 0.5
-
-    def __post_init__(self) -> None:
-        if self.method not in ("both", "rotation", "wedge", "none"):
-            raise ValueError(f"unknown stabilisation method {self.method!r}")
-        if not 0 <= self.margin < 0.5:
-            raise ValueError("margin must be in [0, 0.5)")
-        if self.step_deg <= 0 or self.max_turn_deg < 0 or self.max_pivots < 0:
-            raise ValueError("rotation step must be positive, limits not negative")
-        if (
-            min(self.max_shift_px, self.new_pivot_px) < 0
-            or self.min_wedge_px < 1
-            or self.max_wedge_height <= 0
-        ):
-            raise ValueError("limits of shifts and wedges must be positive")
+    margin: float = ranged(0.0, least=0, below=0.5)
+    step_deg: float = ranged(1.0, above=0)
+    max_turn_deg: float = ranged(15.0, least=0)
+    max_pivots: int = ranged(4, least=0)
+    new_pivot_px: int = ranged(3, least=0)
+    max_shift_px: int = ranged(3, least=0)
+    min_wedge_px: int = ranged(2, least=1)
+    max_wedge_height: float = ranged(0.5, above=0)

@@ -6,58 +6,28 @@ from dataclasses import dataclass
 from drystone.kernels.columns import gap_filling
 from drystone.kernels.raster import Mask
 from drystone.model.placement import Placement, Side, Wedge
+from drystone.model.wall import Group
 from drystone.poses import PoseBook
 from drystone.stabilise.rotate import rotate_to_rest
 from drystone.stabilise.settings import StabiliseSettings
 from drystone.stabilise.support import Pose, falling_side, support_polyline
 
 
-@dataclass(frozen=True, eq=False)
-class Stabilised:
-    """A stable placement with the wedges that make it so.
-
-    Parameters
-    ----------
-    placement : Placement
-        The stone.
-    wedges : tuple of Wedge
-        Empty when the stone rests by itself.
-    """
-
-    placement: Placement
-    wedges: tuple[Wedge, ...] = ()
-
-
 @dataclass(frozen=True)
 class WedgeStock:
-    """What cutting a wedge needs to know of the whole.
-
-    Parameters
-    ----------
-    next_id : int
-        Id of the next wedge.
-    mean_height_px : float
-        Mean height of the stones of the set in their initial poses, working px.
-    """
+    """What cutting a wedge needs to know of the whole."""
 
     next_id: int
-    mean_height_px: float
+    mean_height_px: float  # mean height of the stones of the set in their initial poses, working px
 
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What became of a stone that falls.
+    """What became of a stone that falls."""
 
-    Parameters
-    ----------
-    stabilised : Stabilised or None
-        None when it cannot be made stable.
-    depth : int
-        Rows of the landscape, from the top, that were looked at: in another landscape that is the
-        same so far down the outcome is the same.
-    """
-
-    stabilised: Stabilised | None
+    stabilised: Group | None  # None when it cannot be made stable
+    # rows of the landscape, from the top, that were looked at: in another landscape that is
+    # the same so far down the outcome is the same
     depth: int
 
 
@@ -68,29 +38,16 @@ def stabilise(
     book: PoseBook,
     wedges: WedgeStock,
     settings: StabiliseSettings,
-) -> Stabilised | None:
+) -> Group | None:
     """Return a stable placement from a trial one; None when it cannot be made stable (§3.7).
 
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape without the stone.
-    trial : (PosedStone, int, int)
-        The stone and the row and column of its mask.
-    side : {"left", "right"}
-        End of the wall from which it is placed.
-    book : PoseBook
-        Gives turned stones.
-    wedges : WedgeStock
-        For cutting wedges.
-    settings : StabiliseSettings
-        Which methods, with which limits.
+    `occupied` is the landscape without the stone.
     """
     falls = falls_to(occupied, trial, settings)
     if falls is None:
         return None
     if falls == 0:
-        return Stabilised(Placement(*trial, side))
+        return Group(Placement(*trial, side))
     return make_stable(occupied, trial, side, book, wedges, settings).stabilised
 
 
@@ -108,13 +65,7 @@ def make_stable(
     wedges: WedgeStock,
     settings: StabiliseSettings,
 ) -> Outcome:
-    """Turn a stone that falls, or wedge it.
-
-    Parameters
-    ----------
-    occupied, trial, side, book, wedges, settings
-        As for :func:`stabilise`.
-    """
+    """Turn a stone that falls, or wedge it; arguments as for :func:`stabilise`."""
     posed, row, col = trial
     depth = row + posed.height_px + 1
     if settings.method in ("both", "rotation"):
@@ -122,13 +73,13 @@ def make_stable(
         depth = max(depth, rotation.depth)
         if rotation.pose is not None:
             placement = Placement(*rotation.pose, side, rotation_moves=rotation.pivots)
-            return Outcome(Stabilised(placement), depth)
+            return Outcome(Group(placement), depth)
     if settings.method in ("both", "wedge"):
         deepest = row + posed.height_px + wedge_sizes_px(wedges.mean_height_px, settings)[1] + 1
         depth = max(depth, deepest)
         cut = _wedges_under(occupied[:deepest], trial, wedges, settings)
         if cut is not None:
-            return Outcome(Stabilised(Placement(posed, row, col, side), cut), depth)
+            return Outcome(Group(Placement(posed, row, col, side), cut), depth)
     return Outcome(None, depth)
 
 
@@ -166,31 +117,13 @@ def wedge_under(
     mean_height_px: float,
     settings: StabiliseSettings,
 ) -> Wedge | None:
-    """Cut the wedge that keeps an unstable stone where it is (§3.7, Fig. 9c).
+    """Cut the wedge that keeps an unstable stone where it is (§3.7, Fig. 9c); None when none does.
 
     The free side is the part of the stone beyond the end of its support to which it falls.  It is
     lowered in thought until it touches; how far gives the wedge's height, the columns that touch
     then give its width.  Only columns far enough out to bring the centre of mass inside the new
     support count.  The wedge is the gap itself in those columns, so it touches the stone above
     and what is below all along.
-
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape without the stone.
-    pose : (PosedStone, int, int)
-        The stone and the row and column of its mask.
-    wedge_id : int
-        Id to give to the wedge.
-    mean_height_px : float
-        Mean height of the stones, which limits the wedge's.
-    settings : StabiliseSettings
-        Smallest and largest size, margin.
-
-    Returns
-    -------
-    wedge : Wedge or None
-        None when no wedge within the limits holds the stone.
     """
     posed, row, col = pose
     support = support_polyline(occupied, posed, row, col)

@@ -13,33 +13,20 @@ Pose = tuple[PosedStone, int, int]
 
 @dataclass(frozen=True)
 class Support:
-    """The ends of the support polyline, in image coordinates (x right, rows downwards).
+    """The ends of the support polyline, in image coordinates (x right, rows downwards)."""
 
-    Parameters
-    ----------
-    left_x, right_x : float
-        x of A and B: the outer edges of the outermost supporting pixels.
-    left_row, right_row : int
-        Rows of the edges on which they stand.
-    """
-
+    # x of A and B: the outer edges of the outermost supporting pixels
     left_x: int
     right_x: int
+    # rows of the edges on which they stand
     left_row: int
     right_row: int
 
     def falls(self, x_c: float, margin_px: float = 0.0) -> int:
         """Say to which side the stone falls: -1 left, +1 right, 0 when it is stable.
 
-        Stable: the centre of mass projects inside AB, at least `margin_px` from both ends; of a
-        support too short for both margins the nearer end decides.
-
-        Parameters
-        ----------
-        x_c : float
-            x of the centre of mass.
-        margin_px : float
-            Distance wanted from the ends; 0 in the paper.
+        Stable: the centre of mass projects inside AB, at least `margin_px` (0 in the paper) from
+        both ends; of a support too short for both margins the nearer end decides.
         """
         from_left, from_right = x_c - self.left_x, self.right_x - x_c
         if min(from_left, from_right) >= margin_px:
@@ -52,15 +39,7 @@ def support_polyline(occupied: Mask, posed: PosedStone, row: int, col: int) -> S
 
     A pixel supports where the stone moved down by one would overlap a stone, a wedge or the
     ground; a touch at the side carries nothing (DESIGN 4.6).  The ends of the wall carry nothing.
-
-    Parameters
-    ----------
-    occupied : (h, w) bool array
-        The landscape without the stone.
-    posed : PosedStone
-        The stone.
-    row, col : int
-        Top-left corner of its mask; it overlaps nothing there.
+    `occupied` is the landscape without the stone.
     """
     ends = support_ends(occupied, posed.mask, row, col)
     return None if ends is None else Support(*ends)

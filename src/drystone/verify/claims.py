@@ -14,7 +14,6 @@ from drystone.planner.settings import PlannerSettings
 from drystone.planner.stock import Stock
 from drystone.poses import PoseBook, orientation_step_deg
 from drystone.search.plan_result import other_resistances
-from drystone.stabilise.stabilise import Stabilised
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LateralResistance
@@ -166,7 +165,7 @@ def check_indices(
     claimed_height = step.course_height
     indices, course_height = action_indices(
         Landscape.of(stage.before, step.side),
-        Stabilised(group.placement, group.wedges),
+        group,
         resistance,
         None if claimed_height is None else claimed_height / units_per_px,
         reference.stock.narrowest_px,

@@ -82,14 +82,6 @@ def test_every_index_is_in_the_sum(better: dict[str, Any], worse: dict[str, Any]
     assert chosen("scalarised", offered(1, indices=worse), offered(2, indices=better)) == 2
 
 
-def test_weights_count() -> None:
-    square, strong = offered(1, indices={"SF": 0.9}), offered(2, indices={"LLC": 0.55})
-    assert chosen("scalarised", square, strong) == 1
-    assert chosen("scalarised", square, strong, w_sf=0.0) == 2
-    heavy = policy_named("scalarised", PolicySettings(), SelectionSettings(w_llc=3.0))
-    assert heavy.choose([square, strong], np.random.default_rng(0)) == 1
-
-
 NARROW = {"support_px": ((12.0, 0.0), (14.5, 0.0))}
 """A support of a quarter of the stone's width."""
 

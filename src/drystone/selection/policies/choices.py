@@ -42,14 +42,7 @@ class Scalarised:
 
     The paper says of Johns et al. (2020) and Lambert and Kennedy (2012) that they sum all
     objectives linearly; which terms and weights they have it does not say.  These are the paper's
-    own indices, without its filters.
-
-    Parameters
-    ----------
-    weights : SelectionSettings
-        Of the first five.
-    w_sf : float
-        Of SF.
+    own indices, without its filters; `w_sf` is the weight of SF.
     """
 
     def __init__(self, weights: SelectionSettings, w_sf: float) -> None:
@@ -76,11 +69,6 @@ class Filters:
     et al. (2018) that they remove undesirable solutions by a hierarchy of filters made of
     features; features, order, thresholds and the last choice are our reading.  Unlike the means
     of Algorithm 2 these thresholds do not depend on the other candidates.
-
-    Parameters
-    ----------
-    settings : PolicySettings
-        The thresholds.
     """
 
     def __init__(self, settings: PolicySettings) -> None:
@@ -121,11 +109,6 @@ class Towers:
 
     Each term is divided by the largest of the candidates, so that the weights compare like with
     like.  A stone that nothing bears from below has the largest of the last two.
-
-    Parameters
-    ----------
-    settings : PolicySettings
-        The weights.
     """
 
     def __init__(self, settings: PolicySettings) -> None:

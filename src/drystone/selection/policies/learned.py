@@ -41,18 +41,10 @@ FLUSH = 0.15
 
 @dataclass(frozen=True)
 class ValueModel:
-    """What a policy thinks of an action: the sum of its features, each times a weight.
+    """What a policy thinks of an action: the sum of its features, each times a weight."""
 
-    Parameters
-    ----------
-    weights : tuple of float
-        One a feature, in the order of :data:`FEATURES`.
-    trained : mapping of str to value
-        How they were found; nothing depends on it.
-    """
-
-    weights: tuple[float, ...]
-    trained: Mapping[str, Any]
+    weights: tuple[float, ...]  # one a feature, in the order of `FEATURES`
+    trained: Mapping[str, Any]  # how they were found; nothing depends on it
 
     def __post_init__(self) -> None:
         if len(self.weights) != len(FEATURES) or not all(map(math.isfinite, self.weights)):
@@ -82,18 +74,13 @@ class ValueModel:
 
 
 class Learned:
-    """The largest learned value.
+    """The largest learned value; by the model of the package when none is given.
 
     The paper says of Liu et al. (2018) and Menezes et al. (2021) that they formulate a reward and
     train a model by it.  Reward, model and training are ours; theirs choose the order of the
     stones too, while this one was trained on walls of stones that arrive one after the other
     (``drystone_lab.rl.train``).  Among several stones it compares their places, and knows nothing
     of which stone is better kept for later.
-
-    Parameters
-    ----------
-    model : ValueModel, optional
-        Values; those of the package when missing.
     """
 
     def __init__(self, model: ValueModel | None = None) -> None:
@@ -105,18 +92,10 @@ class Learned:
 
 
 def features(offers: Sequence[Offer]) -> Floats:
-    """Return what the value of an action depends on.
+    """Return what the value of an action depends on, (n, len(FEATURES)), each in [-1, 1].
 
-    Parameters
-    ----------
-    offers : sequence of Offer
-        Compared with each other.
-
-    Returns
-    -------
-    features : (n, len(FEATURES)) float array
-        Each in [-1, 1]; lengths over those of the wall or the stone.  The last three compare an
-        offer with the others: the share of them that is lower, less tight or less able.
+    The offers are compared with each other.  Lengths are over those of the wall or the stone.  The
+    last three are the share of the others that is lower, less tight or less able.
     """
     if not offers:
         return np.zeros((0, len(FEATURES)))
@@ -127,19 +106,9 @@ def features(offers: Sequence[Offer]) -> Floats:
 
 
 def model_from_json(text: str, where: str) -> ValueModel:
-    """Read the text of a file of weights.
+    """Read the text of a file of weights, as of :meth:`ValueModel.to_json`.
 
-    Parameters
-    ----------
-    text : str
-        As of :meth:`ValueModel.to_json`.
-    where : str
-        Name of the file, for messages.
-
-    Raises
-    ------
-    UsageError
-        E152: it is no such file, of another version, or not as it was written.
+    UsageError (E152): it is not such a file, of another version, or not as it was written.
     """
     try:
         content = dict(json.loads(text))

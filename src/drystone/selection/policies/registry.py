@@ -25,23 +25,7 @@ BUILT_IN = ("random", "lowest", "scalarised", "filter", "towers", "learned")
 
 
 def rule_of(name: str) -> str:
-    """Return the `selection_rule` that chooses by a policy.
-
-    Parameters
-    ----------
-    name : str
-        Of the policy.
-
-    Raises
-    ------
-    UsageError
-        E146: there is none of this name.
-
-    Examples
-    --------
-    >>> rule_of("paper"), rule_of("towers")
-    ('algorithm2', 'towers')
-    """
+    """Return the `selection_rule` that chooses by a policy; UsageError (E146): there is none."""
     if name == PAPER:
         return "algorithm2"
     if name not in BUILT_IN and (name in RULES or not entry_points(group=GROUP, name=name)):
@@ -50,21 +34,10 @@ def rule_of(name: str) -> str:
 
 
 def policy_named(name: str, settings: PolicySettings, weights: SelectionSettings) -> Policy:
-    """Return a new policy.
+    """Return a new policy, one of :data:`BUILT_IN` or of an entry point.
 
-    Parameters
-    ----------
-    name : str
-        One of :data:`BUILT_IN`, or of an entry point.
-    settings : PolicySettings
-        Of those built in.
-    weights : SelectionSettings
-        Of the weighted sum.
-
-    Raises
-    ------
-    UsageError
-        E146: there is none of this name; E147: that of another package cannot be loaded.
+    `weights` are those of the weighted sum.  UsageError: E146: there is none of this name; E147:
+    that of another package cannot be loaded.
     """
     built_in: dict[str, Callable[[], Policy]] = {
         "random": Random,

@@ -2,9 +2,11 @@
 
 from dataclasses import dataclass
 
+from drystone.model.settings import Ranged, ranged
+
 
 @dataclass(frozen=True, kw_only=True)
-class PolicySettings:
+class PolicySettings(Ranged):
     """Weights and thresholds of policies; those shared with the paper's are in `[selection]`.
 
     Parameters
@@ -32,11 +34,7 @@ class PolicySettings:
     min_slope: float = 0.0
     max_step: float = 0.25
     min_filling: float = 0.7
-    w_area: float = 0.179
-    w_energy: float = 0.472
-    w_distance: float = 0.094
-    w_normal: float = 0.254
-
-    def __post_init__(self) -> None:
-        if min(self.w_area, self.w_energy, self.w_distance, self.w_normal) < 0:
-            raise ValueError("the weights of towers must not be negative")
+    w_area: float = ranged(0.179, least=0)
+    w_energy: float = ranged(0.472, least=0)
+    w_distance: float = ranged(0.094, least=0)
+    w_normal: float = ranged(0.254, least=0)
