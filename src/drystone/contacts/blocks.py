@@ -19,23 +19,15 @@ LARGEST_MU = 1e300
 
 @dataclass(frozen=True, eq=False)
 class ImageModel:
-    """The rigid blocks of a label image.
+    """The rigid blocks of a label image."""
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Lengths in px; y = 0 at the lowest stone pixel's lower edge.
-    ground_row : int
-        The ground is the upper edge of this image row, or the image's lower edge; y of the wall
-        frame is `ground_row` minus the row coordinate.
-    notices : tuple of Notice
-        W301 when empty rows below the stones were left out, W304 when pixels of a stone lie
-        apart from it.
-    """
-
-    model: RigidBlockModel
+    model: RigidBlockModel  # lengths in px; y = 0 at the lowest stone pixel's lower edge
     ground_row: int
+    """The ground is the upper edge of this image row, or the image's lower edge; y of the wall
+    frame is `ground_row` minus the row coordinate."""
     notices: tuple[Notice, ...] = ()
+    """W301 when empty rows below the stones were left out, W304 when pixels of a stone lie apart
+    from it."""
 
 
 def model_from_labels(labels: Labels, mu: float = 0.58) -> ImageModel:
@@ -95,26 +87,10 @@ def model_with(
 ) -> RigidBlockModel:
     """Return the model of a wall with one more stone and its wedges.
 
-    Only what is around them is looked at, however large the wall is.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Of the wall without them.
-    labels : (h, w) uint32 array
-        The wall without them, as large as the site; its lower edge is the ground.
-    placement : Placement
-        The stone.
-    wedges : tuple of Wedge
-        The wedges under it.
-    points : PointContacts, optional
-        Of `model`, for whoever asks for many candidates; otherwise they are looked for here.
-
-    Returns
-    -------
-    RigidBlockModel
-        With the blocks and interfaces of :func:`model_from_labels`, in the order of
-        construction.
+    Only what is around them is looked at, however large the wall is.  `labels` are the wall without
+    them; the lower edge is the ground.  `points` belong to `model`: whoever asks for many
+    candidates finds them once.  Blocks and interfaces are those of :func:`model_from_labels`, in
+    the order of construction.
     """
     parts = [(placement.stone_id, placement.row, placement.col, placement.posed.mask)]
     parts += [(wedge.id, wedge.row, wedge.col, wedge.mask) for wedge in wedges]

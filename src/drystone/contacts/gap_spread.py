@@ -13,21 +13,11 @@ from drystone.statics.result import LateralResistance, LimitStatus
 
 @dataclass(frozen=True)
 class GapVariant:
-    """F_LR for one way to treat the gaps.
+    """F_LR for one way to treat the gaps."""
 
-    Parameters
-    ----------
-    name : str
-        ``"gaps up to 4 px closed"``, ``"stones settled"``, ``"stones pushed left"``.
-    f_lr : float or None
-        None unless both directions are optimal.
-    status : str
-        Of the direction that has no load multiplier, or "optimal".
-    """
-
-    name: str
-    f_lr: float | None
-    status: str
+    name: str  # ``"gaps up to 4 px closed"``, ``"stones settled"``, ``"stones pushed left"``
+    f_lr: float | None  # None unless both directions are optimal
+    status: str  # of the direction that has no load multiplier, or "optimal"
 
 
 @dataclass(frozen=True)
@@ -38,15 +28,7 @@ class GapSpread:
     others: tuple[GapVariant, ...]
 
     def words(self) -> str:
-        """Say it in a sentence without an end.
-
-        Examples
-        --------
-        >>> chosen = GapVariant("gaps up to 4 px closed", 0.41, "optimal")
-        >>> other = GapVariant("gaps up to 2 px closed", None, "unstable")
-        >>> GapSpread(chosen, (other,)).words()
-        'F_LR .410 with gaps up to 4 px closed (unstable with gaps up to 2 px closed)'
-        """
+        """Say it in a sentence without an end."""
         others = ", ".join(f"{_said(variant)} with {variant.name}" for variant in self.others)
         return f"F_LR {_said(self.chosen)} with {self.chosen.name} ({others})"
 
@@ -62,24 +44,7 @@ def closed_gap_spread(
 ) -> GapSpread:
     """Compute F_LR with gaps closed at a reach, at half and twice of it, or settled.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        As for :func:`close_gaps`.
-    reach_px : float, optional
-        Widest gap that is closed, px, above 0; None for settled stones, which are compared with
-        stones that are pushed to either side as well.
-    mu : float
-        Coefficient of friction.
-    analyse : callable
-        From a model to its resistance; the tilting table unless given.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> wall = np.kron([[1], [0], [2]], np.ones((2, 8), int))
-    >>> closed_gap_spread(wall, 2).others[0]
-    GapVariant(name='gaps up to 1 px closed', f_lr=None, status='unstable')
+    `reach_px` is above 0; None settles stones, and compares with stones pushed to either side.
     """
     if reach_px is None:
         pictures = {

@@ -19,36 +19,18 @@ TIE_BREAK = (-1e-4, -3e-5)
 
 
 def close_gaps(labels: Labels, reach_px: float) -> Labels:
-    """Give the pixels of narrow gaps to the stones beside them.
+    """Give the pixels of narrow gaps, up to `reach_px` wide, to the stones beside them.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is, otherwise the id of a stone; row 0 at the top; the ground is below
-        the lowest stone pixel.
-    reach_px : float
-        Widest gap that is closed, >= 0.
+    The ground is below the lowest stone pixel.  Every stone pixel stays as before.  A pixel of a
+    gap belongs to the stone nearest to it, so that stones meet in the middle; a gap above the
+    ground belongs to the stone above.
 
-    Returns
-    -------
-    (h, w) integer array
-        Every stone pixel as before.  A pixel of a gap belongs to the stone nearest to it, so
-        that stones meet in the middle; a gap above the ground belongs to the stone above.
-
-    Notes
-    -----
-    An empty pixel lies in a gap when two stones, or a stone and the ground, bound it on both
-    sides in its row or column.  The width of the gap is that run, or h v / sqrt(h^2 + v^2) when
-    both are bounded, which is the width of a straight tilted gap.  It goes to the nearest of the
-    stones that bound it.  What gaps that are closed
-    leave open between them, no wider than the reach, as where joints meet, is closed as well.
-    Stones that are further apart than the reach are not brought into contact; nor does a stone
-    grow where only air is beyond.
-
-    Examples
-    --------
-    >>> close_gaps(np.array([[1, 0, 0, 2, 0, 0, 0, 3, 0]]), 2)
-    array([[1, 1, 2, 2, 0, 0, 0, 3, 0]])
+    An empty pixel lies in a gap when two stones, or a stone and the ground, bound it on both sides
+    in its row or column.  The width of the gap is that run, or h v / sqrt(h^2 + v^2) when both are
+    bounded, which is the width of a straight tilted gap.  It goes to the nearest of the stones that
+    bound it.  What gaps that are closed leave open between them, no wider than the reach, as where
+    joints meet, is closed as well. Stones that are further apart than the reach are not brought
+    into contact; nor does a stone grow where only air is beyond.
     """
     filled = np.flatnonzero((labels > 0).any(axis=1))
     if not filled.size or reach_px < 1:
@@ -70,25 +52,9 @@ def close_gaps(labels: Labels, reach_px: float) -> Labels:
 def model_with_closed_gaps(labels: Labels, reach_px: float, mu: float = 0.58) -> ImageModel:
     """Make the rigid block model of a label image, with contacts across narrow gaps.
 
-    Parameters
-    ----------
-    labels, reach_px
-        As for :func:`close_gaps`.
-    mu : float
-        Coefficient of friction.
-
-    Returns
-    -------
-    ImageModel
-        Weights and centroids are those of the pixels of the stones; contact points lie in the
-        middle of the gaps.  Between stones a contact may reach into the gaps beside it, as far as
-        these are closed.
-
-    Examples
-    --------
-    >>> wall = np.kron([[1], [0], [2]], np.ones((2, 8), int))
-    >>> [len(model_with_closed_gaps(wall, reach).model.interfaces) for reach in (1, 2)]
-    [1, 2]
+    Weights and centroids are those of the pixels of the stones; contact points lie in the middle of
+    the gaps.  Between stones a contact may reach into the gaps beside it, as far as these are
+    closed.
     """
     picture = model_from_labels(labels, mu)
     closed = model_from_labels(close_gaps(labels, reach_px), mu)
@@ -111,25 +77,8 @@ def settle_gaps(
 ) -> tuple[Labels, dict[int, tuple[int, int]]]:
     """Lower stones by whole pixels until they rest on others; nothing turns or overlaps.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        As for :func:`close_gaps`.
-    push : {"left", "right"}, optional
-        Also move stones to this side until they touch the next stone, if there is one.
-
-    Returns
-    -------
-    settled : (h, w) integer array
-        The same stones.
-    moved : dict of int to (int, int)
-        By id of the stones that moved: px to the right and px down.
-
-    Examples
-    --------
-    >>> settled, moved = settle_gaps(np.array([[1, 1, 0], [0, 0, 0], [0, 2, 2]]))
-    >>> settled[1].tolist(), moved
-    ([1, 1, 0], {1: (0, 1)})
+    `push` also moves stones to a side until they touch the next stone, if there is one.  Returned
+    are the labels, and by id of the stones that moved how many px to the right and down.
     """
     filled = np.flatnonzero((labels > 0).any(axis=1))
     settled = labels.copy()

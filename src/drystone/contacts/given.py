@@ -110,18 +110,7 @@ def _check_weights(blocks: tuple[Block, ...]) -> None:
 
 
 def polygons_from_json(data: Mapping[str, Any]) -> dict[int, Points]:
-    """Return the closed, counter-clockwise polygons of a block model file, by id.
-
-    Parameters
-    ----------
-    data : mapping
-        As for :func:`model_from_json`.
-
-    Raises
-    ------
-    InputError
-        E303 for what is no block.
-    """
+    """Return the closed, counter-clockwise polygons of a block model file, by id; E303 as above."""
     return {block.id: polygon for block, polygon in _given_blocks(data)}
 
 

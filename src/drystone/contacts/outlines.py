@@ -38,34 +38,17 @@ SAME_SHARE = 0.88
 def outlines_of_labels(
     labels: Labels, *, tolerance_px: float = OUTLINE_TOLERANCE_PX
 ) -> dict[int, Points]:
-    """Find the outlines of all stones of a label image.
+    """Find the outlines of all stones of a label image, (n, 2) by id.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is, otherwise the id of a stone; row 0 at the top; the ground is below
-        the last row.
-    tolerance_px : float
-        How far the contour may stay away from the line that is fitted to it, above 0.
+    Corners are in the wall frame, px, counter-clockwise and closed: the first one is repeated at
+    the end.  The ground, y = 0, is the image's lower edge.  The contour may stay away from the line
+    that is fitted to it by `tolerance_px`.
 
-    Returns
-    -------
-    dict of int to (n, 2) float array
-        By id: corners in the wall frame, px, counter-clockwise, closed: the first one is
-        repeated at the end.  y = 0 at the image's lower edge.
-
-    Notes
-    -----
-    The contour (the midpoints of pixel edges) is cut where three or more stones, ground and
-    nothing meet, and every piece is simplified once, for both its sides, into fitted lines.
-    Then its corners move a little so that the area beside it is that of the pixels.  A stone
-    that has no such outline, as some of a few pixels, keeps its pixel edges.  Holes are
-    filled, with whatever lies in them; of an id in several pieces the largest is taken.
-
-    Examples
-    --------
-    >>> outlines_of_labels(np.full((20, 30), 7))[7].tolist()
-    [[0.0, 0.0], [30.0, 0.0], [30.0, 20.0], [0.0, 20.0], [0.0, 0.0]]
+    The contour (the midpoints of pixel edges) is cut where three or more stones, ground and nothing
+    meet, and every piece is simplified once, for both its sides, into fitted lines. Then its
+    corners move a little so that the area beside it is that of the pixels.  A stone that has no
+    such outline, as some of a few pixels, keeps its pixel edges.  Holes are filled, with whatever
+    lies in them; of an id in several pieces the largest is taken.
     """
     rings = _rings(labels)
     junctions = _junctions(labels)
@@ -94,31 +77,11 @@ def model_from_outlines(
     contact_tolerance_px: float = 0.1,
     setback: float = 0.0,
 ) -> RigidBlockModel:
-    """Make the rigid block model of stones with given outlines.
+    """Make the rigid block model of stones with given outlines, (n, 2), closed, counter-clockwise.
 
-    Parameters
-    ----------
-    outlines : mapping of int to (n, 2) float array
-        By id: closed, counter-clockwise.
-    mu : float
-        Coefficient of friction.
-    contact_tolerance_px : float
-        Gap or overlap up to which edges and corners touch, same unit as the outlines, above 0.
-    setback : float
-        See :func:`drystone.kernels.meetings.meetings`.
-
-    Returns
-    -------
-    RigidBlockModel
-        Blocks and interfaces by ids; of two the larger id is `block`.  Weights and centroids are
-        those of the outlines.  Overlaps are not looked for: whoever makes outlines checks them.
-
-    Examples
-    --------
-    >>> labels = np.kron([[2, 2], [1, 0]], np.ones((10, 10), int))
-    >>> model = model_from_outlines(outlines_of_labels(labels))
-    >>> [(i.block, i.other, i.length) for i in model.interfaces]
-    [(1, 0, 10.0), (2, 1, 10.0)]
+    Blocks and interfaces are sorted by ids; of two the larger id is `block`.  Edges and corners
+    touch up to a gap or overlap of `contact_tolerance_px`, in the unit of the outlines.  Overlaps
+    are not looked for: whoever makes outlines checks them.
     """
     blocks = ((block, outlines[block][:-1]) for block in sorted(outlines))
     return model_of_outlines(PlacedPolygons.of(blocks), mu, contact_tolerance_px, setback)

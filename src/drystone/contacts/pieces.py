@@ -11,23 +11,9 @@ NAMED = 5
 
 
 def pieces_apart(labels: Labels) -> tuple[tuple[int, int], ...]:
-    """Find the ids whose pixels are not in one piece.
+    """Return (id, pixels apart from its largest piece) of each id that is not in one piece.
 
-    Parameters
-    ----------
-    labels : (h, w) integer array
-        0 where nothing is, otherwise the id of a stone.
-
-    Returns
-    -------
-    tuple of (id, pixels)
-        By id: how many of its pixels lie apart from its largest piece.  Pixels that touch at a
-        corner are in one piece.
-
-    Examples
-    --------
-    >>> pieces_apart(np.array([[7, 7, 0, 7], [7, 0, 0, 0], [0, 7, 0, 2]]))
-    ((7, 1),)
+    Pixels that touch at a corner are in one piece.
     """
     runs = label_runs(labels)
     ids, place = np.unique(runs.labels, return_inverse=True)
@@ -42,14 +28,7 @@ def pieces_apart(labels: Labels) -> tuple[tuple[int, int], ...]:
 
 
 def notice_of_pieces(labels: Labels) -> tuple[Notice, ...]:
-    """Say in a notice (W304) which stones have pixels that lie apart; none when none have.
-
-    Examples
-    --------
-    >>> print(notice_of_pieces(np.array([[7, 7, 0, 7]]))[0])
-    W304 1 pixel of stone 7 lies apart from it; all pixels of an id are one rigid block. Give \
-every piece an id of its own, or clean the picture.
-    """
+    """Say in a notice (W304) which stones have pixels that lie apart; none when none have."""
     apart = pieces_apart(labels)
     if not apart:
         return ()

@@ -56,36 +56,10 @@ def model_with_outlines(
     tolerance: float,
     setback: float = SETBACK,
 ) -> RigidBlockModel:
-    """Return the model of a wall with one more stone and its wedges.
+    """Return the model of a wall with one more stone and its wedges, `blocks`, that stone first.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Of the wall without them, in the same unit.
-    blocks : sequence of (int, (n, 2) float array)
-        The stone, then its wedges.
-    around : Placed
-        The blocks of the wall.
-    tolerance : float
-        Gap or overlap up to which blocks touch, above 0.
-    setback : float
-        See :func:`drystone.kernels.meetings.meetings`.
-
-    Returns
-    -------
-    RigidBlockModel
-        Weights and centroids are those of the outlines.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> brick = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]])
-    >>> wall = PlacedPolygons.of([(7, brick + [0.0, 0.01])])
-    >>> model = model_with_outlines(
-    ...     model_of_outlines(wall), [(3, brick + [2.0, 2.02])], wall, 0.1
-    ... )
-    >>> [(i.block, i.other, round(i.length, 6)) for i in model.interfaces]
-    [(7, 0, 3.8), (3, 7, 1.8)]
+    Blocks touch up to a gap or overlap of `tolerance`.  For `setback` see
+    :func:`drystone.kernels.meetings.meetings`.
     """
     new: list[Block] = []
     found: list[Interface] = []
@@ -103,28 +77,10 @@ def model_with_outlines(
 def model_of_outlines(
     placed: Placed, mu: float = 0.58, tolerance: float = 0.1, setback: float = SETBACK
 ) -> RigidBlockModel:
-    """Make the rigid block model of a wall of settled stones.
+    """Make the rigid block model of a wall of settled stones; mu below 0 is an InputError (E302).
 
-    Parameters
-    ----------
-    placed : Placed
-        All blocks.
-    mu : float
-        Coefficient of friction.
-    tolerance : float
-        Gap or overlap up to which blocks touch, in the unit of the outlines, above 0.
-    setback : float
-        See :func:`drystone.kernels.meetings.meetings`; 0 for contacts up to the ends of faces.
-
-    Returns
-    -------
-    RigidBlockModel
-        With the blocks and interfaces that :func:`model_with_outlines` adds one after the other.
-
-    Raises
-    ------
-    InputError
-        E302 when mu is not a number >= 0.
+    It has the blocks and interfaces that :func:`model_with_outlines` adds one after the other.  A
+    `setback` of 0 leaves contacts up to the ends of faces.
     """
     check_mu(mu)
     ids, polygons = placed.ids, placed.polygons

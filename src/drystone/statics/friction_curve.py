@@ -13,49 +13,18 @@ USUAL = (0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8)
 
 @dataclass(frozen=True)
 class AtFriction:
-    """What a wall carries at one coefficient of friction.
+    """What a wall carries at one coefficient of friction."""
 
-    Parameters
-    ----------
-    mu : float
-        Of the interfaces that have none of their own.
-    alpha_left, alpha_right : float or None
-        Load multipliers; None unless there is an optimum, as for a wall that does not stand.
-    """
-
-    mu: float
+    mu: float  # of the interfaces that have none of their own
     alpha_left: float | None
+    """Load multipliers; None unless there is an optimum, as for a wall that does not stand."""
     alpha_right: float | None
 
 
 def friction_curve(
     model: RigidBlockModel, loads: Loads | None = None, mus: Sequence[float] = USUAL
 ) -> tuple[AtFriction, ...]:
-    """Analyse a wall at several coefficients of friction.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall; interfaces with a coefficient of their own keep it.
-    loads : Loads, optional
-        Dead and live loads; the tilting table unless given.
-    mus : sequence of float
-        Coefficients, ascending.
-
-    Returns
-    -------
-    tuple of AtFriction
-        One a coefficient.
-
-    Examples
-    --------
-    A block 1 wide and 2 high slides below mu = .5 and rocks above.
-
-    >>> from drystone.contacts.given import model_from_json
-    >>> block = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
-    >>> [round(at.alpha_right, 6) for at in friction_curve(block, mus=(0.4, 0.6))]
-    [0.4, 0.5]
-    """
+    """Analyse a wall at several coefficients of friction; interfaces with their own keep it."""
     found = []
     for mu in mus:
         both = lateral_resistance(replace(model, mu=mu), loads)

@@ -59,18 +59,12 @@ MANY_BLOCKS_AT_ONCE = 100
 
 @dataclass(frozen=True, eq=False)
 class IncrementalResult:
-    """Resistance of a wall with one more stone.
-
-    Parameters
-    ----------
-    resistance : LateralResistance
-        As :func:`drystone.statics.limit.lateral_resistance` gives it, to the last digits.
-    solved_cold : bool
-        True when a warm answer had no certificate, so that all was solved again from the start.
-    """
+    """Resistance of a wall with one more stone."""
 
     resistance: LateralResistance
+    """As :func:`drystone.statics.limit.lateral_resistance` gives it, to the last digits."""
     solved_cold: bool = False
+    """True when a warm answer had no certificate, so that all was solved again from the start."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,13 +73,6 @@ class IncrementalAnalysis(ABC):
 
     Answers depend on the wall and on how it has grown, and not on what else was asked, in which
     order, or in which thread.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall.
-    result : IncrementalResult
-        Its resistance.
     """
 
     model: RigidBlockModel
@@ -94,12 +81,8 @@ class IncrementalAnalysis(ABC):
     def resistance_with(self, model: RigidBlockModel) -> IncrementalResult:
         """Return the resistance of the wall with one more stone, a candidate; nothing changes.
 
-        Parameters
-        ----------
-        model : RigidBlockModel
-            Made from :attr:`model` by :meth:`RigidBlockModel.with_added`, as
-            :func:`drystone.contacts.blocks.model_with` does.  Any other model is answered too,
-            without the gain in time.
+        The model is made from :attr:`model` by :meth:`RigidBlockModel.with_added`.  Any other model
+        is answered too, without the gain in time.
         """
         return self.result if model is self.model else self._result_with(model)
 
@@ -127,32 +110,10 @@ class IncrementalAnalysis(ABC):
 def incremental_analysis(
     model: RigidBlockModel, units: Units, most: int = MANY_BLOCKS
 ) -> IncrementalAnalysis:
-    """Begin with a wall, which may be empty.
+    """Begin with a wall, which may be empty; of more than `most` blocks without the simplex kernel.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        What is built.
-    units : Units
-        Of the equations, for as long as the wall grows: those of a typical stone.  Certificates
-        are relative to their weight; alpha does not depend on them.
-    most : int
-        Walls of more blocks are not for the simplex kernel.
-
-    Examples
-    --------
-    A stone on a stone, half as wide as high; the pile is as stable as a block of twice its height.
-
-    >>> from drystone.contacts.given import model_from_json
-    >>> from drystone.statics.lp.program import units_of
-    >>> pile = model_from_json({"blocks_xywh": [[0, 0, 1, 2], [0, 2, 1, 2]], "mu": 0.58})
-    >>> first = RigidBlockModel(pile.blocks[:1], pile.interfaces[:1], pile.mu)
-    >>> wall = incremental_analysis(first, units_of(first))
-    >>> round(wall.result.resistance.right.alpha, 6)
-    0.5
-    >>> taller = wall.model.with_added(pile.blocks[1:], pile.interfaces[1:])
-    >>> round(wall.resistance_with(taller).resistance.right.alpha, 6)
-    0.25
+    The units, those of a typical stone, are kept as long as the wall grows.  Certificates are
+    relative to their weight; alpha does not depend on them.
     """
     if not simplex.AVAILABLE:
         return HighsAnalysis.of(model, units)
@@ -175,21 +136,7 @@ def incremental_analysis(
 
 @dataclass(frozen=True, eq=False)
 class SimplexAnalysis(IncrementalAnalysis):
-    """What the inner loop of a planner asks: loose stones, by :mod:`drystone.kernels.simplex`.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall: loose blocks.
-    result : IncrementalResult
-        Its resistance.
-    program : ConeProgram
-        Its equations.
-    greatest, least : Optimum
-        Its program, solved for both ends of the range of alpha.
-    most : int
-        Walls of more blocks are left to others.
-    """
+    """What the inner loop of a planner asks: loose stones, by :mod:`drystone.kernels.simplex`."""
 
     program: ConeProgram
     greatest: Optimum
@@ -252,24 +199,11 @@ class LocalAnalysis(IncrementalAnalysis):
 
     See :mod:`drystone.statics.local_update` for the small programs.  An answer of theirs counts
     only with a certificate of the whole wall; without one HiGHS solves the whole program.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall.
-    result : IncrementalResult
-        Its resistance.
-    by_highs : HighsAnalysis
-        The same wall in HiGHS.
-    program : ConeProgram
-        Its equations, the columns in the same order.
-    greatest, least : PrimalDual
-        Both ends of the range of alpha.
     """
 
-    by_highs: "HighsAnalysis"
-    program: ConeProgram
-    greatest: PrimalDual
+    by_highs: "HighsAnalysis"  # the same wall in HiGHS
+    program: ConeProgram  # its equations, the columns in the same order
+    greatest: PrimalDual  # both ends of the range of alpha
     least: PrimalDual
 
     @classmethod
@@ -351,24 +285,12 @@ class HighsAnalysis(IncrementalAnalysis):
     """Any model: the primal simplex method of HiGHS from the bases of the wall.
 
     A solver is used for one model only, so that answers do not depend on what was asked before.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall.
-    result : IncrementalResult
-        Its resistance.
-    units : Units
-        Of its equations.
-    bases : WarmBases
-        Optimal ones; where there is none, the last ones.
-    extremes : (Extreme, Extreme) or None
-        The least and the greatest alpha; None without free blocks.
     """
 
     units: Units
-    bases: WarmBases
+    bases: WarmBases  # optimal ones; where there is none, the last ones
     extremes: tuple[Extreme, Extreme] | None = None
+    """The least and the greatest alpha; None without free blocks."""
 
     @classmethod
     def of(cls, model: RigidBlockModel, units: Units) -> "HighsAnalysis":
@@ -402,13 +324,7 @@ class HighsAnalysis(IncrementalAnalysis):
         return self._of(model, self.units, *self.prepared(model))
 
     def prepared(self, model: RigidBlockModel) -> tuple[EquilibriumProgram, WarmBases]:
-        """Return the program of another model, and bases to start from.
-
-        Parameters
-        ----------
-        model : RigidBlockModel
-            Where it is made from :attr:`model`, its bases are those of the wall.
-        """
+        """Return the program of another model, and bases to start from, if it grew from this."""
         program = assemble(model, units=self.units)
         added, bases = model.added, self.bases
         if added is None or added.base is not self.model:
@@ -423,15 +339,7 @@ class HighsAnalysis(IncrementalAnalysis):
 
 
 def highs_bound(program: EquilibriumProgram, starts: WarmBases, sign: int) -> "Bound | None":
-    """Find one end of the range of alpha; None without a certificate, or where it has no end.
-
-    Parameters
-    ----------
-    program, starts
-        See :meth:`HighsAnalysis.prepared`.
-    sign : int
-        1 for the greatest alpha, -1 for the least.
-    """
+    """Find the greatest (sign 1) or least (-1) alpha; None without a certificate."""
     start = starts.greatest if sign > 0 else starts.least
     extreme = _warm_extreme(program, WarmSession(program), start, sign)
     solution, certificate = extreme.solution, extreme.certificate
@@ -500,23 +408,11 @@ def _by_interior_point(program: EquilibriumProgram, otherwise: WarmBases) -> War
 
 
 class Bound(NamedTuple):
-    """One end of the range of alpha, certified.
+    """One end of the range of alpha, certified."""
 
-    Parameters
-    ----------
-    alpha : float
-        Load multiplier; NaN when there is none at all.
-    certificate : Certificate
-        That it is the end, or that there is none.
-    fall : Certificate or None
-        That the blocks do not stand by themselves.
-    solver : str
-        Which one found it.
-    """
-
-    alpha: float
-    certificate: Certificate
-    fall: Certificate | None
+    alpha: float  # load multiplier; NaN when there is none at all
+    certificate: Certificate  # that it is the end, or that there is none
+    fall: Certificate | None  # that the blocks do not stand by themselves
     solver: str
 
 
@@ -548,15 +444,10 @@ def certified_bound(found: Figures, alpha: float, sign: int, solver: str) -> Bou
 
 
 def _result_between(model: RigidBlockModel, bounds: Iterable[Bound | None]) -> IncrementalResult:
-    """Return the resistance of a wall.
+    """Return the resistance of a wall from the greatest alpha and the least.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall.
-    bounds : iterable of Bound or None
-        The greatest alpha, then the least, which is not looked at when the first says enough.
-        Without a certificate for one of them the wall is solved from the start.
+    The second is not looked at when the first says enough.  Without a certificate for one of them
+    the wall is solved from the start.
     """
     found = []
     for bound in bounds:

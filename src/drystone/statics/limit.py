@@ -110,29 +110,9 @@ def load_range(
     mechanism: bool = False,
     solver: Solver = "auto",
 ) -> LoadRange:
-    """Find all alpha for which the blocks carry dead + alpha live.
+    """Find all alpha for which the blocks carry dead + alpha live; 0 need not be one of them.
 
-    Parameters
-    ----------
-    model, loads, mechanism, solver
-        As for :func:`limit_load`.
-
-    Returns
-    -------
-    LoadRange
-        Its ends; alpha = 0 need not lie between them.
-
-    Examples
-    --------
-    How light may a block be, 1 wide and 2 high, that is pushed at mid-height with .3?
-
-    >>> from drystone.contacts.given import model_from_json
-    >>> from drystone.statics.loads import gravity_factor, point_load
-    >>> block = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
-    >>> push = point_load(block, 1, (0, 1), (0.3, 0))
-    >>> carried = load_range(block, gravity_factor(block, push))
-    >>> round(carried.least.alpha, 6), str(carried.greatest.status)
-    (0.3, 'unbounded')
+    Arguments are those of :func:`lateral_resistance`.
     """
     if all(block.fixed for block in model.blocks):
         return LoadRange(_no_blocks("left"), _no_blocks("right"))

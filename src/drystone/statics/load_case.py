@@ -23,23 +23,11 @@ _POINT_LOAD = re.compile(rf"(\d+)@{_NUMBER},{_NUMBER}:{_NUMBER},{_NUMBER}")
 
 @dataclass(frozen=True)
 class LoadCase:
-    """A load case as it is asked for.
+    """A load case as it is asked for."""
 
-    Parameters
-    ----------
-    load : {"tilting", "height", "gravity", "points"}
-        What grows.
-    tilt : float
-        Turns gravity towards the right, degrees.
-    dead, live : sequence of str
-        Forces at points, as they are written.
-    settle : int or None
-        The block that gives way.
-    """
-
-    load: str
-    tilt: float
-    dead: Sequence[str]
+    load: str  # what grows
+    tilt: float  # turns gravity towards the right, degrees
+    dead: Sequence[str]  # forces at points, as they are written
     live: Sequence[str]
     settle: int | None
 

@@ -40,25 +40,7 @@ class Loads:
 
 
 def weight(model: RigidBlockModel, angle_deg: float = 0.0) -> Floats:
-    """Return the weight of every block, turned with a base that is tilted.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks.
-    angle_deg : float
-        Tilt of the base seen from the wall: gravity turns towards +x.
-
-    Returns
-    -------
-    (n, 3) float array
-
-    Examples
-    --------
-    >>> block = Block(1, 2.0, (0.5, 1.0))
-    >>> weight(RigidBlockModel((block,), ())).tolist()
-    [[0.0, -2.0, 0.0]]
-    """
+    """Return the weight of every block, (n, 3), turned towards +x with a base that is tilted."""
     angle = radians(angle_deg)
     weights = np.array([block.weight for block in model.blocks])
     return np.column_stack((sin(angle) * weights, -cos(angle) * weights, np.zeros(len(weights))))
@@ -78,13 +60,9 @@ def tilting_table(model: RigidBlockModel, angle_deg: float = 0.0) -> Loads:
 def growing_with_height(model: RigidBlockModel) -> Loads:
     """Weight, and a load towards +x that grows with the height above the ground.
 
-    Each block is pushed by alpha w y / y_mean, with y_mean the height of the common centre of
-    mass, so that alpha is the whole push over the whole weight, as for the tilting table.
-
-    Raises
-    ------
-    InputError
-        E307 when no free block lies above the ground.
+    Each block is pushed by alpha w y / y_mean, with y_mean the height of the common centre of mass,
+    so that alpha is the whole push over the whole weight, as for the tilting table.  Without a free
+    block above the ground it is an InputError (E307).
     """
     dead = weight(model)
     heights = np.array([block.centroid[1] for block in model.blocks])
@@ -153,29 +131,12 @@ def support_settlement(model: RigidBlockModel, block: int) -> tuple[RigidBlockMo
     """Let a fixed block give way downwards, and find what holds it (settlement of a support).
 
     The support becomes weightless and free to move up and down, and alpha times the weight of all
-    free blocks presses it up: a unit of alpha is that weight.  The least alpha is the reaction
-    below which the wall comes down with the settling support, and its mechanism is how; the
-    greatest is what lifts it.  (Kinematics of settlement as in limit analysis of masonry, with
-    the reaction of the moving support as the unknown.)
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        With the fixed block.
-    block : int
-        Its id.
-
-    Returns
-    -------
-    model : RigidBlockModel
-        With that block guided, free to move up and down only.  It no longer stands on the ground.
-    loads : Loads
-        For :func:`drystone.statics.limit.load_range`.
-
-    Raises
-    ------
-    InputError
-        E306 for a block that the model does not have, or that is not fixed.
+    free blocks presses it up: a unit of alpha is that weight.  The least alpha, of
+    :func:`drystone.statics.limit.load_range`, is the reaction below which the wall comes down with
+    the settling support, and its mechanism is how; the greatest is what lifts it.  (Kinematics of
+    settlement as in limit analysis of masonry, with the reaction of the moving support as the
+    unknown.)  The block no longer stands on the ground.  One that is not there or not fixed is an
+    InputError (E306).
     """
     row, found = _block(model, block)
     if not found.fixed:

@@ -50,24 +50,12 @@ _AT_ZERO = highspy.HighsBasisStatus.kLower
 
 
 class PrimalDual(NamedTuple):
-    """Forces and mechanism of one end of the range of alpha.
+    """Forces and mechanism of one end of the range of alpha."""
 
-    Parameters
-    ----------
-    sign : int
-        1 for the greatest alpha, -1 for the least.
-    alpha : float
-        Load multiplier; NaN when there is none.
-    forces : (N,) float array
-        One a column; empty when there is no alpha.
-    velocity : (3 n,) float array
-        The mechanism, with sign live . v = 1; a fall when there is no alpha.
-    """
-
-    sign: int
-    alpha: float
-    forces: Floats
-    velocity: Floats
+    sign: int  # 1 for the greatest alpha, -1 for the least
+    alpha: float  # load multiplier; NaN when there is none
+    forces: Floats  # (N,): one a column; empty when there is no alpha
+    velocity: Floats  # (3 n,): the mechanism, with sign live . v = 1; a fall when there is no alpha
 
 
 def local_update(
@@ -75,19 +63,8 @@ def local_update(
 ) -> PrimalDual | None:
     """Put together forces and a mechanism of a wall with one more stone.
 
-    Parameters
-    ----------
-    program : ConeProgram
-        Of the wall.
-    end, opposite : PrimalDual
-        The end to be found, of the wall without the stone, and the other one.
-    added : Added
-        The stone and its wedges.
-
-    Returns
-    -------
-    PrimalDual or None
-        None when the stone changes the mechanism, or when the strip is not enough.
+    `end` is the one to be found, of the wall without the stone.  None when the stone changes the
+    mechanism, or when the strip is not enough.
     """
     moved = _mechanism(program, end, added) if len(added.weights) else None
     if moved is None or np.isnan(moved.alpha):
@@ -126,14 +103,9 @@ def _mechanism(program: ConeProgram, end: PrimalDual, added: Added) -> PrimalDua
 
 
 def _on_supports(program: ConeProgram, end: PrimalDual, added: Added) -> tuple[Cones, Floats]:
-    """Return the columns of a stone on supports that do not yield.
+    """Return the columns of a stone and its wedges on supports that do not yield.
 
-    Returns
-    -------
-    cones : Cones
-        Of the stone and its wedges alone.
-    work : (columns,) float array
-        Of each column on the velocities of the blocks of the wall.
+    With them comes the work of each column on the velocities of the blocks of the wall.
     """
     built, cones = len(program.weights), added.cones
     # Where the first body is of the wall, the two change places.
@@ -157,21 +129,12 @@ def _on_supports(program: ConeProgram, end: PrimalDual, added: Added) -> tuple[C
 
 @dataclass(frozen=True, eq=False)
 class _Strip:
-    """The blocks of a wall below a stone, and the stone.
-
-    Parameters
-    ----------
-    program : ConeProgram
-        Of the wall.
-    added : Added
-        The stone and its wedges.
-    place : (n + k,) int array
-        Place in the strip of each body of the wall and the stone; -1 outside.
-    """
+    """The blocks of a wall below a stone, and the stone."""
 
     program: ConeProgram
     added: Added
     place: NDArray[np.int32]
+    """(n + k,): place in the strip of each body of the wall and the stone; -1 outside."""
 
     @classmethod
     def under(cls, program: ConeProgram, added: Added) -> "_Strip":
@@ -187,21 +150,11 @@ class _Strip:
         return cls(program, added, place)
 
     def solved(self, alpha: float, carried: Floats, basic: NDArray[np.bool_]) -> Floats | None:
-        """Find forces that carry the stone down through the strip.
+        """Find forces that carry the stone down through the strip, or None.
 
-        Parameters
-        ----------
-        alpha : float
-            Load multiplier.
-        carried : (N,) float array
-            Forces that carry the wall without the stone at this alpha.
-        basic : (N,) bool array
-            Columns to start with.
-
-        Returns
-        -------
-        (columns,) float array or None
-            Of the wall's columns that are left, then of the new ones.
+        `carried` (N,) are forces that carry the wall without the stone at this alpha, `basic` (N,)
+        are the columns to start with.  Returned are the forces of the wall's columns that are left,
+        then of the new ones.
         """
         wall, added, place = self.program.cones, self.added, self.place
         first = place[wall.first]
@@ -243,18 +196,10 @@ def _matrix(cones: Cones, bodies: int) -> csc_array:
 
 
 class Vertex(NamedTuple):
-    """An optimum.
+    """An optimum."""
 
-    Parameters
-    ----------
-    unknowns : (columns,) float array
-        x.
-    duals : (rows,) float array
-        y with c - y . A >= 0.
-    """
-
-    unknowns: Floats
-    duals: Floats
+    unknowns: Floats  # (columns,): x
+    duals: Floats  # (rows,): y with c - y . A >= 0
 
 
 def least(
@@ -262,17 +207,8 @@ def least(
 ) -> Vertex | None:
     """Minimise c . x with A x = b, x >= 0; None when there is no optimum, whatever the reason.
 
-    Parameters
-    ----------
-    costs : (columns,) float array
-        c.
-    matrix : csc_array
-        A.
-    rhs : (rows,) float array
-        b.
-    basic : (columns,) bool array, optional
-        Unknowns that are basic at the start, at most as many as there are rows; they need not
-        be independent.  HiGHS fills the gaps.
+    `basic` unknowns are so at the start, at most as many as there are rows; they need not be
+    independent.  HiGHS fills the gaps.
     """
     count, rows = len(costs), len(rhs)
     by_column, minimise, offset = 1, 1, 0.0

@@ -32,18 +32,10 @@ Pair = tuple[int, int]
 def check_blocks(
     content: Any, plan: Plan, replay: Replay, model: RigidBlockModel | None
 ) -> list[Problem]:
-    """Compare a block model with the plan that it lies beside (E238).
+    """Compare a block model with the plan of outlines that it lies beside (E238).
 
-    Parameters
-    ----------
-    content : anything
-        Of blocks.json; words say why it has none.
-    plan : Plan
-        Says its unit of length.
-    replay : Replay
-        Of the plan, on outlines.
-    model : RigidBlockModel or None
-        Of the whole wall as it was built again, source px; None leaves contacts out.
+    `content` is that of blocks.json, or words that say why it has none.  `model` is that of the
+    whole wall as it was built again, source px; None leaves contacts out.
     """
     if not isinstance(content, Mapping):
         why = f": {content}" if isinstance(content, str) else "."

@@ -30,14 +30,7 @@ def is_buried(stage: Stage) -> bool:
 def lies_under(corners: Points, outlines: Outlines, sliver: float) -> bool:
     """Say whether an earlier outline reaches into the way of a stone that comes from above.
 
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        The stone at its place.
-    outlines : Outlines
-        Of what is there.
-    sliver : float
-        What one of them takes of the way counts where it is wider, source px.
+    What one of them takes of the way counts where it is wider than `sliver`; all are source px.
     """
     boxes = outlines.polygons.boxes
     (left, bottom), right = corners.min(axis=0), corners[:, 0].max()
@@ -55,20 +48,7 @@ def lies_under(corners: Points, outlines: Outlines, sliver: float) -> bool:
 
 
 def swept_upwards(corners: Points, top: float) -> shapely.Geometry:
-    """Return the area that a polygon passes when it is lifted straight up.
-
-    Parameters
-    ----------
-    corners : (n, 2) float array
-        At its place, counter-clockwise.
-    top : float
-        What lies higher is left out.
-
-    Examples
-    --------
-    >>> swept_upwards(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]]), 5.0).area
-    10.0
-    """
+    """Return the area, up to `top`, that a counter-clockwise polygon passes when it is lifted."""
     ends = np.roll(corners, -1, axis=0)
     ceiling = max(top, float(corners[:, 1].max()))
     # Above every point of the polygon is what is above the edges at its underside.

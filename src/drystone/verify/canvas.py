@@ -37,21 +37,14 @@ so this is for plans of other hands and of other arithmetic."""
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A stone or wedge where the plan puts it, whether it has room there or not.
-
-    Parameters
-    ----------
-    step : StoneStep or WedgeStep
-        Its step.
-    item : Placement or Wedge or None
-        What the step comes to; None when it cannot be in the wall at all, which is a problem.
-    corners : (n, 2) float array or None
-        Its outline in the wall frame, source px, when the stones of the plan are outlines.
-    """
+    """A stone or wedge where the plan puts it, whether it has room there or not."""
 
     step: Step
     item: Placement | Wedge | None
+    """What the step comes to; None when it cannot be in the wall at all, which is a problem."""
     corners: Points | None = None
+    """(n, 2): its outline in the wall frame, source px, when the stones of the plan are outlines.
+    """
 
     @property
     def id(self) -> int:
@@ -60,18 +53,7 @@ class Piece:
 
 
 class ExactCanvas:
-    """Stones and wedges are their outlines; no two may lie deep in each other.
-
-    Parameters
-    ----------
-    site : Site
-        Of the plan.
-    stones : StoneSet
-        That it was made from.
-    settings : SettleSettings
-        How far outlines may stay away from the contour of the pixels, and how far stones may
-        stand out of the wall.
-    """
+    """Stones and wedges are their outlines; no two may lie deep in each other."""
 
     def __init__(self, site: Site, stones: StoneSet, settings: SettleSettings) -> None:
         self._site = site
@@ -90,11 +72,7 @@ class ExactCanvas:
     def put(self, step: Step) -> tuple[Piece, list[Problem]]:
         """Return what a step places, and what stands in the way (E220, E221).
 
-        Raises
-        ------
-        PlanError
-            When the step places nothing: E201, there is no such stone; E222, there is no such
-            wedge.
+        PlanError when it places nothing: there is no such stone (E201) or no such wedge (E222).
         """
         site, settled = self._site, None
         if isinstance(step, WedgeStep):
@@ -140,15 +118,7 @@ class ExactCanvas:
 
 
 class RasterCanvas:
-    """Stones and wedges are their pixels; no two may share one.
-
-    Parameters
-    ----------
-    site : Site
-        Of the plan.
-    stones : StoneSet
-        That it was made from.
-    """
+    """Stones and wedges are their pixels; no two may share one."""
 
     def __init__(self, site: Site, stones: StoneSet) -> None:
         self._site = site
@@ -199,11 +169,8 @@ def settled_stone(step: StoneStep, stones: StoneSet, site: Site, outline_px: flo
 def wedge_corners(step: WedgeStep, site: Site) -> Points:
     """Return the outline of a wedge step in source px.
 
-    Raises
-    ------
-    PlanError
-        E222 when its polygon crosses or touches itself, names a corner twice, has no area, or is
-        clockwise.
+    PlanError E222 when it crosses or touches itself, names a corner twice, has no area, or is
+    clockwise.
     """
     corners = source_points(step.polygon, site)
     polygon = shapely.Polygon(corners)
@@ -222,11 +189,6 @@ def leaves(corners: Points, extent_px: tuple[float, float], beyond_px: float = 0
     """Say where an outline is out of the wall by more than it may and `PENETRATION_PX`.
 
     Over the ends and the top it may stand out by `beyond_px`, into the ground by nothing.
-
-    Examples
-    --------
-    >>> leaves(np.array([[0.0, -0.3], [2.0, -0.02], [2.0, 5.0]]), (9.0, 4.5))
-    '0.5 px above the top, 0.3 px below the ground'
     """
     (left, bottom), (right, top) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
     width, height = extent_px
@@ -255,13 +217,7 @@ def place_stone(step: StoneStep, stones: StoneSet, site: Site) -> Placement:
 
 
 def place_wedge(step: WedgeStep, site: Site) -> Wedge:
-    """Return the pixels of a wedge step.
-
-    Raises
-    ------
-    PlanError
-        E220 when its polygon leaves the site, E222 when there is no pixel in it.
-    """
+    """Return the pixels of a wedge; PlanError E220 outside of the site, E222 without a pixel."""
     polygon = working_points(step.polygon, site)
     low, high = polygon.min(axis=0), polygon.max(axis=0)
     if (low < -0.5).any() or (high > (site.width_px + 0.5, site.height_px + 0.5)).any():

@@ -38,40 +38,20 @@ def check_plan(
 ) -> CheckReport:
     """Build the wall of a plan again from the input stones and verify everything it claims.
 
-    Parameters
-    ----------
-    plan : Plan
-        To be checked.
-    stones : StoneSet
-        The stones that it was made from, read again.
-    wall_labels : (h, w) integer array, optional
-        Contents of wall.png; every stone's pixels must be those of its pose, which a mirrored
-        stone's are not.
-    blocks : anything, optional
-        Contents of blocks.json beside a plan of outlines; all that is exported is made of it.
-
-    Returns
-    -------
-    CheckReport
-        `ok` when nothing was found that does not hold.
-
-    Raises
-    ------
-    PlanError
-        E215 when the wall is too large or too small to be an image.
-
-    Notes
-    -----
     Verified are: the source; that each stone is used once and the others are listed; that stones
     and wedges are inside the site and overlap by no pixel at the working resolution; the source
-    centroids, clusters and turns of stones; the rules of wedging; that the wall stands after
-    every stone with its wedges, with the load multipliers claimed; all indices; the metrics; that
-    no stone is banned or out of a given order; the images and the block model beside the plan.
-    On exact geometry outlines are what is judged: that they are those of the pixels, how deep
-    they lie in each other and beyond the edges of the wall, and the limit analysis on their
-    contacts, with the tolerance of the plan.
-    Stones that cannot be lowered in from above, the deviation of pixel areas from the stones' own
-    and, on the raster, overlap of the real outlines are reported and are no failure.
+    centroids, clusters and turns of stones; the rules of wedging; that the wall stands after every
+    stone with its wedges, with the load multipliers claimed; all indices; the metrics; that no
+    stone is banned or out of a given order; the images and the block model beside the plan.
+    `wall_labels` are those of wall.png, `blocks` the contents of blocks.json.
+
+    On exact geometry outlines are what is judged: that they are those of the pixels, how deep they
+    lie in each other and beyond the edges of the wall, and the limit analysis on their contacts,
+    with the tolerance of the plan.  Stones that cannot be lowered in from above, the deviation of
+    pixel areas from the stones' own and, on the raster, overlap of the real outlines are reported
+    and are not a failure.
+
+    A wall that is too large or too small to be an image is a PlanError (E215).
     """
     replay = replay_plan(plan, stones)
     reference = Reference.of(stones, replay.settings, plan.working_scale)

@@ -17,27 +17,13 @@ SAME_AREA = 1e-6
 def check_outline(
     step: StoneStep, stone: Stone, centroid_px: Points, corners: Points, tolerance_px: float
 ) -> list[Problem]:
-    """Compare the outline of a stone where it lies with its pixels there (E240).
+    """Compare the outline of a stone where it lies, source px, with its pixels there (E240).
 
-    Parameters
-    ----------
-    step : StoneStep
-        Says how the stone is turned.
-    stone : Stone
-        The stone; its holes count as stone.
-    centroid_px : (2,) float array
-        Where the plan puts the centroid of its pixels, source px.
-    corners : (n, 2) float array
-        Its outline there, source px.
-    tolerance_px : float
-        How far outlines may stay away from the contour of the pixels.
-
-    Notes
-    -----
-    The contour goes through the middles of pixel edges.  Each middle of an edge between the stone
-    and what is around it must be within :func:`drystone.model.outline.reach_px` of the outline, on
-    either side, and the outline must have the area of the pixels.  The corner of a pixel may be
-    √2/4 px further out than the middles of its edges.
+    The contour goes through the middles of pixel edges; holes count as stone.  Each middle of an
+    edge between the stone and what is around it must be within
+    :func:`drystone.model.outline.reach_px` of the outline, on either side, and the outline must
+    have the area of the pixels.  The corner of a pixel may be √2/4 px further out than the middles
+    of its edges.
     """
     pixels = ndimage.binary_fill_holes(stone.mask)
     rim = turn(rim_px(pixels) - np.array(stone.local_centroid), step.angle_deg) + centroid_px
@@ -52,13 +38,7 @@ def check_outline(
 
 
 def rim_px(mask: Mask) -> Points:
-    """Return the middles of the pixel edges around a mask, from its bottom-left corner, y up.
-
-    Examples
-    --------
-    >>> rim_px(np.ones((1, 1), bool)).tolist()
-    [[0.0, 0.5], [1.0, 0.5], [0.5, 1.0], [0.5, 0.0]]
-    """
+    """Return the middles of the pixel edges around a mask, from its bottom-left corner, y up."""
     padded = np.pad(mask, 1)
     row, left = np.nonzero(padded[1:-1, 1:] != padded[1:-1, :-1])
     top, col = np.nonzero(padded[1:, 1:-1] != padded[:-1, 1:-1])

@@ -22,34 +22,18 @@ ALPHA_TOLERANCE = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """What the walls on the way carry.
-
-    Parameters
-    ----------
-    resistances : tuple of LateralResistance or None
-        After each stage; None where the wall hangs in the air.
-    models : tuple of RigidBlockModel or None
-        Of the same walls.
-    problems : tuple of Problem
-        E230: it does not stand, or the solver gave up; E231: another load multiplier is claimed;
-        E237: a wall of outlines stands by friction that it should not need.
-    """
+    """What the walls on the way carry."""
 
     resistances: tuple[LateralResistance | None, ...]
+    """After each stage; None where the wall hangs in the air."""
     models: tuple[RigidBlockModel | None, ...]
     problems: tuple[Problem, ...]
+    """E230: it does not stand, or the solver gave up; E231: another load multiplier is claimed;
+    E237: a wall of outlines stands by friction that it should not need."""
 
 
 def check_stability(stages: Sequence[Stage], settings: PlannerSettings) -> Standing:
-    """Analyse every prefix of the plan, from its image or its outlines alone.
-
-    Parameters
-    ----------
-    stages : sequence of Stage
-        A stone and its wedges are one stage: only the wall with all of them must stand.
-    settings : PlannerSettings
-        Of the plan: friction, and with outlines the contact tolerance.
-    """
+    """Analyse every prefix of the plan; only the wall with all wedges of a stone must stand."""
     models = [wall_model(stage.after, settings) for stage in stages]
     found = [None if model is None else lateral_resistance(model) for model in models]
     problems: list[Problem] = []

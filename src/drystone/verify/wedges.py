@@ -25,21 +25,7 @@ def check_wedge(
     settings: StabiliseSettings,
     mean_height_px: float,
 ) -> list[Problem]:
-    """Verify the rules of wedging: contact (E223) and size (E224).
-
-    Parameters
-    ----------
-    step : WedgeStep
-        Names the wedge.
-    wedge : Wedge
-        Its pixels.
-    labels : (h, w) array
-        The wall with the stone and its wedges.
-    settings : StabiliseSettings
-        Smallest and largest size.
-    mean_height_px : float
-        Mean height of the stones, which limits the wedge's.
-    """
+    """Verify the rules of wedging on the wall with the stone: contact (E223) and size (E224)."""
     above, below = _neighbours(wedge, labels)
     holds = bool((above == wedge.under).any())
     stands = bool(np.isin(below, (0, wedge.id, wedge.under), invert=True).any())
@@ -66,24 +52,10 @@ def check_settled_wedge(
     width: float,
     limits: WedgeLimits,
 ) -> list[Problem]:
-    """Verify the rules of wedging for a wedge that is an outline: E223 and E224.
+    """Verify the rules of wedging for a wedge that is an outline, source px: E223 and E224.
 
-    Parameters
-    ----------
-    step : WedgeStep
-        Names the wedge.
-    corners : (n, 2) float array
-        Its outline, source px.
-    model : RigidBlockModel
-        Of the wall with the stone and its wedges: says what touches what.
-    stone : (n, 2) float array
-        The stone that lies on it.
-    wall : Polygons
-        The whole wall.
-    width : float
-        Of the wall, source px.
-    limits : WedgeLimits
-        What wedges may be.
+    The model, of the wall with the stone and its wedges, says what touches what.  `stone` lies on
+    the wedge, `wall` are all outlines, and `width` is that of the site.
     """
     above, below = _supports(step.id, model)
     stands = bool(below - {step.under})

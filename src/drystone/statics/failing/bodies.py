@@ -20,63 +20,35 @@ BED = 0.1
 
 @dataclass(frozen=True)
 class Toe:
-    """The end of a joint about which a body turns.
+    """The end of a joint about which a body turns."""
 
-    Parameters
-    ----------
-    point : (float, float)
-        Wall frame.
-    block, other : int
-        The two blocks that stay in touch there, `block` of the body; `other` may be GROUND.
-    side : {"left", "right"} or None
-        To which side the body tips over it; None when it hangs there rather than stands.
-    """
-
-    point: tuple[float, float]
-    block: int
-    other: int
+    point: tuple[float, float]  # wall frame
+    block: int  # of the body
+    other: int  # stays in touch with it there; may be GROUND
     side: Side | None
+    """To which side the body tips over it; None when it hangs there rather than stands."""
 
 
 @dataclass(frozen=True)
 class MovingGroup:
-    """Blocks that move as one rigid body.
+    """Blocks that move as one rigid body."""
 
-    Parameters
-    ----------
-    blocks : tuple of int
-        Ids, ascending.
-    motion : {"rocking", "sliding", "falling", "mixed"}
-        "rocking": turns about a toe on what stands still, or on another body.  "sliding": slides
-        without turning on what stands still, or on another body.  "falling": goes down and
-        touches nothing any more.  "mixed": all else, as turning and sliding at once, or being
-        carried by several bodies.
-    velocity : (float, float, float)
-        To the right, up, and turning counter-clockwise, at the body's centroid.
-    centroid : (float, float)
-        Of the body.
-    area : float
-        Of the body.
-    speed : float
-        Of its fastest block, as share of that of the mechanism's fastest.
-    toe : Toe or None
-        What a rocking body turns about.
-    against : tuple of int
-        Blocks outside of the body on which it moves as `motion` says, ascending; GROUND among
-        them.
-    on_bed : bool
-        Whether it does so on joints that bear it; False for joints at its sides.
-    """
-
-    blocks: tuple[int, ...]
+    blocks: tuple[int, ...]  # ids, ascending
     motion: Motion
+    """"rocking": turns about a toe on what stands still, or on another body.  "sliding": slides
+    without turning on what stands still, or on another body.  "falling": goes down and touches
+    nothing any more.  "mixed": all else, as turning and sliding at once, or being carried by
+    several bodies."""
     velocity: tuple[float, float, float]
+    """To the right, up, and turning counter-clockwise, at the body's centroid."""
     centroid: tuple[float, float]
     area: float
-    speed: float
-    toe: Toe | None
+    speed: float  # of its fastest block, as share of that of the mechanism's fastest
+    toe: Toe | None  # what a rocking body turns about
     against: tuple[int, ...]
-    on_bed: bool
+    """Blocks outside of the body on which it moves as `motion` says, ascending; GROUND among them.
+    """
+    on_bed: bool  # whether it does so on joints that bear it; False for joints at its sides
 
     @property
     def centre(self) -> tuple[float, float] | None:
@@ -145,31 +117,15 @@ def _group(kin: Kinematics, body: Ints, number: int) -> MovingGroup:
 
 @dataclass(frozen=True, eq=False)
 class _Border:
-    """The contact points of a body with others.
-
-    Parameters
-    ----------
-    kin : Kinematics
-        The mechanism.
-    contact : (k,) int array
-        Which contact points.
-    inside, outside : (k,) int array
-        Rows of their blocks.
-    other : (k,) int array
-        The other body, -1 for what stands still.
-    turning : (k,) float array
-        Of the body against the other one, times the characteristic length.
-    bears : (k,) bool array
-        Whether the body stands on it.
-    """
+    """The contact points of a body with others."""
 
     kin: Kinematics
-    contact: Ints
-    inside: Ints
-    outside: Ints
-    other: Ints
-    turning: Floats
-    bears: Bools
+    contact: Ints  # (k,): which contact points
+    inside: Ints  # (k,): rows of their blocks
+    outside: Ints  # (k,)
+    other: Ints  # (k,): the other body, -1 for what stands still
+    turning: Floats  # (k,): of the body against the other one, times the characteristic length
+    bears: Bools  # (k,): whether the body stands on it
 
     @classmethod
     def of(cls, kin: Kinematics, body: Ints, number: int) -> "_Border":

@@ -20,34 +20,21 @@ _KINDS: tuple[ContactKind, ...] = ("closed", "opening", "sliding", "opening and 
 
 @dataclass(frozen=True, eq=False)
 class Kinematics:
-    """A mechanism on the contacts of its model.
-
-    Parameters
-    ----------
-    ids, area, centroid, velocity : (n + 1,) int, (n + 1,), (n + 1, 2), (n + 1, 3) float array
-        Of every block, the ground last; what the mechanism does not name stands still.
-    blocks : (m, 2) int array
-        Rows of the two blocks at every contact point, first the one that the normal points into.
-    point, normal : (m, 2) float array
-        Where, and the normal of its interface.
-    friction : (m,) float array
-        Coefficient of friction.
-    length : float
-        Characteristic length: root of the mean area of a block.
-    tolerance : float
-        Share of the largest velocity below which one counts as none.
-    """
+    """A mechanism on the contacts of its model."""
 
     ids: Ints
-    area: Floats
-    centroid: Floats
-    velocity: Floats
+    """(n + 1,): of every block, the ground last; what the mechanism does not name stands still."""
+    area: Floats  # (n + 1,)
+    centroid: Floats  # (n + 1, 2)
+    velocity: Floats  # (n + 1, 3)
     blocks: Ints
-    point: Floats
-    normal: Floats
-    friction: Floats
-    length: float
-    tolerance: float
+    """(m, 2): rows of the two blocks at every contact point, first the one that the normal points
+    into."""
+    point: Floats  # (m, 2): where, and the normal of its interface
+    normal: Floats  # (m, 2)
+    friction: Floats  # (m,): coefficient of friction
+    length: float  # characteristic length: root of the mean area of a block
+    tolerance: float  # share of the largest velocity below which one counts as none
 
     @cached_property
     def speed(self) -> Floats:
@@ -99,21 +86,7 @@ class Kinematics:
 
 
 def kinematics(model: RigidBlockModel, mechanism: Mechanism, tolerance: float) -> Kinematics:
-    """Lay a mechanism over the contacts of its model.
-
-    Raises
-    ------
-    ValueError
-        When the mechanism moves a block that the model does not have.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> block = model_from_json({"blocks_xywh": [[0, 0, 1, 2]]})
-    >>> slide = Mechanism((1,), np.array([[1.0, 0.58, 0.0]]))
-    >>> kinematics(block, slide, 1e-6).kinds
-    ('sliding', 'sliding')
-    """
+    """Lay a mechanism over the contacts of its model; ValueError for a block that it lacks."""
     place = {block.id: row for row, block in enumerate(model.blocks)} | {GROUND: len(model.blocks)}
     missing = sorted(set(mechanism.block_ids) - place.keys())
     if missing:

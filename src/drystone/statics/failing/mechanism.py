@@ -16,28 +16,16 @@ blocks creeping that a vertex of the program holds still."""
 
 @dataclass(frozen=True, eq=False)
 class Failure:
-    """A mechanism, described.
-
-    Parameters
-    ----------
-    moving : tuple of int
-        Blocks that move, in the order of the mechanism.
-    contact_velocity : (m, 2) float array
-        Opening and sliding velocity at every contact point, in the order of the interfaces and
-        their points; sliding of the block that the normal (x, y) points into, along (y, -x).
-    contact_kinds : tuple of {"closed", "opening", "sliding", "opening and sliding"}
-        The same in words.  The associated flow rule opens a sliding contact by mu times its
-        slip: that is "sliding".
-    groups : tuple of MovingGroup
-        By momentum (area times speed), largest first.
-    words : str
-        A sentence for an engineer.
-    """
+    """A mechanism, described."""
 
     moving: tuple[int, ...]
     contact_velocity: Floats
+    """(m, 2): opening and sliding velocity at every contact point, in the order of the interfaces
+    and their points; sliding of the block that the normal (x, y) points into, along (y, -x)."""
     contact_kinds: tuple[ContactKind, ...]
-    groups: tuple[MovingGroup, ...]
+    """The same in words.  The associated flow rule opens a sliding contact by mu times its slip:
+    that is "sliding"."""
+    groups: tuple[MovingGroup, ...]  # by momentum (area times speed), largest first
     words: str
 
 
@@ -50,40 +38,10 @@ def describe_mechanism(
     wedges: Collection[int] = (),
     tolerance: float = TOLERANCE,
 ) -> Failure:
-    """Tell how a wall fails.
+    """Tell how a wall fails, or falls by itself; wedges are blocks that the words call so.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall.
-    mechanism : Mechanism
-        Of this model.
-    falls : bool
-        True when the wall does not stand by itself and the mechanism is its fall.
-    noun : {"block", "stone"}
-        What the words call a block.
-    wedges : collection of int
-        Blocks that the words call wedges.
-    tolerance : float
-        Share of the largest velocity below which one counts as none.
-
-    Returns
-    -------
-    Failure
-
-    Raises
-    ------
-    ValueError
-        When the mechanism moves a block that the model does not have.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> from drystone.statics.limit import limit_load
-    >>> tower = model_from_json({"blocks_xywh": [[0, 0, 6, 1], [2, 1, 1, 2], [2, 3, 1, 2]]})
-    >>> result = limit_load(tower, "right", mechanism=True)
-    >>> describe_mechanism(tower, result.mechanism).words
-    'Rocking of blocks 2 and 3 about the right toe of 2, on 1.'
+    A mechanism of a block that the model does not have is a ValueError.  A velocity below
+    `tolerance`, a share of the largest, counts as none.
     """
     kin = kinematics(model, mechanism, tolerance)
     groups = moving_groups(kin)

@@ -32,29 +32,13 @@ _VERBS = {
 
 @dataclass(frozen=True)
 class Names:
-    """What blocks are called.
-
-    Parameters
-    ----------
-    noun : {"block", "stone"}
-        All but wedges.
-    wedges : frozenset of int
-        Ids of the wedges.
-    """
+    """What blocks are called."""
 
     noun: Noun = "block"
     wedges: frozenset[int] = frozenset()
 
     def listed(self, ids: Iterable[int]) -> str:
-        """Name blocks: "stones 3, 7 and wedge 301"; long lists are shortened.
-
-        Examples
-        --------
-        >>> Names("stone", frozenset({9})).listed([3, 9, 7])
-        'stones 3, 7 and wedge 9'
-        >>> Names().listed(range(1, 11))
-        'blocks 1, 2, 3, 4, 5 ... and 5 more'
-        """
+        """Name blocks: "stones 3, 7 and wedge 301"; long lists are shortened."""
         ordered = sorted(ids, key=lambda i: (i in self.wedges, i))
         wedges = sum(block in self.wedges for block in ordered)
         words = [str(block) for block in ordered]
@@ -88,17 +72,7 @@ class _Clause:
 
 
 def in_words(groups: Sequence[MovingGroup], names: Names, *, falls: bool = False) -> str:
-    """Tell the motion of bodies in a sentence, in their order.
-
-    Parameters
-    ----------
-    groups : sequence of MovingGroup
-        From :func:`drystone.statics.failing.bodies.moving_groups`.
-    names : Names
-        What blocks are called.
-    falls : bool
-        True when they fall by themselves.
-    """
+    """Say how bodies move, or fall by themselves, in a sentence, in their order."""
     clauses = _clauses([group for group in groups if group.speed >= VISIBLE], names, falls)
     if not clauses:
         return "Nothing moves."

@@ -27,37 +27,20 @@ NOTHING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Forces and a motion, in the units of the program.
+    """Forces and a motion, in the units of the program."""
 
-    Parameters
-    ----------
-    alpha : float
-        Load multiplier along the direction of the search.
-    edges : (m, 2) float array
-        Forces along the two edges of every cone of friction.
-    velocity : (rows,) float array
-        One entry a row of the program; the live load does work at a rate of 1.
-    """
-
-    alpha: float
-    edges: Floats
+    alpha: float  # load multiplier along the direction of the search
+    edges: Floats  # (m, 2): forces along the two edges of every cone of friction
     velocity: Floats
+    """(rows,): one entry a row of the program; the live load does work at a rate of 1."""
 
 
 @dataclass(frozen=True, eq=False)
 class ContactRates:
-    """Relative velocities at the contact points as linear functions of the velocities of blocks.
+    """Relative velocities at the contact points as linear functions of the velocities of blocks."""
 
-    Parameters
-    ----------
-    normal : (rows, m) sparse array
-        Its transpose times a velocity is the rate of opening u_n.
-    slip : (rows, m) sparse array
-        Its transpose times a velocity is r = mu u_t.
-    """
-
-    normal: csc_array
-    slip: csc_array
+    normal: csc_array  # (rows, m): its transpose times a velocity is the rate of opening u_n
+    slip: csc_array  # (rows, m): its transpose times a velocity is r = mu u_t
 
     @classmethod
     def of(cls, program: EquilibriumProgram) -> "ContactRates":
@@ -68,33 +51,17 @@ class ContactRates:
 
 @dataclass(frozen=True, eq=False)
 class LeastForces:
-    """Forces that go with a motion at the least load multiplier.
-
-    Parameters
-    ----------
-    alpha : float
-        Load multiplier along the direction of the search.
-    edges : (m, 2) float array
-        Forces along the two edges of every cone of friction.
-    wanted : (m, 2) float array
-        How much alpha would fall for a unit of force on an edge that the motion rules out.
-    """
+    """Forces that go with a motion at the least load multiplier."""
 
     alpha: float
     edges: Floats
     wanted: Floats
+    """(m, 2): how much alpha would fall for a unit of force on an edge that the motion rules out.
+    """
 
 
 class ForcesOfMotion:
-    """The least load multiplier with forces that go with a given motion.
-
-    Parameters
-    ----------
-    program : EquilibriumProgram
-        The equations.
-    sign : float
-        1 along the live load, -1 against it.
-    """
+    """The least load multiplier, along the sign, with forces that go with a given motion."""
 
     def __init__(self, program: EquilibriumProgram, sign: float) -> None:
         self._program, self._sign = program, sign
@@ -127,15 +94,7 @@ class ForcesOfMotion:
 
 
 class MotionsOfForces:
-    """A motion that goes with given forces.
-
-    Parameters
-    ----------
-    program : EquilibriumProgram
-        The equations.
-    sign : float
-        1 along the live load, -1 against it.
-    """
+    """A motion that goes with given forces, along the live load (sign 1) or against it."""
 
     def __init__(self, program: EquilibriumProgram, sign: float) -> None:
         self._rates = ContactRates.of(program)

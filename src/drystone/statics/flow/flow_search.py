@@ -28,26 +28,16 @@ RUNAWAY = 1e8
 
 @dataclass(frozen=True)
 class Start:
-    """Slip rates with which rounds begin, and how far each round goes.
-
-    Parameters
-    ----------
-    name : str
-        For people.
-    pattern : str
-        "even": the same rate at every contact point; "head joints" and "bed joints": by how
-        level or upright the normal is; "mechanism": those of the associative mechanism; "rest":
-        where that one does not slide; "random": powers of random numbers, few of them large.
-    factor : float
-        Largest rate over the largest one of the associative mechanism.
-    step : float
-        Part of the way to the slip rates of the last motion that a round goes, above 0 to 1.
-    """
+    """Slip rates with which rounds begin, and how far each round goes."""
 
     name: str
     pattern: Pattern
-    factor: float
+    """"even": the same rate at every contact point; "head joints" and "bed joints": by how level or
+    upright the normal is; "mechanism": those of the associative mechanism; "rest": where that one
+    does not slide; "random": powers of random numbers, few of them large."""
+    factor: float  # largest rate over the largest one of the associative mechanism
     step: float
+    """Part of the way to the slip rates of the last motion that a round goes, above 0 to 1."""
 
 
 STARTS = (
@@ -96,38 +86,19 @@ class NonassociativeSettings:
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What the rounds from one start came to.
-
-    Parameters
-    ----------
-    method : str
-        Name of the start.
-    rounds : int
-        How many there were.
-    state : State or None
-        Forces and a motion that go together, if any.
-    """
+    """What the rounds from one start came to."""
 
     method: str
     rounds: int
-    state: State | None
+    state: State | None  # forces and a motion that go together, if any
 
 
 class Search:
-    """All attempts at one direction of one program.
+    """All attempts at one direction of one program, whose blocks stand under their dead load.
 
-    Parameters
-    ----------
-    program : EquilibriumProgram
-        The equations; the blocks stand under their dead load.
-    sign : float
-        1 along the live load, -1 against it.
-    upright : (m,) float array
-        Vertical part of the unit normal at every contact point, 0 to 1: 1 in a bed joint.
-    settings : NonassociativeSettings
-        How much is tried.
-    look : callable
-        Called before every round and every step of descent; what it raises ends the search.
+    The sign is 1 along the live load, -1 against it.  `upright` (m,) is the vertical part of the
+    unit normal at every contact point, 0 to 1: 1 in a bed joint.  `look` is called before every
+    round and every step of descent; what it raises ends the search.
     """
 
     def __init__(

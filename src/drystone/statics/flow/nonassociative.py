@@ -65,44 +65,23 @@ IMMOVABLE = "No motion goes along with a load in this direction."
 
 @dataclass(frozen=True, eq=False)
 class NonassociativeResult:
-    """Outcome of one non-associative limit analysis.
+    """Outcome of one non-associative limit analysis."""
 
-    Parameters
-    ----------
-    status : LimitStatus
-        OPTIMAL only for an answer whose check holds.
-    direction : {"left", "right"}
-        "right" for a load along the live load, "left" against.
-    alpha : float or None
-        Load multiplier; None unless the status is "optimal".
-    mechanism : Mechanism or None
-        How the blocks move, or start to fall.
-    forces : (m, 2) float array or None
-        Normal and tangential force at every contact point, in the order of the interfaces and
-        their points, on the block that the normal points into; the tangent of a normal (x, y) is
-        (y, -x).  In weights of the model.
-    rounds : int
-        Linear programs of the rounds, all starts together.
-    method : str
-        The start that found the answer.
-    check : FlowCheck or None
-        Of mechanism and forces.
-    answers : tuple of float
-        Load multipliers of all verified answers, the least first: which of them a wall fails at
-        depends on the forces that are locked in it.
-    message : str
-        For people.
-    """
-
-    status: LimitStatus
+    status: LimitStatus  # OPTIMAL only for an answer whose check holds
     direction: Direction
-    alpha: float | None = None
+    alpha: float | None = None  # load multiplier; None unless the status is "optimal"
     mechanism: Mechanism | None = field(default=None, repr=False)
+    """How the blocks move, or start to fall."""
     forces: Floats | None = field(default=None, repr=False)
-    rounds: int = 0
+    """(m, 2): normal and tangential force at every contact point, in the order of the interfaces
+    and their points, on the block that the normal points into; the tangent of a normal (x, y) is
+    (y, -x).  In weights of the model."""
+    rounds: int = 0  # linear programs of the rounds, all starts together
     method: str = ""
     check: FlowCheck | None = None
     answers: tuple[float, ...] = ()
+    """Load multipliers of all verified answers, the least first: which of them a wall fails at
+    depends on the forces that are locked in it."""
     message: str = ""
 
     @property
@@ -113,18 +92,10 @@ class NonassociativeResult:
 
 @dataclass(frozen=True, eq=False)
 class NonassociativeResistance:
-    """Both directions.
-
-    Parameters
-    ----------
-    left, right : NonassociativeResult
-        Against and along the live load.
-    mu : float
-        Coefficient of friction.
-    """
+    """Both directions."""
 
     left: NonassociativeResult
-    right: NonassociativeResult
+    right: NonassociativeResult  # against and along the live load
     mu: float
 
     @property
@@ -150,33 +121,11 @@ def nonassociative_load(
 ) -> NonassociativeResult:
     """Find the least load at which the blocks can move by Coulomb's law without dilatancy.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and interfaces.
-    direction : {"left", "right"}
-        The live load points to -x for "left"; for other loads "left" is against the live load.
-    loads : Loads, optional
-        Dead and live loads; the tilting table unless given.
-    settings : NonassociativeSettings, optional
-        How much is tried.
-
-    Returns
-    -------
-    NonassociativeResult
-        "optimal" when forces and motion were found whose check holds: the least alpha of those
-        found, in bounded effort, an upper estimate of the least there is.  "unstable" when the
-        blocks do not stand under their dead load, or only without certainty: there are forces
-        with which they start to fall, or a motion that needs less than no load.  "unbounded"
-        when no motion goes along with the load.  "failed" when nothing was found.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> wall = model_from_json({"blocks_xywh": [[0, 0, 1, 2]], "mu": 0.7})
-    >>> result = nonassociative_load(wall, "right")
-    >>> round(result.alpha, 6), result.check.holds
-    (0.5, True)
+    It is "optimal" when forces and motion were found whose check holds: the least alpha of those
+    found, in bounded effort, an upper estimate of the least there is.  "unstable" when the blocks
+    do not stand under their dead load, or only without certainty: there are forces with which they
+    start to fall, or a motion that needs less than no load.  "unbounded" when no motion goes along
+    with the load.  "failed" when nothing was found.
     """
     both = lateral_resistance(model, loads)
     associative = both.left if direction == "left" else both.right

@@ -56,21 +56,11 @@ CLEAR = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Fall:
-    """How blocks start to fall, in the units of the program; free fall has acceleration 1.
+    """How blocks start to fall, in the units of the program; free fall has acceleration 1."""
 
-    Parameters
-    ----------
-    acceleration : (rows,) float array
-        One entry a row of the program.
-    edges : (m, 2) float array
-        Forces along the two edges of every cone of friction.
-    inertia : (rows,) float array
-        Mass times acceleration: what the forces on the blocks sum up to.
-    """
-
-    acceleration: Floats
-    edges: Floats
-    inertia: Floats
+    acceleration: Floats  # (rows,): one entry a row of the program
+    edges: Floats  # (m, 2): forces along the two edges of every cone of friction
+    inertia: Floats  # (rows,): mass times acceleration: what the forces on the blocks sum up to
 
 
 def fall_of(
@@ -79,32 +69,10 @@ def fall_of(
     rounds: int,
     look: Callable[[], None] = lambda: None,
 ) -> Fall | None:
-    """Let blocks go, and find out how they start to fall.
+    """Let blocks go, and find how they start to fall; None when they come to rest.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        With at least one free block.
-    program : EquilibriumProgram
-        Of the model.
-    rounds : int
-        At most so many.
-    look : callable
-        Called before each of them; what it raises ends the search.
-
-    Returns
-    -------
-    Fall or None
-        None when they come to rest, and when the rounds lead to nothing.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> from drystone.statics.lp.program import assemble
-    >>> piers = [[0, 0, 1, 4], [2, 0, 1, 4]]
-    >>> jammed = model_from_json({"blocks_xywh": [*piers, [1, 1.5, 1, 1]]})
-    >>> fall_of(jammed, assemble(jammed), 9).acceleration.round(6)[-2]
-    np.float64(-1.0)
+    At least one block is free.  `look` is called before each of so many rounds; what it raises
+    ends the search.
     """
     rows = masses(model, program)
     if not len(rows) or program.column_count == 1:

@@ -42,13 +42,7 @@ _STATUS = {
 
 
 class ClarabelSession:
-    """One program in Clarabel; every objective is solved from the start.
-
-    Parameters
-    ----------
-    program : EquilibriumProgram
-        The equations.
-    """
+    """One program in Clarabel; every objective is solved from the start."""
 
     def __init__(self, program: EquilibriumProgram) -> None:
         rows, columns = program.matrix.shape
@@ -87,24 +81,11 @@ class ClarabelSession:
 def least_constraint(
     masses: Floats, forces: Floats, matrix: csc_array, least: Floats
 ) -> tuple[Floats, Floats] | None:
-    """Minimise sum(masses x^2) / 2 - forces . x, subject to matrix' x >= least.
+    """Minimise sum(masses x^2) / 2 - forces . x, subject to matrix' x >= least, which is <= 0.
 
-    Gauss's principle: masses under given forces accelerate so, and the multipliers are what the
-    constraints do to them.
-
-    Parameters
-    ----------
-    masses, forces : (n,) float array
-        Masses above 0.
-    matrix : (n, m) sparse array
-        A constraint a column.
-    least : (m,) float array
-        At most 0.
-
-    Returns
-    -------
-    x, multipliers : (n,) and (m,) float array
-        None when Clarabel gives up.
+    Gauss's principle: masses above 0 under given forces accelerate so, and the multipliers are what
+    the constraints, the columns of the matrix, do to them.  Returned are x and the multipliers;
+    None when Clarabel gives up.
     """
     settings = clarabel.DefaultSettings()
     for name, value in _QUADRATIC.items():

@@ -66,21 +66,8 @@ def extremes(
 
     Solvers and certificates allow errors of 1e-9 to 1e-8 of the mean weight.  The moment that
     brings down a stone of a millionth of it is no larger, so the equations of light blocks are
-    divided by their own weight and size.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and interfaces.
-    program : EquilibriumProgram
-        Of the model.
-    solver, mechanism
-        As for :func:`drystone.statics.limit.lateral_resistance`.
-
-    Returns
-    -------
-    least, greatest : Extreme
-        Velocities in the units of the program; certificates in those of each block.
+    divided by their own weight and size.  Velocities come in the units of the program, certificates
+    in those of each block.
     """
     units = units_of_light_blocks(model, program)
     if units is not None:
@@ -94,16 +81,7 @@ def extremes(
 
 
 def units_of_light_blocks(model: RigidBlockModel, program: EquilibriumProgram) -> Floats | None:
-    """Return the unit of every row, in those of the program; None where all of them are 1.
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> from drystone.statics.lp.program import assemble
-    >>> model = model_from_json({"blocks_xywh": [[0, 0, 100, 100], [40, 100, 1, 1]]})
-    >>> units_of_light_blocks(model, assemble(model)).round(7).tolist()
-    [1.0, 1.0, 1.0, 0.0002, 0.0002, 2.8e-06]
-    """
+    """Return the unit of every row, in those of the program; None where all of them are 1."""
     free = [block for block in model.blocks if not block.fixed]
     weights = np.array([block.weight for block in free]) / program.weight
     light = (weights >= WEIGHTLESS) & (weights < LIGHT)

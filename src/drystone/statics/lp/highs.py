@@ -76,13 +76,7 @@ class _SilentHighs(highspy.Highs):
 
 
 def silent_highs(options: Mapping[str, Any]) -> highspy.Highs:
-    """Return HiGHS with these options, that prints nothing.
-
-    Parameters
-    ----------
-    options : mapping from str to bool, int, float or str
-        Options of HiGHS by name.
-    """
+    """Return HiGHS with options by name, that prints nothing."""
     highs = _SilentHighs()  # type: ignore[no-untyped-call]  # nor has its constructor
     set_options(highs, {"output_flag": False, **options})
     return highs
@@ -97,12 +91,7 @@ def set_options(highs: highspy.Highs, options: Mapping[str, Any]) -> None:
 class HighsSession:
     """One program in HiGHS, solved for one objective after another, each from the last basis.
 
-    Parameters
-    ----------
-    program : EquilibriumProgram
-        The equations.
-    algorithm : {"simplex", "ipm"}
-        "simplex" is dual for the first objective and primal from the last basis after it.
+    "simplex" is dual for the first objective and primal from the last basis after it.
     """
 
     def __init__(self, program: EquilibriumProgram, algorithm: Algorithm = "simplex") -> None:
@@ -116,10 +105,7 @@ class HighsSession:
     def minimise(self, costs: Floats) -> Solution:
         """Minimise costs . x; the basis that it ends with starts the next call.
 
-        Parameters
-        ----------
-        costs : (columns,) float array
-            Of alpha, then of the two edges of the friction cone at every contact point.
+        The costs are of alpha, then of the two edges of the friction cone at every contact point.
         """
         changed = np.flatnonzero(costs != self._costs).astype(np.int32)
         self.highs.changeColsCost(len(changed), changed, costs[changed])
@@ -180,19 +166,11 @@ def _loaded(program: EquilibriumProgram, options: Mapping[str, Any]) -> highspy.
 
 @dataclass(frozen=True)
 class WarmBasis:
-    """Which unknowns and equations are basic; it does not depend on the units of a program.
+    """Which unknowns and equations are basic; it does not depend on the units of a program."""
 
-    Parameters
-    ----------
-    columns, rows : tuple of HighsBasisStatus
-        Of the unknowns and of the equations.
-    whole : bool
-        False when unknowns that were basic are gone.
-    """
-
-    columns: tuple[highspy.HighsBasisStatus, ...] = (_FREE,)
+    columns: tuple[highspy.HighsBasisStatus, ...] = (_FREE,)  # of the unknowns and of the equations
     rows: tuple[highspy.HighsBasisStatus, ...] = ()
-    whole: bool = True
+    whole: bool = True  # False when unknowns that were basic are gone
 
     def appended(self, columns: int, rows: int) -> "WarmBasis":
         """Return the basis for so many unknowns, the new ones at 0, and so many equations.
@@ -215,14 +193,9 @@ class WarmBasis:
 class WarmSession(HighsSession):
     """One program in HiGHS, solved from given bases; optima satisfy the equations to 1e-11 or so.
 
-    The simplex method updates the unknowns from pivot to pivot, and HiGHS drops what is very
-    small.  With large forces or thousands of blocks that leaves residuals of 1e-7, too large for a
+    The simplex method updates the unknowns from pivot to pivot, and HiGHS drops what is very small.
+    With large forces or thousands of blocks that leaves residuals of 1e-7, too large for a
     certificate; one correction by the last basis leaves 1e-13.
-
-    Parameters
-    ----------
-    program : EquilibriumProgram
-        The equations.
     """
 
     def __init__(self, program: EquilibriumProgram) -> None:
@@ -276,16 +249,9 @@ def read_basis(found: highspy.HighsBasis) -> WarmBasis | None:
 def corrected(
     highs: highspy.Highs, program: tuple[Floats, csc_array, Floats], columns: Floats, duals: Floats
 ) -> tuple[Floats, Floats]:
-    """Return the optimum that HiGHS has just found, with small residuals.
+    """Return the optimum that HiGHS has just found, columns and duals, with small residuals.
 
-    Parameters
-    ----------
-    highs : Highs
-        With the basis of the optimum.
-    program : tuple
-        Costs, matrix and right-hand side.
-    columns, duals : float arrays
-        Of the optimum.
+    The program is its costs, matrix and right-hand side.
     """
     costs, matrix, rhs = program
     left = rhs - matrix @ columns

@@ -17,33 +17,14 @@ Ints = NDArray[np.int32]
 
 @dataclass(frozen=True)
 class Units:
-    """What lengths and forces are measured in.
-
-    Parameters
-    ----------
-    length : float
-        About the root of the area of a block.
-    weight : float
-        About the weight of a block.
-    """
+    """What lengths and forces are measured in."""
 
     length: float
     weight: float
 
 
 def units_of(model: RigidBlockModel) -> Units:
-    """Return the units in which free blocks have the mean weight 1 and the mean area 1.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        With at least one free block.
-
-    Examples
-    --------
-    >>> units_of(RigidBlockModel((Block(1, 4.0, (1.0, 1.0), density=2.0),), ()))
-    Units(length=2.0, weight=8.0)
-    """
+    """Return the units in which free blocks, of which there is one, have mean weight and area 1."""
     free = [block for block in model.blocks if not block.fixed]
     area = np.mean([block.area for block in free])
     return Units(float(np.sqrt(area)), float(np.mean([block.weight for block in free])))
@@ -57,38 +38,18 @@ class EquilibriumProgram:
     two edges of its friction cone, normal + mu tangent and normal - mu tangent.  Each free block
     has up to three rows, the horizontal and vertical forces on it and their moment about its
     centroid; what it is held in has no row.  The matrix is stored by columns.
-
-    Parameters
-    ----------
-    block_ids : (n,) tuple of int
-        Free blocks.
-    rows : (n, 3) int array
-        Row of each freedom of each free block; -1 for what is held.
-    start : (2 m + 2,) int array
-        Where each column starts in `index` and `value`.
-    index : int array
-        Rows.
-    value : float array
-        Coefficients.
-    rhs : float array
-        Right-hand side.
-    friction : (m,) float array
-        Coefficient of friction at each contact point.
-    length : float
-        Characteristic length: moments are divided by it, so that all rows are of one size.
-    weight : float
-        Unit of force: mean weight of the free blocks.
     """
 
-    block_ids: tuple[int, ...]
-    rows: Ints
-    start: Ints
+    block_ids: tuple[int, ...]  # (n,): free blocks
+    rows: Ints  # (n, 3): row of each freedom of each free block; -1 for what is held
+    start: Ints  # (2 m + 2,): where each column starts in `index` and `value`
     index: Ints
     value: Floats
     rhs: Floats
-    friction: Floats
+    friction: Floats  # (m,): coefficient of friction at each contact point
     length: float
-    weight: float
+    """Characteristic length: moments are divided by it, so that all rows are of one size."""
+    weight: float  # unit of force: mean weight of the free blocks
 
     @property
     def column_count(self) -> int:
@@ -125,25 +86,11 @@ _ARRAYS = ("rows", "start", "index", "value", "rhs", "friction")
 def assemble(
     model: RigidBlockModel, loads: Loads | None = None, units: Units | None = None
 ) -> EquilibriumProgram:
-    """Set up Eq. 23-24 in scaled units.
+    """Set up Eq. 23-24 in scaled units, those of :func:`units_of` unless given.
 
-    A force f at point p on block i, centroid c, enters its rows as (f, (p - c) x f); the block
-    on the other side takes -f, the ground and fixed blocks nothing.  The cone |t| <= mu n,
-    n >= 0 of a contact point is spanned by the forces normal +- mu tangent.
-
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks and interfaces.
-    loads : Loads, optional
-        Dead and live loads; the tilting table unless given.
-    units : Units, optional
-        Those of :func:`units_of` unless given, which takes a free block.
-
-    Examples
-    --------
-    >>> assemble(RigidBlockModel((Block(1, 4.0, (1.0, 1.0)),), ())).column_count
-    1
+    A force f at point p on block i, centroid c, enters its rows as (f, (p - c) x f); the block on
+    the other side takes -f, the ground and fixed blocks nothing.  The cone |t| <= mu n, n >= 0 of a
+    contact point is spanned by the forces normal +- mu tangent.
     """
     loads = tilting_table(model) if loads is None else loads
     places = [i for i, block in enumerate(model.blocks) if not block.fixed]
@@ -199,17 +146,11 @@ def _friction(model: RigidBlockModel) -> Floats:
 def _cone_edges(
     model: RigidBlockModel, free: list[Block], friction: Floats
 ) -> tuple[Floats, Floats, Ints]:
-    """List the two edges of the friction cone at every contact point.
+    """List the two edges of the friction cone at every contact point, m in all.
 
-    Returns
-    -------
-    force : (m, 2) float array
-        On the block that the normal points into.
-    arm : (m, 2, 2) float array
-        From the centroids of that block and of the other one to the point; anything for the
-        ground.
-    blocks : (m, 2) int array
-        Their places in `free`, -1 for what does not move.
+    Returned are the forces (m, 2) on the block that the normal points into; the arms (m, 2, 2) from
+    the centroids of that block and of the other one to the point, anything for the ground; and the
+    places (m, 2) of both in `free`, -1 for what does not move.
     """
     place = {block.id: -1 for block in model.blocks}
     place[GROUND] = -1

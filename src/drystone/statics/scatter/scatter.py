@@ -28,32 +28,19 @@ class Quantiles(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Scatter:
-    """What the shaken walls carry; a wall that does not stand is a result too, without numbers.
-
-    Parameters
-    ----------
-    settings : ScatterSettings
-        What was shaken.
-    seed : int
-        Of the random numbers.
-    unshaken : LateralResistance
-        Of the model as it was given, with its own friction.
-    status : (n,) tuple of LimitStatus
-        Of every sample: "optimal" when both directions are.
-    mu : (n,) float array
-        Coefficient of friction of every sample; the mean over the interfaces that draw one when
-        each has its own.
-    alpha_left, alpha_right : (number of optimal samples,) float array
-        Load multipliers of the walls that stand, in the order of the samples.
-    """
+    """What the shaken walls carry; a wall that does not stand is a result too, without numbers."""
 
     settings: ScatterSettings
     seed: int
-    unshaken: LateralResistance
-    status: tuple[LimitStatus, ...]
+    unshaken: LateralResistance  # of the model as it was given, with its own friction
+    status: tuple[LimitStatus, ...]  # (n,): of every sample: "optimal" when both directions are
     mu: Floats
+    """(n,): coefficient of friction of every sample; the mean over the interfaces that draw one
+    when each has its own."""
     alpha_left: Floats
-    alpha_right: Floats
+    """(number of optimal samples,): load multipliers of the walls that stand, in the order of the
+    samples."""
+    alpha_right: Floats  # (number of optimal samples,)
 
     @property
     def counts(self) -> dict[LimitStatus, int]:
@@ -120,30 +107,8 @@ def scatter(
 ) -> Scatter:
     """Shake a wall many times and find what it carries each time, to both sides.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        The wall.
-    settings : ScatterSettings
-        What is shaken, and how often.
-    seed : int
-        >= 0.  Each sample has random numbers of its own, from the seed and its number.
-    executor : concurrent.futures.Executor, optional
-        Threads or processes; never changes the result.
-    on_sample : callable, optional
-        Told how many samples are done, after each one.
-
-    Returns
-    -------
-    Scatter
-
-    Examples
-    --------
-    >>> from drystone.contacts.given import model_from_json
-    >>> block = model_from_json({"blocks_xywh": [[0, 0, 4, 2]]})
-    >>> found = scatter(block, ScatterSettings(samples=20, mu=(0.4, 0.8)))
-    >>> bool(np.allclose(found.alpha, found.mu)), found.falling_share
-    (True, 0.0)
+    Each sample has random numbers of its own, from the seed and its number, so that threads or
+    processes of an executor never change the result.  `on_sample` gets the number of samples done.
     """
     analyse = partial(_analysed, model, settings, seed)
     numbers = range(settings.samples)
