@@ -6,10 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from drystone.contacts.blocks import model_from_labels
-from drystone.contacts.gap_spread import closed_gap_spread
-from drystone.contacts.gaps import close_gaps, model_with_closed_gaps, settle_gaps
-from drystone.contacts.pieces import notice_of_pieces, pieces_apart
+from drystone.contacts.blocks import model_from_labels, notice_of_pieces, pieces_apart
+from drystone.contacts.gaps import (
+    close_gaps,
+    gap_spread,
+    model_with_closed_gaps,
+    settle_gaps,
+)
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
 from tests.naive.gaps import distance, lies_between
@@ -179,21 +182,21 @@ def test_settling_moves_stones_as_rigid_bodies_until_they_rest(labels, push):
 
 def test_the_spread_says_what_the_reach_decides():
     labels = bond(6, 20, 38, 2)
-    spread = closed_gap_spread(labels, 2)
-    assert spread.chosen.f_lr == pytest.approx(0.596, abs=0.01)
-    assert [v.f_lr for v in spread.others] == [None, spread.chosen.f_lr]
-    assert spread.words().startswith("F_LR .596 with gaps up to 2 px closed (unstable with gaps")
-    settled = closed_gap_spread(labels, None)
-    pushed = lateral_resistance(model_from_labels(settle_gaps(labels, "right")[0]).model)
-    assert settled.others[1].f_lr == pushed.value
-    assert settled.chosen.name == "stones settled"
-
-
-def test_without_friction_the_spread_of_gaps_has_no_number():
+    assert gap_spread(labels, 2) == (
+        "F_LR .596 with gaps up to 2 px closed (unstable with gaps up to 1 px closed,"
+        " .596 with gaps up to 4 px closed)"
+    )
+    settled, left, right = (
+        lateral_resistance(model_from_labels(settle_gaps(labels, push)[0]).model).value
+        for push in (None, "left", "right")
+    )
+    assert gap_spread(labels, None) == (
+        f"F_LR {settled:.3f} with stones settled ({left:.3f} with stones pushed left,"
+        f" {right:.3f} with stones pushed right)"
+    ).replace("0.", ".")
     stack = np.kron([[1], [0], [2]], np.ones((2, 8), int))
-    words = closed_gap_spread(stack, 2, mu=0.0).words()
-    assert words.startswith("F_LR not defined with gaps up to 2 px closed")
-    assert "optimal" not in words
+    without = gap_spread(stack, 2, mu=0.0)
+    assert without.startswith("F_LR not defined with gaps up to 2 px closed (unstable")
 
 
 def test_pixels_that_lie_apart_are_counted_and_said():

@@ -5,9 +5,9 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json, polygons_from_json
 from drystone.errors import InputError
 from drystone.statics.joints import loose_blocks, slippery, with_head_friction
-from drystone.statics.limit import lateral_resistance, limit_load
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Interface
-from tests.statics.walls import brick_model, irregular
+from tests.statics.walls import brick_model, irregular, limit_load
 
 PAIR = [[0, 0, 2, 1], [0, 1, 2, 1]]
 

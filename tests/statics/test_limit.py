@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.statics.incremental import SIMPLEX, incremental_analysis
-from drystone.statics.limit import lateral_resistance, limit_load
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, point_load, weight
 from drystone.statics.lp import clarabel, extremes, highs
 from drystone.statics.lp.highs import HighsSession
@@ -19,7 +19,7 @@ from drystone.statics.lp.program import units_of
 from drystone.statics.model import GROUND, NO_SLIP, RigidBlockModel
 from drystone.statics.result import LimitStatus
 from tests.naive.statics import limit_alphas
-from tests.statics.walls import brick_model, coursed, irregular, stacked
+from tests.statics.walls import brick_model, coursed, irregular, limit_load, stacked
 from tests.strategies import repeatable
 
 
@@ -267,7 +267,9 @@ def give_up_after(iterations, monkeypatch, *algorithms):
 def test_what_all_algorithms_give_up_on_is_failed_and_no_number(monkeypatch):
     model = model_from_labels(coursed(5, 4, 90)).model
     give_up_after(1, monkeypatch, "simplex", "ipm")
-    monkeypatch.setattr(clarabel, "_SETTINGS", {**clarabel._SETTINGS, "max_iter": 1})
+    settings = clarabel._settings(1e-12)
+    settings.max_iter = 1
+    monkeypatch.setattr(clarabel, "_settings", lambda _: settings)
     both = lateral_resistance(model, mechanism=True)
     assert statuses(both) == (LimitStatus.FAILED, LimitStatus.FAILED)
     assert (both.value, both.left.alpha, both.left.mechanism) == (None, None, None)

@@ -8,7 +8,7 @@ from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.errors import InputError
 from drystone.statics.failing.mechanism import describe_mechanism
-from drystone.statics.limit import lateral_resistance, limit_load, load_range
+from drystone.statics.limit import lateral_resistance, load_range
 from drystone.statics.loads import (
     Loads,
     gravity_factor,
@@ -20,7 +20,7 @@ from drystone.statics.loads import (
 )
 from drystone.statics.model import GROUND, Block, RigidBlockModel
 from drystone.statics.result import LimitStatus
-from tests.statics.walls import coursed, stacked
+from tests.statics.walls import coursed, limit_load, stacked
 
 
 def tower(mu=0.9):

@@ -7,10 +7,9 @@ from hypothesis import strategies as st
 
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
-from drystone.statics.limit import limit_load
 from drystone.statics.loads import Loads, growing_with_height, weight
 from drystone.statics.sensitivity import friction_sensitivity
-from tests.statics.walls import brick_model, coursed, irregular, stacked
+from tests.statics.walls import brick_model, coursed, irregular, limit_load, stacked
 from tests.strategies import repeatable
 
 STEP = 1e-5

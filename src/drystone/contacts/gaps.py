@@ -1,5 +1,6 @@
 """Pictures of real walls have gaps between the stones: close them for the contacts, or settle."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal
 
@@ -12,7 +13,9 @@ from drystone.contacts.blocks import ImageModel, model_from_labels
 from drystone.kernels.raster import Mask
 from drystone.kernels.runs import narrow_gaps
 from drystone.model.wall import Labels
-from drystone.statics.model import GROUND, Interface
+from drystone.statics.limit import lateral_resistance
+from drystone.statics.model import GROUND, Interface, RigidBlockModel
+from drystone.statics.result import LateralResistance
 
 TIE_BREAK = (-1e-4, -3e-5)
 """Added to (row, col): of two stones at one distance the upper or left one is the nearer."""
@@ -36,7 +39,10 @@ def close_gaps(labels: Labels, reach_px: float) -> Labels:
     if not filled.size or reach_px < 1:
         return labels.copy()
     height = int(filled[-1]) + 1
-    cells, ground = _with_ground(labels[:height])
+    # A row of ground, with an id of its own, lies below.
+    ground = int(labels.max()) + 1
+    below = np.full((1, labels.shape[1]), ground)
+    cells = np.vstack([labels[:height].astype(np.int64), below])
     gap, nearest = narrow_gaps(cells, ground, reach_px)
     grown = np.where(gap, nearest, cells)
     # By what grew beside them: a stone itself would bulge into a joint that meets it.
@@ -103,13 +109,6 @@ def settle_gaps(
                 moved[block] = (moved[block][0] + aside, moved[block][1] + down)
                 moving = True
     return settled, {block: way for block, way in moved.items() if way != (0, 0)}
-
-
-def _with_ground(labels: Labels) -> tuple[NDArray[np.int64], int]:
-    """Add a row of ground, with an id of its own, below."""
-    ground = int(labels.max()) + 1
-    below = np.full((1, labels.shape[1]), ground)
-    return np.vstack([labels.astype(np.int64), below]), ground
 
 
 def _holes_between(cells: NDArray[np.int64], gap: Mask, reach_px: float) -> Mask:
@@ -206,3 +205,39 @@ def _room_aside(wall: Labels, block: int, push: Literal["left", "right"]) -> int
         if others[rows[inside], ahead[inside]].any():
             return step * way
     return 0
+
+
+def gap_spread(
+    labels: Labels,
+    reach_px: float | None,
+    mu: float = 0.58,
+    analyse: Callable[[RigidBlockModel], LateralResistance] = lateral_resistance,
+) -> str:
+    """Say F_LR with gaps closed at a reach, and in brackets at half and twice of it, or settled.
+
+    `reach_px` is above 0; None settles stones, and compares with stones pushed to either side.
+    The sentence has no full stop.
+    """
+    if reach_px is None:
+        models = {
+            "stones settled": model_from_labels(settle_gaps(labels)[0], mu),
+            "stones pushed left": model_from_labels(settle_gaps(labels, "left")[0], mu),
+            "stones pushed right": model_from_labels(settle_gaps(labels, "right")[0], mu),
+        }
+    else:
+        models = {
+            f"gaps up to {reach:g} px closed": model_with_closed_gaps(labels, reach, mu)
+            for reach in (reach_px, reach_px / 2.0, 2.0 * reach_px)
+        }
+    chosen, *others = (
+        f"{_in_words(analyse(picture.model))} with {name}" for name, picture in models.items()
+    )
+    return f"F_LR {chosen} ({', '.join(others)})"
+
+
+def _in_words(both: LateralResistance) -> str:
+    if both.value is not None:
+        return f"{both.value:.3f}".removeprefix("0")
+    unknown = next((r.status for r in (both.left, both.right) if r.alpha is None), None)
+    # Without friction F_LR, which is over mu, is not defined.
+    return "not defined" if unknown is None else str(unknown)

@@ -7,36 +7,20 @@ block of the two.
 
 from collections.abc import Iterable, Sequence
 from itertools import chain
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from drystone.contacts.blocks import check_mu
 from drystone.kernels.meetings import Meetings, meetings
 from drystone.kernels.polygons import Points, Polygons, area_and_centroid, no_polygons
+from drystone.model.outlines import Outlined, Outlines
 from drystone.statics.model import GROUND, Block, Interface, RigidBlockModel
 
 SETBACK = 0.01
 """Contacts stay away from the ends of faces by so much of the size of the smaller stone."""
 
-Outlined = tuple[int, Points]
-"""Id and corners of a block, in the wall frame: counter-clockwise, not closed."""
-
-
-class Placed(Protocol):
-    """Blocks with outlines, as :class:`drystone.model.outlines.Outlines` has them."""
-
-    @property
-    def ids(self) -> tuple[int, ...]:
-        """In the order of construction."""
-        ...
-
-    @property
-    def polygons(self) -> Polygons:
-        """Outlines of the same blocks; the ground is y = 0."""
-        ...
-
 
 class PlacedPolygons(NamedTuple):
-    """Blocks of which the outlines are all that is known."""
+    """Blocks, in the order of construction, of which the outlines are all that is known."""
 
     ids: tuple[int, ...]
     polygons: Polygons
@@ -52,7 +36,7 @@ class PlacedPolygons(NamedTuple):
 def model_with_outlines(
     model: RigidBlockModel,
     blocks: Sequence[Outlined],
-    around: Placed,
+    around: Outlines | PlacedPolygons,
     tolerance: float,
     setback: float = SETBACK,
 ) -> RigidBlockModel:
@@ -75,7 +59,10 @@ def model_with_outlines(
 
 
 def model_of_outlines(
-    placed: Placed, mu: float = 0.58, tolerance: float = 0.1, setback: float = SETBACK
+    placed: Outlines | PlacedPolygons,
+    mu: float = 0.58,
+    tolerance: float = 0.1,
+    setback: float = SETBACK,
 ) -> RigidBlockModel:
     """Make the rigid block model of a wall of settled stones; mu below 0 is an InputError (E302).
 

@@ -22,7 +22,6 @@ from math import isnan
 from typing import NamedTuple
 
 import numpy as np
-from highspy import HighsBasis
 
 from drystone.kernels import simplex
 from drystone.kernels.certificate import Figures, figures
@@ -37,7 +36,6 @@ from drystone.statics.lp.highs import (
     HighsSession,
     WarmBasis,
     WarmSession,
-    read_basis,
 )
 from drystone.statics.lp.program import EquilibriumProgram, Units, assemble
 from drystone.statics.model import GROUND, Addition, Direction, RigidBlockModel
@@ -99,12 +97,34 @@ class IncrementalAnalysis(ABC):
     @abstractmethod
     def _extended_to(self, model: RigidBlockModel) -> "IncrementalAnalysis": ...
 
-    def _added(self, model: RigidBlockModel, program: ConeProgram) -> Added | None:
+
+@dataclass(frozen=True, eq=False)
+class ConeAnalysis(IncrementalAnalysis):
+    """A wall of loose stones, whose program grows in arrays; all else is for HiGHS."""
+
+    program: ConeProgram
+
+    def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
+        grown = self._grown(model)
+        if grown is None:
+            return self.in_highs().resistance_with(model)
+        return _result_between(model, self._bounds(model, grown[1]))
+
+    def _grown(self, model: RigidBlockModel) -> tuple[Addition, Added] | None:
         """Return what is new; None when it is not for the cone program."""
         addition = model.added
         if addition is None or addition.base is not self.model or not model.blocks:
             return None
-        return program.columns_of(addition, model.mu)
+        added = self.program.columns_of(addition, model.mu)
+        return None if added is None else (addition, added)
+
+    @abstractmethod
+    def in_highs(self) -> "HighsAnalysis":
+        """Return the analysis that answers what is not for the cone program."""
+
+    @abstractmethod
+    def _bounds(self, model: RigidBlockModel, added: Added) -> "Iterator[Bound | None]":
+        """Find the greatest alpha, then the least."""
 
 
 def incremental_analysis(
@@ -135,10 +155,9 @@ def incremental_analysis(
 
 
 @dataclass(frozen=True, eq=False)
-class SimplexAnalysis(IncrementalAnalysis):
+class SimplexAnalysis(ConeAnalysis):
     """What the inner loop of a planner asks: loose stones, by :mod:`drystone.kernels.simplex`."""
 
-    program: ConeProgram
     greatest: Optimum
     least: Optimum
     most: int = MANY_BLOCKS
@@ -151,22 +170,19 @@ class SimplexAnalysis(IncrementalAnalysis):
         greatest, least = Optimum.of_nothing(1), Optimum.of_nothing(-1)
         return cls(model, result, ConeProgram.empty(units), greatest, least, most)
 
-    def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
-        added = self._added(model, self.program)
-        if added is None:
-            return self._by_highs().resistance_with(model)
-        ends = (self.greatest, self.least)
-        return _result_between(model, (self._bound(optimum, added)[1] for optimum in ends))
+    def in_highs(self) -> "HighsAnalysis":
+        """Begin anew: HiGHS has not followed this wall."""
+        return HighsAnalysis.of(RigidBlockModel((), (), self.model.mu), self.program.units)
 
     def _extended_to(self, model: RigidBlockModel) -> IncrementalAnalysis:
-        added = self._added(model, self.program)
-        if added is None:
-            return self._by_highs().extended(model)
-        assert model.added is not None  # noqa: S101 - or nothing would be added
+        grown = self._grown(model)
+        if grown is None:
+            return self.in_highs().extended(model)
+        addition, added = grown
         greatest, upper = self._bound(self.greatest, added)
         least, lower = self._bound(self.least, added)
         result = _result_between(model, (upper, lower))
-        program = self.program.appended(model.added, added)
+        program = self.program.appended(addition, added)
         model = model.forgetting()  # or every model would keep all those before it
         certified = upper is not None and lower is not None
         optimal = greatest.status == simplex.OPTIMAL and least.status == simplex.OPTIMAL
@@ -188,21 +204,20 @@ class SimplexAnalysis(IncrementalAnalysis):
             return answer, None
         return answer, _bound_of(self.program, added, answer, optimum.sign, SIMPLEX)
 
-    def _by_highs(self) -> "HighsAnalysis":
-        nothing = RigidBlockModel((), (), self.model.mu)
-        return HighsAnalysis.of(nothing, self.program.units)
+    def _bounds(self, model: RigidBlockModel, added: Added) -> "Iterator[Bound | None]":  # noqa: ARG002
+        for optimum in (self.greatest, self.least):
+            yield self._bound(optimum, added)[1]
 
 
 @dataclass(frozen=True, eq=False)
-class LocalAnalysis(IncrementalAnalysis):
+class LocalAnalysis(ConeAnalysis):
     """Many loose stones: what a stone changes near it first, then the whole wall.
 
     See :mod:`drystone.statics.local_update` for the small programs.  An answer of theirs counts
     only with a certificate of the whole wall; without one HiGHS solves the whole program.
     """
 
-    by_highs: "HighsAnalysis"  # the same wall in HiGHS
-    program: ConeProgram  # its equations, the columns in the same order
+    by_highs: "HighsAnalysis"  # the same wall in HiGHS, the columns in the same order
     greatest: PrimalDual  # both ends of the range of alpha
     least: PrimalDual
 
@@ -228,26 +243,22 @@ class LocalAnalysis(IncrementalAnalysis):
         if not least.status is greatest.status is LimitStatus.OPTIMAL:
             return replace(by_highs, result=result)
         ends = (_primal_dual(greatest, 1), _primal_dual(least, -1))
-        return cls(by_highs.model, result, by_highs, program, *ends)
+        return cls(by_highs.model, result, program, by_highs, *ends)
 
-    def _result_with(self, model: RigidBlockModel) -> IncrementalResult:
-        added = self._added(model, self.program)
-        if added is None:
-            return self.by_highs.resistance_with(model)
-        return _result_between(model, self._bounds(model, added))
+    def in_highs(self) -> "HighsAnalysis":
+        """Return the same wall in HiGHS."""
+        return self.by_highs
 
     def _extended_to(self, model: RigidBlockModel) -> IncrementalAnalysis:
-        added = self._added(model, self.program)
-        by_highs = self.by_highs.extended(model)
-        if added is None:
+        grown, by_highs = self._grown(model), self.by_highs.extended(model)
+        if grown is None:
             return by_highs
         assert isinstance(by_highs, HighsAnalysis)  # noqa: S101 - it goes on as what it is
-        assert model.added is not None  # noqa: S101 - or nothing would be added
+        addition, added = grown
         result = _result_between(model, self._bounds(model, added))
-        return self._of(by_highs, result, self.program.appended(model.added, added))
+        return self._of(by_highs, result, self.program.appended(addition, added))
 
     def _bounds(self, model: RigidBlockModel, added: Added) -> "Iterator[Bound | None]":
-        """Find the greatest alpha, then the least."""
         whole = None
         ends = (self.greatest, self.least)
         for end, opposite in (ends, ends[::-1]):
@@ -309,7 +320,7 @@ class HighsAnalysis(IncrementalAnalysis):
         if not program.block_ids:
             return cls(model, IncrementalResult(lateral_resistance(model)), units, starts)
         least, greatest, lower, upper = _both_extremes(program, starts)
-        bases = WarmBases(read_basis(lower) or starts.least, read_basis(upper) or starts.greatest)
+        bases = WarmBases(lower or starts.least, upper or starts.greatest)
         result = _highs_result(model, program, least, greatest)
         return cls(model, result, units, bases, (least, greatest))
 
@@ -357,15 +368,15 @@ def highs_bound(program: EquilibriumProgram, starts: WarmBases, sign: int) -> "B
 
 def _both_extremes(
     program: EquilibriumProgram, starts: WarmBases
-) -> tuple[Extreme, Extreme, HighsBasis, HighsBasis]:
+) -> tuple[Extreme, Extreme, WarmBasis | None, WarmBasis | None]:
     """Find the least and the greatest alpha, each from its basis, and the bases they ended with."""
     session = WarmSession(program)
     greatest = _warm_extreme(program, session, starts.greatest, 1)
-    upper = session.highs.getBasis()
+    upper = session.basis()
     if greatest.status is LimitStatus.UNSTABLE:  # no alpha holds the blocks up
         return greatest, greatest, upper, upper
     least = _warm_extreme(program, session, starts.least, -1)
-    return least, greatest, session.highs.getBasis(), upper
+    return least, greatest, session.basis(), upper
 
 
 def _warm_extreme(
@@ -381,7 +392,7 @@ def _warm_extreme(
     optimal = extreme.solution.status is LimitStatus.OPTIMAL
     if not (extreme.status is LimitStatus.FAILED and optimal):
         return extreme
-    last = read_basis(session.highs.getBasis())
+    last = session.basis()
     if last is None:
         return extreme
     session.start_from(last)
@@ -401,10 +412,9 @@ def _by_interior_point(program: EquilibriumProgram, otherwise: WarmBases) -> War
     """Find bases near the optimum by crossover: hundreds of times quicker for many blocks."""
     session = HighsSession(program, "ipm")
     certified_extreme(program, session, 1.0)
-    greatest = read_basis(session.highs.getBasis())
+    greatest = session.basis()
     certified_extreme(program, session, -1.0)
-    least = read_basis(session.highs.getBasis())
-    return WarmBases(least or otherwise.least, greatest or otherwise.greatest)
+    return WarmBases(session.basis() or otherwise.least, greatest or otherwise.greatest)
 
 
 class Bound(NamedTuple):
@@ -450,29 +460,25 @@ def _result_between(model: RigidBlockModel, bounds: Iterable[Bound | None]) -> I
     the wall is solved from the start.
     """
     found = []
+    status = LimitStatus.OPTIMAL
     for bound in bounds:
         if bound is None:
             return IncrementalResult(lateral_resistance(model), solved_cold=True)
         if bound.fall is not None:
-            fall = bound._replace(certificate=bound.fall)
-            return _result(LimitStatus.UNSTABLE, fall, fall, model.mu)
+            status, found = LimitStatus.UNSTABLE, [bound._replace(certificate=bound.fall)] * 2
+            break
         found.append(bound)
-    greatest, least = found
-    return _result(LimitStatus.OPTIMAL, least, greatest, model.mu)
-
-
-def _result(status: LimitStatus, least: Bound, greatest: Bound, mu: float) -> IncrementalResult:
-    stands = status is LimitStatus.OPTIMAL
 
     def result(direction: Direction, bound: Bound, alpha: float) -> LimitResult:
         return LimitResult(
             status,
             direction,
-            max(0.0, alpha) if stands else None,
+            max(0.0, alpha) if status is LimitStatus.OPTIMAL else None,
             certificate=bound.certificate,
             message=MESSAGES[status],
             solver=bound.solver,
         )
 
+    greatest, least = found
     left, right = result("left", least, -least.alpha), result("right", greatest, greatest.alpha)
-    return IncrementalResult(LateralResistance(left, right, mu))
+    return IncrementalResult(LateralResistance(left, right, model.mu))

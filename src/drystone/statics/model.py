@@ -100,9 +100,15 @@ class RigidBlockModel:
         return min(self.mu if interface.mu is None else interface.mu, NO_SLIP)
 
     @cached_property
+    def contact_interfaces(self) -> NDArray[np.int64]:
+        """Place of the interface of every contact point (m,)."""
+        counts = [len(interface.points) for interface in self.interfaces]
+        return np.repeat(np.arange(len(counts)), np.array(counts, np.int64))
+
+    @property
     def contact_count(self) -> int:
         """Number of contact points."""
-        return sum(len(interface.points) for interface in self.interfaces)
+        return len(self.contact_interfaces)
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drystone.statics.failing.kinematics import Floats, kinematics
+from drystone.statics.failing.bodies import Floats, kinematics
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitResult
@@ -56,9 +56,7 @@ def friction_sensitivity(
         raise ValueError("the sensitivity needs an optimal result with mechanism and forces")
     motion = kinematics(model, result.mechanism, NO_TOLERANCE)
     lost = result.forces[:, 0] * np.abs(motion.relative[:, 1])
-    counts = [len(interface.points) for interface in model.interfaces]
-    which = np.repeat(np.arange(len(counts)), counts)
-    per_interface = np.bincount(which, lost, len(counts))
+    per_interface = np.bincount(model.contact_interfaces, lost, len(model.interfaces))
     live = (tilting_table(model) if loads is None else loads).live
     free = [not block.fixed for block in model.blocks]
     power = float((live * motion.velocity[:-1])[free].sum())

@@ -6,10 +6,10 @@ from hypothesis import strategies as st
 from drystone.contacts.blocks import model_from_labels
 from drystone.contacts.given import model_from_json
 from drystone.statics.failing.mechanism import describe_mechanism
-from drystone.statics.limit import lateral_resistance, limit_load
+from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND
 from drystone.statics.result import LimitStatus, Mechanism
-from tests.statics.walls import brick_model, coursed, irregular, stacked
+from tests.statics.walls import brick_model, coursed, irregular, limit_load, stacked
 from tests.strategies import repeatable
 
 

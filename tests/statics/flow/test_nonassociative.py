@@ -10,7 +10,11 @@ from drystone.contacts.given import model_from_json
 from drystone.statics.flow import nonassociative
 from drystone.statics.flow.flow_check import FlowCheck, check_flow
 from drystone.statics.flow.flow_search import NonassociativeSettings
-from drystone.statics.flow.nonassociative import nonassociative_load, nonassociative_resistance
+from drystone.statics.flow.nonassociative import (
+    NonassociativeResult,
+    nonassociative_load,
+    nonassociative_resistance,
+)
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.result import LimitStatus, Mechanism
@@ -206,7 +210,10 @@ def test_the_check_names_what_is_wrong(changed, error, size):
 def fabricated(alpha, error=0.0, method=""):
     mechanism = Mechanism((1,), np.array([[1.0, 0.0, 0.0]]))
     check = FlowCheck(error, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return nonassociative._Answer(alpha, mechanism, np.zeros((2, 2)), check, method)
+    forces = np.zeros((2, 2))
+    return NonassociativeResult(
+        LimitStatus.OPTIMAL, "right", alpha, mechanism, forces, method=method, check=check
+    )
 
 
 def test_the_least_verified_answer_is_told():

@@ -12,8 +12,7 @@ from drystone.statics.limit import resistance_between
 from drystone.statics.lp.certificate import certify, in_equilibrium
 from drystone.statics.lp.extremes import Extreme, certified_extreme
 from drystone.statics.lp.highs import HighsSession
-from drystone.statics.lp.program import assemble
-from drystone.statics.lp.solution import Solution
+from drystone.statics.lp.program import Solution, assemble
 from drystone.statics.result import CERTIFIED, Certificate, LimitStatus
 from tests.statics.walls import coursed, stacked
 

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.statics.limit import limit_load
 from drystone.statics.loads import growing_with_height
 from drystone.statics.lp.extremes import certified_extreme
 from drystone.statics.lp.highs import HighsSession
 from drystone.statics.lp.program import EquilibriumProgram, Units, assemble, units_of
 from drystone.statics.model import Block, RigidBlockModel
-from tests.statics.walls import coursed, irregular, stacked
+from tests.statics.walls import coursed, irregular, limit_load, stacked
 
 
 def varied(labels):

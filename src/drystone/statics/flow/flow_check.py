@@ -1,6 +1,6 @@
 """Check forces and a motion against Coulomb's law without dilatancy, from the blocks themselves."""
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
@@ -33,7 +33,7 @@ class FlowCheck:
     @property
     def largest(self) -> float:
         """The largest error."""
-        return max(self._errors)
+        return float(max(astuple(self)))
 
     @property
     def holds(self) -> bool:
@@ -41,18 +41,7 @@ class FlowCheck:
 
         The last two are errors of alpha.
         """
-        return all(error <= HOLDS for error in self._errors)
-
-    @property
-    def _errors(self) -> tuple[float, ...]:
-        return (
-            self.equilibrium,
-            self.friction,
-            self.closing,
-            self.held,
-            self.dilatancy,
-            self.dissipation,
-        )
+        return all(error <= HOLDS for error in astuple(self))
 
 
 def check_flow(

@@ -1,7 +1,7 @@
 """Load multipliers for Coulomb friction without dilatancy (non-associative flow).
 
 The blocks fail at a load multiplier alpha when there are forces in equilibrium, within friction,
-and a motion with live . v = 1 that obeys the flow rule of :mod:`drystone.statics.flow.flow_rule`.
+and a motion with live . v = 1 that obeys the flow rule of :mod:`drystone.statics.flow.flow_search`.
 That is a mixed complementarity problem, and it has several solutions; the forces of each are
 admissible in the associative problem, so none lies above that one's alpha.
 
@@ -48,8 +48,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from drystone.statics.flow.flow_check import FlowCheck, check_flow
-from drystone.statics.flow.flow_rule import State
-from drystone.statics.flow.flow_search import NonassociativeSettings, Search
+from drystone.statics.flow.flow_search import NonassociativeSettings, Search, State
 from drystone.statics.flow.release import fall_of, with_inertia
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
@@ -129,10 +128,8 @@ def nonassociative_load(
     """
     both = lateral_resistance(model, loads)
     associative = both.left if direction == "left" else both.right
-    chosen = settings or NonassociativeSettings()
-    return _released(model, loads, associative, chosen) or _nonassociative(
-        model, loads, associative, chosen
-    )
+    arguments = model, loads, associative, settings or NonassociativeSettings()
+    return _released(*arguments) or _nonassociative(*arguments)
 
 
 def nonassociative_resistance(
@@ -184,15 +181,13 @@ def _released(
     state = State(0.0, fall.edges, fall.acceleration)
     falling = with_inertia(model, program, loads or tilting_table(model), fall)
     answer = _answer(model, falling, "right", program, state, "let go")
-    if not answer.check.holds:
+    if not (answer.check and answer.check.holds):
         return None
-    return NonassociativeResult(
-        LimitStatus.UNSTABLE,
-        associative.direction,
-        mechanism=answer.mechanism,
-        forces=answer.forces,
-        method=answer.method,
-        check=answer.check,
+    return replace(
+        answer,
+        status=LimitStatus.UNSTABLE,
+        direction=associative.direction,
+        alpha=None,
         message="There are forces with which the blocks, let go, start to fall under their dead"
         " load alone; others, squeezed in before, would hold them.",
     )
@@ -217,18 +212,16 @@ def _nonassociative(
     program = assemble(model, loads)
     rounds, answers = 0, []
     sign = -1.0 if direction == "left" else 1.0
-    upright = np.repeat(  # the vertical part of the normal at every contact point
-        [abs(interface.normal[1]) for interface in model.interfaces],
-        [len(interface.points) for interface in model.interfaces],
-    )
+    upright = np.array([abs(interface.normal[1]) for interface in model.interfaces], float)
+    upright = upright[model.contact_interfaces]
     search = Search(program, sign, upright, settings, look)
     if associative.alpha is None and not search.moves:
         return NonassociativeResult(LimitStatus.UNBOUNDED, direction, message=IMMOVABLE)
-    for found in search.attempts():
-        rounds += found.rounds
-        if found.state is not None:
-            state = replace(found.state, alpha=_without_noise(found.state.alpha, associative.alpha))
-            answers.append(_answer(model, loads, direction, program, state, found.method))
+    for method, needed, found in search.attempts():
+        rounds += needed
+        if found is not None:
+            state = replace(found, alpha=_without_noise(found.alpha, associative.alpha))
+            answers.append(_answer(model, loads, direction, program, state, method))
     return _least_verified(direction, associative.alpha, rounds, answers)
 
 
@@ -241,17 +234,6 @@ def _without_noise(alpha: float, associative: float | None) -> float:
     return alpha if associative is None else min(alpha, associative)
 
 
-@dataclass(frozen=True, eq=False)
-class _Answer:
-    """A solution in the units of the model."""
-
-    alpha: float
-    mechanism: Mechanism
-    forces: Floats
-    check: FlowCheck
-    method: str
-
-
 def _answer(
     model: RigidBlockModel,
     loads: Loads | None,
@@ -259,51 +241,45 @@ def _answer(
     program: EquilibriumProgram,
     state: State,
     method: str,
-) -> _Answer:
-    velocity = np.zeros((len(program.rows), 3))
-    velocity[program.rows >= 0] = state.velocity
-    velocity[:, 2] /= program.length
-    fastest = float(np.hypot(velocity[:, 0], velocity[:, 1]).max())
-    # Blocks that only turn about their centroids are told by their rate of turning.
-    mechanism = Mechanism(program.block_ids, velocity / (fastest or float(np.abs(velocity).max())))
-    first, second = program.weight * state.edges.T
-    forces = np.column_stack((first + second, program.friction * (first - second)))
-    check = check_flow(model, loads, direction, state.alpha, mechanism, forces)
-    return _Answer(state.alpha, mechanism, forces, check, method)
+) -> NonassociativeResult:
+    """Check a state, in the units of the model."""
+    mechanism, forces = program.mechanism(state.velocity), program.forces(state.edges)
+    return NonassociativeResult(
+        LimitStatus.OPTIMAL,
+        direction,
+        state.alpha,
+        mechanism,
+        forces,
+        method=method,
+        check=check_flow(model, loads, direction, state.alpha, mechanism, forces),
+    )
 
 
 def _least_verified(
-    direction: Direction, associative: float | None, rounds: int, answers: list[_Answer]
+    direction: Direction,
+    associative: float | None,
+    rounds: int,
+    answers: list[NonassociativeResult],
 ) -> NonassociativeResult:
-    """Choose the least of the verified answers."""
-    verified = [answer for answer in answers if answer.check.holds]
+    """Choose the least of the verified answers; of equal ones the first."""
+    verified = [(a.alpha, a) for a in answers if a.alpha is not None and a.check and a.check.holds]
     if not verified:
-        said = f"The search did not converge in {rounds} rounds; " + (
+        message = f"The search did not converge in {rounds} rounds; " + (
             "with associated flow no load is too great."
             if associative is None
             else f"the load multiplier lies at or below the associative one, {associative:.5g}."
         )
-        return NonassociativeResult(LimitStatus.FAILED, direction, rounds=rounds, message=said)
-    # Of equal ones the first.
-    best = min(verified, key=lambda answer: round(answer.alpha, 9))
-    alphas = tuple(sorted(answer.alpha for answer in verified))
-    standing = best.alpha >= 0.0
-    said = (
-        f"The least of {len(verified)} verified answers, which reach up to {alphas[-1]:.4f}."
-        if standing
-        else "Without dilatancy the blocks can move this way under their dead load alone, and even"
-        f" against a load of {-best.alpha:.4f}, although other forces would hold them;"
-        f" {len(verified)} verified answers reach up to {alphas[-1]:.4f}."
+        return NonassociativeResult(LimitStatus.FAILED, direction, rounds=rounds, message=message)
+    least, best = min(verified, key=lambda one: round(one[0], 9))
+    alphas = tuple(sorted(alpha for alpha, _ in verified))
+    found = replace(best, rounds=rounds, answers=alphas)
+    count = f"{len(verified)} verified answers"
+    if least >= 0.0:
+        message = f"The least of {count}, which reach up to {alphas[-1]:.4f}."
+        return replace(found, message=message)
+    message = (
+        "Without dilatancy the blocks can move this way under their dead load alone, and even"
+        f" against a load of {-least:.4f}, although other forces would hold them;"
+        f" {count} reach up to {alphas[-1]:.4f}."
     )
-    return NonassociativeResult(
-        status=LimitStatus.OPTIMAL if standing else LimitStatus.UNSTABLE,
-        direction=direction,
-        alpha=best.alpha if standing else None,
-        mechanism=best.mechanism,
-        forces=best.forces,
-        rounds=rounds,
-        method=best.method,
-        check=best.check,
-        answers=alphas,
-        message=said,
-    )
+    return replace(found, status=LimitStatus.UNSTABLE, alpha=None, message=message)

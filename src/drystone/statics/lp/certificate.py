@@ -3,8 +3,7 @@
 import numpy as np
 
 from drystone.kernels.certificate import Figures
-from drystone.statics.lp.program import EquilibriumProgram, Floats
-from drystone.statics.lp.solution import Solution
+from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
 from drystone.statics.result import CERTIFIED, Certificate, LimitStatus
 
 
@@ -63,23 +62,22 @@ def optimum_of(found: Figures, alpha: float, sign: float) -> Certificate:
     )
 
 
-def fall_of(found: Figures) -> Certificate:
-    """Certify that the dead load does work on a mechanism."""
+def fall_of(found: Figures, live: float = 0.0) -> Certificate:
+    """Certify that the dead load does work on a mechanism.
+
+    That no alpha holds the blocks up is a fall on which `live`, the work of the live load, is 0.
+    """
     if found.largest == 0.0:
         return Certificate(fall_work=0.0)
     return Certificate(
-        inadmissible=found.inadmissible / found.largest, fall_work=-found.rhs / found.largest
+        inadmissible=max(found.inadmissible, abs(live)) / found.largest,
+        fall_work=-found.rhs / found.largest,
     )
 
 
 def no_alpha_of(found: Figures) -> Certificate:
-    """Certify that no alpha holds the blocks up: as a fall on which the live load does no work."""
-    if found.largest == 0.0:
-        return Certificate(fall_work=0.0)
-    return Certificate(
-        inadmissible=max(found.inadmissible, abs(found.live)) / found.largest,
-        fall_work=-found.rhs / found.largest,
-    )
+    """Certify that no alpha holds the blocks up."""
+    return fall_of(found, found.live)
 
 
 def _figures(program: EquilibriumProgram, columns: Floats | None, velocity: Floats) -> Figures:

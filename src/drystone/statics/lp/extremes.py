@@ -1,7 +1,7 @@
 """The two ends of the range of alpha: solvers are asked in turn until an answer is certified."""
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, Protocol
@@ -10,8 +10,7 @@ import numpy as np
 
 from drystone.statics.lp.certificate import certify, in_equilibrium
 from drystone.statics.lp.highs import HighsSession, WarmSession
-from drystone.statics.lp.program import EquilibriumProgram, Floats
-from drystone.statics.lp.solution import Solution
+from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import Certificate, LimitStatus
 
@@ -109,15 +108,12 @@ def _extremes(
 ) -> tuple[Extreme, Extreme]:
     """Find the greatest alpha, then the least from its basis."""
     sessions = _sessions(program, solver, mechanism=mechanism)
-    greatest, session = _certified(program, _made(sessions), 1.0)
+    greatest, session = _certified(program, (make() for make in sessions), 1.0)
     if greatest.status is LimitStatus.UNSTABLE:
         return greatest, greatest
-    least, _ = _certified(program, itertools.chain([session], _made(sessions)), -1.0)
+    again = itertools.chain([session], (make() for make in sessions))
+    least, _ = _certified(program, again, -1.0)
     return least, greatest
-
-
-def _made(sessions: Sequence[Callable[[], Session]]) -> Iterator[Session]:
-    return (make() for make in sessions)
 
 
 def _certified(

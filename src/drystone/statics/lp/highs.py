@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
-from drystone.statics.lp.program import EquilibriumProgram, Floats
-from drystone.statics.lp.solution import Solution
+from drystone.statics.lp.program import EquilibriumProgram, Floats, Solution
 from drystone.statics.result import LimitStatus
 
 Algorithm = Literal["simplex", "ipm"]
+
+INFINITY = highspy.kHighsInf
 
 TOLERANCE = 1e-9
 """Primal and dual feasibility; the default of HiGHS costs two digits of alpha at 300 blocks."""
@@ -47,9 +48,10 @@ _SIMPLEX: Mapping[str, Any] = {
 # the primal one then needs a fifth of the pivots at 60 blocks.
 _DUAL: Mapping[str, Any] = {"simplex_strategy": 1}
 _PRIMAL: Mapping[str, Any] = {"simplex_strategy": 4}
-_IPM: Mapping[str, Any] = {"solver": "ipm", "run_crossover": "on", "presolve": "on"}
-
-_OPTIONS: Mapping[Algorithm, Mapping[str, Any]] = {"simplex": _SIMPLEX, "ipm": _IPM}
+_OPTIONS: Mapping[Algorithm, Mapping[str, Any]] = {
+    "simplex": _SIMPLEX,
+    "ipm": {"solver": "ipm", "run_crossover": "on", "presolve": "on"},
+}
 
 _STATUS = {
     highspy.HighsModelStatus.kOptimal: LimitStatus.OPTIMAL,
@@ -75,93 +77,39 @@ class _SilentHighs(highspy.Highs):
         super().enableCallbacks()  # type: ignore[no-untyped-call]  # it has no types
 
 
-def silent_highs(options: Mapping[str, Any]) -> highspy.Highs:
-    """Return HiGHS with options by name, that prints nothing."""
+def loaded(
+    options: Mapping[str, Any],
+    matrix: csc_array,
+    rows: tuple[Floats, Floats],
+    lower: Floats,
+    costs: Floats | None = None,
+) -> highspy.Highs:
+    """Return HiGHS, that prints nothing, with a program: low <= matrix . x <= high, lower <= x."""
     highs = _SilentHighs()  # type: ignore[no-untyped-call]  # nor has its constructor
-    set_options(highs, {"output_flag": False, **options})
+    set_options(highs, {"output_flag": False, **_COMMON, **options})
+    (count, columns), (low, high) = matrix.shape, rows
+    by_column, minimise, offset = 1, 1, 0.0
+    highs.passModel(
+        columns, count, matrix.nnz, by_column, minimise, offset,
+        np.zeros(columns) if costs is None else costs, lower, np.full(columns, INFINITY), low, high,
+        matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32), matrix.data,
+        np.zeros(columns, np.int32),
+    )  # fmt: skip
     return highs
+
+
+def solved(highs: highspy.Highs) -> Floats | None:
+    """Solve what HiGHS has loaded; return its unknowns, or None when there is no optimum."""
+    highs.run()
+    if highs.getModelStatus() != highspy.HighsModelStatus.kOptimal:
+        return None
+    return np.array(highs.getSolution().col_value)
 
 
 def set_options(highs: highspy.Highs, options: Mapping[str, Any]) -> None:
     """Set options of HiGHS by name."""
     for name, value in options.items():
         highs.setOptionValue(name, value)
-
-
-class HighsSession:
-    """One program in HiGHS, solved for one objective after another, each from the last basis.
-
-    "simplex" is dual for the first objective and primal from the last basis after it.
-    """
-
-    def __init__(self, program: EquilibriumProgram, algorithm: Algorithm = "simplex") -> None:
-        self.limit = PIVOTS_PER_ROW * len(program.rhs) + 1000
-        limit = {"simplex_iteration_limit": self.limit}
-        self.highs = _loaded(program, {**_COMMON, **limit, **_OPTIONS[algorithm]})
-        self.name = f"HiGHS {algorithm}"
-        self._warm: Mapping[str, Any] = _PRIMAL if algorithm == "simplex" else {}
-        self._costs = np.zeros(program.column_count)
-
-    def minimise(self, costs: Floats) -> Solution:
-        """Minimise costs . x; the basis that it ends with starts the next call.
-
-        The costs are of alpha, then of the two edges of the friction cone at every contact point.
-        """
-        changed = np.flatnonzero(costs != self._costs).astype(np.int32)
-        self.highs.changeColsCost(len(changed), changed, costs[changed])
-        self._costs = costs.copy()
-        self.highs.run()
-        found = self.highs.getModelStatus()
-        name = self.name
-        if found == highspy.HighsModelStatus.kInfeasible and not self._has_ray():
-            name = self._find_ray()
-            found = self.highs.getModelStatus()
-        status = _STATUS.get(found, LimitStatus.FAILED)
-        said = self.highs.modelStatusToString(found)
-        columns, duals = self._vectors(status)
-        if status is LimitStatus.OPTIMAL:
-            set_options(self.highs, self._warm)
-        return Solution(status, columns, duals, said, name)
-
-    def _find_ray(self) -> str:
-        """Prove that there is no solution; return the name of what did.
-
-        The interior point method proves nothing: the simplex method finds the ray.
-        """
-        set_options(self.highs, _SIMPLEX)
-        self.highs.run()
-        return f"{self.name}, then simplex"
-
-    def _has_ray(self) -> bool:
-        _, there = self.highs.getDualRayExist()  # type: ignore[attr-defined]  # missing in its types
-        return bool(there)
-
-    def _vectors(self, status: LimitStatus) -> tuple[Floats | None, Floats | None]:
-        if status is LimitStatus.OPTIMAL:
-            solution = self.highs.getSolution()
-            return np.array(solution.col_value), np.array(solution.row_dual)
-        if status is LimitStatus.UNSTABLE:
-            _, there, ray = self.highs.getDualRay()  # type: ignore[attr-defined]  # missing in its types
-            return None, np.array(ray) if there else None
-        if status is LimitStatus.UNBOUNDED:
-            _, there, ray = self.highs.getPrimalRay()  # type: ignore[attr-defined]  # as above
-            return np.array(ray) if there else None, None
-        return None, None
-
-
-def _loaded(program: EquilibriumProgram, options: Mapping[str, Any]) -> highspy.Highs:
-    columns, rows = program.column_count, len(program.rhs)
-    lower = np.zeros(columns)
-    lower[0] = -highspy.kHighsInf
-    upper = np.full(columns, highspy.kHighsInf)
-    by_column, minimise, offset = 1, 1, 0.0
-    highs = silent_highs(options)
-    highs.passModel(
-        columns, rows, len(program.value), by_column, minimise, offset, np.zeros(columns), lower,
-        upper, program.rhs, program.rhs, program.start, program.index, program.value,
-        np.zeros(columns, np.int32),
-    )  # fmt: skip
-    return highs
 
 
 @dataclass(frozen=True)
@@ -188,6 +136,74 @@ class WarmBasis:
         return WarmBasis(
             columns, self.rows, all(stays or status != _BASIC for status, stays in both)
         )
+
+
+class HighsSession:
+    """One program in HiGHS, solved for one objective after another, each from the last basis.
+
+    "simplex" is dual for the first objective and primal from the last basis after it.
+    """
+
+    def __init__(self, program: EquilibriumProgram, algorithm: Algorithm = "simplex") -> None:
+        self.limit = PIVOTS_PER_ROW * len(program.rhs) + 1000
+        options = {"simplex_iteration_limit": self.limit, **_OPTIONS[algorithm]}
+        lower = np.zeros(program.column_count)
+        lower[0] = -INFINITY
+        self.highs = loaded(options, program.matrix, (program.rhs, program.rhs), lower)
+        self.name = f"HiGHS {algorithm}"
+        self._warm: Mapping[str, Any] = _PRIMAL if algorithm == "simplex" else {}
+        self._costs = np.zeros(program.column_count)
+
+    def minimise(self, costs: Floats) -> Solution:
+        """Minimise costs . x; the basis that it ends with starts the next call.
+
+        The costs are of alpha, then of the two edges of the friction cone at every contact point.
+        """
+        changed = np.flatnonzero(costs != self._costs).astype(np.int32)
+        self.highs.changeColsCost(len(changed), changed, costs[changed])
+        self._costs = costs.copy()
+        self.highs.run()
+        found = self.highs.getModelStatus()
+        name = self.name
+        if found == highspy.HighsModelStatus.kInfeasible and not self._has_ray():
+            name = self._find_ray()
+            found = self.highs.getModelStatus()
+        status = _STATUS.get(found, LimitStatus.FAILED)
+        said = self.highs.modelStatusToString(found)
+        columns, duals = self._vectors(status)
+        if status is LimitStatus.OPTIMAL:
+            set_options(self.highs, self._warm)
+        return Solution(status, columns, duals, said, name)
+
+    def basis(self) -> WarmBasis | None:
+        """Return a copy of the last basis; None when there is none."""
+        found = self.highs.getBasis()
+        return WarmBasis(tuple(found.col_status), tuple(found.row_status)) if found.valid else None
+
+    def _find_ray(self) -> str:
+        """Prove that there is no solution; return the name of what did.
+
+        The interior point method proves nothing: the simplex method finds the ray.
+        """
+        set_options(self.highs, _SIMPLEX)
+        self.highs.run()
+        return f"{self.name}, then simplex"
+
+    def _has_ray(self) -> bool:
+        _, there = self.highs.getDualRayExist()  # type: ignore[attr-defined]  # missing in its types
+        return bool(there)
+
+    def _vectors(self, status: LimitStatus) -> tuple[Floats | None, Floats | None]:
+        if status is LimitStatus.OPTIMAL:
+            solution = self.highs.getSolution()
+            return np.array(solution.col_value), np.array(solution.row_dual)
+        if status is LimitStatus.UNSTABLE:
+            _, there, ray = self.highs.getDualRay()  # type: ignore[attr-defined]  # missing in its types
+            return None, np.array(ray) if there else None
+        if status is LimitStatus.UNBOUNDED:
+            _, there, ray = self.highs.getPrimalRay()  # type: ignore[attr-defined]  # as above
+            return np.array(ray) if there else None, None
+        return None, None
 
 
 class WarmSession(HighsSession):
@@ -239,11 +255,6 @@ class WarmSession(HighsSession):
         self.highs.run()
         set_options(self.highs, {"simplex_iteration_limit": self.limit})
         return self.name
-
-
-def read_basis(found: highspy.HighsBasis) -> WarmBasis | None:
-    """Copy a basis out of HiGHS; None when it has none."""
-    return WarmBasis(tuple(found.col_status), tuple(found.row_status)) if found.valid else None
 
 
 def corrected(

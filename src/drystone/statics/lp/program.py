@@ -10,6 +10,7 @@ from scipy.sparse import csc_array
 
 from drystone.statics.loads import Loads, tilting_table
 from drystone.statics.model import FREEDOMS, GROUND, Block, RigidBlockModel
+from drystone.statics.result import LimitStatus, Mechanism
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -62,6 +63,20 @@ class EquilibriumProgram:
         shape = (len(self.rhs), self.column_count)
         return csc_array((self.value, self.index, self.start), shape=shape)
 
+    def mechanism(self, velocity: Floats) -> Mechanism:
+        """Return how the blocks move, from a velocity for each row (§4.1)."""
+        by_block = np.zeros((len(self.rows), 3))
+        by_block[self.rows >= 0] = velocity
+        by_block[:, 2] /= self.length
+        fastest = float(np.hypot(by_block[:, 0], by_block[:, 1]).max())
+        # Of blocks that only turn about their centroids the rate of turning says how fast.
+        return Mechanism(self.block_ids, by_block / (fastest or float(np.abs(by_block).max())))
+
+    def forces(self, edges: Floats) -> Floats:
+        """Add up the edges (m, 2) of every cone: normal part, and part along mu t."""
+        first, second = self.weight * edges.T
+        return np.column_stack((first + second, self.friction * (first - second)))
+
     def save(self, path: Path) -> None:
         """Write the program as NPZ, for a report of what no solver could solve (E140)."""
         arrays = {name: getattr(self, name) for name in _ARRAYS}
@@ -78,6 +93,20 @@ class EquilibriumProgram:
             arrays = {name: saved[name] for name in _ARRAYS}
             ids = tuple(saved["block_ids"].tolist())
         return cls(block_ids=ids, length=length, weight=weight, **arrays)
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Answer to: minimise costs . x subject to the program."""
+
+    status: LimitStatus  # OPTIMAL; UNSTABLE when the program has no solution; UNBOUNDED; FAILED
+    columns: Floats | None
+    """Unknowns; for UNBOUNDED a ray along which the costs fall for ever, if the solver has it."""
+    duals: Floats | None
+    """Of the rows, y with costs - y . column >= 0; for UNSTABLE a ray with y . column <= 0 and y .
+    rhs > 0, if the solver has it."""
+    said: str  # status in the solver's words
+    solver: str
 
 
 _ARRAYS = ("rows", "start", "index", "value", "rhs", "friction")
@@ -99,7 +128,8 @@ def assemble(
     unit = units.weight * np.array([1.0, 1.0, units.length])
     rows = _rows(free)
     moving = rows >= 0
-    friction = _friction(model)
+    each = np.array([model.friction(interface) for interface in model.interfaces], float)
+    friction = each[model.contact_interfaces]
     force, arm, blocks = _cone_edges(model, free, friction)
 
     value = np.empty((len(force), 2, 3))
@@ -137,12 +167,6 @@ def _rows(free: list[Block]) -> Ints:
     return rows
 
 
-def _friction(model: RigidBlockModel) -> Floats:
-    each = [model.friction(interface) for interface in model.interfaces]
-    counts = [len(interface.points) for interface in model.interfaces]
-    return np.repeat(np.array(each, float), np.array(counts, np.int64))
-
-
 def _cone_edges(
     model: RigidBlockModel, free: list[Block], friction: Floats
 ) -> tuple[Floats, Floats, Ints]:
@@ -152,16 +176,14 @@ def _cone_edges(
     the centroids of that block and of the other one to the point, anything for the ground; and the
     places (m, 2) of both in `free`, -1 for what does not move.
     """
-    place = {block.id: -1 for block in model.blocks}
-    place[GROUND] = -1
+    place = dict.fromkeys((GROUND, *(block.id for block in model.blocks)), -1)
     place.update((block.id, i) for i, block in enumerate(free))
+    of_edge = np.repeat(model.contact_interfaces, 2)
     points = [interface.points for interface in model.interfaces]
-    repeats = 2 * np.array([len(ends) for ends in points], np.int64)
     at = np.repeat(np.concatenate([np.empty((0, 2)), *points]), 2, axis=0)
     pairs = [(place[i.block], place[i.other]) for i in model.interfaces]
-    blocks = np.repeat(np.array(pairs, np.int32).reshape(-1, 2), repeats, axis=0)
-    normals = [interface.normal for interface in model.interfaces]
-    normal = np.repeat(np.array(normals, float).reshape(-1, 2), repeats, axis=0)
+    blocks = np.array(pairs, np.int32).reshape(-1, 2)[of_edge]
+    normal = np.array([i.normal for i in model.interfaces], float).reshape(-1, 2)[of_edge]
     tangent = np.column_stack((normal[:, 1], -normal[:, 0]))
     along = np.repeat(friction, 2) * np.tile([1.0, -1.0], len(friction))
     centroid = np.array([*(block.centroid for block in free), (0.0, 0.0)])

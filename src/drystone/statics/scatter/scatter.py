@@ -120,34 +120,23 @@ def scatter(
         samples.append(sample)
         if on_sample is not None:
             on_sample(done)
-    standing = [sample.alphas for sample in samples if sample.alphas is not None]
-    alphas = np.array(standing, float).reshape(-1, 2)
-    return Scatter(
-        settings=settings,
-        seed=seed,
-        unshaken=lateral_resistance(model),
-        status=tuple(sample.status for sample in samples),
-        mu=np.array([sample.mu for sample in samples]),
-        alpha_left=alphas[:, 0],
-        alpha_right=alphas[:, 1],
-    )
+    alphas = np.array([s[2:] for s in samples if s[0] is LimitStatus.OPTIMAL], float)
+    left, right = alphas.reshape(-1, 2).T
+    mu = np.array([sample[1] for sample in samples])
+    unshaken, status = lateral_resistance(model), tuple(sample[0] for sample in samples)
+    return Scatter(settings, seed, unshaken, status, mu, left, right)
 
 
-class _Sample(NamedTuple):
-    mu: float
-    status: LimitStatus
-    alphas: tuple[float, float] | None
-
-
-def _analysed(model: RigidBlockModel, settings: ScatterSettings, seed: int, number: int) -> _Sample:
+def _analysed(
+    model: RigidBlockModel, settings: ScatterSettings, seed: int, number: int
+) -> tuple[LimitStatus, float, float | None, float | None]:
+    """Return how a sample ends, its friction, and its load multipliers to both sides."""
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(number,)))
     wall = shaken(model, settings, rng)
     both = lateral_resistance(wall)
-    if both.left.alpha is not None and both.right.alpha is not None:
-        return _Sample(wall.mu, LimitStatus.OPTIMAL, (both.left.alpha, both.right.alpha))
-    ends = (both.left.status, both.right.status)
-    worst = (LimitStatus.FAILED, LimitStatus.UNSTABLE, LimitStatus.UNBOUNDED)
-    return _Sample(wall.mu, next(status for status in worst if status in ends), None)
+    ends = both.left.status, both.right.status
+    worst = (status for status in reversed(LimitStatus) if status in ends)
+    return next(worst), wall.mu, both.left.alpha, both.right.alpha
 
 
 def _quantiles(values: Floats) -> Quantiles | None:
