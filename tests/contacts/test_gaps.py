@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from drystone.contacts.blocks import model_from_labels, notice_of_pieces, pieces_apart
+from drystone.contacts.blocks import model_from_labels, pieces_apart
 from drystone.contacts.gaps import (
     close_gaps,
     gap_spread,
@@ -86,11 +86,6 @@ def test_nothing_grows_into_free_air():
     assert grown.max(axis=0).tolist() == [19, 13]
     assert (closed[8:, 12] == 1).all()
     assert (closed[8:, 13] == 2).all()
-
-
-def test_gaps_wider_than_the_reach_stay_as_they_are():
-    labels = bond(4, 12, 20, 3)
-    assert (close_gaps(labels, 2) == labels).all()
 
 
 def test_what_grows_is_connected_with_its_stone():
@@ -197,16 +192,6 @@ def test_the_spread_says_what_the_reach_decides():
     stack = np.kron([[1], [0], [2]], np.ones((2, 8), int))
     without = gap_spread(stack, 2, mu=0.0)
     assert without.startswith("F_LR not defined with gaps up to 2 px closed (unstable")
-
-
-def test_pixels_that_lie_apart_are_counted_and_said():
-    labels = np.zeros((6, 9), np.uint32)
-    labels[:3, :3], labels[3, 3], labels[5, 6:8], labels[0, 8] = 7, 7, 7, 2
-    assert pieces_apart(labels) == ((7, 2),)
-    (notice,) = notice_of_pieces(labels)
-    assert notice.code == "W304"
-    assert notice.message.startswith("2 pixels of stone 7 lie apart from it;")
-    assert notice_of_pieces(np.ones((2, 2), int)) == ()
 
 
 def test_no_toe_grows_beyond_its_stone():

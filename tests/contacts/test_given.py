@@ -120,15 +120,6 @@ def test_a_far_block_changes_no_answer_nearby(far, size):
             assert both.right.alpha == pytest.approx(0.5, abs=1e-5)
 
 
-def test_the_tolerance_of_a_pair_is_that_of_the_smaller_block():
-    """A gap that is nothing beside a large block is one beside a small one."""
-    for above, stands in ((1.0, True), (1e-2, False)):
-        gap = 3e-7
-        assert lateral_resistance(
-            model_from_json(two_and_a_far_one(gap, 10.0, above=above))
-        ).stable == stands  # fmt: skip
-
-
 @given(
     seed=st.integers(0, 10**6),
     size=st.sampled_from([1e-3, 1.0, 1e3]),
@@ -213,10 +204,6 @@ def test_a_turned_square_that_is_closed_by_its_angle_is_whole(angle_deg):
     corners = np.column_stack((np.cos(angles), 2.0 + np.sin(angles)))
     model = model_from_json({"blocks": [{"id": 1, "polygon": corners.tolist()}]})
     assert model.blocks[0].area == pytest.approx(2.0)
-
-
-def test_no_blocks_is_a_model():
-    assert model_from_json({"blocks_xywh": []}).blocks == ()
 
 
 def test_blocks_far_from_the_origin_lose_no_digits():
@@ -330,14 +317,6 @@ def test_blocks_with_a_common_line_do_not_overlap():
         pair = outlines_along_a_line(rng)
         blocks = [{"id": i, "polygon": p.tolist()} for i, p in enumerate(pair, 1)]
         assert {i.other for i in model_from_json({"blocks": blocks}).interfaces} == {1}
-
-
-def test_of_blocks_in_one_place_the_first_two_are_named_at_once(monkeypatch):
-    asked = []
-    monkeypatch.setattr("drystone.contacts.given.overlap_depth", lambda *_: asked.append(1) or 1.0)
-    with pytest.raises(InputError, match=r"E304 .*blocks 1 and 2 overlap"):
-        model_from_json({"blocks_xywh": [[0, 0, 4, 2]] * 400})
-    assert len(asked) == 1
 
 
 def sectors(count):

@@ -38,7 +38,6 @@ from tests.statics.growth import (
     empty,
     upwards,
     wall_and_candidates,
-    wall_at_once,
     with_block,
 )
 from tests.statics.walls import coursed, irregular, stacked
@@ -113,17 +112,6 @@ def test_walls_of_pixels_with_contacts_at_points(begin, name):
             built = built.add(group.placement, group.wedges)
 
     check()
-
-
-def test_two_blocks_at_once(begin, name):
-    """A stone and its wedge."""
-    whole, blocks = upwards(coursed(4, 3, 70))
-    analysis = begin(empty(), PX)
-    for first, second in zip(blocks[::2], blocks[1::2], strict=False):
-        model = with_block(analysis.model, first, second, whole=whole)
-        assert_same(analysis.resistance_with(model), model, SOLVERS[name])
-        analysis = analysis.extended(model)
-    assert len(analysis.model.blocks) >= 6
 
 
 def test_contacts_that_carry_may_go(begin, name):
@@ -278,30 +266,6 @@ def test_no_alpha_needs_work_and_no_help_of_the_live_load():
         assert certified_bound(falling._replace(**error), nan, 1, "") is None
 
 
-def test_a_fall_that_is_not_proved_is_not_believed(begin, monkeypatch):
-    """The upper block is over the edge by a hair, and the mechanism slides a little as well.
-
-    It proves alpha to 1e-8, as it must, and not that the wall falls.
-    """
-    rows = [[0, 0, 1, 1], [0.5 + 2e-9, 1, 1, 1]]
-    both = model_from_json({"blocks_xywh": rows, "mu": 0.9})
-    first = RigidBlockModel(both.blocks[:1], both.interfaces[:1], both.mu)
-    analysis = begin(first, units_of(first))
-    over = analysis.model.with_added(both.blocks[1:], both.interfaces[1:])
-    honest = analysis.resistance_with(over)
-    assert honest.resistance.left.status is LimitStatus.UNSTABLE
-    assert not honest.solved_cold
-
-    def slides(velocity):
-        changed = velocity.copy()
-        changed[-3] += 8e-9 * np.abs(velocity).max()
-        return changed
-
-    lie(monkeypatch, lambda answer: replace(answer, velocity=slides(answer.velocity)))
-    lie_of_highs(monkeypatch, lambda one: replace(one, duals=slides(one.duals)))
-    assert analysis.resistance_with(over).solved_cold
-
-
 def lie(monkeypatch, spoil, signs=(1, -1)):
     """Let the kernel lie about some ends; nothing near a stone is found."""
     honest = Optimum.solved_with
@@ -417,32 +381,6 @@ def test_a_wall_that_outgrows_the_kernel_goes_on():
     assert_same(at_once.result, analysis.model, {WARM})
 
 
-@needs_kernel
-@pytest.mark.parametrize("labels", [coursed(1, 7, 150), irregular(4, 50, 150, 110)])
-def test_most_answers_about_large_walls_need_no_look_at_the_whole(labels):
-    analysis, candidates = wall_at_once(labels, 40)
-    assert isinstance(analysis, LocalAnalysis)
-    near = 0
-    for model in candidates:
-        both = analysis.resistance_with(model).resistance
-        near += both.left.solver == both.right.solver == LOCAL
-    assert near > len(candidates) / 3
-
-
-@needs_kernel
-def test_a_stone_that_floats_is_known_to_fall_at_once():
-    analysis, _ = wall_at_once(coursed(1, 7, 150), 40)
-    _, blocks = upwards(coursed(1, 7, 150))
-    model = analysis.model.with_added((blocks[-1],), ())
-    found = analysis.resistance_with(model)
-    assert not lateral_resistance(model).stable
-    assert_same(found, model, {LOCAL})
-    # HiGHS goes on with a wall that fell.
-    fallen = analysis.extended(model)
-    assert bits(fallen.result) == bits(found)
-    assert isinstance(fallen, HighsAnalysis)
-
-
 def test_many_blocks_at_once_begin_with_an_interior_point(monkeypatch):
     analysis, candidates = wall_and_candidates(coursed(3, 5, 90), 14)
     asked = []
@@ -460,28 +398,6 @@ def test_many_blocks_at_once_begin_with_an_interior_point(monkeypatch):
     assert_same(at_once.result, analysis.model, {WARM})
     for model in candidates:
         assert_same(at_once.resistance_with(model), model, {WARM})
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-def test_one_end_alone_is_found_from_its_own_basis(sign, monkeypatch):
-    analysis, candidates = wall_and_candidates(coursed(3, 5, 90), 14, HighsAnalysis.of)
-    pivots = Pivots(monkeypatch)
-    same = highs_bound(*analysis.prepared(analysis.model.with_added((), ())), sign)
-    assert (pivots.count, pivots.calls) == (0, 1)
-    side = "right" if sign > 0 else "left"
-    known = getattr(analysis.result.resistance, side)
-    assert sign * same.alpha == pytest.approx(known.alpha, abs=1e-12)
-    compared = 0
-    for model in candidates:
-        bound = highs_bound(*analysis.prepared(model), sign)
-        expected = lateral_resistance(model)
-        assert bound.certificate.holds
-        if expected.stable:
-            assert bound.fall is None
-            sought = getattr(expected, side)
-            assert sign * bound.alpha == pytest.approx(sought.alpha, abs=1e-9)
-            compared += 1
-    assert compared > 3
 
 
 def test_an_end_beyond_0_is_a_fall():

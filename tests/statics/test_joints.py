@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from drystone.contacts.blocks import model_from_labels
-from drystone.contacts.given import model_from_json, polygons_from_json
+from drystone.contacts.given import model_from_json
 from drystone.errors import InputError
 from drystone.statics.joints import loose_blocks, slippery, with_head_friction
 from drystone.statics.limit import lateral_resistance
@@ -26,11 +26,6 @@ def test_a_joint_at_less_than_45_degrees_is_no_head_joint():
     ).interfaces:
         steep = abs(interface.normal[0]) > abs(interface.normal[1])
         assert (interface.mu == 0.1) == steep
-
-
-def test_head_friction_from_a_file():
-    data = {"blocks_xywh": [[0, 0, 1, 1], [1, 0, 1, 1]], "mu": 0.5, "mu_head": 0}
-    assert [i.mu for i in model_from_json(data).interfaces] == [None, None, 0.0]
 
 
 def test_friction_of_a_pair_from_a_file():
@@ -63,12 +58,6 @@ def test_interfaces_from_a_file_are_taken_as_they_are():
 def test_a_guide_from_a_file():
     tall = {"id": 1, "polygon": [[0, 0], [1, 0], [1, 4], [0, 4]], "held": ["turn"]}
     assert limit_load(model_from_json({"blocks": [tall]}), "left").alpha == pytest.approx(0.58)
-
-
-def test_polygons_of_a_file():
-    polygons = polygons_from_json({"blocks_xywh": PAIR})
-    assert list(polygons) == [1, 2]
-    assert polygons[2].tolist() == [[0, 1], [2, 1], [2, 2], [0, 2], [0, 1]]
 
 
 @pytest.mark.parametrize(
@@ -107,11 +96,6 @@ def test_weights_that_no_solver_tells_from_rounding_are_refused():
         model_from_json({"blocks": heavy})
     heavy[1]["fixed"] = True
     assert len(model_from_json({"blocks": heavy}).blocks) == 2
-
-
-def test_what_is_too_small_to_have_an_area_is_refused():
-    with pytest.raises(InputError, match="E303"):
-        model_from_json({"blocks_xywh": [[0, 0, 1e-200, 1e-200]]})
 
 
 def test_blocks_that_nothing_carries():

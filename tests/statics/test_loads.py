@@ -45,14 +45,6 @@ def test_what_a_tilted_base_leaves_is_the_rest_of_the_angle(angle_deg):
     assert beyond.status is LimitStatus.UNSTABLE  # atan .25 = 14.04 degrees
 
 
-def test_the_angle_at_which_a_wall_falls_is_that_of_its_load_multiplier():
-    model = model_from_labels(coursed(3, 4, 90)).model
-    alpha = limit_load(model, "right").alpha
-    angle = math.degrees(math.atan(alpha))
-    assert limit_load(model, "right", tilting_table(model, angle - 1e-6)).success
-    assert not limit_load(model, "right", tilting_table(model, angle + 1e-6)).success
-
-
 def test_a_load_that_grows_with_height_overturns_sooner():
     """Forces w alpha y / 2 at heights 1 and 3: moment alpha w (1 + 9) / 2 against 2 w / 2."""
     model = tower()

@@ -5,8 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from drystone.errors import PlanError
 from drystone.generate import PolygonSettings, polygon_stones
@@ -18,10 +16,8 @@ from drystone.model.wall import Wall
 from drystone.planner.settings import method_settings
 from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
-from drystone.verify.canvas import leaves
 from drystone.verify.check import check_plan
 from drystone.verify.replay import rebuild_wall, replay_plan
-from tests.strategies import repeatable
 from tests.verify.exact_examples import exact_example
 from tests.verify.examples import SLAB, WEDGE
 from tests.verify.tampering import changed, moved, reshaped
@@ -182,15 +178,3 @@ def test_wedge_of_huge_size_is_refused_before_it_is_drawn() -> None:
     assert [p.code for p in replay.problems] == ["E220"]
     replay = replay_plan(changed(example.plan, 3, centroid=(1e300, 10.0)), example.stones)
     assert [p.code for p in replay.problems] == ["E220"]
-
-
-@repeatable(40)
-@given(st.floats(-3, 3), st.floats(-3, 3), st.sampled_from([0.0, 0.04, 0.06]))
-def test_edges_are_crossed_by_what_is_out_of_the_box(dx: float, dy: float, by: float) -> None:
-    corners = np.array([[2.0 + dx, 1.0 + dy], [7.0 + dx, 2.0 + dy], [4.0 + dx, 5.0 + dy]])
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    extent = high[0] - by, high[1] - by
-    beyond = [by, by, -low[1], -low[0]]
-    assert len([part for part in leaves(corners, extent).split(", ") if part]) == sum(
-        b > 0.05 for b in beyond
-    )

@@ -57,39 +57,6 @@ def test_a_flat_block_slides_although_the_flow_rule_lifts_it(direction, slip):
     assert (group.motion, group.toe, group.centre, group.on_bed) == ("sliding", None, None, True)
 
 
-def test_sliding_without_dilatancy_is_sliding_too():
-    model = model_from_labels(stacked((40, 20, 0))).model
-    assert moved(model, {1: (1, 0, 0)}).contact_kinds == ("sliding", "sliding")
-
-
-def test_an_upper_block_rocks_alone():
-    failure = of_labels(stacked((40, 20, 0), (10, 40, 15)))
-    assert failure.words == "Rocking of block 2 about its right toe, on 1."
-    assert failure.moving == (2,)
-    (group,) = failure.groups
-    assert (group.toe.point, group.against) == ((25.0, 20.0), (1,))
-
-
-def test_two_blocks_rock_together():
-    failure = of_labels(stacked((20, 20, 0), (20, 20, 0)), mu=0.65)
-    assert failure.words == "Rocking of blocks 1 and 2 about the right toe of 1."
-    assert [group.blocks for group in failure.groups] == [(1, 2)]
-    assert failure.groups[0].centroid == pytest.approx((10.0, 20.0))
-    assert failure.groups[0].centre == pytest.approx((20.0, 0.0), abs=1e-9)
-
-
-def test_three_courses_rock_together_and_the_upper_two_slide():
-    courses = stacked((20, 20, 0), (20, 20, 0), (20, 20, 0))
-    assert (
-        of_labels(courses, mu=0.9).words == "Rocking of blocks 1, 2 and 3 about the right toe of 1."
-    )
-    model = model_from_labels(stacked((40, 10, 0), (40, 10, 0), (40, 10, 0))).model
-    failure = moved(model, {1: (0, 0, 0), 2: (1, 0.58, 0), 3: (1, 0.58, 0)})
-    assert failure.words == "Sliding of blocks 2 and 3 on 1."
-    assert failure.moving == (2, 3)
-    assert failure.contact_kinds == ("closed",) * 2 + ("sliding",) * 2 + ("closed",) * 2
-
-
 def test_a_bridging_stone_is_carried_by_two_rocking_pillars():
     labels = np.zeros((60, 100), np.uint32)
     labels[20:, :20], labels[20:, 80:] = 1, 2

@@ -33,17 +33,6 @@ def test_lists_of_stones(ids, words):
     assert STONES.listed(ids) == words
 
 
-def test_places():
-    assert STONES.place([7, 300, GROUND]) == "the ground, 7 and wedge 300"
-    assert STONES.place(range(1, 10)) == "1, 2, 3, 4, 5 ... and 4 more"
-
-
-def test_the_sentence_of_the_issue():
-    groups = [rocking(3, 7, 12, toe=3, on=5), sliding(9, on=(4,))]
-    expected = "Rocking of stones 3, 7 and 12 about the right toe of 3, on 5; stone 9 slides on 4."
-    assert in_words(groups, STONES) == expected
-
-
 def test_bodies_that_move_alike_share_a_clause():
     groups = [
         rocking(1, toe=1, on=GROUND, side="left"),

@@ -61,15 +61,6 @@ def test_a_wall_that_grows_keeps_its_columns_and_rows(labels):
     assert np.array_equal(whole.rows[: len(wall.rows)], wall.rows)
 
 
-def test_nothing_free_has_no_rows():
-    fixed = replace(model_from_labels(stacked((20, 20, 0))).model.blocks[0], fixed=True)
-    model = model_from_labels(stacked((20, 20, 0))).model
-    for blocks, interfaces in (((), ()), ((fixed,), model.interfaces)):
-        program = assemble(RigidBlockModel(blocks, interfaces), units=Units(1.0, 1.0))
-        assert program.matrix.shape == (0, 1 + 4 * len(interfaces))
-        assert program.block_ids == ()
-
-
 @pytest.mark.parametrize("growing", [False, True])
 def test_a_saved_program_is_the_program(tmp_path, growing):
     model = model_from_labels(coursed(3, 4, 90)).model

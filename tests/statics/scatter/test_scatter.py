@@ -41,12 +41,6 @@ def test_workers_do_not_change_the_result(pool):
     assert figures(scatter(model, NOISY, seed=6)) != figures(expected)
 
 
-def test_more_samples_begin_with_the_same_ones():
-    few, many = (scatter(FLAT, replace(NOISY, samples=n), seed=2) for n in (5, 12))
-    assert many.mu[:5].tolist() == few.mu.tolist()
-    assert many.alpha_left[:5].tolist() == few.alpha_left.tolist()
-
-
 def test_progress_is_told_after_every_sample():
     told = []
     scatter(FLAT, replace(NOISY, samples=7), on_sample=told.append)
