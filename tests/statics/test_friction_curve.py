@@ -3,7 +3,7 @@
 import pytest
 
 from drystone.contacts.given import model_from_json
-from drystone.statics.friction_curve import friction_curve
+from drystone.statics.sensitivity import friction_curve
 
 
 def test_a_block_slides_and_then_rocks() -> None:

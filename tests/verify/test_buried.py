@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from drystone.kernels.polygons import Points
 from drystone.model.outlines import Outlines
 from drystone.model.site import Site
-from drystone.verify.buried import lies_under, swept_upwards
+from drystone.verify.pieces import lies_under, swept_upwards
 from tests.polygons import simple_polygons
 from tests.strategies import repeatable
 

@@ -18,7 +18,7 @@ from drystone.search.plan_result import PlanResult
 from drystone.search.plan_wall import plan_wall
 from drystone.settle.rest import placed_outline
 from drystone.verify.check import check_plan
-from drystone.verify.pixels import check_outline, rim_px
+from drystone.verify.pieces import check_outline, rim_px
 from tests.naive import outline as naive
 from tests.planner.scenes import greedy, stones_of_masks
 from tests.strategies import blobs, holed, masks, repeatable

@@ -28,14 +28,9 @@ _POINT_LOAD = re.compile(rf"(\d+)@{_NUMBER},{_NUMBER}:{_NUMBER},{_NUMBER}")
 class Loads:
     """What acts on the blocks: dead + alpha live.
 
-    Parameters
-    ----------
-    dead, live : (n, 3) float array
-        Horizontal force, vertical force (up) and moment (counter-clockwise) about the centroid of
-        each block of the model, in its order.  Units: weights of the model; moments times its
-        unit of length.  What acts on fixed blocks does not matter.
-    name : str
-        For people.
+    Both are (n, 3): horizontal force, vertical force (up) and moment (counter-clockwise) about the
+    centroid of each block of the model, in its order.  Units: weights of the model; moments times
+    its unit of length.  What acts on fixed blocks does not matter.
     """
 
     dead: Floats
@@ -87,33 +82,10 @@ def growing_with_height(model: RigidBlockModel) -> Loads:
 def point_load(
     model: RigidBlockModel, block: int, point: tuple[float, float], force: tuple[float, float]
 ) -> Floats:
-    """Return a force on one block at a point, to add to dead or live loads.
+    """Return a force on the block of an id at a point, (n, 3), to add to dead or live loads.
 
-    Parameters
-    ----------
-    model : RigidBlockModel
-        Blocks.
-    block : int
-        Id of the block that takes the force.
-    point : (float, float)
-        Where it acts, wall frame.
-    force : (float, float)
-        To the right and up, in weights of the model (area times density).
-
-    Returns
-    -------
-    (n, 3) float array
-
-    Raises
-    ------
-    InputError
-        E306 for a block that the model does not have.
-
-    Examples
-    --------
-    >>> model = RigidBlockModel((Block(1, 2.0, (0.5, 1.0)),), ())
-    >>> point_load(model, 1, (0.0, 1.0), (0.0, -3.0)).tolist()
-    [[0.0, -3.0, 1.5]]
+    The force is to the right and up, in weights of the model (area times density); the point is in
+    the wall frame.  A block that is not there is an InputError (E306).
     """
     row, found = _block(model, block)
     arm_x, arm_y = point[0] - found.centroid[0], point[1] - found.centroid[1]

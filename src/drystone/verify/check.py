@@ -13,7 +13,6 @@ from drystone.model.wall import Labels, Wall
 from drystone.planner.dropping import wedge_limits
 from drystone.statics.model import RigidBlockModel
 from drystone.verify.blocks import check_blocks
-from drystone.verify.buried import is_buried
 from drystone.verify.claims import (
     Reference,
     check_choice,
@@ -26,11 +25,16 @@ from drystone.verify.claims import (
 )
 from drystone.verify.lengths import source_points
 from drystone.verify.outlines import real_outline
-from drystone.verify.pixels import check_outline
+from drystone.verify.pieces import (
+    check_outline,
+    check_polygon,
+    check_settled_wedge,
+    check_wedge,
+    is_buried,
+)
 from drystone.verify.replay import Replay, Stage, replay_plan
 from drystone.verify.report import CheckReport, Problem
-from drystone.verify.stability import Standing, check_stability, prefix_alphas
-from drystone.verify.wedges import check_polygon, check_settled_wedge, check_wedge
+from drystone.verify.stability import Standing, check_stability
 
 
 def check_plan(
@@ -79,7 +83,7 @@ def check_plan(
         buried=tuple(stage.stone.stone for stage in replay.stages if is_buried(stage)),
         area_error=area_error,
         area_error_at=area_error_at,
-        prefixes=prefix_alphas(replay.stages, standing.resistances),
+        prefixes=standing.prefixes,
         metrics=metrics,
         notes=tuple(_notes(plan, stones, replay, wall_labels, blocks)),
         geometry=replay.settings.geometry,

@@ -60,30 +60,14 @@ STARTS = (
 
 @dataclass(frozen=True)
 class NonassociativeSettings:
-    """How much is tried.
+    """How much is tried."""
 
-    Parameters
-    ----------
-    rounds : int
-        Most rounds from each start.
-    patience : int
-        Steps of descent in a row without a lower load, after which it ends.
-    starts : tuple of Start
-        All are tried, in this order.
-    random_starts : int
-        So many more, from random slip rates.
-    seed : int
-        Of the random slip rates.
-    let_go : bool
-        It is looked first whether the blocks can fall when they are let go.
-    """
-
-    rounds: int = 60
-    patience: int = 5
-    starts: tuple[Start, ...] = STARTS
-    random_starts: int = 6
-    seed: int = 0
-    let_go: bool = True
+    rounds: int = 60  # most rounds from each start
+    patience: int = 5  # steps of descent in a row without a lower load, after which it ends
+    starts: tuple[Start, ...] = STARTS  # all are tried, in this order
+    random_starts: int = 6  # so many more, from random slip rates
+    seed: int = 0  # of the random slip rates
+    let_go: bool = True  # it is looked first whether the blocks can fall when they are let go
 
     @property
     def all_starts(self) -> tuple[Start, ...]:

@@ -39,34 +39,14 @@ RESOLVED = 3.0
 
 @dataclass(frozen=True, kw_only=True)
 class ScatterSettings:
-    """What is not known exactly.
+    """What is not known exactly; lengths are those of the model (E302, E318 for nonsense)."""
 
-    Parameters
-    ----------
-    samples : int
-        Walls to analyse, at least 1.
-    mu : (float, float) or None
-        Least and greatest coefficient of friction, >= 0; None for that of the model.
-    mu_per_interface : bool
-        Every interface has a friction of its own, independent of the others; False for one
-        value for the whole wall.
-    outline_noise : float
-        Standard deviation of outlines, in lengths of the model, >= 0.
-    placement_noise : float
-        Standard deviation of the place of a stone in each direction, in lengths of the model,
-        >= 0.
-
-    Raises
-    ------
-    InputError
-        E302 for a range of friction that makes no sense, E318 for the others.
-    """
-
-    samples: int = 500
-    mu: tuple[float, float] | None = None
-    mu_per_interface: bool = False
-    outline_noise: float = 0.0
+    samples: int = 500  # walls to analyse
+    mu: tuple[float, float] | None = None  # least and greatest friction; None for that of the model
+    mu_per_interface: bool = False  # every interface has a friction of its own
+    outline_noise: float = 0.0  # standard deviation of outlines, >= 0
     placement_noise: float = 0.0
+    """Standard deviation of the place of a stone in each direction, >= 0."""
 
     def __post_init__(self) -> None:
         if self.mu is not None and not 0 <= self.mu[0] <= self.mu[1] < np.inf:
