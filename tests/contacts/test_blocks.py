@@ -122,11 +122,3 @@ def test_points_known_before_change_nothing(labels, first):
     assert told_exactly(model_with(model, wall, new, points=points)) == anew
     others = PointContacts.of(find_interfaces(labels))
     assert told_exactly(model_with(model, wall, new, points=others)) == anew
-
-
-def test_a_placement_knows_area_and_centroid_of_its_pixels():
-    labels = np.zeros((30, 40), np.uint32)
-    mask = np.array([[1, 1, 0], [1, 1, 1]], bool)
-    posed = PosedStone(Stone(5, mask), 0.0, 1.0, mask, (0.0, 0.0))
-    model = model_with(RigidBlockModel((), ()), labels, Placement(posed, 20, 30))
-    assert model.blocks == (Block(5, 5.0, (30 + 6.5 / 5, 8 + 4.5 / 5)),)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from drystone.contacts.interfaces import PointContacts, find_interfaces, interfaces_in
+from drystone.contacts.interfaces import PointContacts, find_interfaces
 from drystone.kernels.patches import painted_patch
 from drystone.statics.model import GROUND
 from tests.naive import contacts as naive
@@ -42,36 +42,6 @@ def test_the_normal_points_into_the_larger_id_on_all_four_sides():
     assert normals == {(5, 2): (0, 1), (5, 3): (1, 0), (5, 4): (0, -1), (6, 5): (1, 0)}
 
 
-@pytest.mark.parametrize("at_the_end", [True, False])
-@pytest.mark.parametrize("downwards", [True, False])
-@pytest.mark.parametrize("length", [4, 10, 30])
-def test_a_hook_of_one_pixel_does_not_tilt_the_normal(length, downwards, at_the_end):
-    labels = np.ones((20, length + 4), np.uint32)
-    labels[:10, 2:-2] = 2
-    labels[:10, :2], labels[:10, -2:] = 0, 0
-    beyond = np.s_[-2:] if at_the_end else np.s_[:2]
-    if downwards:  # the upper stone hangs over the end of the lower one
-        labels[:11, beyond] = 2
-        labels[11:, beyond] = 0
-    else:  # the lower stone rises beside the end of the upper one
-        labels[9, beyond] = 1
-    (run,) = between(labels, 2, 1)
-    assert run.normal == (0.0, 1.0)
-    assert [tuple(p) for p in run.points] == [(2, 10), (length + 2, 10)]
-
-
-@pytest.mark.parametrize(("rise", "tread"), [(1, 1), (1, 2), (1, 3), (2, 3), (1, 6)])
-def test_a_regular_staircase_has_the_normal_of_its_slope(rise, tread):
-    count = 36
-    cols = np.arange(count)
-    top = 4 + (cols * rise + (tread - 1) // 2) // tread
-    rows = np.arange(50)[:, None]
-    labels = np.where(rows >= 50 - top, 1, 2).astype(np.uint32)
-    (run,) = between(labels, 2, 1)
-    angle = math.degrees(math.atan2(-run.normal[0], run.normal[1]))
-    assert angle == pytest.approx(math.degrees(math.atan2(rise, tread)), abs=0.5)
-
-
 @given(
     angle_deg=st.floats(-180, 180),
     offset=st.floats(-1, 1),
@@ -100,24 +70,6 @@ def test_stones_that_touch_at_a_corner_have_a_contact_at_a_point():
     assert told(contact) == (2, 1, [(10, 10)], (0.0, -1.0))
 
 
-def test_a_corner_on_a_slope_has_the_normal_of_the_slope():
-    row, col = np.mgrid[:20, :20]
-    labels = np.where(row > col, 1, 0).astype(np.uint32)  # falls to the right at 45 degrees
-    labels[:10, 10:] = 2
-    labels[9, 10:], labels[:10, 10] = 2, 2
-    contacts = between(labels, 2, 1)
-    assert [len(i.points) for i in contacts] == [1]
-    assert contacts[0].normal == pytest.approx((0.5**0.5, 0.5**0.5))
-
-
-def test_ids_above_16_bit_survive():
-    labels = np.array([[4_294_967_295], [70_000]], np.uint32)
-    assert [(i.block, i.other) for i in find_interfaces(labels)] == [
-        (70_000, 0),
-        (4_294_967_295, 70_000),
-    ]
-
-
 pictures = arrays(
     np.uint32,
     st.tuples(st.integers(1, 12), st.integers(1, 12)),
@@ -144,39 +96,6 @@ def test_interfaces_equal_their_naive_twin(labels):
 def test_interfaces_of_tilted_joints_equal_their_naive_twin(seed):
     assert_equals_naive(irregular(seed, 20, 90, 60))
     assert_equals_naive(coursed(seed, 4, 120, gap_px=seed))
-
-
-def added(built, found, labels, group):
-    """Interfaces after a group of blocks of `labels` was built, and whether they closed any in."""
-    parts = []
-    for block in group:
-        rows, cols = np.nonzero(labels == block)
-        top, left = int(rows.min()), int(cols.min())
-        mask = labels[top : rows.max() + 1, left : cols.max() + 1] == block
-        parts.append((block, top, left, mask))
-    patch, _ = painted_patch(built, parts)
-    closed = PointContacts.of(found).closed_in(patch)
-    assert list(closed) == sorted(closed)
-    kept = [interface for place, interface in enumerate(found) if place not in closed]
-    built[np.isin(labels, group)] = labels[np.isin(labels, group)]
-    return (*kept, *interfaces_in(patch))
-
-
-@given(
-    labels=pictures | label_images(),
-    order=st.permutations(range(1, 6)),
-    together=st.integers(1, 3),
-)
-@repeatable(150)
-def test_block_after_block_gives_the_interfaces_of_the_whole(labels, order, together):
-    """Blocks come in groups, as a stone and its wedges do."""
-    built, found = np.zeros_like(labels), ()
-    there = np.unique(labels[labels > 0]).tolist()
-    present = [there[i - 1] for i in order if i <= len(there)] + there[5:]
-    for first in range(0, len(present), together):
-        found = added(built, found, labels, present[first : first + together])
-    assert (built == labels).all()
-    assert sorted(map(told, found)) == sorted(map(told, find_interfaces(labels)))
 
 
 @given(seed=st.integers(0, 2**32), row=st.integers(0, 21), col=st.integers(0, 17))

@@ -14,14 +14,12 @@ from drystone.contacts.settled import (
     model_of_outlines,
     model_with_outlines,
 )
-from drystone.errors import InputError
 from drystone.kernels.polygons import area_and_centroid
 from drystone.kernels.raster import turn
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import RigidBlockModel
 from drystone.statics.result import LimitStatus
 from drystone_lab.pixels import tilted_wall
-from tests.naive import meetings as naive
 
 MU = 0.58
 
@@ -117,14 +115,6 @@ def test_settled_walls_are_as_strong_as_those_without_gaps(seed):
         assert alphas(model_of(*placed)) == pytest.approx(alphas(others), abs=1e-3)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 3])
-def test_settled_walls_are_as_strong_as_with_a_contact_wherever_stones_are_near(seed):
-    placed = settled_wall(seed, 0.003, 2e-5)
-    twin = naive.model(placed, MU, 0.1, step=1.0)
-    assert twin.contact_count > 3 * model_of(*placed).contact_count
-    assert alphas(model_of(*placed)) == pytest.approx(alphas(twin), abs=1e-3)
-
-
 def test_blocks_and_interfaces_do_not_depend_on_how_they_are_added():
     placed = settled_wall(2, 0.01, 1e-5)
     whole = model_of(*placed)
@@ -148,9 +138,3 @@ def test_ids_need_not_ascend():
     model = model_of_outlines(placed)
     assert [(i.block, i.other) for i in model.interfaces] == [(7, 0), (3, 7)]
     assert model.interfaces[1].normal == (0.0, 1.0)
-
-
-def test_nothing_and_bad_friction():
-    assert model_of_outlines(PlacedPolygons.of([])).blocks == ()
-    with pytest.raises(InputError, match="friction"):
-        model_of_outlines(PlacedPolygons.of([]), mu=-1.0)

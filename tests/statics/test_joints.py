@@ -7,7 +7,7 @@ from drystone.errors import InputError
 from drystone.statics.joints import loose_blocks, slippery, with_head_friction
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.model import GROUND, Interface
-from tests.statics.walls import brick_model, irregular, limit_load
+from tests.statics.walls import brick_model, limit_load
 
 PAIR = [[0, 0, 2, 1], [0, 1, 2, 1]]
 
@@ -18,14 +18,6 @@ def test_head_joints_without_friction_weaken_a_bond_and_only_them():
     for before, after in zip(model.interfaces, slippery.interfaces, strict=True):
         assert after.mu == (0.0 if abs(before.normal[0]) == 1.0 else None)
     assert lateral_resistance(slippery).value < lateral_resistance(model).value - 1e-3
-
-
-def test_a_joint_at_less_than_45_degrees_is_no_head_joint():
-    for interface in with_head_friction(
-        model_from_labels(irregular(3, 12, 90, 50)).model, 0.1
-    ).interfaces:
-        steep = abs(interface.normal[0]) > abs(interface.normal[1])
-        assert (interface.mu == 0.1) == steep
 
 
 def test_friction_of_a_pair_from_a_file():
@@ -58,35 +50,6 @@ def test_interfaces_from_a_file_are_taken_as_they_are():
 def test_a_guide_from_a_file():
     tall = {"id": 1, "polygon": [[0, 0], [1, 0], [1, 4], [0, 4]], "held": ["turn"]}
     assert limit_load(model_from_json({"blocks": [tall]}), "left").alpha == pytest.approx(0.58)
-
-
-@pytest.mark.parametrize(
-    "extra",
-    [
-        {"mu_head": "none"},
-        {"friction": 3},
-        {"friction": [{"between": [1, 9], "mu": 0.3}]},
-        {"friction": [{"between": [1, 1], "mu": 0.3}]},
-        {"friction": [7]},
-        {"friction": [{"between": [[1], 0], "mu": 0.3}]},
-        {"friction": [{"between": [1, 2], "mu": True}]},
-        {"mu": True},
-        {"interfaces": [{"between": [0, 1], "points": [[0, 0]], "normal": [0, 1]}]},
-        {"interfaces": [{"between": [1, 0], "points": [], "normal": [0, 1]}]},
-        {"interfaces": [{"between": [1, 0], "points": [[0, 0]], "normal": [0, 0]}]},
-        {"interfaces": [{"between": [1, 0], "points": [[0, 0]]}]},
-    ],
-)
-def test_what_is_no_joint_is_refused(extra):
-    with pytest.raises(InputError, match="E303"):
-        model_from_json({"blocks_xywh": PAIR, **extra})
-
-
-@pytest.mark.parametrize("held", [["up"], [["x"]], "x, y", 3])
-def test_what_cannot_be_held_is_refused(held):
-    block = {"id": 1, "polygon": [[0, 0], [1, 0], [1, 4]], "held": held}
-    with pytest.raises(InputError, match="held"):
-        model_from_json({"blocks": [block]})
 
 
 def test_weights_that_no_solver_tells_from_rounding_are_refused():

@@ -1,4 +1,3 @@
-import math
 import subprocess
 import sys
 from dataclasses import replace
@@ -111,48 +110,6 @@ def test_without_friction_there_is_no_ratio_to_it():
     assert both.value is None
 
 
-@pytest.mark.parametrize(("direction", "sign"), [("left", -1), ("right", 1)])
-def test_a_tall_block_rocks_about_its_toe(direction, sign):
-    model = model_from_labels(stacked((20, 40, 0))).model
-    velocity = limit_load(model, direction, mechanism=True).mechanism.velocity[0]
-    assert math.hypot(velocity[0], velocity[1]) == pytest.approx(1)
-    assert sign * velocity[0] > 0
-    toe = 20.0 if sign > 0 else 0.0
-    arm = np.array([toe, 0.0]) - model.blocks[0].centroid
-    at_toe = velocity[:2] + velocity[2] * np.array([-arm[1], arm[0]])
-    assert at_toe == pytest.approx([0, 0], abs=1e-9)
-    assert sign * velocity[2] < 0  # counter-clockwise is positive
-
-
-@pytest.mark.parametrize(("direction", "sign"), [("left", -1), ("right", 1)])
-def test_a_flat_block_slides_and_dilates(direction, sign):
-    model = model_from_labels(stacked((40, 20, 0))).model
-    velocity = limit_load(model, direction, mechanism=True).mechanism.velocity[0]
-    expected = np.array([sign, 0.58, 0]) / math.hypot(1, 0.58)  # associated flow
-    assert velocity == pytest.approx(expected, abs=1e-9)
-
-
-@pytest.mark.parametrize("factor", [1e-3, 40.0, 1e4])
-def test_the_unit_of_length_does_not_matter(factor):
-    rows = [[0, 0, 3, 2], [3, 0, 2, 2], [1, 2, 3, 1], [0.5, 3, 3, 4]]
-    scaled = [[factor * number for number in row] for row in rows]
-    one, other = (lateral_resistance(model_from_json({"blocks_xywh": r})) for r in (rows, scaled))
-    assert one.left.alpha == pytest.approx(other.left.alpha, abs=1e-9)
-    assert one.right.alpha == pytest.approx(other.right.alpha, abs=1e-9)
-
-
-@pytest.mark.parametrize("labels", [coursed(5, 4, 90), stacked((20, 20, 0), (20, 20, 12))])
-def test_what_the_first_algorithm_gives_up_on_is_tried_with_another(labels, monkeypatch):
-    model = model_from_labels(labels).model
-    expected = lateral_resistance(model)
-    give_up_after(1, monkeypatch, "simplex")
-    again = lateral_resistance(model)
-    assert statuses(again) == statuses(expected)
-    assert again.left.solver != expected.left.solver
-    if expected.stable:
-        assert again.value == pytest.approx(expected.value, abs=1e-7)
-
-
 def give_up_after(iterations, monkeypatch, *algorithms):
     options = dict(highs._OPTIONS)
     for algorithm in algorithms:
@@ -215,20 +172,19 @@ def test_a_wrong_optimal_answer_is_found_out_and_asked_again(wrong, monkeypatch)
 SOLVERS = ("highs", "highs-ipm", "clarabel")
 
 
-@pytest.mark.parametrize("order", [("highs-ipm", "highs"), ("highs", "highs-ipm")])
-def test_no_solver_keeps_another_from_working_in_a_process(order):
+def test_no_solver_keeps_another_from_working_in_a_process():
     """HiGHS refuses another number of threads than that of the first call of a process."""
     script = (
         "from drystone.contacts.given import model_from_json\n"
         "from drystone.statics.limit import lateral_resistance\n"
         "model = model_from_json({'blocks_xywh': [[0, 0, 1, 2]], 'mu': 0.7})\n"
-        f"for solver in {order!r}:\n"
+        "for solver in ('highs-ipm', 'highs', 'highs-ipm'):\n"
         "    print(lateral_resistance(model, solver=solver).left.status.value)\n"
     )
     ran = subprocess.run(  # noqa: S603 - our own code
         [sys.executable, "-c", script], check=True, stdout=subprocess.PIPE, text=True
     )
-    assert ran.stdout.split() == ["optimal", "optimal"]
+    assert ran.stdout.split() == ["optimal"] * 3
 
 
 @given(seed=st.integers(0, 10**6), count=st.integers(2, 25), coursing=st.booleans())
@@ -246,27 +202,6 @@ def test_solvers_agree_and_every_answer_is_certified(seed, count, coursing):
                 assert result.certificate.gap <= 1e-8
             else:
                 assert result.certificate.fall_work > 1e-6
-
-
-@pytest.mark.parametrize("solver", SOLVERS)
-def test_what_falls_comes_with_its_fall(solver):
-    """The upper stone of an overhanging pair turns about the edge of the lower one."""
-    model = model_from_labels(stacked((20, 20, 0), (20, 20, 12)), 0.9).model
-    result = limit_load(model, "right", mechanism=True, solver=solver)
-    assert result.status is LimitStatus.UNSTABLE
-    assert result.certificate.holds
-    velocity = dict(zip(result.mechanism.block_ids, result.mechanism.velocity, strict=True))
-    assert velocity[2][1] < 0  # down
-    assert velocity[2][2] < 0  # clockwise
-
-
-def test_friction_of_an_interface_counts_before_that_of_the_model():
-    model = model_from_labels(stacked((40, 10, 0), (40, 10, 0)), 0.9).model
-    slippery = tuple(replace(i, mu=0.2) if i.other == 1 else i for i in model.interfaces)
-    result = limit_load(replace(model, interfaces=slippery), "right", mechanism=True)
-    assert result.alpha == pytest.approx(0.2)
-    velocity = dict(zip(result.mechanism.block_ids, result.mechanism.velocity, strict=True))
-    assert velocity[1] == pytest.approx(np.zeros(3), abs=1e-9)
 
 
 @pytest.mark.parametrize(("held", "alpha"), [((), 0.25), (("turn",), 0.58), (("x", "turn"), None)])
@@ -324,7 +259,7 @@ def test_a_wall_stands_where_nothing_limits_the_load():
     assert lateral_resistance(RigidBlockModel((), ())).stable
 
 
-@pytest.mark.parametrize("mu", [1e5, 1e7, 1e9, 1e300])
+@pytest.mark.parametrize("mu", [1e5, 1e300])
 def test_friction_at_which_nothing_slides_has_one_answer(mu):
     """That of the greatest friction which counts; whole walls, and walls that grow."""
     for labels in (irregular(3, 40, 160, 120), coursed(3, 8, 200, 2)):

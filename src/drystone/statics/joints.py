@@ -19,29 +19,21 @@ def with_head_friction(model: RigidBlockModel, mu: float) -> RigidBlockModel:
 
     Joints that have one of their own keep it.
     """
-    return replace(
-        model,
-        interfaces=tuple(
-            replace(interface, mu=mu)
-            if interface.mu is None and is_head_joint(interface)
-            else interface
-            for interface in model.interfaces
-        ),
+    heads = (
+        replace(face, mu=mu) if face.mu is None and is_head_joint(face) else face
+        for face in model.interfaces
     )
+    return replace(model, interfaces=tuple(heads))
 
 
 def with_pair_friction(model: RigidBlockModel, friction: Mapping[Pair, float]) -> RigidBlockModel:
     """Give all interfaces of some pairs of ids, in either order, a friction of their own."""
     known = {frozenset(pair): mu for pair, mu in friction.items()}
-    return replace(
-        model,
-        interfaces=tuple(
-            replace(interface, mu=known.get(frozenset((interface.block, interface.other))))
-            if frozenset((interface.block, interface.other)) in known
-            else interface
-            for interface in model.interfaces
-        ),
+    faces = (
+        replace(face, mu=known.get(frozenset((face.block, face.other)), face.mu))
+        for face in model.interfaces
     )
+    return replace(model, interfaces=tuple(faces))
 
 
 def slippery(

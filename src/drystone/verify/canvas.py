@@ -56,10 +56,7 @@ class ExactCanvas:
     """Stones and wedges are their outlines; no two may lie deep in each other."""
 
     def __init__(self, site: Site, stones: StoneSet, settings: SettleSettings) -> None:
-        self._site = site
-        self._stones = stones
-        self._outline_px = settings.outline_px
-        self._beyond_px = settings.beyond_px
+        self._site, self._stones, self._settings = site, stones, settings
         self._outlines = Outlines.empty(site)
         self._names: list[str] = []
         self._shapes: list[shapely.Geometry] = []
@@ -78,9 +75,9 @@ class ExactCanvas:
         if isinstance(step, WedgeStep):
             corners = wedge_corners(step, site)
         else:
-            settled = settled_stone(step, self._stones, site, self._outline_px)
+            settled = settled_stone(step, self._stones, site, self._settings.outline_px)
             corners = settled.corners
-        where = leaves(corners, site.extent_px, self._beyond_px)
+        where = leaves(corners, site.extent_px, self._settings.beyond_px)
         if where:
             # It is not drawn, as its image could be of any size.
             message = f"{piece_name(step)} leaves the site: {where}."
@@ -121,39 +118,30 @@ class RasterCanvas:
     """Stones and wedges are their pixels; no two may share one."""
 
     def __init__(self, site: Site, stones: StoneSet) -> None:
-        self._site = site
-        self._stones = stones
-        self._labels = np.zeros((site.height_px, site.width_px), np.uint32)
-
-    @property
-    def labels(self) -> Labels:
+        self._site, self._stones = site, stones
+        self.labels: Labels = np.zeros((site.height_px, site.width_px), np.uint32)
         """All pieces; where two overlap the first one is seen."""
-        return self._labels
 
     def put(self, step: Step) -> tuple[Piece, list[Problem]]:
         """See :meth:`ExactCanvas.put`; E220 is raised of a wedge, too."""
         item: Placement | Wedge
         if isinstance(step, WedgeStep):
             item = place_wedge(step, self._site)
+            mask = item.mask
         else:
             item = place_stone(step, self._stones, self._site)
-        return Piece(step, item), self._painted(step, item)
-
-    def _painted(self, step: Step, item: Placement | Wedge) -> list[Problem]:
-        """Draw a piece where there is room; name what is outside (E220) or taken (E221)."""
-        rows, cols = item.window
-        mask = item.mask if isinstance(item, Wedge) else item.posed.mask
-        height, width = self._labels.shape
-        name = piece_name(step)
+            mask = item.posed.mask
+        piece, name, (rows, cols) = Piece(step, item), piece_name(step), item.window
+        height, width = self.labels.shape
         outside = (-rows.start, rows.stop - height, -cols.start, cols.stop - width)
         if max(outside) > 0:
             where = ", ".join(f"{n} px {s}" for n, s in zip(outside, SIDES, strict=True) if n > 0)
-            return [Problem("E220", step.step, f"{name} leaves the site: {where}.")]
-        view = self._labels[rows, cols]
+            return piece, [Problem("E220", step.step, f"{name} leaves the site: {where}.")]
+        view = self.labels[rows, cols]
         taken = view[mask]
-        view[mask & (view == 0)] = item.id if isinstance(item, Wedge) else item.stone_id
+        view[mask & (view == 0)] = piece.id
         ids, counts = np.unique(taken[taken > 0], return_counts=True)
-        return [
+        return piece, [
             Problem("E221", step.step, f"{name} overlaps {other} by {count} working px.")
             for other, count in zip(ids.tolist(), counts.tolist(), strict=True)
         ]

@@ -114,15 +114,6 @@ def test_answers_whose_check_does_not_hold_are_not_told(monkeypatch):
     assert result.rounds > 0
 
 
-def test_walls_that_do_not_stand():
-    labels = np.zeros((20, 30), np.uint32)
-    labels[10:, :10] = 1
-    labels[:10, 4:30] = 2
-    both = nonassociative_resistance(model_from_labels(labels).model)
-    assert both.left.status is both.right.status is LimitStatus.UNSTABLE
-    assert both.value is None
-
-
 def test_walls_that_stand_only_when_contacts_are_jammed():
     model = model_from_labels(irregular(15, 12, 48, 40), 0.9).model
     assert lateral_resistance(model).stable

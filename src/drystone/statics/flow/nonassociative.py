@@ -43,7 +43,7 @@ with the load.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -52,9 +52,9 @@ from drystone.statics.flow.flow_search import NonassociativeSettings, Search, St
 from drystone.statics.flow.release import fall_of, with_inertia
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
-from drystone.statics.lp.program import EquilibriumProgram, Floats, assemble
+from drystone.statics.lp.program import EquilibriumProgram, assemble
 from drystone.statics.model import Direction, RigidBlockModel
-from drystone.statics.result import LimitResult, LimitStatus, Mechanism
+from drystone.statics.result import LateralResistance, LimitResult, LimitStatus
 
 STANDING = 1e-9
 """A load multiplier down to minus this is one of 0."""
@@ -63,50 +63,27 @@ IMMOVABLE = "No motion goes along with a load in this direction."
 
 
 @dataclass(frozen=True, eq=False)
-class NonassociativeResult:
-    """Outcome of one non-associative limit analysis."""
+class NonassociativeResult(LimitResult):
+    """Outcome of one non-associative limit analysis; "optimal" only with a check that holds."""
 
-    status: LimitStatus  # OPTIMAL only for an answer whose check holds
-    direction: Direction
-    alpha: float | None = None  # load multiplier; None unless the status is "optimal"
-    mechanism: Mechanism | None = field(default=None, repr=False)
-    """How the blocks move, or start to fall."""
-    forces: Floats | None = field(default=None, repr=False)
-    """(m, 2): normal and tangential force at every contact point, in the order of the interfaces
-    and their points, on the block that the normal points into; the tangent of a normal (x, y) is
-    (y, -x).  In weights of the model."""
     rounds: int = 0  # linear programs of the rounds, all starts together
-    method: str = ""
+    method: str = ""  # the start that found the answer
     check: FlowCheck | None = None
     answers: tuple[float, ...] = ()
     """Load multipliers of all verified answers, the least first: which of them a wall fails at
     depends on the forces that are locked in it."""
-    message: str = ""
-
-    @property
-    def success(self) -> bool:
-        """True when the status is "optimal"."""
-        return self.status is LimitStatus.OPTIMAL
 
 
 @dataclass(frozen=True, eq=False)
-class NonassociativeResistance:
-    """Both directions."""
+class NonassociativeResistance(LateralResistance):
+    """Both directions; `value` is None unless both are optimal, and without friction."""
 
     left: NonassociativeResult
-    right: NonassociativeResult  # against and along the live load
-    mu: float
-
-    @property
-    def value(self) -> float | None:
-        """min(alpha_left, alpha_right) / mu; None unless both are optimal, and without friction."""
-        if self.left.alpha is None or self.right.alpha is None or self.mu == 0:
-            return None
-        return min(self.left.alpha, self.right.alpha) / self.mu
+    right: NonassociativeResult
 
     @property
     def carried(self) -> float | None:
-        """The same, and 0 where it was verified that the blocks can fall by themselves."""
+        """The value, and 0 where it was verified that the blocks can fall by themselves."""
         falls = LimitStatus.UNSTABLE in (self.left.status, self.right.status)
         return 0.0 if falls else self.value
 

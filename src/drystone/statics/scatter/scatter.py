@@ -1,6 +1,5 @@
 """Scatter of the load multiplier: walls shaken at random, and each one analysed (Monte Carlo)."""
 
-from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -45,8 +44,7 @@ class Scatter:
     @property
     def counts(self) -> dict[LimitStatus, int]:
         """How many samples ended how."""
-        counted = Counter(self.status)
-        return {status: counted[status] for status in LimitStatus}
+        return {status: self.status.count(status) for status in LimitStatus}
 
     @property
     def falling_share(self) -> float | None:
