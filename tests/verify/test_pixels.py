@@ -139,12 +139,12 @@ def test_frames_are_laid_as_if_they_were_filled() -> None:
 
 
 def test_rings_among_discs_and_bricks_do_not_overlap() -> None:
-    shapes = [ring(22, 9)] * 4 + [ring(6.9, 0)] * 3 + [np.ones((20, 35), bool)] * 2
+    shapes = [ring(22, 9)] * 5 + [ring(6.9, 0)] * 5 + [np.ones((20, 35), bool)] * 5
     stones = stones_of_masks(dict(enumerate(shapes, 1)))
     result = planned(stones, 180, 90)
     placed = {step.stone for step in result.plan.stone_steps}
-    assert len(placed) > 5
-    assert placed & {1, 2, 3, 4}
+    assert len(placed) > 10
+    assert placed & {1, 2, 3, 4, 5}
     assert deepest_by_pixels(result) < 0.5
     report = check_plan(result.plan, stones, wall_labels=result.wall.labels)
     assert report.problems == ()
