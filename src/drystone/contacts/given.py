@@ -9,8 +9,9 @@ import numpy as np
 import shapely
 
 from drystone.contacts.blocks import check_mu
-from drystone.contacts.touching import Points, touching_interfaces
+from drystone.contacts.touching import touching_interfaces
 from drystone.errors import InputError
+from drystone.kernels.polygons import Points
 from drystone.model.overlap import overlap_depth
 from drystone.statics.joints import with_head_friction, with_pair_friction
 from drystone.statics.model import FREEDOMS, GROUND, Block, Interface, RigidBlockModel

@@ -6,19 +6,18 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from drystone.contacts.settled import PlacedPolygons, model_of_outlines
 from drystone.kernels.boundary import boundary_of
+from drystone.kernels.polygons import Points
 from drystone.kernels.segments import REACH_PX, Line, fitted_lines, meeting_point, with_area
 from drystone.model.overlap import common_parts
 from drystone.model.wall import Labels
 from drystone.statics.model import RigidBlockModel
 
-Points = NDArray[np.float64]
 Node = tuple[int, int]
-Piece = tuple[Node, ...]
+RingPiece = tuple[Node, ...]
 """Pixel corners (x, y) from one junction to the next, or around a stone that has none."""
 Fit = tuple[list[int], list[Line]]
 
@@ -87,7 +86,7 @@ def model_from_outlines(
     return model_of_outlines(PlacedPolygons.of(blocks), mu, contact_tolerance_px, setback)
 
 
-def _rings(labels: Labels) -> dict[int, Piece]:
+def _rings(labels: Labels) -> dict[int, RingPiece]:
     """Return the pixel corners around the largest piece of each id, counter-clockwise."""
     ids, place = np.unique(labels, return_inverse=True)
     if len(ids) and ids[0] > 0:
@@ -115,7 +114,7 @@ def _junctions(labels: Labels) -> set[Node]:
     return set(zip(col.tolist(), (labels.shape[0] - row).tolist(), strict=True))
 
 
-def _pieces(ring: Piece, junctions: set[Node]) -> list[Piece]:
+def _pieces(ring: RingPiece, junctions: set[Node]) -> list[RingPiece]:
     """Cut a closed ring at its junctions."""
     at = [i for i, node in enumerate(ring[:-1]) if node in junctions]
     if not at:  # it begins at its furthest point, which is a corner if it has any
@@ -126,13 +125,15 @@ def _pieces(ring: Piece, junctions: set[Node]) -> list[Piece]:
     return [turned[first : last + 1] for first, last in pairwise(cuts)]
 
 
-def _key(piece: Piece) -> Piece:
+def _key(piece: RingPiece) -> RingPiece:
     """Return the piece in the sense that both its sides know it by."""
     return min(piece, piece[::-1])
 
 
 def _assembled(
-    rings: Mapping[int, Piece], pieces: Mapping[int, list[Piece]], fits: Mapping[Piece, Fit]
+    rings: Mapping[int, RingPiece],
+    pieces: Mapping[int, list[RingPiece]],
+    fits: Mapping[RingPiece, Fit],
 ) -> dict[int, Points]:
     """Join pieces to outlines; those without a fit keep their pixel edges."""
     users = Counter(_key(piece) for mine in pieces.values() for piece in mine)
@@ -152,7 +153,7 @@ def _assembled(
     return outlines
 
 
-def _drawn(pieces: Iterable[Piece], fits: Mapping[Piece, Fit]) -> dict[Piece, Points]:
+def _drawn(pieces: Iterable[RingPiece], fits: Mapping[RingPiece, Fit]) -> dict[RingPiece, Points]:
     """Simplify every piece once."""
     meeting = defaultdict(list)
     pinned = set()
@@ -188,7 +189,7 @@ def _joined(lines: list[Points]) -> Points:
     return np.asarray(corners[np.concatenate([apart, [True]])])
 
 
-def _is_sound(outline: Points, ring: Piece, tolerance_px: float) -> bool:
+def _is_sound(outline: Points, ring: RingPiece, tolerance_px: float) -> bool:
     """Tell whether an outline does not cross itself and follows its pixel edges everywhere."""
     if len(outline) < 4:
         return False

@@ -1,11 +1,9 @@
 """Interfaces between polygons: common pieces of edges, and corners that stand on an edge (§4.1)."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from drystone.kernels.polygons import Points
 from drystone.statics.model import Interface
-
-Points = NDArray[np.float64]
 
 
 def touching_interfaces(

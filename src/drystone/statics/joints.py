@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from drystone.statics.model import GROUND, Interface, RigidBlockModel
 
-Pair = tuple[int, int]
+IdPair = tuple[int, int]
 
 
 def is_head_joint(interface: Interface) -> bool:
@@ -26,7 +26,7 @@ def with_head_friction(model: RigidBlockModel, mu: float) -> RigidBlockModel:
     return replace(model, interfaces=tuple(heads))
 
 
-def with_pair_friction(model: RigidBlockModel, friction: Mapping[Pair, float]) -> RigidBlockModel:
+def with_pair_friction(model: RigidBlockModel, friction: Mapping[IdPair, float]) -> RigidBlockModel:
     """Give all interfaces of some pairs of ids, in either order, a friction of their own."""
     known = {frozenset(pair): mu for pair, mu in friction.items()}
     faces = (

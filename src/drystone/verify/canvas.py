@@ -36,7 +36,7 @@ so this is for plans of other hands and of other arithmetic."""
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class PlanPiece:
     """A stone or wedge where the plan puts it, whether it has room there or not."""
 
     step: Step
@@ -66,7 +66,7 @@ class ExactCanvas:
         """All pieces; a pixel belongs to the one that covers most of it (DESIGN 4.9)."""
         return self._outlines.shares.labels
 
-    def put(self, step: Step) -> tuple[Piece, list[Problem]]:
+    def put(self, step: Step) -> tuple[PlanPiece, list[Problem]]:
         """Return what a step places, and what stands in the way (E220, E221).
 
         PlanError when it places nothing: there is no such stone (E201) or no such wedge (E222).
@@ -81,7 +81,7 @@ class ExactCanvas:
         if where:
             # It is not drawn, as its image could be of any size.
             message = f"{piece_name(step)} leaves the site: {where}."
-            return Piece(step, None, corners), [Problem("E220", step.step, message)]
+            return PlanPiece(step, None, corners), [Problem("E220", step.step, message)]
         problems = self._overlaps(step, shape_of(corners))
         # With the pixels that it fills beside those before it.
         item: Placement | Wedge | None
@@ -97,7 +97,7 @@ class ExactCanvas:
             message = f"{piece_name(step)} fills no px of the wall."
             problems.append(Problem("E220", step.step, message))
         self._outlines = self._outlines.added([(piece_id(step), corners)], site.scale)
-        return Piece(step, item, corners), problems
+        return PlanPiece(step, item, corners), problems
 
     def _overlaps(self, step: Step, shape: shapely.Geometry) -> list[Problem]:
         """Name the pieces that this one lies in, too deep (E221); remember it."""
@@ -122,7 +122,7 @@ class RasterCanvas:
         self.labels: Labels = np.zeros((site.height_px, site.width_px), np.uint32)
         """All pieces; where two overlap the first one is seen."""
 
-    def put(self, step: Step) -> tuple[Piece, list[Problem]]:
+    def put(self, step: Step) -> tuple[PlanPiece, list[Problem]]:
         """See :meth:`ExactCanvas.put`; E220 is raised of a wedge, too."""
         item: Placement | Wedge
         if isinstance(step, WedgeStep):
@@ -131,7 +131,7 @@ class RasterCanvas:
         else:
             item = place_stone(step, self._stones, self._site)
             mask = item.posed.mask
-        piece, name, (rows, cols) = Piece(step, item), piece_name(step), item.window
+        piece, name, (rows, cols) = PlanPiece(step, item), piece_name(step), item.window
         height, width = self.labels.shape
         outside = (-rows.start, rows.stop - height, -cols.start, cols.stop - width)
         if max(outside) > 0:

@@ -34,7 +34,7 @@ from drystone.verify.pieces import (
 )
 from drystone.verify.replay import Replay, Stage, replay_plan
 from drystone.verify.report import CheckReport, Problem
-from drystone.verify.stability import Standing, check_stability
+from drystone.verify.stability import Stability, check_stability
 
 
 def check_plan(
@@ -106,7 +106,7 @@ def _check_pieces(replay: Replay, reference: Reference) -> list[Problem]:
     return problems
 
 
-def _check_stages(replay: Replay, standing: Standing, reference: Reference) -> list[Problem]:
+def _check_stages(replay: Replay, standing: Stability, reference: Reference) -> list[Problem]:
     """Verify indices and wedges of every stage."""
     problems = []
     unit, wall = replay.site.units_per_px, replay.wall

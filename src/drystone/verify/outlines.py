@@ -20,11 +20,11 @@ from drystone.verify.lengths import plan_settings, plan_site, source_points
 NO_AREA_PX = 1e-9
 """A polygon with an area below this, in square px, has none but for rounding."""
 
-Group = tuple[tuple[int, Points], ...]
+PolygonGroup = tuple[tuple[int, Points], ...]
 """A stone and its wedges, the stone first: ids and corners."""
 
 
-def plan_polygons(plan: Plan, stones: StoneSet) -> tuple[Group, ...]:
+def plan_polygons(plan: Plan, stones: StoneSet) -> tuple[PolygonGroup, ...]:
     """Return every stone with its wedges where the plan puts them, in the order of placement.
 
     Corners (n, 2) are in the wall frame, source px, counter-clockwise and not closed.  A stone is
@@ -36,7 +36,7 @@ def plan_polygons(plan: Plan, stones: StoneSet) -> tuple[Group, ...]:
     exact = settings.geometry == "exact"
     outline_px = settings.settle.outline_px if exact else OUTLINE_TOLERANCE_PX
     site = plan_site(plan)
-    found: list[Group] = []
+    found: list[PolygonGroup] = []
     used: set[int] = set()
     for steps in grouped(plan.steps)[0]:
         group = []

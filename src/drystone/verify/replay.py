@@ -11,7 +11,7 @@ from drystone.model.steps import Fault, Step, grouped, id_fault
 from drystone.model.stone import StoneSet
 from drystone.model.wall import Group, Labels, Wall
 from drystone.planner.settings import PlannerSettings
-from drystone.verify.canvas import ExactCanvas, Piece, RasterCanvas
+from drystone.verify.canvas import ExactCanvas, PlanPiece, RasterCanvas
 from drystone.verify.lengths import plan_settings, plan_site
 from drystone.verify.report import Problem
 
@@ -37,7 +37,7 @@ class Replay:
 
     settings: PlannerSettings
     site: Site
-    pieces: tuple[Piece, ...]  # everything that could be derived, in order
+    pieces: tuple[PlanPiece, ...]  # everything that could be derived, in order
     labels: Labels
     """(h, w): all of it drawn, row 0 at the top; where pixels of two pieces overlap the first one
     is seen, where outlines do the one that covers most."""
@@ -87,7 +87,7 @@ def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
     exact = settings.geometry == "exact"
     canvas = ExactCanvas(site, stones, settings.settle) if exact else RasterCanvas(site, stones)
     wall, broken_at = Wall.empty(site, exact=exact), None
-    pieces: list[Piece] = []
+    pieces: list[PlanPiece] = []
     stages: list[Stage] = []
     used: set[int] = set()
     for steps in groups:
@@ -110,9 +110,9 @@ def replay_plan(plan: Plan, stones: StoneSet) -> Replay:
 
 def _derive(
     steps: Sequence[Step], canvas: ExactCanvas | RasterCanvas, stones: StoneSet, used: set[int]
-) -> tuple[list[Piece], list[Problem]]:
+) -> tuple[list[PlanPiece], list[Problem]]:
     """Turn the steps of a group into what they place; note their ids as used."""
-    pieces: list[Piece] = []
+    pieces: list[PlanPiece] = []
     problems = []
     largest = max((stone.id for stone in stones), default=0)
     for step in steps:

@@ -21,7 +21,7 @@ ALPHA_TOLERANCE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class Standing:
+class Stability:
     """What the walls on the way carry."""
 
     resistances: tuple[LateralResistance | None, ...]
@@ -33,7 +33,7 @@ class Standing:
     E237: a wall of outlines stands by friction that it should not need."""
 
 
-def check_stability(stages: Sequence[Stage], settings: PlannerSettings) -> Standing:
+def check_stability(stages: Sequence[Stage], settings: PlannerSettings) -> Stability:
     """Analyse every prefix of the plan; only the wall with all wedges of a stone must stand."""
     models = [wall_model(stage.after, settings) for stage in stages]
     found = [None if model is None else lateral_resistance(model) for model in models]
@@ -43,7 +43,7 @@ def check_stability(stages: Sequence[Stage], settings: PlannerSettings) -> Stand
         alphas = (None, None) if both is None else (both.left.alpha, both.right.alpha)
         prefixes.append(PrefixAlpha(stage.last.step, *alphas))
         problems += _judge(stage, both) or _not_sturdy(stage, settings)
-    return Standing(tuple(found), tuple(models), tuple(prefixes), tuple(problems))
+    return Stability(tuple(found), tuple(models), tuple(prefixes), tuple(problems))
 
 
 def wall_model(wall: Wall, settings: PlannerSettings) -> RigidBlockModel | None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from drystone.statics.model import GROUND, RigidBlockModel
+from drystone.statics.model import GROUND, Direction, RigidBlockModel
 from drystone.statics.result import Mechanism
 
 Floats = NDArray[np.float64]
@@ -18,8 +18,7 @@ Bools = NDArray[np.bool_]
 
 ContactKind = Literal["closed", "opening", "sliding", "opening and sliding"]
 _KINDS: tuple[ContactKind, ...] = ("closed", "opening", "sliding", "opening and sliding")
-Motion = Literal["rocking", "sliding", "falling", "mixed"]
-Side = Literal["left", "right"]
+MotionKind = Literal["rocking", "sliding", "falling", "mixed"]
 
 _STILL = -1
 
@@ -128,7 +127,7 @@ class Toe:
     point: tuple[float, float]  # wall frame
     block: int  # of the body
     other: int  # stays in touch with it there; may be GROUND
-    side: Side | None
+    side: Direction | None
     """To which side the body tips over it; None when it hangs there rather than stands."""
 
 
@@ -137,7 +136,7 @@ class MovingGroup:
     """Blocks that move as one rigid body."""
 
     blocks: tuple[int, ...]  # ids, ascending
-    motion: Motion
+    motion: MotionKind
     """"rocking": turns about a toe on what stands still, or on another body.  "sliding": slides
     without turning on what stands still, or on another body.  "falling": goes down and touches
     nothing any more.  "mixed": all else, as turning and sliding at once, or being carried by
@@ -247,7 +246,7 @@ class _Border:
             sign * kin.normal[contact, 1] > BED,
         )
 
-    def motion(self, *, down: bool, turning: bool) -> tuple[Motion, Ints]:
+    def motion(self, *, down: bool, turning: bool) -> tuple[MotionKind, Ints]:
         """Tell how the body moves, and at which of the contact points.
 
         A body that does not turn itself does not rock, though what touches it may.
@@ -281,7 +280,7 @@ class _Border:
         points = self.kin.point[self.contact[at]]
         k = at[np.lexsort((points[:, 0], points[:, 1]))[0]]
         x, y = self.kin.point[self.contact[k]].tolist()
-        side: Side | None = None
+        side: Direction | None = None
         if self.bears[k]:
             side = "left" if self.turning[k] > 0 else "right"
         block, other = (int(self.kin.ids[rows[k]]) for rows in (self.inside, self.outside))

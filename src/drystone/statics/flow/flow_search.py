@@ -77,7 +77,7 @@ class NonassociativeSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class FlowState:
     """Forces and a motion, in the units of the program."""
 
     alpha: float  # load multiplier along the direction of the search
@@ -107,7 +107,7 @@ class ForcesOfMotion:
         self._program, self._rates, self._sign = program, rates, sign
         self._session = HighsSession(program)
 
-    def find(self, velocity: Floats) -> tuple[State, Floats] | None:
+    def find(self, velocity: Floats) -> tuple[FlowState, Floats] | None:
         """Return the state of least load, or None when no forces go with the motion.
 
         Opening contacts are left without force, sliding ones with the edge that resists.  With it
@@ -191,13 +191,13 @@ class MotionsOfForces:
         return solved(self._highs)
 
 
-def _state(found: Solution, sign: float, velocity: Floats | None = None) -> State | None:
+def _state(found: Solution, sign: float, velocity: Floats | None = None) -> FlowState | None:
     """Return the forces of a solution with a motion, its duals unless given."""
     if found.status is not LimitStatus.OPTIMAL or found.columns is None or found.duals is None:
         return None
     edges = np.maximum(found.columns[1:], 0.0).reshape(-1, 2)
     motion = -found.duals if velocity is None else velocity
-    return State(sign * float(found.columns[0]), edges, motion)
+    return FlowState(sign * float(found.columns[0]), edges, motion)
 
 
 class Search:
@@ -229,7 +229,7 @@ class Search:
         """False when no motion that closes no contact goes along with the load."""
         return self._motions.exist
 
-    def attempts(self) -> Iterator[tuple[str, int, State | None]]:
+    def attempts(self) -> Iterator[tuple[str, int, FlowState | None]]:
         """Yield the name of each start, how many rounds it took, and to which state, if any."""
         first = self._round(HighsSession(self._program), np.zeros(len(self._upright)))
         # Without an associative mechanism, where no load is too great for one, all slip alike.
@@ -253,7 +253,7 @@ class Search:
         }
         return start.factor * largest * shares[start.pattern]
 
-    def _rounds(self, rates: Floats, step: float) -> tuple[int, State | None]:
+    def _rounds(self, rates: Floats, step: float) -> tuple[int, FlowState | None]:
         """Go on until a motion goes with the forces of a round."""
         session = HighsSession(self._program)
         for number in range(1, self._settings.rounds + 1):
@@ -262,19 +262,19 @@ class Search:
                 return number, None
             velocity = self._motions.find(state.edges)
             if velocity is not None:
-                return number, State(state.alpha, state.edges, velocity)
+                return number, FlowState(state.alpha, state.edges, velocity)
             rates = rates + step * (np.abs(self._slip.T @ state.velocity) - rates)
             if rates.max() > RUNAWAY:
                 return number, None
         return self._settings.rounds, None
 
-    def _round(self, session: HighsSession, rates: Floats) -> State | None:
+    def _round(self, session: HighsSession, rates: Floats) -> FlowState | None:
         """Maximise alpha - sum r n; None when the solver gives up."""
         self._look()
         costs = np.concatenate(([-self._sign], np.repeat(rates, 2)))
         return _state(session.minimise(costs), self._sign)
 
-    def _descended(self, state: State) -> State:
+    def _descended(self, state: FlowState) -> FlowState:
         """Improve forces and motion in turn until alpha has not fallen for some steps."""
         stalled = 0
         while stalled < self._settings.patience:
@@ -290,5 +290,5 @@ class Search:
             velocity = self._motions.find(state.edges, wanted, state.velocity)
             if velocity is None:
                 return state
-            state = State(state.alpha, state.edges, velocity)
+            state = FlowState(state.alpha, state.edges, velocity)
         return state

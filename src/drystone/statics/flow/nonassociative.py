@@ -48,7 +48,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from drystone.statics.flow.flow_check import FlowCheck, check_flow
-from drystone.statics.flow.flow_search import NonassociativeSettings, Search, State
+from drystone.statics.flow.flow_search import FlowState, NonassociativeSettings, Search
 from drystone.statics.flow.release import fall_of, with_inertia
 from drystone.statics.limit import lateral_resistance
 from drystone.statics.loads import Loads, tilting_table
@@ -155,7 +155,7 @@ def _released(
     fall = fall_of(model, program, settings.rounds, look)
     if fall is None:
         return None
-    state = State(0.0, fall.edges, fall.acceleration)
+    state = FlowState(0.0, fall.edges, fall.acceleration)
     falling = with_inertia(model, program, loads or tilting_table(model), fall)
     answer = _answer(model, falling, "right", program, state, "let go")
     if not (answer.check and answer.check.holds):
@@ -216,7 +216,7 @@ def _answer(
     loads: Loads | None,
     direction: Direction,
     program: EquilibriumProgram,
-    state: State,
+    state: FlowState,
     method: str,
 ) -> NonassociativeResult:
     """Check a state, in the units of the model."""
